@@ -66,10 +66,14 @@ def hints(report: dict[str, Any]) -> list[dict[str, Any]]:
 
 @pytest.fixture(scope="module")
 def top(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a folder with a class of twelve and its gradebook."""
+    """Return a folder with a class of twelve and its gradebook, of a rubric whose hints may show edits."""
     top = tmp_path_factory.mktemp("hints")
     make(top / "class")
-    batch(top, "--jobs", "2")
+    shutil.copytree(LAB, top / "lab6")
+    rubric = top / "lab6/rubric.toml"
+    text = rubric.read_text(encoding="utf-8").replace('hints = "cause"', 'hints = "edit"')
+    rubric.write_text(text, encoding="utf-8")
+    batch(top, "--jobs", "2", "--rubric", rubric)
     return top
 
 
@@ -87,7 +91,8 @@ def test_reports_have_hints_for_the_students_own_text(top: Path) -> None:
             assert lines[edit["line"] - 1][edit["column"] - 1 :].startswith(edit["old"])
     assert hints(found["ash"])[0]["edits"][0]["line"] < hints(found["birch"])[0]["edits"][0]["line"]
     for name in ("elm", "holly"):
-        alone = grader("grade", top / "class" / name, "--format", "json").stdout
+        rubric = top / "lab6/rubric.toml"
+        alone = grader("grade", top / "class" / name, "--rubric", rubric, "--format", "json").stdout
         assert json.loads(alone)["results"] == found[name]["results"]
 
 
