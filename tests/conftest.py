@@ -2,13 +2,12 @@
 
 import gc
 import os
-import shutil
 import signal
 
 import pytest
 from hypothesis import settings
 
-from tests.command_line import ROOT
+from tests.edits_rubric import copy_with_edits
 
 # Examples have no time limit of their own. They are the same in every run: `--hypothesis-profile=random` searches for others.
 # There are few of them where a test does not say how many; see tests/examples.py.
@@ -48,10 +47,4 @@ def pytest_collection_finish() -> None:
 @pytest.fixture
 def shows_edits(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
     """Grade by a copy of lab6 whose hints may show edits, unless another rubric is named."""
-    folder = tmp_path_factory.mktemp("edits") / "lab6"
-    shutil.copytree(ROOT / "rubrics/lab6", folder)
-    file = folder / "rubric.toml"
-    text = file.read_text(encoding="utf-8")
-    assert 'hints = "cause"' in text
-    file.write_text(text.replace('hints = "cause"', 'hints = "edit"'), encoding="utf-8")
-    monkeypatch.setenv("GRADER_RUBRIC", str(file))
+    monkeypatch.setenv("GRADER_RUBRIC", str(copy_with_edits(tmp_path_factory.mktemp("edits") / "lab6")))

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from tests.classroom.class_runs import WITH_HOSTILE, Done, grader
+from tests.edits_rubric import copy_with_edits
 from tests.samples import ROOT
 
 pytestmark = pytest.mark.exhaustive
@@ -69,11 +70,7 @@ def top(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder with a class of twelve and its gradebook, of a rubric whose hints may show edits."""
     top = tmp_path_factory.mktemp("hints")
     make(top / "class")
-    shutil.copytree(LAB, top / "lab6")
-    rubric = top / "lab6/rubric.toml"
-    text = rubric.read_text(encoding="utf-8").replace('hints = "cause"', 'hints = "edit"')
-    rubric.write_text(text, encoding="utf-8")
-    batch(top, "--jobs", "2", "--rubric", rubric)
+    batch(top, "--jobs", "2", "--rubric", copy_with_edits(top / "lab6"))
     return top
 
 

@@ -18,6 +18,7 @@ from tests.command_line import ROOT, Done, run_with_input
 from tests.corpus.outputs import contents, is_shown, kept, masked
 from tests.corpus.results import results
 from tests.corpus.steps import STEPS, copy, remove
+from tests.edits_rubric import copy_with_edits
 
 CORPUS = Path(__file__).parent
 
@@ -29,12 +30,7 @@ def _lab_with_edits() -> Path:
     """Return a copy of the rubric lab6 whose hints may show edits."""
     folder = Path(mkdtemp(prefix="grader-edits-"))
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    shutil.copytree(ROOT / "rubrics/lab6", folder / "lab6")
-    file = folder / "lab6/rubric.toml"
-    text = file.read_text("utf-8")
-    assert 'hints = "cause" ' in text
-    file.write_text(text.replace('hints = "cause" ', 'hints = "edit"  '), "utf-8")
-    return file
+    return copy_with_edits(folder / "lab6")
 
 
 def _with_places(command: str, here: Path) -> str:

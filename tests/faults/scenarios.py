@@ -9,6 +9,7 @@ from typing import NamedTuple
 from grader.commands.review_session import CONFIRMED
 from tests.classroom.gradebooks import batch, grader, make_class, write_submission
 from tests.command_line import Done, run_process, run_with_input
+from tests.edits_rubric import copy_with_edits
 from tests.review_server import running
 from tests.samples import ROOT
 
@@ -67,6 +68,7 @@ def prepare(top: Path) -> None:
     (top / "moodle.csv").write_text(_MOODLE)
     (top / "marks.csv").write_text(_MARKS)
     (top / "report.json").write_text("old")
+    copy_with_edits(top / "edits")
     assert grader("mark", "anna", "picture", "1", "--gradebook", top / "book", "--by", "Kim").returncode == 0
 
 
@@ -90,7 +92,7 @@ _OUTPUT = ("--reports", "reports")
 
 SCENARIOS = (
     Scenario("grade", ("grade", "lab6", "--save", "json=report.json", "--save", "html=report.html")),
-    Scenario("grade-fix", ("grade", "robot.urdf", "--fix", "fixed.urdf")),
+    Scenario("grade-fix", ("grade", "robot.urdf", "--rubric", "edits/rubric.toml", "--fix", "fixed.urdf")),
     Scenario("batch", (*_BATCH, "--gradebook", "new", *_OUTPUT)),
     Scenario("batch-again", (*_BATCH, *_BOOK, "--force")),
     Scenario("mark", ("mark", "anna", "essay", "3.5", "--comment", "good", *_BOOK)),
