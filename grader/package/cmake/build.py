@@ -75,8 +75,10 @@ class Build:
 
     def inside(self, text: str) -> str | None:
         """Return a path as one in the package, without dots; None for one outside of it."""
-        path = posixpath.normpath(text.removeprefix(f"{ROOT}/") if text != ROOT else ".") if text else ""
-        return None if path.startswith(("/", "..")) else path.removeprefix(".") if path == "." else path
+        path = posixpath.normpath("" if text == ROOT else text.removeprefix(f"{ROOT}/"))
+        if path == ".":
+            return ""
+        return None if path.startswith(("/", "..")) else path
 
     def _has(self, path: str) -> bool | None:
         """Return whether the package has a file or folder at a path; None where that is not known."""
@@ -139,9 +141,9 @@ class Build:
 
     def _require_sources(self, sources: Sequence[str], command: Command) -> None:
         for source in sources:
-            path = self.inside(source)
-            is_file = source not in known_words("target_keywords") and path and posixpath.splitext(path)[1]
-            if is_file and path and self._has(path) is False:
+            path = self.inside(source) or ""
+            is_file = source not in known_words("target_keywords") and posixpath.splitext(path)[1]
+            if is_file and self._has(path) is False:
                 self._stop_missing(command, path)
 
     def _stop_missing(self, command: Command, path: str) -> None:

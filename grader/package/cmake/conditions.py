@@ -10,6 +10,7 @@ from grader.python.values import Unknown
 
 _TRUE = frozenset({"1", "ON", "YES", "TRUE", "Y"})
 _FALSE = frozenset({"0", "OFF", "NO", "FALSE", "N", "IGNORE", "NOTFOUND", ""})
+_MAX_DEPTH = 30  # parentheses and NOT in each other
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 _COMPARE: dict[str, Callable[[float, float], bool]] = {
     "EQUAL": operator.eq, "LESS": operator.lt, "GREATER": operator.gt, "LESS_EQUAL": operator.le,
@@ -54,7 +55,7 @@ class Condition:
         return found
 
     def _negated(self, depth: int) -> bool | None:
-        if depth > 30:
+        if depth > _MAX_DEPTH:
             return None
         if self._peek() == "NOT":
             self._index += 1
@@ -63,7 +64,8 @@ class Condition:
         if self._peek() == "(":
             self._index += 1
             found = self._either(depth + 1)
-            self._index += self._peek() == ")"
+            if self._peek() == ")":
+                self._index += 1
             return found
         return self._leaf()
 
@@ -108,7 +110,9 @@ class Condition:
             return self._exists(operand)
         if word == "DEFINED" and "{" not in operand:
             value = self._values.lookup(operand, self._at)
-            return None if isinstance(value, Unknown) else bool(value) or (operand in self._values.variables and None)
+            if value == "" and operand not in self._values.variables:
+                return False
+            return True if value and isinstance(value, str) else None  # one that is set to nothing may be defined
         return None
 
     def _compare(self, left: Text, word: str, second: tuple[Text, bool]) -> bool | None:
