@@ -218,7 +218,10 @@ def _require_installed(
 def _stops_at(package: Package, setup: "Installation", files: Sequence[str], kind: _FileKind | None) -> bool:
     """Return whether a build stops at the entry for these files, so that it is there."""
     folders = {posixpath.dirname(path) for path in files}
-    owners = ((_kind_of_file(stop.path, package), posixpath.dirname(stop.path)) for stop in setup.stops if stop.path)
+    paths = [stop.path for stop in setup.stops if stop.path]
+    if setup.is_cmake and any(closest(path, folders) for path in paths):  # install(DIRECTORY lunch ...)
+        return True
+    owners = ((_kind_of_file(path, package), posixpath.dirname(path)) for path in paths)
     return any(owner == kind or folder in folders for owner, folder in owners)
 
 
