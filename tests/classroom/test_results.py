@@ -84,7 +84,8 @@ def test_no_damage_brings_back_an_older_result(
     lines = [first.line, second.line, run.line, newest["ann"].line, *after]
     file = tmp_path_factory.mktemp("damaged") / "results.jsonl"
     number %= len(lines)
-    line, at = lines[number], place % (len(lines[number]) - 2)  # a hole leaves the line break, else two lines are damaged
+    line = lines[number]
+    at = place % (len(line) - 2)  # a hole leaves the line break: else two lines are damaged
     changed = b"#" if line[at : at + 1] != b"#" else b"+"
     lines[number] = {
         "lost": b"",
