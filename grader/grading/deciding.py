@@ -66,15 +66,18 @@ class _Grading:
         self._subjects = Subjects(rubric, submission)
         self.results: dict[str, Result] = {}
         self.missed: dict[tuple[str, str], str] = {}
+        self._lost: list[str] = []  # criteria whose points a later one may carry forward
 
     def decide(self, criterion: Criterion) -> None:
         """Run the check of a criterion, or skip it because of another that failed."""
         cause = self._blocking_cause(criterion)
         result = Result(criterion, _skip_outcome(cause), cause) if cause else self._decide_by_check(criterion)
         self.results[criterion.id] = self._carry_from_any(result)
-        above = [it for it in self.results.values() if it.criterion.carried]
-        for other in [it for it in above if _is_carried_from(it.criterion, criterion.id)]:
-            self.results[other.criterion.id] = self._carry_from_any(other)
+        for other in [self.results[name] for name in self._lost]:
+            if _is_carried_from(other.criterion, criterion.id):
+                self.results[other.criterion.id] = self._carry_from_any(other)
+        if criterion.carried and self.results[criterion.id].is_lost:
+            self._lost.append(criterion.id)
 
     def may_be_excused(self, name: str, undecided: Collection[str]) -> bool:
         """Return whether the mistake of a criterion that is not decided yet may be why this one is lost."""
