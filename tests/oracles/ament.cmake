@@ -116,6 +116,18 @@ function(ament_python_install_package name)
   endif()
 endfunction()
 
+function(generate_parameter_library name)
+  stub_target(${name} ${ARGN})
+endfunction()
+
+function(rclcpp_components_register_node name)
+  cmake_parse_arguments(_c "" "PLUGIN;EXECUTABLE;EXECUTOR" "" ${ARGN})
+  if(_c_EXECUTABLE)
+    file(WRITE "${CMAKE_BINARY_DIR}/${_c_EXECUTABLE}" "")
+    _install(PROGRAMS "${CMAKE_BINARY_DIR}/${_c_EXECUTABLE}" DESTINATION "lib/${PROJECT_NAME}")
+  endif()
+endfunction()
+
 function(pluginlib_export_plugin_description_file base file)
   _install(FILES "${file}" DESTINATION "share/${PROJECT_NAME}")
 endfunction()
@@ -147,7 +159,7 @@ foreach(name target_include_directories target_compile_features target_compile_o
     ament_export_include_directories ament_export_libraries ament_export_targets ament_export_interfaces
     ament_export_definitions ament_environment_hooks ament_lint_auto_find_test_dependencies add_dependencies
     rosidl_get_typesupport_target rosidl_target_interfaces rclcpp_components_register_nodes
-    rclcpp_components_register_node ament_index_register_resource generate_parameter_library set_compiler_options export_windows_symbols)
+    ament_index_register_resource set_compiler_options export_windows_symbols)
   cmake_language(EVAL CODE "function(${name})\nendfunction()")
 endforeach()
 

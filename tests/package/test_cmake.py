@@ -33,6 +33,8 @@ def read(text: str, *, ending: str = "\nament_package()\n") -> Installation:
         ("install(FILES README.md DESTINATION s RENAME LIESMICH.md)", {"s/LIESMICH.md"}),
         ("add_executable(node src/node.cpp)\ninstall(TARGETS node DESTINATION lib/${PROJECT_NAME})", {"lib/bot/node"}),
         ("add_executable(node src/node.cpp)\ninstall(TARGETS node)", {"bin/node"}),
+        ("add_library(parts SHARED src/node.cpp)\nrclcpp_components_register_node(parts PLUGIN bot::Node EXECUTABLE part)", {"lib/bot/part"}),
+        ("generate_parameter_library(bot_parameters config/a.yaml)\ninstall(TARGETS bot_parameters EXPORT all)", set[str]()),
         ("install(PROGRAMS scripts/run.py DESTINATION lib/bot)", {"lib/bot/run.py"}),
         ("rosidl_generate_interfaces(bot msg/Reading.msg DEPENDENCIES ${known})", {f"{SHARE}/msg/Reading.msg"}),
         ("pluginlib_export_plugin_description_file(nav README.md)", {f"{SHARE}/README.md"}),

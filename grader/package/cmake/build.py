@@ -5,6 +5,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from fnmatch import translate
+from itertools import pairwise
 
 from grader.names import did_you_mean
 from grader.package.cmake.language import Command
@@ -164,6 +165,18 @@ class Build:
     def _stop_target(self, command: Command, name: str) -> None:
         hint = did_you_mean(name, self.targets)
         self.stop(f"{command.name}() names the target {name!r}, which is not defined", command.at, hint=hint)
+
+    def register_component(self, command: Command) -> None:
+        """Install the program that rclcpp_components_register_node() makes, which its EXECUTABLE names."""
+        texts = self.values.texts(command.arguments)
+        after = dict(pairwise(texts))
+        name = after.get("EXECUTABLE", "")
+        if isinstance(name, Unknown):
+            self.give_up("the name of a program is not known", command.at)
+        elif name and self.values.uncertain is None:
+            self.programs.add(f"lib/{self._project()}/{name}")
+        elif name:
+            self._leave_open(Unknown(f"the program {name} is not known", command.at))
 
     def generate_interfaces(self, command: Command) -> None:
         """Install the message, service and action files of a package."""
@@ -394,6 +407,8 @@ BUILD_COMMANDS: dict[str, Callable[[Build, Command], None]] = {
     **dict.fromkeys(("add_executable", "add_library", "ament_auto_add_executable", "ament_auto_add_library"),
                     Build.add_target),
     **dict.fromkeys(("target_link_libraries", "ament_target_dependencies"), Build.use_target),
+    "generate_parameter_library": Build.add_target,  # its YAML file is a source
+    "rclcpp_components_register_node": Build.register_component,
     "rosidl_generate_interfaces": Build.generate_interfaces, "ament_package": Build.package,
     "ament_auto_package": Build.auto_package, "ament_python_install_package": Build.python_package,
     "pluginlib_export_plugin_description_file": Build.plugin_description, "install": Build.install,

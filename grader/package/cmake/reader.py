@@ -131,7 +131,10 @@ class _Evaluation:
                 is_list = text == "LISTS"
             elif is_list and isinstance(text, str):
                 value = self.values.lookup(text, at)
-                yield from [value] if isinstance(value, Unknown) else split_list(value)
+                if isinstance(value, Unknown):
+                    yield value
+                else:
+                    yield from split_list(value)
             else:
                 yield text
 
