@@ -73,6 +73,7 @@ def test_what_stops_a_build(text: str, message: str) -> None:
     "text",
     [
         "include(cmake/own.cmake)",
+        "install(FILES .clang-format DESTINATION s)",
         "some_command(urdf)",
         "if(DEFINED ENV{HOME} AND ${CMAKE_VERSION} VERSION_LESS 9)\n install(FILES README.md DESTINATION s)\nendif()",
         'install(CODE "message(x)")',

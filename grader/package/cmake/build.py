@@ -7,6 +7,7 @@ from contextlib import suppress
 from fnmatch import translate
 from itertools import pairwise
 
+from grader.files.limits import ignored_part
 from grader.names import did_you_mean
 from grader.package.cmake.language import Command
 from grader.package.cmake.values import ROOT, Text, Values, known_words
@@ -84,9 +85,10 @@ class Build:
     def _has(self, path: str) -> bool | None:
         """Return whether the package has a file or folder at a path; None where that is not known."""
         try:
-            return not path or self.listing.real(path) is not None
+            is_there = not path or self.listing.real(path) is not None
         except Undetermined:
             return None
+        return None if not is_there and ignored_part(path) else is_there
 
     def exists(self, text: str) -> bool | None:
         """Return whether a file or folder of the package exists; None where that is not known."""
