@@ -115,7 +115,7 @@ class ClassTable:
             page.inset(printable(_attention_line(reason, self._concerns[reason], verbose=self.verbose)))
         if self.ending:
             page.leave_row()
-            page.inset(printable(self.ending), indent=0)
+            page.rows.append(Text(printable(self.ending)))  # not wrapped: its path and command are copied
         page.print()
 
 
