@@ -9,7 +9,7 @@ from itertools import chain, islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from grader.authoring.facts import THE_PACKAGE, Fact, Omission, Solution, element_facts, package_facts, robot_facts
+from grader.authoring.facts import Fact, Omission, Solution, element_facts, package_facts, robot_facts
 from grader.checks.outcome import Outcome
 from grader.checks.registry import find_check
 from grader.checks.toml_types import WrongValue
@@ -17,6 +17,7 @@ from grader.errors import InputError, MissingElement, NotDecided
 from grader.grading.rubric import Rubric, read_rubric
 from grader.grading.toml_file import assignment, read_toml, toml_literal
 from grader.robot.shapes import UnknownShape
+from grader.submission.submission import Submission
 from grader.text import capitalised, printable
 
 _WIDTH = 120  # columns
@@ -39,6 +40,8 @@ _ROBOT, _PACKAGE = "robot", "package"
 _MAX_ID = 60
 
 
+_Subjects = Mapping[str, Any]  # what checks examine, by the names of their parameters
+
 _MAX_FACTS = 2000  # more than the largest robots have; criteria cost the square of their number
 
 
@@ -49,7 +52,7 @@ class Head(NamedTuple):
     title: str
     reference: str  # the path of the solution, relative to the rubric
     urdf: str  # its path in the package
-    package: str  # its name; empty without one
+    packages: tuple[str, ...]  # their names
     schema: str = ""  # the path of a JSON Schema for editors
 
 
@@ -62,7 +65,7 @@ class _DraftCriterion(NamedTuple):
     @property
     def is_of_package(self) -> bool:
         """Whether the package is needed for it."""
-        return self.fact.about == THE_PACKAGE
+        return self.fact.package is not None
 
 
 class RubricDraft(NamedTuple):
@@ -73,28 +76,33 @@ class RubricDraft(NamedTuple):
     omissions: tuple[Omission, ...]
 
 
-def draft(solution: Solution, head: Head, path: Path) -> RubricDraft:
-    """Return a rubric for a file at `path` with a criterion for each fact that a check can test. Raises InputError."""
-    facts = chain(robot_facts(solution), element_facts(solution), package_facts(solution))
-    found = list(islice(facts, _MAX_FACTS + 1))
+def draft(submission: Submission, solution: Solution | None, head: Head, path: Path) -> RubricDraft:
+    """Return a rubric for a file at `path` with a criterion for each fact that a check can test.
+
+    Without a robot it has no `solution`. Raises InputError.
+    """
+    of_robot = chain(robot_facts(solution), element_facts(solution)) if solution is not None else ()
+    found = list(islice(chain(of_robot, package_facts(submission)), _MAX_FACTS + 1))
     if len(found) > _MAX_FACTS:
         raise InputError(
-            f"the robot has more than {_MAX_FACTS} facts, which is too long for a rubric: name a smaller one"
+            f"the reference has more than {_MAX_FACTS} facts, which is too long for a rubric: name a smaller one"
         )
-    tried = [it if isinstance(it, Omission) else _tried(solution, it) for it in found]
-    rows = {
-        (row.fact.check, toml_literal(row.fact.arguments)): row for row in tried if isinstance(row, _DraftCriterion)
-    }
+    subjects: dict[str, Any] = {"submission": submission}
+    if solution is not None:
+        subjects |= {"urdf": solution.reading, "robot": solution.robot, "reference": solution.robot}
+    tried = [it if isinstance(it, Omission) else _tried(subjects, it) for it in found]
+    facts = ((it.fact, it) for it in tried if isinstance(it, _DraftCriterion))
+    rows = {(fact.check, fact.package, toml_literal(fact.arguments)): row for fact, row in facts}
     data = _rubric_text(head, [*rows.values()]).encode()
     return RubricDraft(data, read_rubric(data, path), tuple(it for it in tried if isinstance(it, Omission)))
 
 
-def _tried(solution: Solution, fact: Fact) -> _DraftCriterion | Omission:
+def _tried(subjects: _Subjects, fact: Fact) -> _DraftCriterion | Omission:
     """Return the first of the facts that the reference passes; or what it does not pass, and why."""
     reasons = []
     for one in (fact, *fact.otherwise):
         try:
-            outcome = _outcome(solution, one)
+            outcome = _outcome(subjects, one)
         except (MissingElement, NotDecided, UnknownShape) as error:
             reasons.append(str(error))
             continue
@@ -107,36 +115,36 @@ def _tried(solution: Solution, fact: Fact) -> _DraftCriterion | Omission:
     return Omission(fact.words, reasons[0])
 
 
-def _outcome(solution: Solution, fact: Fact) -> Outcome:
+def _outcome(subjects: _Subjects, fact: Fact) -> Outcome:
     """Return what a check says of the reference; raise WrongValue for an argument that it does not take."""
     check = find_check(fact.check)
     assert check is not None
     _, read = read_toml(f"it = {toml_literal(fact.arguments)}".encode(), Path())
     given = {name: check.parameters[name].type.parse(value) for name, value in read["it"].items()}
     usual, _ = _USUAL.get(fact.check, ({}, ""))
-    known = {
-        "urdf": solution.reading,
-        "robot": solution.robot,
-        "reference": solution.robot,
-        "submission": solution.submission,
-        "package": solution.submission.package,
-    }
+    submission = subjects["submission"]
+    if fact.package:
+        submission = submission.with_package(fact.package)
+    known = {**subjects, "submission": submission, "package": submission.package}
     return check.function(*(known[name] for name in check.examined), **{**usual, **given})
 
 
 def _rubric_text(head: Head, rows: Sequence[_DraftCriterion]) -> str:
     """Return a rubric with a criterion for each row; those with one heading follow each other."""
     of_package = sum(row.is_of_package for row in rows)
-    lines = [*_head_lines(head, len(rows)), *_default_lines({row.fact.check for row in rows})]
-    lines += _part_lines(_ROBOT, "The robot", "urdf", len(rows) - of_package)
+    part = _ROBOT if of_package < len(rows) else _PACKAGE
+    lines = [*_head_lines(head, len(rows)), *_default_lines(part, {row.fact.check for row in rows})]
+    if part == _ROBOT:
+        lines += _part_lines(_ROBOT, "The robot", "urdf", len(rows) - of_package)
     if of_package:
-        lines += _part_lines(_PACKAGE, "The package", "package", of_package)
+        title = "The package" if len(head.packages) == 1 else "The packages"
+        lines += _part_lines(_PACKAGE, title, "package", of_package)
     about = ""
     for name, row in _with_ids(rows).items():
         if row.fact.about != about:
             about = row.fact.about
             lines += ["", f"# --- {printable(about)} ".ljust(_WIDTH, "-")]
-        lines += _criterion_lines(name, row)
+        lines += _criterion_lines(name, row, part)
     return "\n".join(lines) + "\n"
 
 
@@ -159,14 +167,17 @@ def _head_lines(head: Head, points: int) -> Iterator[str]:
     yield assignment("id", head.id)
     yield assignment("title", head.title)
     yield f"{assignment('reference', head.reference)}  # the solution that must get full marks"
-    yield f"{assignment('urdf', head.urdf)}  # where a package keeps the file that is graded"
-    if head.package:
-        yield f"{assignment('package', head.package)}  # the name of the package that is graded"
+    if head.urdf:
+        yield f"{assignment('urdf', head.urdf)}  # where a package keeps the file that is graded"
+    if len(head.packages) == 1:
+        yield f"{assignment('package', head.packages[0])}  # the name of the package that is graded"
+    elif head.packages:
+        yield f"{assignment('packages', list(head.packages))}  # the names of the packages that are graded"
     yield assignment("points", points)
 
 
-def _default_lines(checks: set[str]) -> Iterator[str]:
-    yield from ("", "[defaults]", assignment("part", _ROBOT), assignment("points", 1))
+def _default_lines(part: str, checks: set[str]) -> Iterator[str]:
+    yield from ("", "[defaults]", assignment("part", part), assignment("points", 1))
     usual = {name: given for name, given in _USUAL.items() if name in checks}
     if usual:
         yield from ("", "[defaults.with]")
@@ -178,11 +189,13 @@ def _part_lines(name: str, title: str, needs: str, points: int) -> Iterator[str]
     yield from (assignment("needs", needs), assignment("points", points))
 
 
-def _criterion_lines(name: str, row: _DraftCriterion) -> Iterator[str]:
+def _criterion_lines(name: str, row: _DraftCriterion, part: str) -> Iterator[str]:
     fact = row.fact
     yield from ("", "[[criterion]]", assignment("id", name))
-    if row.is_of_package:
+    if row.is_of_package and part == _ROBOT:
         yield assignment("part", _PACKAGE)
+    if fact.package:
+        yield assignment("package", fact.package)
     yield assignment("about", printable(fact.about))
     yield assignment("title", printable(row.title))
     yield f"check = {toml_literal(fact.check)}"

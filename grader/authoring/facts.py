@@ -45,7 +45,7 @@ _Values = dict[str, Any]
 
 
 class Solution(NamedTuple):
-    """A solution that ROS 2 loads: its submission, its URDF as it was read, and its robot with the joints at 0."""
+    """A solution: its submission; its URDF as it was read, and the robot that ROS 2 loads, with the joints at 0."""
 
     submission: Submission
     reading: Reading
@@ -65,6 +65,7 @@ class Fact(NamedTuple):
     check: str
     arguments: Mapping[str, Any]
     words: str  # of the id
+    package: str | None = None  # what it is about: the name of a package, empty for the main one; None for the robot
     otherwise: "Sequence[Fact]" = ()  # tried in its place if the reference does not pass it
     title: str = ""  # default: what the check says
 
@@ -314,26 +315,34 @@ def _label(element: Element) -> str:
     return f"{name_of(element)} {next((str(element.get(key)) for key in _NAMED_BY if element.get(key)), '')}"
 
 
-def package_facts(solution: Solution) -> _Facts:
-    """Yield what may be true of the package that is graded; the other packages are omitted."""
-    package, path = solution.submission.package, solution.submission.path
-    for other in solution.submission.packages:
-        if other is not package:
-            yield Omission(f"the package {other.name}", "a rubric is about one package")
-    if package is None:
-        return
+def package_facts(submission: Submission) -> _Facts:
+    """Yield what may be true of the packages that are graded, first of the main one."""
+    path, main = submission.path, submission.package
+    packages = sorted(submission.lab_packages.values(), key=lambda it: it is not main)
+    for package in packages:
+        facts = _facts_of(package, path if path is not None and package.holds(path) else "")
+        if package is main:
+            yield from facts
+            continue
+        about = f"{THE_PACKAGE} {package.name}"
+        for fact in facts:
+            yield fact._replace(about=about, package=package.name, words=f"{package.name} {fact.words}")
+
+
+def _facts_of(package: Package, path: str) -> Iterator[Fact]:
+    """Yield what may be true of a package, in which the URDF has this path."""
     yield _package_fact("package_found", name=package.name)
     if package.manifest is not None and package.manifest.build_type:
         yield _package_fact("package_type", build_type=package.manifest.build_type)
     yield _package_fact("setup_imports")
-    yield from _installs(package, path if path is not None and package.holds(path) else "")
+    yield from _installs(package, path)
     for launch in package.launch_files:
         yield from _launch_facts(posixpath.basename(launch), package.launch(launch))
     yield from _rviz_facts(package)
 
 
 def _package_fact(check: str, label: str = "", **arguments: Any) -> Fact:
-    return Fact(THE_PACKAGE, check, arguments, f"{label} {check}".strip())
+    return Fact(THE_PACKAGE, check, arguments, f"{label} {check}".strip(), package="")
 
 
 def _installs(package: Package, urdf: str) -> Iterator[Fact]:

@@ -38,6 +38,11 @@ _OF_ROBOT = (".urdf", ".xacro")
 _MESHES = (".stl", ".dae", ".obj")
 
 
+# Documents, pictures, and the tests of a package.
+_NO_PART_OF_LAB = re.compile(
+    r"(?i)(^|/)tests?/|(^|/)(license|readme|changelog|contributing)[^/]*$|\.(md|pdf|docx|png|jpe?g|gif|svg)$"
+)
+_MAX_EMPTIED = 100  # files
 _MAX_MUTANTS = 5000  # of larger robots a sample is graded
 _CONTEXT = 2  # lines around a change
 _Progress = Callable[[int, int], None]  # how many submissions of how many are graded
@@ -94,6 +99,20 @@ class Trial:
     def text(self, path: str) -> str:
         """Return the text of a file of the reference."""
         return (content(self.reference, path) or b"").decode("utf-8", "surrogateescape")
+
+    def unexamined(self) -> tuple[list[str], int]:
+        """Return the files that may be emptied without a difference for any criterion, and how many were tried."""
+        files = self.reference.whole_tree.files.items()
+        tried = [path for path, file in files if file.size and not _NO_PART_OF_LAB.search(path)][:_MAX_EMPTIED]
+        return [path for path in tried if not self._is_examined(path)], len(tried)
+
+    def _is_examined(self, path: str) -> bool:
+        try:
+            emptied = with_files(self.reference, {path: b""})
+        except InputError:
+            return True
+        results = decide(self.rubric, emptied, self.expected)
+        return any(it.outcome.status != self.expected[it.criterion.id].outcome.status for it in results)
 
     def mutants(self) -> Iterator[Mutant]:
         """Yield the mutants of the robot, and those of the package that a criterion may look at."""
@@ -225,6 +244,8 @@ class RubricTest(NamedTuple):
     ignored: tuple[_Survivor, ...]  # mutants that lose nothing, and that the rubric ignores
     unused: tuple[str, ...]  # patterns of [[test.ignore]] that match no mutant
     idle: tuple[str, ...]  # criteria that no mutant fails
+    unexamined: tuple[str, ...]  # files that no criterion looks at
+    files: int  # how many were tried
     faults: tuple[Loss, ...]  # mutants on which a check is faulty
     equivalents: tuple[str, ...]  # the families that were tried
     losses: tuple[Loss, ...]  # equivalents that lose points
@@ -291,7 +312,7 @@ def _counted(
     survivors = [_survivor(trial, outcome.mutant) for outcome in graded if outcome.fate == "survived"]
     failed = {name for outcome in graded for name in outcome.failed}
     patterns = [pattern for row in trial.rubric.ignored for pattern in row.mutants]
-    tried = [*trial.equivalents()]
+    tried, (unexamined, files) = [*trial.equivalents()], trial.unexamined()
     return RubricTest(
         reference=trial.report,
         total=len(every),
@@ -302,6 +323,8 @@ def _counted(
         ignored=tuple(it for it in survivors if it.reason),
         unused=tuple(it for it in patterns if not any(_matches(mutant, it) for mutant in every)),
         idle=tuple(one.id for one in trial.tested if one.id not in failed),
+        unexamined=tuple(unexamined),
+        files=files,
         faults=tuple(
             Loss(it.mutant.id, it.faults, _mutant_diff(trial, it.mutant)) for it in graded if it.fate == "faulty"
         ),

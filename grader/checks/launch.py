@@ -161,8 +161,8 @@ def _check_starts(launch: "Launch") -> None:
 
 def _find_places(package: Package, launch: "Launch", *purposes: "Purpose", built: bool) -> list[_FilePlace]:
     """Return where a launch file looks for files. Raises MissingElement for one that a build does not install."""
-    places = [_place_of(package, file) for file in launch.named(*purposes)]
-    present = set(map(posixpath.basename, package.tree.files))
+    places = [_place_of(package, file, built=built) for file in launch.named(*purposes)]
+    present = {posixpath.basename(path) for it in package.packages.values() for path in it.tree.files}
     for it in places:
         is_needed = built or posixpath.basename(it.file.path or "") not in present
         if it.state == "missing" and is_needed and not any(wrong.state == "wrong" for wrong in places):
@@ -248,7 +248,7 @@ def _missing_file(package: Package, place: _FilePlace) -> MissingElement:
     return MissingElement(kind, name, message=place.text, location=place.file.location)
 
 
-def _place_of(package: Package, file: "NamedFile") -> _FilePlace:
+def _place_of(package: Package, file: "NamedFile", *, built: bool) -> _FilePlace:
     """Return whether a launch file finds a file that it names."""
     if file.path is None or file.reason:
         return _FilePlace(file, "wrong" if file.sure else "unknown", file.reason)
@@ -262,7 +262,9 @@ def _place_of(package: Package, file: "NamedFile") -> _FilePlace:
         other = package.find(owner)
         if other is None:
             return _place_in_unknown(package, owner, rest, file)
-        return _place_in_package(other, f"share/{owner}/{rest}", file)
+        place = _place_in_package(other, f"share/{owner}/{rest}", file)
+        is_there = posixpath.basename(rest) in map(posixpath.basename, other.tree.files)
+        return place._replace(state="missing") if place.state == "unknown" and is_there and not built else place
     fault = _fault_of_path(package, path)
     if fault:
         return _FilePlace(file, "wrong", f"the launch file looks for the {what} at {fault}")

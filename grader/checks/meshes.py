@@ -1,4 +1,4 @@
-"""Checks of the meshes of a link: which file, where a build puts it, its scale and its pose. No mesh is opened.
+"""Checks of the meshes of a link: which file, where a build puts it, its scale and its pose. No mesh is loaded.
 
 `_MeshFile` is what the name of a mesh means to ROS 2, and whether a build of the submission puts the file there.
 """
@@ -6,10 +6,12 @@
 import posixpath
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from itertools import islice
 from typing import NamedTuple
 
 from grader.checks.check import About
+from grader.checks.mesh_content import content_fault
 from grader.checks.outcome import (
     SLACK,
     Outcome,
@@ -24,6 +26,7 @@ from grader.checks.outcome import (
 from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import file_name, shape_name, visual_pose, visuals
 from grader.errors import MissingElement, NotDecided
+from grader.files.tree import File
 from grader.names import closest
 from grader.package.launch.places import is_of_one_machine
 from grader.package.package import Package
@@ -110,10 +113,10 @@ def shows_mesh(
 ) -> Outcome:
     """A link shows a mesh file, which ROS 2 finds on every machine.
 
-    Any visual of the link may be the mesh; the file is not opened. Absolute and `file://` paths fail. The file of a
-    `package://` path must be in the submission where a build of its package installs it, if a package was submitted;
-    then a relative path needs manual grading. `file://$(find my_robot)` in xacro means the same as
-    `package://my_robot`.
+    Any visual of the link may be the mesh. Absolute and `file://` paths fail. The file of a `package://` path must be
+    in the submission where a build of its package installs it, if a package was submitted; then a relative path needs
+    manual grading. `file://$(find my_robot)` in xacro means the same as `package://my_robot`. A file that is empty or
+    not of the format of its ending fails, also one of a collision mesh of the link.
 
     Args:
         link: The link that is examined.
@@ -142,7 +145,23 @@ def shows_mesh(
         return _another_file(meshes, file)
     wanted = _Pose(relative_to or link, scale, xyz, rpy, tolerance)
     outcomes = [_examine_mesh(robot, submission, it, wanted) for it in named]
-    return min(outcomes, key=lambda outcome: _BEST_FIRST.index(outcome.status))
+    best = min(outcomes, key=lambda outcome: _BEST_FIRST.index(outcome.status))
+    return best if best.status == "failed" else _broken_collision(robot, submission, link) or best
+
+
+def _broken_collision(robot: Configuration, submission: Submission, link: str) -> Outcome | None:
+    """Return the failure of a link with a collision mesh whose file is certainly broken."""
+    is_expanded = isinstance(submission.urdf, Read) and submission.urdf.is_expanded
+    for shape in (it.geometry for it in robot.link(link).collisions):
+        if isinstance(shape, Mesh):
+            mesh = mesh_file(shape.filename, is_expanded=is_expanded)
+            with suppress(NotDecided):
+                file = _file_of(mesh, submission)
+                fault = content_fault(file) if file is not None else ""
+                if fault:
+                    message = f"the collision mesh {file_name(mesh.written)} of {link!r} {fault}"
+                    return failed(message, place(shape.location, "filename"))
+    return None
 
 
 def _another_file(meshes: Sequence[_ShownMesh], file: str) -> Outcome:
@@ -288,7 +307,14 @@ def _why_not_found(mesh: _MeshFile, submission: Submission) -> str:
             raise NotDecided(f"{name} may be in an archive that could not be opened", "an archive could not be opened")
         similar = closest(name, map(posixpath.basename, package.tree.files))
         return f"is not in the package {package.name!r}{f'; there is {quoted(similar)}' if similar else ''}"
-    return _why_not_installed(package, f"share/{mesh.package}/{path}", held)
+    fault = _why_not_installed(package, f"share/{mesh.package}/{path}", held)
+    return fault or content_fault(package.tree.files.get(path) or package.tree.files[held[0]])
+
+
+def _file_of(mesh: _MeshFile, submission: Submission) -> File | None:
+    """Return the file of a submitted package that a mesh names."""
+    package = submission.packages[0].find(mesh.package) if submission.packages else None
+    return package.tree.files.get(posixpath.normpath(mesh.path)) if package is not None else None
 
 
 def _path_from_xacro(path: str) -> tuple[str, str] | None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from grader.authoring.draft import Head, RubricDraft, draft
 from grader.authoring.facts import Omission, Solution
 from grader.authoring.mutants import Mutant
-from grader.authoring.rubric_test import MutantOutcome, mutant_outcomes, run_rubric_test
+from grader.authoring.rubric_test import MutantOutcome, Trial, mutant_outcomes, run_rubric_test
 from grader.authoring.samples import read_samples
 from grader.checks.loading import urdf_loads
 from grader.classroom.workers.pool import Processes, processors
@@ -22,10 +22,10 @@ from grader.errors import GraderError, InputError
 from grader.files.reading import URDF_LIMIT
 from grader.grading.rubric import Rubric
 from grader.package.package import MANIFEST
-from grader.report.rubric_test_result import render_rubric_test, render_rubric_test_json
+from grader.report.rubric_test_result import render_rubric_test, render_rubric_test_json, unexamined_line
 from grader.robot.kinematics import Configuration
 from grader.submission.opening import STANDARD_INPUT, open_submission
-from grader.submission.packages import package_around
+from grader.submission.packages import is_backup, package_around
 from grader.submission.submission import Lab, Submission
 from grader.submission.urdf import Absent, Read, Unreadable
 from grader.text import enumerated, printable, printable_path, shell_quoted
@@ -39,10 +39,13 @@ _GROUP, _SECONDS = 20, 60.0  # mutants that a worker grades at once, and how lon
 def write_rubric(file: Path, reference: str, warn: Warn, *, force: bool) -> str:
     """Write a rubric of a reference's facts; return what it contains, omits, and the next step. Raises GraderError."""
     _check_target(file, force=force)
-    solution = _solution(reference, warn)
-    made = draft(solution, _rubric_head(file, reference, solution.submission), file)
+    if reference == STANDARD_INPUT:
+        raise GraderError("--from takes a file or folder, which the rubric names as its reference")
+    submission = _open_reference(reference)
+    solution = _solution(submission, reference, warn)
+    made = draft(submission, solution, _rubric_head(file, reference, submission), file)
     if len(made.data) > URDF_LIMIT:
-        raise GraderError(f"the robot has too many facts for a rubric: {len(made.rubric.criteria)} criteria")
+        raise GraderError(f"the reference has too many facts for a rubric: {len(made.rubric.criteria)} criteria")
     save_bytes(file, made.data)
     return "".join(f"{printable(line)}\n" for line in _result_lines(file, made))
 
@@ -57,14 +60,14 @@ def _check_target(file: Path, *, force: bool) -> None:
         raise missing_folder(file)
 
 
-def _solution(reference: str, warn: Warn) -> Solution:
-    """Return the reference, which ROS 2 must load; raise GraderError."""
-    if reference == STANDARD_INPUT:
-        raise GraderError("--from takes a file or folder, which the rubric names as its reference")
-    submission, shown = _open_reference(reference), printable_path(reference)
+def _solution(submission: Submission, reference: str, warn: Warn) -> Solution | None:
+    """Return the robot of the reference, which ROS 2 must load; None of packages without one. Raises GraderError."""
+    shown = printable_path(reference)
     match submission.urdf:
+        case Absent() if submission.packages:
+            return None
         case Absent():
-            raise InputError(f"{shown} has no URDF: no file in it has a <robot>")
+            raise InputError(f"{shown} has neither a URDF nor a package: no file has a <robot>, none is a package.xml")
         case Unreadable(reason=reason):
             raise InputError(reason)
         case Read(reading=reading, loaded=loaded):
@@ -82,12 +85,14 @@ def _solution(reference: str, warn: Warn) -> Solution:
 
 
 def _open_reference(reference: str) -> Submission:
-    """Return the reference as a submission; of several packages, the one with the URDF is graded."""
+    """Return the reference as a submission in which all of its packages are graded, the one with the URDF first."""
     submission = open_submission(reference, Lab(_URDF))
-    package = package_around(submission.packages, submission.path)
-    if package is None or package is submission.package or submission.path is None:
+    main = package_around(submission.packages, submission.path) or submission.package
+    packages = [it.name for it in submission.packages if it is not main and not is_backup(it.folder)]
+    if main is None or not packages:
         return submission
-    return open_submission(reference, Lab(submission.path.removeprefix(f"{package.folder}/"), package.name))
+    urdf = (submission.path or _URDF).removeprefix(main.path(""))
+    return open_submission(reference, Lab(urdf, packages=tuple(dict.fromkeys([main.name, *packages]))))
 
 
 def _rubric_head(file: Path, reference: str, submission: Submission) -> Head:
@@ -95,10 +100,11 @@ def _rubric_head(file: Path, reference: str, submission: Submission) -> Head:
     place = _relative(Path(reference), file.parent)
     package, path = submission.package, submission.path or ""
     if package is not None and package.holds(path):
-        path = path.removeprefix(f"{package.folder}/")
+        path = path.removeprefix(package.path(""))
+    names = tuple(it.name for it in submission.lab_packages.values())
     schema = f"./{_SCHEMA}" if (file.parent / _SCHEMA).is_file() else ""
     title = words[0].upper() + words[1:]
-    return Head(words.replace(" ", "-"), title, place, path, package.name if package else "", schema)
+    return Head(words.replace(" ", "-"), title, place, path, names, schema)
 
 
 def _relative(reference: Path, folder: Path) -> str:
@@ -119,6 +125,9 @@ def _result_lines(file: Path, made: RubricDraft) -> Iterator[str]:
     if made.rubric.reference.startswith(("..", "/")):
         yield f"note: the reference is {made.rubric.reference}, outside the rubric's folder: move both together"
     yield from (f"omitted: {line}" for line in _omission_lines(made.omissions))
+    paths, count = Trial(made.rubric).unexamined()
+    if paths:
+        yield unexamined_line(paths, count)
     yield f"next: grader rubric test {shell_quoted(file)}"
 
 

@@ -54,6 +54,7 @@ class Criterion(NamedTuple):
     has_selectors: bool = False  # whether arguments name links by their place in the tree
     bonus: bool = False  # whether the points are extra credit, not part of the maximum
     adjustment: Adjustment | None = None  # after grading; then manual marks do not count
+    package: str = ""  # the name of the package that it is about; empty for the one with the robot
     choices: Mapping[str, Decimal] = {}  # usual deductions for manual grading: comments, and points below 0
 
     @property

@@ -62,10 +62,10 @@ class _Grading:
         if "URDF" in self._manual:
             submission = replace(submission, urdf=Absent())
         if "package" in self._manual:
-            submission = replace(submission, package=None)
+            submission = replace(submission, package=None, lab_packages={})
         self._subjects = Subjects(rubric, submission)
         self.results: dict[str, Result] = {}
-        self.missed: dict[tuple[str, str], str] = {}
+        self.missed: dict[tuple[str, str, str], str] = {}
         self._lost: list[str] = []  # criteria whose points a later one may carry forward
 
     def decide(self, criterion: Criterion) -> None:
@@ -175,7 +175,7 @@ class _Grading:
     def _run_check(self, criterion: Criterion, check: Check, arguments: Mapping[str, Any]) -> Result:
         """Return the result of a check; raise MissingElement, or RubricError for a mistake of the rubric."""
         try:
-            examined = self._subjects.of(check, criterion.at)
+            examined = self._subjects.of(check, criterion)
             arguments = self._subjects.named(check, arguments) if criterion.has_selectors else arguments
             outcome = check.function(*examined, **arguments)
             fault = fault_of(outcome) if check.distribution else ""
@@ -204,7 +204,7 @@ class _Grading:
             return Result(criterion, _by_evidence(self.submission, self._manual[missing.kind]))
         if missing.kind == "link":
             missing = another_robot(self._rubric, self.submission.robot, missing.name) or missing
-        first = self._first_miss(criterion, (missing.kind, missing.name))
+        first = self._first_miss(criterion, (missing.kind, missing.name, criterion.package))
         if first != criterion.id and not missing.costs_once:
             return Result(criterion, _skip_outcome(first), first)
         at = missing.location if isinstance(missing.location, Location | LazyLocation) else None
@@ -233,7 +233,7 @@ class _Grading:
         others = [link.known for link in robot.links if link.known.name not in wanted] if robot is not None else []
         return not (any(link.visuals for link in others) or near(name, [link.name for link in others], "link"))
 
-    def _first_miss(self, criterion: Criterion, thing: tuple[str, str]) -> str:
+    def _first_miss(self, criterion: Criterion, thing: tuple[str, str, str]) -> str:
         """Return the first criterion that misses a thing, which may be this one; an adjusted one excuses no other.
 
         One that is carried from this one is skipped in its place, although it stands above.
@@ -301,7 +301,7 @@ def _missing_work(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
         found["URDF"] = another.mistake if another is not None else lacking
     package = submission.package
     if package is None:
-        found["package"] = submission.no_package[0]
+        found["package"] = submission.no_package.message
     elif package.name != rubric.package and submission.other_lab and package.folder.startswith(submission.other_lab):
         found["package"] = f"no package was submitted for this lab; {package.name!r} is in the folder of another lab"
     return found if found and not submission.is_single and submission.evidence_files else {}

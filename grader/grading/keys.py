@@ -146,6 +146,9 @@ CRITERION = KeyTable(
         "carried": described(
             CARRIED.one_or_more, "What counts instead if an earlier mistake makes the criterion fail."
         ),
+        "package": described(
+            _TEXT, "Which of the `packages` it is about; default: the one with the robot, else the first."
+        ),
         "feedback": described(_TEXT, "An explanation for students whose submission fails the criterion."),
         "choices": described(_CHOICES, "Usual deductions for manual grading: a comment, and points below 0."),
         "bonus": described(toml_type(bool), "Extra credit: its points are not part of the maximum; default: false."),
@@ -217,6 +220,10 @@ RUBRIC = KeyTable(
         "reference": described(_TEXT, "The solution that must get full marks: a path relative to this file's folder."),
         "urdf": described(_FILE, "Where a package keeps the graded file (default: robot.urdf)."),
         "package": described(_TEXT, "The name of the graded ROS 2 package."),
+        "packages": described(
+            constrained(NAMES, Constraint("at least one name", bool, {"minItems": 1})),
+            "The names of the graded packages, if there are several.",
+        ),
         "folders": described(_FOLDERS, "The names of the lab's folder in a repository of several labs."),
         "points": described(_POINTS, "The sum of all points, which is then verified."),
         "answers": described(_ANSWERS, "The file with the model answers, in this file's folder or below."),

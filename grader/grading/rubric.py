@@ -86,6 +86,7 @@ class Rubric:
     data: bytes = field(repr=False)  # of the file
     path: Path = field(compare=False)  # of the file
     package: str = ""  # the name of the graded package
+    packages: tuple[str, ...] = ()  # the names of all packages that criteria are about, if there are several
     evidence: tuple[Evidence, ...] = ()
     late: Late | None = None
     answers: str = ""  # the path of the file with the model answers, if any
@@ -100,7 +101,7 @@ class Rubric:
     @property
     def lab(self) -> Lab:
         """What is searched in a submission."""
-        return Lab(self.urdf, self.package, self.folders, self.links)
+        return Lab(self.urdf, self.package, self.folders, self.links, self.packages)
 
     @property
     def compares_with_reference(self) -> bool:
@@ -195,6 +196,7 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         data=data,
         path=path,
         package=rubric.get("package", ""),
+        packages=rubric.get("packages", ()),
         evidence=tuple(Evidence(**row) for row in valid.evidence),
         late=Late(**valid.late) if valid.late is not None else None,
         answers=rubric.get("answers", ""),
@@ -228,7 +230,7 @@ def _reference_solution(rubric: TomlRow, path: Path, data: bytes) -> ReferenceSo
     if not rubric.get("reference"):
         return None
     place, package = path.parent / rubric["reference"], rubric.get("package", "")
-    lab = Lab(rubric.get("urdf", _URDF), package, rubric.get("folders", ()))
+    lab = Lab(rubric.get("urdf", _URDF), package, rubric.get("folders", ()), packages=rubric.get("packages", ()))
 
     def missing() -> str:
         line, name = key_lines(data.decode())["reference",], rubric["id"]

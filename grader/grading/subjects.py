@@ -43,12 +43,15 @@ class Subjects:
         if self.robot is not None:
             self._known["robot"] = self.robot
 
-    def of(self, check: Check, at: Mapping[str, float]) -> list[object]:
-        """Return what a check examines, with the joints of the robot at positions in degrees or metres.
+    def of(self, check: Check, criterion: Criterion) -> list[object]:
+        """Return what a check examines for a criterion: its package, and the robot with the joints at its positions.
 
         Raises MissingElement or NotDecided for what the submission does not have.
         """
-        found = [self._known[name] if name in self._known else self._needed_subject(name) for name in check.examined]
+        known, at = self._known, criterion.at
+        if criterion.package:
+            known = {**known, "submission": self.submission.with_package(criterion.package)}
+        found = [known[name] if name in known else self._needed_subject(name, known) for name in check.examined]
         return [
             self._pose_robot(it, at) if at and isinstance(it, Configuration) and it is self.robot else it
             for it in found
@@ -82,10 +85,10 @@ class Subjects:
             self._posed[key] = robot.at(positions)
         return self._posed[key]
 
-    def _needed_subject(self, name: Subject) -> object:
+    def _needed_subject(self, name: Subject, known: Mapping[Subject, Any]) -> object:
         """Return the package; raise MissingElement or NotDecided for any other subject that a submission lacks."""
         if name == "package":
-            return self.submission.needed_package()
+            return known["submission"].needed_package()
         self.submission.needed_urdf()
         raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot")
 

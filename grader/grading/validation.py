@@ -51,6 +51,9 @@ class Validation:
         self._check_criteria(part_ids, positions)
         for index, row in enumerate(self.evidence):
             self._check_part(("evidence", index), row, part_ids)
+        main, packages = self.rubric.get("package", ""), self.rubric.get("packages", ())
+        if main and packages and main not in packages:
+            self._complain(("package",), f"packages does not list the package {main!r}")
         self.adjusted = self._read_adjustments(positions)
         self._check_totals()
 
@@ -65,6 +68,7 @@ class Validation:
             if "part" in self.rubric["criterion"][index]:
                 self._check_part(where, row, part_ids)
             self._check_order((*where, "requires"), row, positions)
+            self._check_package(where, row)
             if (bound := self._bind_check(where, row)) is not None:
                 self.bound.append(bound)
                 self._check_subject(where, row, bound[0])
@@ -74,6 +78,15 @@ class Validation:
             self.carried.append([*filter(None, found)])
             if use := {TOTAL: "final marks", DEADLINE: "deadlines"}.get(row.get("id", "")):
                 self._complain((*where, "id"), f"the id {row['id']!r} is reserved for {use}: choose another one")
+
+    def _check_package(self, where: TomlPath, row: TomlRow) -> None:
+        """Complain of a package that is none of several packages of the rubric."""
+        packages = self.rubric.get("packages", ())
+        if "package" in row and row["package"] not in packages:
+            hint = (
+                self._guess(row["package"], packages) or f"; there are: {enumerated(packages, _MAX_LISTED) or 'none'}"
+            )
+            self._complain((*where, "package"), f"packages has no {row['package']!r}{hint}")
 
     def _read_rows(self, key: str, table: KeyTable, defaults: Mapping[str, Any] | None = None) -> list[TomlRow]:
         rows = enumerate(self.rubric.get(key, ()))

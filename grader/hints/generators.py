@@ -49,9 +49,9 @@ class Situation:
         submission: Submission,
         wanted: Collection[str],
         reference: Draft | None,
-        package: "Callable[[], Package | None]",
+        package: "Callable[[str], Package | None]",
     ) -> None:
-        """`wanted` are the links that the rubric names, `reference` and `package` those of the reference solution."""
+        """`wanted` are the links that the rubric names, `reference` and `package` give the robot and packages of it."""
         self.submission, self.reference_package = submission, package
         self.reading: Reading | None = None
         self.draft: Draft | None = None
@@ -116,11 +116,13 @@ def _of_reference(situation: Situation, lost: _Lost) -> Iterator[Iterable[Propos
 def _of_package(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
     """The edits of the files of a package, by the kinds of files that checks look at."""
     own = [criterion for criterion in lost if criterion.check.subject not in ("urdf", "robot")]
-    if own and situation.submission.package is not None:
-        from grader.hints.package_edits import package_proposals  # late: a robot on its own needs none
+    for name in dict.fromkeys(criterion.package for criterion in own):
+        submission = situation.submission.with_package(name) if name else situation.submission
+        if submission.package is not None:
+            from grader.hints.package_edits import package_proposals  # late: a robot on its own needs none
 
-        wanted = [(criterion.check.about.looks_at, criterion.arguments) for criterion in own]
-        yield from package_proposals(situation.submission.package, situation.reference_package(), wanted)
+            wanted = [(it.check.about.looks_at, it.arguments) for it in own if it.package == name]
+            yield from package_proposals(submission.package, situation.reference_package(name), wanted)
 
 
 def _of_own_numbers(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from decimal import Decimal
+from functools import partial
 from itertools import takewhile
 from typing import TYPE_CHECKING, NamedTuple, cast
 
@@ -56,7 +57,7 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
     results = {result.criterion.id: result for result in report.results}
     solution = report.rubric.solution
     trials = Trials(report.rubric, submission, results)
-    search = HintSearch(trials, _draft(solution), lambda: _package(solution), report.by_convention).run()
+    search = HintSearch(trials, _draft(solution), partial(_package, solution), report.by_convention).run()
     costs = costs_of(results)
     shown = {name: found for found in reversed(search.found) for name in found.gains}
     entries = {found.edits: _entry(found, shown, results, costs) for found in search.found}
@@ -150,10 +151,12 @@ def _draft(reference: ReferenceSolution | None) -> Draft | None:
     return None
 
 
-def _package(reference: ReferenceSolution | None) -> "Package | None":
-    """Return the package of the reference solution."""
+def _package(reference: ReferenceSolution | None, name: str) -> "Package | None":
+    """Return the package of the reference solution, or that of this name if the rubric has several."""
     with suppress(InputError):
-        return reference.submission.package if reference is not None else None
+        submission = reference.submission if reference is not None else None
+        if submission is not None:
+            return submission.with_package(name).package if name else submission.package
     return None
 
 

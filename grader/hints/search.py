@@ -192,10 +192,10 @@ class HintSearch:
         self,
         trials: Trials,
         reference: Draft | None,
-        package: "Callable[[], Package | None]" = lambda: None,
+        package: "Callable[[str], Package | None]" = lambda _: None,
         told: Collection[str] = (),
     ) -> None:
-        """`reference` and `package` are the robot and the package of the rubric's reference solution.
+        """`reference` is the robot of the rubric's solution, `package` returns its package of a name.
 
         No edit is searched for the criteria that are `told`.
         """

@@ -298,12 +298,12 @@ def bonus_line(report: Report) -> str:
 
 
 def package_line(report: Report) -> str:
-    """Return the package that is graded and its folder; empty if none is."""
-    package = report.submission.package
-    if package is None or not any(report.rubric.part(part).needs == "package" for part in report.parts):
+    """Return the packages that are graded and their folders; empty if none is."""
+    packages = report.submission.lab_packages.values()
+    if not packages or not any(report.rubric.part(part).needs == "package" for part in report.parts):
         return ""
-    text = f"package {package.name}"
-    return printable(f"{text} in {package.folder}" if package.folder else text)
+    named = [f"{package.name} in {package.folder}" if package.folder else package.name for package in packages]
+    return printable(f"package{'s' * (len(named) > 1)} {', '.join(named)}")
 
 
 def head(report: Report) -> Iterator[Line]:

@@ -26,7 +26,7 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
-from grader.text import enumerated, first_lines, format_points, printable, without_commands
+from grader.text import counted, enumerated, first_lines, format_points, printable, without_commands
 
 _MAX_LISTED, _MAX_DIFF = 10, 14
 _DEEPEST = 4  # indentation of a sentence
@@ -49,12 +49,19 @@ def render_rubric_test(test: RubricTest, width: int) -> str:
     if test.idle:
         mutant = "mutant" if test.tried == test.total else "graded mutant"
         lines += ["", f"Idle criteria, which no {mutant} fails: {enumerated(test.idle)}"]
+    if test.unexamined:
+        lines += ["", unexamined_line(test.unexamined, test.files)]
     for pattern in test.unused:
         lines += ["", f"The pattern {pattern!r} of [[test.ignore]] matches no mutant."]
     percent = int(test.score * 10) / 10  # rounded down: 100 only where nothing survived
     lines += ["", f"Mutation score: {percent:g} %"]
     text = "\n".join(folded for line in lines for folded in _fold(printable(line), width))
     return without_commands(f"{text}\n")
+
+
+def unexamined_line(paths: Sequence[str], count: int) -> str:
+    """Return which of the files of a reference no criterion looks at."""
+    return f"No criterion looks at {enumerated(paths, _MAX_LISTED)}: {len(paths)} of {counted(count, 'file')}"
 
 
 def _fold(line: str, width: int) -> list[str]:
@@ -130,7 +137,7 @@ RUBRIC_TEST = JsonObject(
         **each(Many(_SURVIVOR), "survivors ignored"),
         "faults": _LOSSES,
         "unused_patterns": (array(TEXT), "unused"),
-        "idle": array(TEXT),
+        **each(array(TEXT), "idle unexamined"),
     }
 )
 

@@ -165,6 +165,7 @@ def submission_of(tree: Tree, identity: str, lab: Lab, opening: Opening = DEFAUL
         packages=chosen.packages,
         package=chosen.package,
         no_package=chosen.no_package,
+        lab_packages=chosen.lab_packages,
         whole_tree=tree,
         several=chosen.several,
         notes=chosen.notes,

@@ -2,6 +2,8 @@
 
 import posixpath
 import re
+from collections.abc import Sequence
+from itertools import product
 from pathlib import PurePosixPath
 
 from grader.errors import InputError
@@ -37,13 +39,13 @@ def is_backup(path: str) -> bool:
     return not _WORDS.isdisjoint(_WORD.findall(_CAMEL.sub(" ", path).casefold()))
 
 
-def find_packages(tree: Tree, name: str) -> list[str]:
-    """Return the folders of packages: those with a package.xml, and those of this name with only a setup.py."""
+def find_packages(tree: Tree, names: Sequence[str]) -> list[str]:
+    """Return the folders of packages: those with a package.xml, and those of these names with only a setup.py."""
     with_manifest, with_setup = (
         [path.rpartition("/")[0] for path in tree.files if path.rpartition("/")[2] == file]
         for file in (MANIFEST, SETUP)
     )
-    named = [folder for folder in with_setup if folder not in with_manifest and folder.rpartition("/")[2] == name]
+    named = [folder for folder in with_setup if folder not in with_manifest and folder.rpartition("/")[2] in names]
     if not with_manifest and not named:
         named = with_setup
     return sorted([*with_manifest, *named], key=_depth)[:_MAX_PACKAGES]
@@ -56,10 +58,11 @@ def read_packages(tree: Tree, lab: Lab) -> tuple[Package, ...]:
     above all the URDF at its path; then the least deep, then the first in alphabetical order.
     """
     known: dict[str, Package] = {}
-    packages = [_read_package(tree, folder, known, lab.package) for folder in find_packages(tree, lab.package)]
+    folders = find_packages(tree, lab.package_names)
+    packages = [_read_package(tree, folder, known, lab.package) for folder in folders]
     packages.sort(
         key=lambda it: (
-            _name_distance(it, lab.package),
+            min(_name_distance(it, name) for name in lab.package_names),
             is_backup(it.folder),
             _missing_files(it, lab.urdf),
             _depth(it.folder),
@@ -75,6 +78,16 @@ def best_named(packages: tuple[Package, ...], name: str) -> Package | None:
     for package in packages[:1]:
         return package if not name or _name_distance(package, name) <= _IN_NAMED_FOLDER else None
     return None
+
+
+def packages_of_lab(packages: Sequence[Package], names: Sequence[str]) -> dict[str, Package]:
+    """Return the package that each name means: that of the name, else in a folder of it, else of a similar name."""
+    found: dict[str, Package] = {}
+    for distance, name in product((_NAMED, _IN_NAMED_FOLDER, _SIMILAR), names):
+        spare = (it for it in packages if it not in found.values() and _name_distance(it, name) <= distance)
+        if name not in found and (package := next(spare, None)) is not None:
+            found[name] = package
+    return found
 
 
 def package_around(packages: tuple[Package, ...], path: str | None) -> Package | None:

@@ -75,6 +75,8 @@ def find_robots(tree: Tree, urdf_name: str = "", max_size: int = URDF_LIMIT) -> 
     for file in files:
         is_urdf = file.suffix == ".urdf" or file.name == urdf_name
         is_read = read < _MAX_READ and by_content < _MAX_ROBOTS
+        if ".srdf" in file.name:  # MoveIt's description of groups, which is a <robot> as well
+            continue
         if not is_urdf and (not is_read or file.suffix in _BINARY or not 0 < file.size <= max_size):
             continue
         read += 1

@@ -1,6 +1,6 @@
 """What of a submission is graded: where its lab is searched, and which URDF and package of these files, and why."""
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -19,12 +19,13 @@ from grader.submission.packages import (
     best_named,
     is_backup,
     package_around,
+    packages_of_lab,
     read_packages,
     why_none,
     why_not,
 )
 from grader.submission.robots import RobotFile, find_robots, parts_of
-from grader.submission.submission import Lab, Opening
+from grader.submission.submission import Lab, NoPackage, Opening
 from grader.submission.urdf import (
     OtherCandidate,
     Read,
@@ -84,11 +85,12 @@ class _Selection(NamedTuple):
     choice: UrdfChoice
     tree: Tree  # of the lab's folder, if it has one: documents are in it
     packages: tuple[Package, ...]
-    no_package: tuple[str, str]  # why none of the packages is graded, and which there are
+    no_package: NoPackage
     others: tuple[OtherCandidate, ...]  # robots and packages that are not graded
     own_folder: str  # of the lab
     other_lab: str  # the folder of another lab that is searched as well
     package: Package | None = None
+    lab_packages: Mapping[str, Package] = {}  # by the names that the lab gives
     notes: tuple[str, ...] = ()  # on the choice
     several: str = ""  # the note that says that several robots fit
 
@@ -97,17 +99,38 @@ def select(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     """Select what is graded of the files of a submission."""
     found = _searched(tree, lab, opening)
     packages, urdf, others, fitting = found.packages, found.choice.path, found.choice.others, found.choice.fitting
-    named, around = best_named(packages, lab.package), package_around(packages, urdf)
-    graded = around if named is None or (around is not None and around.name == named.name) else named
-    others += tuple(
-        OtherCandidate(it.path(MANIFEST), why_not(graded, it, lab.urdf)) for it in packages if it is not graded
-    )
+    around = package_around(packages, urdf)
+    if lab.packages:
+        lab_packages = _several_packages(packages, lab, around)
+        graded = lab_packages.get(lab.package or _main_package(lab_packages, lab, around))
+    else:
+        named = best_named(packages, lab.package)
+        graded = around if named is None or (around is not None and around.name == named.name) else named
+        lab_packages = {lab.package: graded} if graded is not None else {}
+    unused = (it for it in packages if it not in lab_packages.values())
+    others += tuple(OtherCandidate(it.path(MANIFEST), why_not(graded, it, lab.urdf)) for it in unused)
     several = ""
     if fitting:
         which = f"{urdf} was graded, not {enumerated(fitting, _MAX_NAMED)}"
         several = f"{len(fitting) + 1} robots fit this lab: {which}; to grade another one, name its file or folder"
     notes = tuple(note for note in (several, _note_on_folders(found)) if note)
-    return found._replace(package=graded, others=others + found.others, notes=notes, several=several)
+    return found._replace(
+        package=graded, lab_packages=lab_packages, others=others + found.others, notes=notes, several=several
+    )
+
+
+def _several_packages(packages: Sequence[Package], lab: Lab, around: Package | None) -> dict[str, Package]:
+    """Return the packages of a lab that names several, by these names; that of the robot counts for a missing one."""
+    found = packages_of_lab(packages, lab.packages)
+    missing = [name for name in lab.packages if name not in found]
+    if missing and around is not None and around not in found.values():
+        found[missing[0]] = around
+    return found
+
+
+def _main_package(packages: Mapping[str, Package], lab: Lab, around: Package | None) -> str:
+    """Return the name of the package with the robot; of the first one where it is in none."""
+    return next((name for name, package in packages.items() if package is around), lab.packages[0])
 
 
 def _note_on_folders(found: _Selection) -> str:
@@ -161,6 +184,8 @@ def _searched(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     projects = projects if has_own or len(projects) < len(robots) else set()
     every_package = read_packages(tree, lab)
     robots = tuple(robot for robot in robots if robot.path not in projects)
+    of_lab = packages_of_lab(every_package, lab.packages).values()
+    robots = tuple(it for it in robots if any(package.holds(it.path) for package in of_lab)) or robots
     choice = UrdfSearch(tree, lab, labs, opening, every_package).choose(robots)
     places = _Places(labs, _other_lab(tree, labs, choice.path, () if has_own else roots))
     search_tree = places.only(tree, tuple(Belonging))
@@ -172,13 +197,14 @@ def _searched(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
         packages = every_package if package_tree is tree else read_packages(package_tree, lab)
     other_roots = [path for path in roots if places.of(path) is None or places.of(path) is not of_packages]
     elsewhere = [*sorted(projects), *(path for path in other_roots if path.rpartition("/")[2] == MANIFEST)]
-    reason, which = why_none(packages, every_package if other_roots else (), lab.package)
+    first = lab.package_names[0]
+    reason, which = why_none(packages, every_package if other_roots else (), first)
     built = next((was_not_committed(path) for path in search_tree.generated if path.endswith(f"/{MANIFEST}")), "")
     return _Selection(
         choice,
         tree=own_tree,
         packages=packages,
-        no_package=(reason, which if packages else which + built),
+        no_package=NoPackage(reason, which if packages else which + built, first if lab.packages else ""),
         others=tuple(OtherCandidate(path, _ELSEWHERE[labs.belonging(path)]) for path in elsewhere[:_MAX_ELSEWHERE]),
         own_folder=next(map(labs.around, own_tree.files), "") if has_own else "",
         other_lab=places.other_lab,
@@ -209,6 +235,7 @@ _REASONS = {
     "is_another": "it has fewer than half of the links that the rubric names",
     "is_fragment": "its <robot> has no name",
     "is_unlaunched": "the launch file does not load it",
+    "is_unnamed": "its path is less like {urdf}",
     "links": "it has fewer links",
     "is_part": "another candidate includes it",
     "is_backup": BACKUP,
@@ -226,6 +253,7 @@ class _Candidate(NamedTuple):
     place: Belonging
     is_fragment: bool  # its robot has no name, and no launch file loads it
     is_unlaunched: bool
+    is_unnamed: bool  # a rubric that names no links does not name its path either
     links: int  # minus how many it has
     is_part: bool  # another one includes it, and it does not have the name of the lab's
     is_backup: bool
@@ -271,6 +299,7 @@ class UrdfSearch(NamedTuple):
                 place=labs.belonging(path),
                 is_fragment=readings[path].is_nameless and path not in launched,
                 is_unlaunched=path not in launched,
+                is_unnamed=not self.lab.links and tier is not _Tier.EXACT,
                 links=-readings[path].links,
                 is_part=path in parts and tier > _Tier.OTHER_ENDING,
                 is_backup=is_backup(path),

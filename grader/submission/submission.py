@@ -1,7 +1,7 @@
 """A submission: its files, and which URDF and which package of it are graded."""
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,7 +15,7 @@ from grader.robot.model import Robot
 from grader.robot.reader import Reading, Verdict
 from grader.source import Source
 from grader.submission.urdf import Absent, OtherCandidate, Read, Surroundings, Unreadable, Urdf
-from grader.text import was_not_committed
+from grader.text import enumerated, was_not_committed
 
 if TYPE_CHECKING:
     from grader.documents.collection import DocumentCollection
@@ -35,6 +35,12 @@ class Lab(NamedTuple):
     package: str = ""  # the name of the package
     folders: tuple[str, ...] = ()  # names of the lab's folder
     links: frozenset[str] = frozenset()  # the names of the robot's links
+    packages: tuple[str, ...] = ()  # the names of all packages, if there are several
+
+    @property
+    def package_names(self) -> tuple[str, ...]:
+        """The names of its packages."""
+        return self.packages or (self.package,)
 
 
 class Opening(NamedTuple):
@@ -48,6 +54,17 @@ class Opening(NamedTuple):
 
 
 DEFAULTS = Opening()
+
+
+class NoPackage(NamedTuple):
+    """Why there is no package, and which there are; of several packages, the name of the one that is missing."""
+
+    message: str = NO_PACKAGE
+    detail: str = ""
+    name: str = ""
+
+
+_NO_PACKAGE = NoPackage()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -75,7 +92,8 @@ class Submission:
     tree: Tree = _NO_FILES  # the files of the lab
     packages: tuple[Package, ...] = ()  # the one that matches best first
     package: Package | None = None  # the graded one
-    no_package: tuple[str, str] = (NO_PACKAGE, "")  # why none is graded, and which there are
+    no_package: NoPackage = _NO_PACKAGE
+    lab_packages: Mapping[str, Package] = field(default_factory=dict)  # by the names that the lab gives
     whole_tree: Tree = _NO_FILES  # the files of the lab and those around it
     several: str = ""  # the note that says that several robots fit
     notes: tuple[str, ...] = ()  # on how it was read
@@ -184,8 +202,18 @@ class Submission:
         if self.package is not None:
             return self.package
         self._refuse_unopened("package")
-        message, detail = self.no_package
-        raise MissingElement("package", "", message=message, detail=detail, absent="package")
+        message, detail, name = self.no_package
+        raise MissingElement("package", name, message=message, detail=detail, absent=f"package {name}".rstrip())
+
+    def with_package(self, name: str) -> "Submission":
+        """Return the submission with the package that the lab gives this name as the graded one."""
+        package = self.lab_packages.get(name)
+        if package is None and self.packages:
+            others = enumerated([repr(other.name) for other in self.packages])
+            return replace(
+                self, package=None, no_package=NoPackage(f"no package is named {name!r}", f"; there is {others}", name)
+            )
+        return replace(self, package=package)
 
     def needed_urdf(self) -> Reading:
         """Return the graded URDF; raises MissingElement without one, NotDecided if it cannot be read statically."""

@@ -105,5 +105,5 @@ def test_the_joint_of_each_link_is_found_at_once() -> None:
     draft = reference_draft("lab6")
     assert draft is not None
     with limited_work(150_000):
-        found = Situation(submission, LAB6.links, draft, lambda: None).exchanges
+        found = Situation(submission, LAB6.links, draft, lambda _: None).exchanges
     assert {piece.link for piece in found} == {"left_wheel", "right_wheel"}

@@ -60,7 +60,7 @@ def hints_for(submission: Submission, rubric: Rubric = LAB6) -> Hints:
 def search_for(submission: Submission, results: Mapping[str, Result], rubric: Rubric = LAB6) -> HintSearch:
     """Return the search for a submission with these results."""
     search = HintSearch(
-        Trials(rubric, submission, results), reference_draft(rubric.id), lambda: reference(rubric).package
+        Trials(rubric, submission, results), reference_draft(rubric.id), lambda _: reference(rubric).package
     )
     return search.run() if _lost(results) else search
 
