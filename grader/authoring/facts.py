@@ -334,7 +334,7 @@ def _facts_of(package: Package, path: str) -> Iterator[Fact]:
     yield _package_fact("package_found", name=package.name)
     if package.manifest is not None and package.manifest.build_type:
         yield _package_fact("package_type", build_type=package.manifest.build_type)
-    yield _package_fact("setup_imports")
+    yield _package_fact("setup_imports")._replace(title="`colcon build` of the package succeeds")
     yield from _installs(package, path)
     for launch in package.launch_files:
         yield from _launch_facts(posixpath.basename(launch), package.launch(launch))

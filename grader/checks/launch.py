@@ -319,7 +319,12 @@ def _fault_of_path(package: Package, path: str) -> str:
 
 
 def _place_in_unknown(package: Package, owner: str, rest: str, file: "NamedFile") -> _FilePlace:
-    """Return what is known of a path in the share folder of a package that is not part of the submission."""
+    """Return what is known of a path in the share folder of a package that is not part of the submission.
+
+    Raises MissingElement if it should be.
+    """
+    if owner in package.lab_packages:
+        raise MissingElement("package", owner, message=f"no package is named {owner!r}")
     what = _WORDS[file.purpose]
     fault = "" if package.depends_on(owner) else _fault_of_owner(package, owner, rest, what)
     if fault:

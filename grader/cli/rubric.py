@@ -80,7 +80,7 @@ def list_checks() -> str:
 def new_rubric(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="The .toml file to write.")],
     reference: Annotated[
-        str, typer.Option("--from", metavar="URDF", help="The reference: a URDF, xacro, package, workspace or archive.")
+        str, typer.Option("--from", metavar="PATH", help="The reference: a URDF, xacro, package, workspace or archive.")
     ],
     force: Annotated[bool, typer.Option("--force", help="Replace FILE if it exists.")] = False,
 ) -> str:

@@ -204,7 +204,8 @@ class _Grading:
             return Result(criterion, _by_evidence(self.submission, self._manual[missing.kind]))
         if missing.kind == "link":
             missing = another_robot(self._rubric, self.submission.robot, missing.name) or missing
-        first = self._first_miss(criterion, (missing.kind, missing.name, criterion.package))
+        within = "" if missing.kind == "package" else criterion.package
+        first = self._first_miss(criterion, (missing.kind, missing.name, within))
         if first != criterion.id and not missing.costs_once:
             return Result(criterion, _skip_outcome(first), first)
         at = missing.location if isinstance(missing.location, Location | LazyLocation) else None

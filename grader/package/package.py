@@ -58,6 +58,7 @@ class Package:
     packages: dict[str, "Package"]  # all of the submission, by their names
     generated: tuple[str, ...] = ()  # paths in the submission that a build has copied
     lab_name: str = ""  # the name that the lab gives it
+    lab_packages: tuple[str, ...] = ()  # the names of all packages of the lab, if there are several
     ignored_by: str = ""  # the path of a file for which colcon ignores it
     budget: Budget = field(default_factory=Budget, init=False)  # of the evaluation of its files
     _launches: "dict[str, Launch]" = field(default_factory=dict, init=False)

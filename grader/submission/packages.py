@@ -59,7 +59,7 @@ def read_packages(tree: Tree, lab: Lab) -> tuple[Package, ...]:
     """
     known: dict[str, Package] = {}
     folders = find_packages(tree, lab.package_names)
-    packages = [_read_package(tree, folder, known, lab.package) for folder in folders]
+    packages = [_read_package(tree, folder, known, lab) for folder in folders]
     packages.sort(
         key=lambda it: (
             min(_name_distance(it, name) for name in lab.package_names),
@@ -143,7 +143,7 @@ def _name_distance(package: Package, name: str) -> int:
     return _SIMILAR if package.manifest is not None and closest(package.name, [name]) else _OTHER
 
 
-def _read_package(tree: Tree, folder: str, known: dict[str, Package], lab_name: str) -> Package:
+def _read_package(tree: Tree, folder: str, known: dict[str, Package], lab: Lab) -> Package:
     own = tree.below(folder)
     path = f"{folder}/{MANIFEST}" if folder else MANIFEST
     start = Location(path, 1, 1)
@@ -156,4 +156,4 @@ def _read_package(tree: Tree, folder: str, known: dict[str, Package], lab_name: 
     above = [folder, *map(str, PurePosixPath(folder).parents)] if folder else [""]
     markers = (posixpath.normpath(f"{path}/{name}").lstrip("/") for path in above for name in _IGNORING)
     ignored_by = next((path for path in markers if path in tree.files), "")
-    return Package(folder, own, manifest, known, tree.generated, lab_name, ignored_by)
+    return Package(folder, own, manifest, known, tree.generated, lab.package, lab.packages, ignored_by)
