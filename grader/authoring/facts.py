@@ -28,7 +28,7 @@ from grader.text import enumerated
 from grader.xml.parsing import Element
 from grader.xml.wanted_element import foreign_elements, name_of, readable, text_in, words_of_foreign
 
-_THE_FILE, _THE_ROBOT, THE_PACKAGE = "The file", "The robot", "The package"  # headings
+_THE_FILE, _THE_ROBOT, _THE_PACKAGE = "The file", "The robot", "The package"  # headings
 _WITH_AXIS = ("continuous", "revolute", "prismatic", "planar")
 _COUNTED = ("revolute", "continuous", "prismatic")
 _SLIDING_TOLERANCE = 0.002  # m: the tolerance of other limits is in degrees
@@ -324,7 +324,7 @@ def package_facts(submission: Submission) -> _Facts:
         if package is main:
             yield from facts
             continue
-        about = f"{THE_PACKAGE} {package.name}"
+        about = f"{_THE_PACKAGE} {package.name}"
         for fact in facts:
             yield fact._replace(about=about, package=package.name, words=f"{package.name} {fact.words}")
 
@@ -342,7 +342,7 @@ def _facts_of(package: Package, path: str) -> Iterator[Fact]:
 
 
 def _package_fact(check: str, label: str = "", **arguments: Any) -> Fact:
-    return Fact(THE_PACKAGE, check, arguments, f"{label} {check}".strip(), package="")
+    return Fact(_THE_PACKAGE, check, arguments, f"{label} {check}".strip(), package="")
 
 
 def _installs(package: Package, urdf: str) -> Iterator[Fact]:

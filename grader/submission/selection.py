@@ -253,7 +253,7 @@ class _Candidate(NamedTuple):
     place: Belonging
     is_fragment: bool  # its robot has no name, and no launch file loads it
     is_unlaunched: bool
-    is_unnamed: bool  # a rubric that names no links does not name its path either
+    is_unnamed: bool  # a rubric that names its package, but no links, has another path for the URDF
     links: int  # minus how many it has
     is_part: bool  # another one includes it, and it does not have the name of the lab's
     is_backup: bool
@@ -299,7 +299,7 @@ class UrdfSearch(NamedTuple):
                 place=labs.belonging(path),
                 is_fragment=readings[path].is_nameless and path not in launched,
                 is_unlaunched=path not in launched,
-                is_unnamed=not self.lab.links and tier is not _Tier.EXACT,
+                is_unnamed=any(self.lab.package_names) and not self.lab.links and tier is not _Tier.EXACT,
                 links=-readings[path].links,
                 is_part=path in parts and tier > _Tier.OTHER_ENDING,
                 is_backup=is_backup(path),

@@ -57,6 +57,7 @@ def _submission(old: Submission, words: Words, path: Words) -> Submission:
         tuple(OtherCandidate(path(), words()) for _ in old.unused_candidates),
         tree=replace(old.tree, ignored=tuple(IgnoredFile(path(), words()) for _ in old.ignored)),
         package=_package(old.package, words, path) if old.package is not None else None,
+        lab_packages={name: _package(package, words, path) for name, package in old.lab_packages.items()},
         is_single=old.is_single,
         text="\n".join(f"<a b='{words()}'/>{words()}" for _ in range(3)),
     )
