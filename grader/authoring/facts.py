@@ -38,7 +38,7 @@ _MAX_VALUES = 500  # in one element of <robot>: a check compares each with each
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _TRUTH = {"true": True, "false": False}
 _NAMED_BY = ("reference", "name", "filename", "type")
-_OWN_KINDS = (".urdf", ".xacro", ".rviz", ".py", ".xml")
+_OWN_KINDS = (".urdf", ".xacro", ".rviz", ".py", ".xml", ".msg", ".srv", ".action")
 _LOOSE_INERTIA = 5.0  # percent, for a solution with rounded numbers
 _MAX_TIPS = 20
 _Values = dict[str, Any]
@@ -336,7 +336,7 @@ def _facts_of(package: Package, path: str) -> Iterator[Fact]:
         yield _package_fact("package_type", build_type=package.manifest.build_type)
     yield _package_fact("setup_imports")._replace(title="`colcon build` of the package succeeds")
     yield from _installs(package, path)
-    for launch in package.launch_files:
+    for launch in (it for it in package.launch_files if not it.startswith("test/")):
         yield from _launch_facts(posixpath.basename(launch), package.launch(launch))
     yield from _rviz_facts(package)
 
@@ -347,18 +347,20 @@ def _package_fact(check: str, label: str = "", **arguments: Any) -> Fact:
 
 def _installs(package: Package, urdf: str) -> Iterator[Fact]:
     """Yield that a build installs the URDF, the launch and RViz files, and a file of each other folder."""
-    kinds = {"urdf": [urdf] if urdf else [], "launch": package.launch_files, "rviz": package.rviz_files}
+    installed = [path for target, path in package.installed.items() if target.startswith(package.share)]
+    launches = [path for path in package.launch_files if path in installed or not path.startswith("test/")]
+    kinds = {"urdf": [urdf] if urdf else [], "launch": launches, "rviz": package.rviz_files}
     for kind, paths in kinds.items():
         for name in map(posixpath.basename, paths):
-            yield _package_fact("build_installs", name, kind=kind, name=name)
+            yield _package_fact("build_installs", name, kind=kind, name=name, despite_errors=True)
     patterns = {
         f"{folder}/*{posixpath.splitext(path)[1]}": None
-        for path in package.installed.values()
+        for path in installed
         if (folder := posixpath.dirname(path)) not in ("", "resource")
         and path not in package.launch_files
         and not path.endswith(_OWN_KINDS)
     }
-    yield from (_package_fact("installs_files", pattern, files=[pattern]) for pattern in patterns)
+    yield from (_package_fact("installs_files", pattern, files=[pattern], despite_errors=True) for pattern in patterns)
 
 
 def _launch_facts(name: str, launch: Launch) -> Iterator[Fact]:

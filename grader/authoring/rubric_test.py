@@ -40,7 +40,7 @@ _MESHES = (".stl", ".dae", ".obj")
 
 # Documents, pictures, and the tests of a package.
 _NO_PART_OF_LAB = re.compile(
-    r"(?i)(^|/)tests?/|(^|/)(license|readme|changelog|contributing)[^/]*$|\.(md|pdf|docx|png|jpe?g|gif|svg)$"
+    r"(?i)(^|/)(tests?|docs?)/|(^|/)(license|readme|changelog|contributing)[^/]*$|\.(md|pdf|docx|png|jpe?g|gif|svg)$"
 )
 _MAX_EMPTIED = 100  # files
 _MAX_MUTANTS = 5000  # of larger robots a sample is graded

@@ -93,17 +93,18 @@ def build_installs(
     return _require_installed(package, files, kind, despite_errors=despite_errors)
 
 
-def installs_files(package: Package, *, files: list[str]) -> Outcome:
+def installs_files(package: Package, *, files: list[str], despite_errors: bool = False) -> Outcome:
     """A build of the package installs at least one file that matches these patterns, below share/<package>.
 
     Args:
         files: Patterns for paths in the package, such as "meshes/*.stl"; one installed file is enough.
+        despite_errors: Whether an error that stops the build is ignored, which `setup_imports` reports.
     """
     found = [path for path in package.tree.files if any(fnmatch(path, pattern) for pattern in files)]
     if not found:
         patterns = enumerated([repr(pattern) for pattern in files], word="or")
         raise MissingElement("file", files[0], message=f"the package has no file that matches {patterns}")
-    return _require_installed(package, found, None, despite_errors=False)
+    return _require_installed(package, found, None, despite_errors=despite_errors)
 
 
 def setup_imports(package: Package) -> Outcome:

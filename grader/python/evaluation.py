@@ -13,7 +13,7 @@ from grader.python.budget import Budget
 from grader.python.builtins import BUILTINS, call, truth
 from grader.python.expressions import Expressions
 from grader.python.library import PYTHON_3_12, USUAL_NAMES
-from grader.python.operators import method
+from grader.python.operators import method, operate
 from grader.python.parse import START, Position, position_of
 from grader.python.values import call_plain, iterate, known, reason_of
 
@@ -269,7 +269,15 @@ class Evaluation(Expressions):
             bound[parameters.kwarg.arg] = others
         return bound
 
-    KINDS: ClassVar = {**Expressions.KINDS, ast.Name: _name}
+    def _binary(self, node: ast.BinOp, scope: py.Scope) -> py.Value:
+        """Return the value of a binary operator; of an object in the table it is its method for division."""
+        left, right = self.evaluate(node.left, scope), self.evaluate(node.right, scope)
+        if isinstance(node.op, ast.Div) and isinstance(left, py.Call) and f"{left.name}.__truediv__" in self.functions:
+            made = py.Call("", [right], {}, position_of(node))
+            return self.call_value(py.BoundMethod(left, "__truediv__"), made)
+        return operate(node.op, left, right, self.budget)
+
+    KINDS: ClassVar = {**Expressions.KINDS, ast.Name: _name, ast.BinOp: _binary}
 
 
 def record(evaluation: Evaluation, made: py.Call) -> py.Call:

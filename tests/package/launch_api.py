@@ -18,7 +18,11 @@ SOURCE = "github.com/ros2/launch and github.com/ros2/launch_ros, branch jazzy, b
 LATER = {
     "launch.actions": {"ForEach", "ForLoop"},
     "launch.substitutions": {"PathSubstitution", "StringJoinSubstitution"},
+    "launch.substitutions.path_join_substitution": {"PathSubstitution"},
 }
+_PATHS = "launch.substitutions.path_join_substitution"
+# Those of them that are evaluated; the demos of ros2_control use this one on Jazzy.
+LATER_CLASSES = {f"{_PATHS}.PathSubstitution": [f"{_PATHS}.PathJoinSubstitution", "path!:text", ""]}
 # What the constructors require of arguments with these annotations: each stands for the check of this name.
 CHECKS = {
     "SomeSubstitutionsType": "text",
@@ -124,6 +128,7 @@ def table(*roots: Path) -> dict[str, Any]:
     for name, module in modules.items():
         inner = {other.rpartition(".")[2] for other in modules if other.rpartition(".")[0] == name}
         full = {alias: target(module.imports.get(alias, ""), modules, classes) for alias in module.names}
+        full |= {it.rpartition(".")[2]: it for it in LATER_CLASSES}
         words = [
             alias + (f"={full[alias]}" if inner and full.get(alias) else "")
             for alias in sorted(module.names | inner | LATER.get(name, set()))
@@ -132,7 +137,7 @@ def table(*roots: Path) -> dict[str, Any]:
     rows = {
         name: [base_of(name, classes), effective(name, classes), " ".join(sorted(it[2]))]
         for name, it in classes.items()
-    }
+    } | LATER_CLASSES
     return {"source": SOURCE, "exports": exports, "classes": rows, **found}
 
 

@@ -11,6 +11,8 @@ PROCESS = "launch.actions.execute_local.ExecuteLocal"
 CONDITION = "launch.condition.Condition"
 SUBSTITUTION = "launch.substitution.Substitution"
 SOURCE = "launch.launch_description_source.LaunchDescriptionSource"
+PATH = "launch.substitutions.path_join_substitution.PathSubstitution"
+JOINED_PATH = "launch.substitutions.path_join_substitution.PathJoinSubstitution"
 DESCRIPTION = "launch.launch_description.LaunchDescription"
 
 

@@ -11,7 +11,17 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.names import did_you_mean
-from grader.package.launch.api import ENTITY, PROCESS, SOURCE, SUBSTITUTION, LaunchClass, class_named, exports, is_a
+from grader.package.launch.api import (
+    ENTITY,
+    JOINED_PATH,
+    PROCESS,
+    SOURCE,
+    SUBSTITUTION,
+    LaunchClass,
+    class_named,
+    exports,
+    is_a,
+)
 from grader.package.launch.model import UnknownText, not_evaluated
 from grader.package.launch.substitutions import CONDITIONS, PERFORMS
 from grader.python.evaluation import Evaluation, record
@@ -92,6 +102,16 @@ def _record_constructor(cls: LaunchClass, evaluation: Evaluation, call: Call) ->
     if doubt is not None:
         evaluation.doubted(Unknown(not_evaluated(doubt.reason), doubt.at))
     return record(evaluation, call)
+
+
+def join_path(evaluation: Evaluation, call: Call) -> Value:
+    """Return the PathJoinSubstitution that `path / more` makes of a substitution for a path."""
+    owner, cls = call.owner, class_named(JOINED_PATH)
+    assert owner is not None
+    assert cls is not None
+    before = owner.kwargs.get("substitutions", [owner.kwargs.get("path")])
+    parts = [*before, *call.args] if isinstance(before, list | tuple) else [before, *call.args]
+    return _record_constructor(cls, evaluation, Call("", [parts], {}, call.at))
 
 
 def _copied(value: Value, evaluation: Evaluation, depth: int = 0) -> Value:

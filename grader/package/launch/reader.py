@@ -12,8 +12,8 @@ from pathlib import PurePosixPath
 
 from grader.merge_conflicts import resolve_conflicts
 from grader.package.launch.actions import CIRCULAR_INCLUDE, ActionVisitor, Include
-from grader.package.launch.api import DESCRIPTION, SUBSTITUTION, class_named, exports, is_a
-from grader.package.launch.arguments import LaunchFunctions, kind_of
+from grader.package.launch.api import DESCRIPTION, JOINED_PATH, PATH, SUBSTITUTION, class_named, exports, is_a
+from grader.package.launch.arguments import LaunchFunctions, join_path, kind_of
 from grader.package.launch.model import (
     Contents,
     Context,
@@ -291,6 +291,7 @@ class _PythonLaunchFile:
                 **standard_functions(WORKING_FOLDER),
                 **dict.fromkeys(_RECORDED, record),
                 **dict.fromkeys(adds, _add_action),
+                **dict.fromkeys((f"{it}.__truediv__" for it in (JOINED_PATH, PATH)), join_path),
                 **dict.fromkeys(performs, self._perform),
                 **dict.fromkeys((f"{it}.get_package_share_directory" for it in _AMENT_INDEX), self._share),
                 **dict.fromkeys((f"{it}.get_package_share_path" for it in _AMENT_INDEX), self._share_path),

@@ -147,7 +147,8 @@ class _Substitution:
         return Unknown("the environment is not evaluated", self.call.at)
 
     def path(self) -> Resolved:
-        parts = self.call.kwargs["substitutions"]
+        given = self.call.kwargs
+        parts = given["substitutions"] if "substitutions" in given else [given["path"]]  # of a PathSubstitution
         texts = self.texts(*(parts if isinstance(parts, list | tuple) else [parts]))
         if isinstance(texts, Unknown):
             return texts
@@ -257,7 +258,8 @@ CONDITIONS = ("IfCondition", "UnlessCondition", "LaunchConfigurationEquals", "La
 # The substitutions that are evaluated.
 PERFORMS: Mapping[str, Callable[[_Substitution], Resolved]] = {
     "TextSubstitution": lambda it: it.argument("text"), "LaunchConfiguration": _Substitution.configuration,
-    "PathJoinSubstitution": _Substitution.path, "Command": _Substitution.command,
+    "PathJoinSubstitution": _Substitution.path, "PathSubstitution": _Substitution.path,
+    "Command": _Substitution.command,
     "PythonExpression": _Substitution.expression, "FindPackageShare": _Substitution.package_folder,
     "FindExecutable": _Substitution.program, "EnvironmentVariable": _Substitution.variable,
     "ThisLaunchFileDir": lambda it: posixpath.dirname(it.context.path), "ThisLaunchFile": lambda it: it.context.path,
