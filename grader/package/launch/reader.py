@@ -244,7 +244,7 @@ def _forgotten_node(node: Call, findings: Findings) -> StartedNode:
 
 
 def _launch_of_findings(source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
-    named = {reference.path for reference in findings.references if reference.purpose != "read"}
+    named = {reference.path for reference in findings.references if reference.purpose not in ("read", "parameters")}
     references = [it for it in findings.references if it.purpose != "read" or it.path not in named]
     order = attrgetter("location.line", "location.column", "message")
     return Launch(
