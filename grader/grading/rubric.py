@@ -62,6 +62,11 @@ class ReferenceSolution:
             raise InputError(f"the reference {self._path} cannot be compared with: it has no robot")
         return Configuration(self.reading.robot)
 
+    def robot_under(self, arguments: Mapping[str, str]) -> Configuration:
+        """Return its robot under launch arguments, with the joints at 0. Raises InputError."""
+        robot = self.submission.under(arguments).robot if arguments else None
+        return Configuration(robot) if robot is not None else self.robot
+
 
 @dataclass(frozen=True, slots=True)
 class Rubric:
@@ -94,6 +99,7 @@ class Rubric:
     without_package: str = ""  # the same without a package
     hints: HintLevel = "cause"  # the most that hints tell
     ignored: tuple[Ignored, ...] = ()  # mutants that `grader rubric test` lets pass
+    transforms: tuple[str, ...] = ()  # launch files whose static transforms are part of the robot
     solution: ReferenceSolution | None = field(default=None, compare=False, repr=False)
     links: frozenset[str] = frozenset()  # that criteria name
 
@@ -203,6 +209,7 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         without_package=rubric.get("without_package", ""),
         hints=rubric.get("hints", "cause"),
         ignored=tuple(Ignored(**row) for row in valid.ignored),
+        transforms=rubric.get("transforms", ()),
         solution=_reference_solution(rubric, path, data),
         links=frozenset(_links_named(arguments for _, arguments in valid.bound)),
     )

@@ -29,7 +29,7 @@ from grader.python.parse import START, Position
 from grader.python.values import Call, EvaluationFails, EvaluationSignal, Undetermined, Unknown, Value
 from grader.source import Location
 
-EVERY_NODE = "/**"
+_EVERY_NODE = "/**"
 TO_ALL = "global_params"  # the launch configuration that has what SetParameter gives to all nodes, as in launch_ros
 _OWN = "?"  # the key of a node whose name is not known
 _MAX_YAML = 200_000  # characters
@@ -401,7 +401,7 @@ def _key_of(given: GivenParameters, own: str | None) -> str:
     """Return for which nodes the parameters of a launch file are."""
     if given.is_named:
         return own or _OWN
-    return f"/{given.node.strip('/')}" if given.node else EVERY_NODE
+    return f"/{given.node.strip('/')}" if given.node else _EVERY_NODE
 
 
 def _sections(node: YamlNode, key: str, *, is_plain: bool) -> Iterator[tuple[str, dict[str, ParameterValue]]]:
@@ -435,7 +435,7 @@ def _counting(
     if full is None:
         return _for_unknown_name(by_key)
     of_cpp = _merged(values for key, values in by_key.items() if _matches(key, full))
-    of_python = _merged(by_key.get(key, {}) for key in (EVERY_NODE, full))
+    of_python = _merged(by_key.get(key, {}) for key in (_EVERY_NODE, full))
     if is_cpp is not None:
         return of_cpp if is_cpp else of_python
     doubt = Unknown("rclcpp and rclpy let different values count", START)
@@ -446,8 +446,8 @@ def _counting(
 def _for_unknown_name(by_key: Mapping[str, Mapping[str, ParameterValue]]) -> dict[str, ParameterValue]:
     """Return the values of sections for every node; those that another section may replace are unknown."""
     doubt = Unknown("the name of the node is not known", START)
-    known = _merged(values for key, values in by_key.items() if key in (EVERY_NODE, _OWN))
-    others = _merged(values for key, values in by_key.items() if key not in (EVERY_NODE, _OWN))
+    known = _merged(values for key, values in by_key.items() if key in (_EVERY_NODE, _OWN))
+    others = _merged(values for key, values in by_key.items() if key not in (_EVERY_NODE, _OWN))
     return {**known, **{name: given._replace(value=doubt) for name, given in others.items()}}
 
 
