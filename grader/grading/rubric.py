@@ -34,6 +34,7 @@ class ReferenceSolution:
 
     def __init__(self, path: Path, lab: Lab, missing: Callable[[], str]) -> None:
         self._path, self._lab, self._missing = path, lab, missing
+        self._others: dict[tuple[tuple[str, str], ...], ReferenceSolution] = {}
 
     @cached_property
     def submission(self) -> Submission:
@@ -62,10 +63,13 @@ class ReferenceSolution:
             raise InputError(f"the reference {self._path} cannot be compared with: it has no robot")
         return Configuration(self.reading.robot)
 
-    def robot_under(self, arguments: Mapping[str, str]) -> Configuration:
-        """Return its robot under launch arguments, with the joints at 0. Raises InputError."""
-        robot = self.submission.under(arguments).robot if arguments else None
-        return Configuration(robot) if robot is not None else self.robot
+    def under(self, arguments: Mapping[str, str]) -> "ReferenceSolution":
+        """Return the solution under launch arguments, which is read once."""
+        key = tuple(sorted(arguments.items()))
+        if key not in self._others:
+            self._others[key] = ReferenceSolution(self._path, self._lab, self._missing)
+            self._others[key].submission = self.submission.under(arguments)
+        return self._others[key]
 
 
 @dataclass(frozen=True, slots=True)

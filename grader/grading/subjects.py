@@ -8,7 +8,7 @@ from grader.checks.check import Check, Subject
 from grader.checks.outcome import point
 from grader.errors import MissingElement
 from grader.grading.criterion import Criterion
-from grader.grading.rubric import Rubric
+from grader.grading.rubric import ReferenceSolution, Rubric
 from grader.problems import Problem
 from grader.robot.kinematics import Configuration
 from grader.robot.link_tree import is_selector, selected_link
@@ -35,8 +35,8 @@ class Subjects:
         self._known: dict[Subject, object] = {"submission": submission}
         self._posed: dict[tuple[tuple[str, float], ...], Configuration] = {}
         if rubric.solution is not None and rubric.compares_with_reference:
-            reference = rubric.solution.robot_under(arguments or {})
-            self._known["reference"] = self._with_transforms(reference, rubric.solution.submission)
+            solution = rubric.solution.under(arguments) if arguments else rubric.solution
+            self._known["reference"] = self._with_transforms(solution.robot, solution)
         if isinstance(submission.urdf, Read):
             urdf = submission.urdf.reading
             self.source = urdf.source
@@ -47,11 +47,12 @@ class Subjects:
         if self.robot is not None:
             self._known["robot"] = self.robot = self._with_transforms(self.robot, submission)
 
-    def _with_transforms(self, robot: Configuration, submission: Submission) -> Configuration:
+    def _with_transforms(self, robot: Configuration, owner: Submission | ReferenceSolution) -> Configuration:
         if not self._rubric.transforms:
             return robot
         from grader.submission.static_transforms import with_transforms  # late: few rubrics ask for them
 
+        submission = owner if isinstance(owner, Submission) else owner.submission
         return Configuration(with_transforms(robot.known, submission, self._rubric.transforms), is_guarded=True)
 
     def under(self, arguments: Mapping[str, str]) -> "Subjects":
