@@ -175,13 +175,16 @@ class _Grading:
     def _run_check(self, criterion: Criterion, check: Check, arguments: Mapping[str, Any]) -> Result:
         """Return the result of a check; raise MissingElement, or RubricError for a mistake of the rubric."""
         try:
-            examined = self._subjects.of(check, criterion)
-            arguments = self._subjects.named(check, arguments) if criterion.has_selectors else arguments
+            subjects = self._subjects.under(criterion.args)
+            examined = subjects.of(check, criterion)
+            arguments = subjects.named(check, arguments) if criterion.has_selectors else arguments
             outcome = check.function(*examined, **arguments)
             fault = fault_of(outcome) if check.distribution else ""
+            conditions = [f"{name}:={value}" for name, value in criterion.args.items()]
             if criterion.at and not fault:
-                pose = self._subjects.pose_text(criterion.at)
-                outcome = outcome._replace(message=f"{outcome.message} (with {pose})")
+                conditions.append(subjects.pose_text(criterion.at))
+            if conditions:
+                outcome = outcome._replace(message=f"{outcome.message} (with {enumerated(conditions)})")
             return Result(criterion, _fault_outcome(check, fault) if fault else outcome)
         except (MissingElement, MachineError):
             raise

@@ -16,6 +16,7 @@ from grader.grading.toml_file import KeyTable
 
 MAX_POINTS = 1_000_000
 _MAX_CHOICES = 9  # one key each
+_ARGUMENT = str | bool | int | Decimal
 _DECIMALS = 4  # of points: gradebooks store them as whole numbers of ten-thousandths
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -98,6 +99,12 @@ _CHOICES = simple_type(
     _are_choices,
     lambda table: {text: Decimal(points) for text, points in table.items()},
 )
+_LAUNCH_ARGUMENTS = simple_type(
+    "a table of strings, numbers, true or false",
+    {"type": "object", "additionalProperties": {"type": ["string", "number", "boolean"]}, "minProperties": 1},
+    lambda value: isinstance(value, dict) and value != {} and all(isinstance(it, _ARGUMENT) for it in value.values()),
+    lambda table: {name: str(it).lower() if isinstance(it, bool) else str(it) for name, it in table.items()},
+)
 _FALLBACK = toml_type(Literal["failed", "manual"])
 _ANSWERS = constrained(_TEXT, Constraint("a .toml file in the rubric's folder", _is_below, {"pattern": r"\.toml$"}))
 
@@ -141,6 +148,10 @@ CRITERION = KeyTable(
         "with": described(_table_type({"type": "object"}), "The arguments of the check."),
         "at": described(
             toml_type(Mapping[str, float]), "Positions of joints for the check, in degrees or metres; default: 0."
+        ),
+        "args": described(
+            _LAUNCH_ARGUMENTS,
+            "Launch arguments for the check. xacro gets those that launch files do not give it.",
         ),
         "requires": described(NAMES, "Ids of criteria above this one: it is skipped unless they passed."),
         "carried": described(
@@ -225,6 +236,10 @@ RUBRIC = KeyTable(
             "The names of the graded packages, if there are several.",
         ),
         "folders": described(_FOLDERS, "The names of the lab's folder in a repository of several labs."),
+        "transforms": described(
+            toml_type(tuple[str, ...]),
+            "Launch files, by their paths in the package, whose static transforms are frames of the robot.",
+        ),
         "points": described(_POINTS, "The sum of all points, which is then verified."),
         "answers": described(_ANSWERS, "The file with the model answers, in this file's folder or below."),
         "without_urdf": described(

@@ -34,6 +34,7 @@ class ReferenceSolution:
 
     def __init__(self, path: Path, lab: Lab, missing: Callable[[], str]) -> None:
         self._path, self._lab, self._missing = path, lab, missing
+        self._others: dict[tuple[tuple[str, str], ...], ReferenceSolution] = {}
 
     @cached_property
     def submission(self) -> Submission:
@@ -61,6 +62,14 @@ class ReferenceSolution:
         if self.reading.robot is None:
             raise InputError(f"the reference {self._path} cannot be compared with: it has no robot")
         return Configuration(self.reading.robot)
+
+    def under(self, arguments: Mapping[str, str]) -> "ReferenceSolution":
+        """Return the solution under launch arguments, which is read once."""
+        key = tuple(sorted(arguments.items()))
+        if key not in self._others:
+            self._others[key] = ReferenceSolution(self._path, self._lab, self._missing)
+            self._others[key].submission = self.submission.under(arguments)
+        return self._others[key]
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +104,7 @@ class Rubric:
     without_package: str = ""  # the same without a package
     hints: HintLevel = "cause"  # the most that hints tell
     ignored: tuple[Ignored, ...] = ()  # mutants that `grader rubric test` lets pass
+    transforms: tuple[str, ...] = ()  # launch files whose static transforms are part of the robot
     solution: ReferenceSolution | None = field(default=None, compare=False, repr=False)
     links: frozenset[str] = frozenset()  # that criteria name
 
@@ -205,6 +215,7 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         without_package=rubric.get("without_package", ""),
         hints=rubric.get("hints", "cause"),
         ignored=tuple(Ignored(**row) for row in valid.ignored),
+        transforms=rubric.get("transforms", ()),
         solution=_reference_solution(rubric, path, data),
         links=frozenset(_links_named(arguments for _, arguments in valid.bound)),
     )

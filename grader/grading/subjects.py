@@ -8,7 +8,7 @@ from grader.checks.check import Check, Subject
 from grader.checks.outcome import point
 from grader.errors import MissingElement
 from grader.grading.criterion import Criterion
-from grader.grading.rubric import Rubric
+from grader.grading.rubric import ReferenceSolution, Rubric
 from grader.problems import Problem
 from grader.robot.kinematics import Configuration
 from grader.robot.link_tree import is_selector, selected_link
@@ -24,15 +24,19 @@ _SLIDING, _TURNING = ("prismatic",), ("revolute", "continuous")
 class Subjects:
     """What of a submission is examined. Raises InputError if a check needs a reference solution that cannot be read."""
 
-    def __init__(self, rubric: Rubric, submission: Submission) -> None:
-        self.submission = submission
+    def __init__(self, rubric: Rubric, submission: Submission, arguments: Mapping[str, str] | None = None) -> None:
+        """`arguments` are those of launch files, under which the submission and the reference are examined."""
+        self._rubric = rubric
+        self._under: dict[tuple[tuple[str, str], ...], Subjects] = {}
+        self.submission = submission = submission.under(arguments) if arguments else submission
         self.problems: tuple[Problem, ...] = ()
         self.robot: Configuration | None = None
         self.source: Source | None = None
         self._known: dict[Subject, object] = {"submission": submission}
         self._posed: dict[tuple[tuple[str, float], ...], Configuration] = {}
         if rubric.solution is not None and rubric.compares_with_reference:
-            self._known["reference"] = rubric.solution.robot
+            solution = rubric.solution.under(arguments) if arguments else rubric.solution
+            self._known["reference"] = self._with_transforms(solution.robot, solution)
         if isinstance(submission.urdf, Read):
             urdf = submission.urdf.reading
             self.source = urdf.source
@@ -41,7 +45,24 @@ class Subjects:
             examined = urdf._replace(robot=self.robot.robot) if self.robot is not None else urdf
             self._known["urdf"] = submission.urdf.as_it_stands or examined
         if self.robot is not None:
-            self._known["robot"] = self.robot
+            self._known["robot"] = self.robot = self._with_transforms(self.robot, submission)
+
+    def _with_transforms(self, robot: Configuration, owner: Submission | ReferenceSolution) -> Configuration:
+        if not self._rubric.transforms:
+            return robot
+        from grader.submission.static_transforms import with_transforms  # late: few rubrics ask for them
+
+        submission = owner if isinstance(owner, Submission) else owner.submission
+        return Configuration(with_transforms(robot.known, submission, self._rubric.transforms), is_guarded=True)
+
+    def under(self, arguments: Mapping[str, str]) -> "Subjects":
+        """Return what is examined under launch arguments, which is read once."""
+        if not arguments:
+            return self
+        key = tuple(sorted(arguments.items()))
+        if key not in self._under:
+            self._under[key] = Subjects(self._rubric, self.submission, arguments)
+        return self._under[key]
 
     def of(self, check: Check, criterion: Criterion) -> list[object]:
         """Return what a check examines for a criterion: its package, and the robot with the joints at its positions.

@@ -109,6 +109,11 @@ class Validation:
         """Complain of a pose for a check that examines no robot, and of a comparison without a reference."""
         if "at" in row and "robot" not in check.examined:
             self._complain((*where, "at"), f"at poses the robot, but the check {check.name} does not examine it")
+        if "args" in row and not {"robot", "urdf", "package"}.intersection(check.examined):
+            message = (
+                f"args gives launch arguments, but the check {check.name} examines neither the robot nor a package"
+            )
+            self._complain((*where, "args"), message)
         links = [value for key, value in row.get("with", {}).items() if key in LINK_ARGUMENTS]
         texts = (*row.get("at", ()), *texts_in(links))
         for name in (text for text in texts if text.startswith("@") and not is_selector(text)):

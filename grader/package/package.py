@@ -1,7 +1,7 @@
 """A ROS 2 package of a submission: its files are read one by one when they are needed, each once, and never run."""
 
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
@@ -16,6 +16,8 @@ from grader.text import enumerated, was_not_committed
 
 # The readers are imported when they are needed: a URDF on its own needs none of them.
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from grader.package.installation import Installation
     from grader.package.launch.model import Launch, NamedFile
     from grader.package.manifest import Manifest
@@ -60,6 +62,7 @@ class Package:
     lab_name: str = ""  # the name that the lab gives it
     lab_packages: tuple[str, ...] = ()  # the names of all packages of the lab, if there are several
     ignored_by: str = ""  # the path of a file for which colcon ignores it
+    arguments: "Mapping[str, str]" = field(default_factory=dict)  # that its launch files are given
     budget: Budget = field(default_factory=Budget, init=False)  # of the evaluation of its files
     _launches: "dict[str, Launch]" = field(default_factory=dict, init=False)
     _rviz_files: "dict[str, RvizFile]" = field(default_factory=dict, init=False)
@@ -71,6 +74,12 @@ class Package:
     def holds(self, path: str) -> bool:
         """Return whether a path of the submission is in the package."""
         return path.startswith(self.path(""))
+
+    def under(self, arguments: "Mapping[str, str]") -> "Package":
+        """Return the package with its launch files under these arguments; the rest is not read again."""
+        found = replace(self, arguments=arguments)
+        found.__dict__.update((name, value) for name, value in vars(self).items() if name not in vars(found))
+        return found
 
     @property
     def name(self) -> str:
@@ -205,7 +214,7 @@ class Package:
             installed = next(
                 (it for it, source in self.installed.items() if source == path), f"share/{self.name}/{path}"
             )
-            launch = read_launch(data, own, installed, self)
+            launch = read_launch(data, own, installed, self, self.arguments)
         except InputError as error:
             launch = Launch(Source(own, ""), unread=str(error))
         return self._launches.setdefault(path, launch) if text is None else launch

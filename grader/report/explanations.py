@@ -114,7 +114,9 @@ def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
         yield _fill(f"Skipped unless these passed: {', '.join(criterion.requires)}.")
     positions = ", ".join(f"{name} = {value:g}" for name, value in criterion.at.items())
     pose = f"The robot is posed: {positions} (degrees or metres); its other joints are at 0." if positions else ""
-    yield _check_text("Check", criterion.check, criterion.arguments, pose)
+    given = " ".join(f"{name}:={value}" for name, value in criterion.args.items())
+    launched = f"Launch files and the robot are read under the arguments {given}." if given else ""
+    yield _check_text("Check", criterion.check, criterion.arguments, pose, launched)
     for causes, check, arguments in criterion.carried:
         failures = f"If it fails and {enumerated(causes, word='or')} failed before it"
         yield _check_text(f"{failures}, the points are given if this check passes", check, arguments)

@@ -14,7 +14,7 @@ from grader.python.budget import Budget
 from grader.robot.model import Robot
 from grader.robot.reader import Reading, Verdict
 from grader.source import Source
-from grader.submission.urdf import Absent, OtherCandidate, Read, Surroundings, Unreadable, Urdf
+from grader.submission.urdf import Absent, OtherCandidate, Read, Surroundings, Unreadable, Urdf, read_as_ros
 from grader.text import enumerated, was_not_committed
 
 if TYPE_CHECKING:
@@ -231,6 +231,22 @@ class Submission:
         built = next((path for path in self.tree.generated if path.lower().endswith(ROBOT_ENDINGS)), "")
         detail = f"{f': {files}' if count else ''}{was_not_committed(built) if built else ''}"
         raise MissingElement("URDF", "", message="no URDF was submitted", detail=detail, absent="URDF")
+
+    def under(self, arguments: Mapping[str, str]) -> "Submission":
+        """Return the submission with its launch files, and its robot if it is xacro, under launch arguments."""
+        known = {package: package.under(arguments) for package in (*self.packages, *self.neighbours)}
+        changed = replace(
+            self,
+            packages=tuple(known[package] for package in self.packages),
+            neighbours=tuple(known[package] for package in self.neighbours),
+            package=known.get(self.package, self.package) if self.package is not None else None,
+            lab_packages={name: known.get(package, package) for name, package in self.lab_packages.items()},
+            budget=Budget(),
+        )
+        if not isinstance(self.urdf, Read) or not self.urdf.has_xacro:
+            return changed
+        surroundings = changed.surroundings(changed.budget)._replace(launch_arguments=arguments)
+        return replace(changed, urdf=read_as_ros(self.urdf.data, self.urdf.path, surroundings))
 
     def surroundings(self, budget: Budget, tree: Tree | None = None) -> Surroundings:
         """Return the files around its URDF: its own, or other ones."""

@@ -104,6 +104,7 @@ class Surroundings(NamedTuple):
     graded: Package | None = None
     packages: tuple[Package, ...] = ()
     arguments: Mapping[str, str] = {}  # that the user gives xacro
+    launch_arguments: Mapping[str, str] = {}  # that a criterion gives launch files, and xacro if these do not
     is_single: bool = False  # whether the files are those around a single file
     ask: Callable[[str], object] = lambda _: None  # is called with the name of each other file that xacro reads
 
@@ -121,7 +122,8 @@ class Surroundings(NamedTuple):
 
     def _launched_packages(self, path: str) -> list[Package]:
         paths = [path] if self.graded is None and not self.is_single else []
-        return [self.graded] if self.graded is not None else launch_folders(self.tree, self.packages, paths)
+        loose = launch_folders(self.tree, self.packages, paths) if self.graded is None else ()
+        return [self.graded] if self.graded is not None else [it.under(self.launch_arguments) for it in loose]
 
     @property
     def paths(self) -> Collection[str]:
@@ -273,7 +275,7 @@ def _expand_xacro(data: bytes, path: str, surroundings: Surroundings, references
         package, inside = shared.groups()
         if not inside or surroundings.package(package) is None or surroundings.installed(package, inside) is not None:
             given[name] = f"{INSTALLED}/{package}/share/{package}/{inside}".rstrip("/")
-    arguments = {**given, **surroundings.arguments}
+    arguments = {**surroundings.launch_arguments, **given, **surroundings.arguments}
     others = surroundings.other_arguments(path, references)
     read = partial(expand, data, path, surroundings, arguments, others)
     expansion = read()

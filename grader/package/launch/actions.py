@@ -9,17 +9,24 @@ from dataclasses import dataclass, field, replace
 
 from grader.package.launch.api import CONDITION, ENTITY, SOURCE, class_named, is_a
 from grader.package.launch.arguments import items_in, kind_of
-from grader.package.launch.model import ANY, NAMESPACE, Context, Findings, Resolved
+from grader.package.launch.model import ANY, NAMESPACE, Context, Findings, GivenParameters, Resolved
 from grader.package.launch.nodes import (
-    evaluate_dict,
+    REMAPS,
     evaluate_node,
-    evaluate_parameters,
     evaluate_process,
     namespace_below,
     start_known_file,
     start_node,
     start_process,
 )
+from grader.package.launch.parameters import (
+    TO_ALL,
+    evaluate_dict,
+    evaluate_parameters,
+    file_for_all,
+    set_for_all,
+)
+from grader.package.launch.places import PREFIX
 from grader.package.launch.substitutions import CONDITIONS, boolean, condition_holds, known_text, resolve
 from grader.python.parse import START, Position
 from grader.python.values import (
@@ -159,7 +166,8 @@ class ActionVisitor:
         """Visit what may never be executed: errors in it do not count, but for what is no action."""
         silent, self.findings.is_silent, kept, self.executed = self.findings.is_silent, True, self.executed, {}
         items = actions if isinstance(actions, list | tuple) else [actions]
-        self.visit_all(items, call, context.copy(), False if when is False else None)
+        inner = replace(context.copy(), to_all={name: [*given] for name, given in context.to_all.items()})
+        self.visit_all(items, call, inner, False if when is False else None)
         self.findings.is_silent, self.executed = silent, kept
 
 
@@ -256,15 +264,35 @@ def _push_namespace(visitor: ActionVisitor, call: Call, context: Context, when: 
 
 def _set_remap(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     del visitor
-    if when is not False:
-        rule = tuple(known_text(call.kwargs[name], context, call.at) for name in ("src", "dst"))
-        context.remaps = (*context.remaps, rule if when else None)
+    if when is False:
+        return
+    rules = context.to_all.setdefault(REMAPS, [])
+    rules.append(None)  # until it is known
+    rule = tuple(known_text(call.kwargs[name], context, call.at) for name in ("src", "dst"))
+    rules[-1] = rule if when else None
 
 
 def _set_parameter(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    """Give a parameter, or those of a file, to all nodes that follow."""
     visitor.findings.sets_parameters = True
-    if when is not False:
+    if when is False:
+        return
+    location, given = visitor.findings.locate(call.at), context.to_all.setdefault(TO_ALL, [])
+    given.append(GivenParameters(location, unknown="whether a parameter is set for all nodes is not evaluated"))
+    if "filename" in call.kwargs:
+        found = file_for_all(call.kwargs["filename"], context, call.at, location)
+        visitor.findings.refer("read" if when else "parameters", found.path, call)
+    else:
         evaluate_dict({"": call.kwargs["value"]}, context, call.at)
+        found = set_for_all(call.kwargs["name"], call.kwargs["value"], context, call.at, location)
+    given[-1] = found if when else given[-1]
+
+
+def _set_time(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    """Set the clock of launch itself: no node gets the parameter."""
+    del visitor, context
+    if when is not False and not isinstance(call.kwargs["value"], bool):
+        raise Undetermined("the value of SetUseSimTime is not evaluated", call.at)
 
 
 def _do_nothing(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
@@ -339,6 +367,7 @@ def _include_file(visitor: ActionVisitor, call: Call, context: Context, when: bo
     path = known_text(source, context, call.at)
     arguments = {**context.arguments, **given}
     inner = replace(context, path=path, arguments=arguments, when=when, reads=[], given=frozenset(given))
+    inner.included_by = (*context.included_by, context.path.removeprefix(f"{PREFIX}/"))
     reason = visitor.include(path, inner)
     if reason and not start_known_file(visitor.findings, path, call, inner):
         visitor.findings.refer("include", path, call)
@@ -391,5 +420,6 @@ _KINDS: Mapping[str, Callable[[ActionVisitor, Call, Context, bool | None], None]
     **dict.fromkeys(("SetEnvironmentVariable", "AppendEnvironmentVariable"), _set_environment),
     "IncludeLaunchDescription": _include_file, "OpaqueFunction": _call_opaque_function, "TimerAction": _start_timer,
     "RegisterEventHandler": _register_handler, **dict.fromkeys(("Shutdown", "EmitEvent"), _shut_down),
-    "PushROSNamespace": _push_namespace, "SetParameter": _set_parameter, "SetRemap": _set_remap,
+    "PushROSNamespace": _push_namespace, "SetRemap": _set_remap, "SetUseSimTime": _set_time,
+    **dict.fromkeys(("SetParameter", "SetParametersFromFile"), _set_parameter),
 }  # fmt: skip

@@ -59,12 +59,12 @@ _ACTIONS = (
     "Node", "ExecuteProcess", "LogInfo", "LaunchDescription", "DeclareLaunchArgument", "SetLaunchConfiguration",
     "GroupAction", "SetEnvironmentVariable", "AppendEnvironmentVariable", "IncludeLaunchDescription", "OpaqueFunction",
     "TimerAction", "RegisterEventHandler", "OnProcessExit", "OnProcessStart", "Shutdown", "EmitEvent",
-    "PushROSNamespace", "SetParameter", "SetRemap",
+    "PushROSNamespace", "SetParameter", "SetParametersFromFile", "SetRemap", "SetUseSimTime",
 )  # fmt: skip
 _MAX_DEPTH = 20  # of lists in others
 _OF_ONE_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")
 # The classes that are evaluated, besides the sources of included files; what is wrong with their arguments.
-_EVALUATED = frozenset({*_ACTIONS, *PERFORMS, *CONDITIONS, "ParameterValue", "LaunchContext"})
+_EVALUATED = frozenset({*_ACTIONS, *PERFORMS, *CONDITIONS, "ParameterValue", "ParameterFile", "LaunchContext"})
 # The arguments that are kept as they are: of all others launch makes a copy when the object is made.
 _KEPT_AS_IT_IS = {"GroupAction": "actions", "TimerAction": "actions", "OpaqueFunction": "args"}
 

@@ -50,9 +50,9 @@ _ACTIONS: Mapping[str, str] = {
     "arg": "name! default description choice[]", "executable": f"cmd! {_PROCESS}",
     "group": "scoped:bool -forwarding -keep children", "include": "file! arg[]", "log": "message!",
     "set_env": "name! value!", "let": "name! value!", "timer": "period!:float -cancel_on_shutdown children",
-    "node": f"exec! pkg args -ros_args -node-name -exec_name namespace remap[] param[] {_PROCESS}",
+    "node": f"exec! pkg args ros_args -node-name -exec_name namespace remap[] param[] {_PROCESS}",
     **dict.fromkeys(("push_ros_namespace", "push-ros-namespace"), "namespace!"), "set_parameter": "name! value!",
-    "set_remap": "from! to!",
+    "set_remap": "from! to!", "set_parameters_from_file": "filename!",
 }  # fmt: skip
 _NESTED: Mapping[str, str] = {
     "arg": "name! value!", "choice": "value!", "remap": "from! to!",
@@ -64,6 +64,7 @@ _VALUE_TYPES = ("str", "bool", "float", "int", "list_of_str", "list_of_bool", "l
 _ARGUMENTS = {
     "pkg": "package", "exec": "executable", "default": "default_value", "message": "msg", "launch-prefix": "prefix",
     "file": "launch_description_source", "args": "arguments", "from": "src", "to": "dst",
+    "ros_args": "ros_arguments",
 }  # fmt: skip
 _ROS1 = (
     "this is a launch file of ROS 1; in ROS 2 write exec= for type=, $(find-pkg-share ...) for $(find ...),"
@@ -298,7 +299,7 @@ def _condition_of(given: dict[str, Any], entity: _Entity) -> Call | None:
 def _argument_value(entity: _Entity, name: str, value: Any) -> Value:
     if entity.kind == "arg" and name in ("name", "description"):
         return value  # without substitutions
-    if name in ("cmd", "args"):
+    if name in ("cmd", "args", "ros_args"):
         return _command_line(value, entity.at)
     if name == "on_exit":
         if value != "shutdown":

@@ -1,10 +1,10 @@
 """The nodes that a launch file starts and the files that it names, and the state while its actions are visited."""
 
 import posixpath
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Literal, Protocol
+from typing import Any, Literal, NamedTuple, Protocol
 
 from grader.package.launch.places import PREFIX
 from grader.python.budget import Budget
@@ -16,7 +16,7 @@ _MAX_STEPS = 50_000
 ANY = "**"
 NAMESPACE = "ros_namespace"  # the launch configuration that has the namespace of what follows, as in launch_ros
 STATE_PUBLISHER = "robot_state_publisher"
-Purpose = Literal["urdf", "rviz", "include", "read"]
+Purpose = Literal["urdf", "rviz", "include", "read", "parameters"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,14 +77,17 @@ class Context:
     installation: Installation
     arguments: dict[str, Resolved] = field(default_factory=dict)
     when: bool | None = True  # whether the file is launched at all
-    remaps: "tuple[tuple[str, ...] | None, ...]" = ()  # of SetRemap; None for one that is not known
+    # What SetRemap and SetParameter give to all nodes, by the configurations that launch_ros keeps them in: lists,
+    # which groups share, as there. None is one that is not known.
+    to_all: "dict[str, list[Any]]" = field(default_factory=dict)
+    included_by: tuple[str, ...] = ()  # the paths of the launch files that include this one, the first one first
     given: frozenset[str] = frozenset()  # the launch arguments that the file is included with
     reads: list[tuple[Contents, Position]] = field(default_factory=list)  # that the current action needs
     budget: Budget = field(default_factory=partial(Budget, _MAX_STEPS))  # of all files that are launched
 
     def copy(self) -> "Context":
         """Return a context whose launch configurations change on their own."""
-        return replace(self, arguments=dict(self.arguments))
+        return replace(self, arguments=dict(self.arguments), to_all=dict(self.to_all))
 
     def text_of(self, path: str) -> str | None:
         """Return the text of a file; None for one that is not installed below the prefix, or is no text."""
@@ -97,12 +100,31 @@ class Context:
             return None
 
 
+class ParameterValue(NamedTuple):
+    """The value that a parameter is given, a scalar or a list of them or Unknown, and where it is written."""
+
+    value: Any
+    location: Location
+
+
+class GivenParameters(NamedTuple):
+    """Parameters that a node is given at once: those of a file, by the path that launch has of it, or `values`."""
+
+    location: Location
+    path: str = ""
+    values: Mapping[str, ParameterValue] = {}
+    is_named: bool = False  # whether the values are for the node by its full name, not for every node of the process
+    node: str = ""  # or for the node of this name only
+    is_plain: bool = True  # whether launch replaces no substitutions in the file
+    unknown: str = ""  # why they are not known
+
+
 @dataclass(frozen=True, slots=True)
 class StartedNode:
     """A program that is started. `when` is True, False where a condition prevents it, None if known at run time only.
 
     `frame_prefix` is what robot_state_publisher puts before the name of each link; None where it is known at run time.
-    The same holds for `namespace`, and for the `remaps` of names.
+    The same holds for `namespace`, for the `remaps` of names, and for all that follows.
     """
 
     package: str
@@ -113,6 +135,10 @@ class StartedNode:
     namespace: str | None = ""
     remaps: tuple[tuple[str, ...], ...] | None = ()
     has_description: bool = False  # whether it is given the robot itself, not only by a topic
+    node_name: str | None = ""  # the one that it is given; empty if it keeps that of its program
+    arguments: tuple[str | None, ...] | None = None  # the words after the program
+    parameters: tuple[GivenParameters, ...] | None = None  # later ones count; see parameters_of
+    included_by: tuple[str, ...] = ()  # the paths below the prefix of the launch files by which its own is included
 
     def topic(self, name: str) -> str | None:
         """Return the topic that the node has for a name in its program; None where it is known at run time."""

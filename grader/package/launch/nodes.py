@@ -1,4 +1,4 @@
-"""The nodes that a launch file starts, as launch_ros does: their parameters, and the files that they are given.
+"""The nodes that a launch file starts, as launch_ros does: their names, and the files that they are given.
 
 These files are the robot and the configuration of RViz. `known_launch_files.toml` lists the nodes that launch files of
 well-known packages start, which submissions include but do not contain.
@@ -8,15 +8,15 @@ import posixpath
 import re
 import shlex
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import Any
 
-from grader.package.launch.arguments import FILE, OPENED, SCALARS, TYPED, items_in, kind_of, type_of
+from grader.package.launch.arguments import OPENED, TYPED, items_in
 from grader.package.launch.model import (
     NAMESPACE,
     STATE_PUBLISHER,
@@ -27,19 +27,17 @@ from grader.package.launch.model import (
     Purpose,
     Resolved,
     StartedNode,
-    UnknownText,
 )
+from grader.package.launch.parameters import given_parameters
 from grader.package.launch.places import PREFIX, ROS, SHARE
 from grader.package.launch.programs import is_part_of_ros
-from grader.package.launch.substitutions import PART_UNKNOWN, boolean, check_program, known_text, resolve
-from grader.package.yaml_nodes import yaml_value
+from grader.package.launch.substitutions import PART_UNKNOWN, check_program, known_text, resolve
 from grader.python.parse import Position
 from grader.python.values import Call, EvaluationFails, EvaluationSignal, Undetermined, Unknown, Value
 
+REMAPS = "ros_remaps"  # the launch configuration that has what SetRemap gives to all nodes, as in launch_ros
 _RVIZ = "rviz2"
 _GIVEN: Mapping[str, Purpose] = {STATE_PUBLISHER: "urdf", _RVIZ: "rviz"}  # the nodes that are given a file
-_MAX_YAML = 200_000  # characters
-_HEAD = '<?xml version="1.0" ?>\n<!-- by xacro -->\n'  # of what xacro writes
 _OUTPUTS = ("screen", "log", "both", "own_log", "full")
 _STARTS = re.compile(rf"ros2\s+(run|launch)|rviz2|{PART_UNKNOWN}")
 # Debuggers, terminals and other programs that start the program behind them.
@@ -62,30 +60,52 @@ def start_node(findings: Findings, call: Call, context: Context, when: bool | No
         return
     prefix = _frame_prefix(call, context) if executable == STATE_PUBLISHER else ""
     node = StartedNode(package, executable, when, findings.locate(call.at), prefix)
-    findings.nodes.append(_with_names(node, call, context))
+    findings.nodes.append(_with_names(node, call, context, findings))
     if when is not False and executable == STATE_PUBLISHER:
         _find_description(findings, call, context)
     elif when is not False and executable == _RVIZ:
         _find_configuration(findings, call, context)
 
 
-def _with_names(node: StartedNode, call: Call, context: Context) -> StartedNode:
-    """Return a node with its namespace and remappings, and whether it is given the robot itself."""
+def _with_names(node: StartedNode, call: Call, context: Context, findings: Findings) -> StartedNode:
+    """Return a node with its name, arguments, parameters and remappings, and whether it is given the robot itself."""
     words = _words_of(call.kwargs.get("arguments"), context, call.at)
     own = words[words.index("--ros-args") + 1 :] if "--ros-args" in words else []
+    own += _words_of(call.kwargs.get("ros_arguments"), context, call.at)
     rules = [word.partition(":=") for before, word in pairwise(own) if before in ("-r", "--remap")]
     is_given = any("robot_description" in table for table in _tables_in(call.kwargs.get("parameters")))
     has_description = is_given or (bool(words) and not words[0].startswith("-") and node.executable != _RVIZ)
+    parameters = given_parameters(call, own, context, node.location)
+    for path in (it.path for it in parameters if it.path):
+        findings.refer("parameters", path, call)
+    node = replace(
+        node,
+        has_description=has_description,
+        node_name=_given_name(rules, call, context),
+        arguments=tuple(None if PART_UNKNOWN in word else word for word in words),
+        parameters=parameters,
+        included_by=context.included_by,
+    )
     try:
         namespace: str | None = namespace_below(call.kwargs.get("namespace") or "", context, call.at)
         given = [tuple(known_text(it, context, call.at) for it in rule) for rule in call.kwargs.get("remappings") or ()]
     except EvaluationSignal:
-        return replace(node, namespace=None, remaps=None, has_description=has_description)
+        return replace(node, namespace=None, remaps=None)
     namespace = next((value for name, _, value in rules if name == "__ns"), namespace)
-    remaps = (*context.remaps, *given, *((name, to) for name, _, to in rules))
-    is_known = None not in remaps and PART_UNKNOWN not in words and "ros_arguments" not in call.kwargs
+    remaps = (*((name, to) for name, _, to in rules), *context.to_all.get(REMAPS, ()), *given)
+    is_known = None not in remaps and not any(PART_UNKNOWN in word for word in (*words, *own))
     known = tuple(rule for rule in remaps if rule is not None)
-    return replace(node, namespace=namespace, remaps=known if is_known else None, has_description=has_description)
+    return replace(node, namespace=namespace, remaps=known if is_known else None)
+
+
+def _given_name(rules: Iterable[tuple[str, str, str]], call: Call, context: Context) -> str | None:
+    """Return the name that a node is given; None where it is not known."""
+    for name, _, value in rules:
+        if name == "__node":
+            return None if PART_UNKNOWN in value else value
+    given = call.kwargs.get("name")
+    found = _text_if_known(given, context, call.at) if given is not None else ""
+    return found if isinstance(found, str) else None
 
 
 def start_process(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
@@ -122,8 +142,6 @@ def evaluate_node(call: Call, context: Context) -> None:
         raise EvaluationFails(f"the name of the node, {text!r}, is not valid: use letters, digits and _", call.at)
     if namespace is not None or NAMESPACE in context.arguments:
         namespace_below(namespace or "", context, call.at)
-    if call.kwargs.get("ros_arguments") is not None:
-        raise Undetermined("ros_arguments are not evaluated", call.at)
     package = call.kwargs.get("package")
     if package is not None:
         text, program = (known_text(call.kwargs[it], context, call.at) for it in ("package", "executable"))
@@ -286,117 +304,6 @@ def _words_of(value: Value, context: Context, at: Position) -> list[str]:
 def _inner_value(value: Value) -> Value:
     """Return the value in ParameterValue; another value as it is."""
     return value.kwargs["value"] if isinstance(value, Call) and value.name in TYPED else value
-
-
-def evaluate_parameters(parameters: Value, context: Context, at: Position) -> None:
-    """Evaluate the parameters of a node, as launch_ros does first. Raises EvaluationSignal and Undetermined."""
-    for item in items_in(parameters) or ():
-        if isinstance(item, dict):
-            evaluate_dict(item, context, at)
-        elif isinstance(item, Call) and item.name in (*TYPED, FILE):
-            raise Undetermined("a parameter of this kind is not evaluated", item.at)
-        elif not isinstance(item, PurePosixPath):
-            resolve(item, context, at)
-
-
-def evaluate_dict(table: dict[Any, Value], context: Context, at: Position) -> None:
-    """Evaluate a dict of parameters. Raises EvaluationSignal."""
-    for key, value in table.items():
-        name = resolve(list(key) if isinstance(key, tuple) else key, context, at)
-        shown = name if isinstance(name, str) else "?"
-        match value:
-            case dict():
-                evaluate_dict(value, context, at)
-            case Call() if value.name in TYPED:
-                _evaluate_typed(value, context)
-            case UnknownText():
-                resolve(value, context, at)
-            case list() | tuple() | range():
-                _evaluate_list(shown, list(value), context, at)
-            case Call() | Unknown():
-                _read_as_yaml(shown, value, context, at)
-
-
-def _evaluate_list(name: str, items: list[Value], context: Context, at: Position) -> None:
-    kinds = {type(item) for item in items if isinstance(item, SCALARS)}
-    if any(isinstance(item, Call) for item in items) and all(isinstance(it, str | Call | Unknown) for it in items):
-        _read_as_yaml(name, items, context, at)
-    elif not items or not all(isinstance(item, SCALARS) for item in items):
-        raise Undetermined(f"the value of the parameter {name!r} is not evaluated", at)
-    elif len(kinds) > 1 and kinds != {int, float}:
-        raise EvaluationFails(f"the parameter {name!r} is a list of values of different types", at)
-
-
-def _evaluate_typed(call: Call, context: Context) -> None:
-    value = call.kwargs["value"]
-    if isinstance(value, UnknownText):
-        resolve(value, context, call.at)
-    if isinstance(value, (*SCALARS, UnknownText)) or (
-        isinstance(value, list | tuple) and not any(isinstance(it, Call) for it in value)
-    ):
-        return
-    try:
-        kind = type_of(call)
-    except Undetermined as error:
-        raise Undetermined(f"{error} is not evaluated", call.at) from None
-    if kind is None:
-        _read_as_yaml("value", value, context, call.at)
-        return
-    text = resolve(value, context, call.at)
-    if kind is str:
-        return
-    if not isinstance(text, str):
-        raise Undetermined("the value of a parameter is not evaluated", call.at)
-    try:
-        boolean(text, call.at) if kind is bool else kind(text)
-    except ValueError:
-        raise EvaluationFails(f"the value {text[:40]!r} of a parameter is not {kind.__name__}", call.at) from None
-
-
-def _read_as_yaml(name: str, value: Value, context: Context, at: Position) -> None:
-    found = _value_as_yaml(name, value, context, at)
-    if isinstance(found, list) and _is_uniform(found):
-        return
-    if not isinstance(found, (*SCALARS, bytes)):
-        hint = "write ParameterValue(..., value_type=str)"
-        raise EvaluationFails(f"the parameter {name!r} is read as YAML, and is {kind_of(found)} then: {hint}", at)
-
-
-def _value_as_yaml(name: str, value: Value, context: Context, at: Position) -> Any:
-    """Return the value of a text as YAML. Raises EvaluationSignal."""
-    found = resolve(value, context, at)
-    if isinstance(found, Unknown):
-        raise Undetermined(f"the value of the parameter {name!r} is not evaluated: {found.reason}", at)
-    text = context.text_of(found.path) if isinstance(found, Contents) else found
-    if text is None:
-        return ""  # a file that is not there is reported for itself
-    try:
-        if len(text) > _MAX_YAML:
-            raise Undetermined(f"the parameter {name!r} is too long to be read as YAML", at)
-        return yaml_value(text) if text else text
-    except ValueError:
-        if isinstance(found, Contents) and found.by == "xacro" and not _is_never_yaml(text):
-            raise Undetermined(
-                f"whether the output of xacro is YAML, as which {name!r} is read, is not evaluated", at
-            ) from None
-        hint = "write ParameterValue(..., value_type=str)"
-        raise EvaluationFails(f"the parameter {name!r} is read as YAML, which fails: {hint}", at) from None
-
-
-def _is_never_yaml(text: str) -> bool:
-    """Return whether a URDF is no YAML after xacro either, which keeps comments, texts and values."""
-    if "xacro:" in text or "${" in text or "$(" in text:
-        return False
-    try:
-        yaml_value(_HEAD + re.sub(r"[ \t]+", " ", text))
-    except ValueError:
-        return True
-    return False
-
-
-def _is_uniform(values: list[Any]) -> bool:
-    kind = type(values[0]) if values else None
-    return kind in SCALARS and all(isinstance(value, kind) for value in values if kind)
 
 
 def _tables_in(parameters: Value) -> Iterator[dict[Any, Value]]:

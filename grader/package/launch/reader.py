@@ -5,7 +5,7 @@ One in Python is evaluated without running it: `_PythonLaunchFile` gives what th
 
 import posixpath
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from operator import attrgetter, methodcaller
 from pathlib import PurePosixPath
@@ -87,10 +87,13 @@ class _Recorder:
 
 
 # The results of the last launch files: those of a handout are read again, and all while hints are searched.
-_KEPT: dict[tuple[bytes, str, str], tuple[_Recorder, Launch]] = {}
+_KEPT: dict[tuple[bytes, str, str, tuple[tuple[str, str], ...]], tuple[_Recorder, Launch]] = {}
+_NO_ARGUMENTS: Mapping[str, str] = {}
 
 
-def read_launch(data: bytes, path: str, installed: str, installation: Installation) -> Launch:
+def read_launch(
+    data: bytes, path: str, installed: str, installation: Installation, arguments: Mapping[str, str] = _NO_ARGUMENTS
+) -> Launch:
     """Read a launch file and evaluate it. Never raises.
 
     Args:
@@ -98,12 +101,14 @@ def read_launch(data: bytes, path: str, installed: str, installation: Installati
         path: Its path in the submission.
         installed: Its path below the prefix after a build.
         installation: What is installed besides.
+        arguments: The launch arguments that it is given.
     """
-    key = (data, path, installed)
+    key = (data, path, installed, tuple(arguments.items()))
     if key in _KEPT and _KEPT[key][0].is_equal(installation):
         return _KEPT[key][1]
     recorder = _Recorder(installation)
-    launch = _LaunchReader().read(data, path, installed, Context(f"{PREFIX}/{installed}", recorder))
+    context = Context(f"{PREFIX}/{installed}", recorder, dict(arguments), given=frozenset(arguments))
+    launch = _LaunchReader().read(data, path, installed, context)
     _KEPT.pop(key, None)
     if len(_KEPT) >= _MAX_KEPT:
         del _KEPT[next(iter(_KEPT))]
@@ -244,7 +249,7 @@ def _forgotten_node(node: Call, findings: Findings) -> StartedNode:
 
 
 def _launch_of_findings(source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
-    named = {reference.path for reference in findings.references if reference.purpose != "read"}
+    named = {reference.path for reference in findings.references if reference.purpose not in ("read", "parameters")}
     references = [it for it in findings.references if it.purpose != "read" or it.path not in named]
     order = attrgetter("location.line", "location.column", "message")
     return Launch(

@@ -1,0 +1,198 @@
+"""What a node is given by its launch file: its name, parameters, remappings and arguments."""
+
+from typing import Any
+
+import pytest
+
+from grader.package.launch.model import Launch, StartedNode
+from grader.package.launch.parameters import NodeParameters, parameters_of
+from grader.python.values import Unknown
+from tests.package.launch_samples import Installed, read
+
+SHARE = "share/my_robot/config"
+FILES = {
+    f"{SHARE}/named.yaml": b"""\
+driver:
+  ros__parameters:
+    speed: 2.0
+    wheels: [left, right]
+    pid: {p: 1, i: 0x10}
+/**:
+  ros__parameters:
+    speed: 1.0
+    is_on: yes
+    quoted: 'yes'
+    empty:
+""",
+    f"{SHARE}/wild.yaml": b"""\
+/*/driver: {ros__parameters: {speed: 3}}
+ns: {driver: {ros__parameters: {deep: 4}}}
+/other: {ros__parameters: {speed: 5}}
+""",
+    f"{SHARE}/texts.yaml": b"/**: {ros__parameters: {a: $(var name), b: .inf, c: 1e3, d: 010, e: [1, a], f: 1:30, g: !x z}}",
+    f"{SHARE}/broken.yaml": b"/**: {",
+}
+HEAD = """\
+from ament_index_python.packages import get_package_share_path
+from launch import LaunchDescription
+from launch.actions import *
+from launch.conditions import IfCondition
+from launch.substitutions import *
+from launch_ros.actions import *
+from launch_ros.parameter_descriptions import ParameterFile, ParameterValue
+import os
+CONFIG = get_package_share_path('my_robot') / 'config'
+
+def generate_launch_description():
+    return LaunchDescription([{}])
+"""
+
+
+def launch(actions: str, ending: str = "py") -> Launch:
+    """Return a launch file with these actions, in Python or in XML."""
+    text = HEAD.format(actions) if ending == "py" else f"<launch>{actions}</launch>"
+    return read(text.encode(), f"a.launch.{ending}", FILES)
+
+
+def node(actions: str, ending: str = "py") -> StartedNode:
+    """Return the last node that is started."""
+    return launch(actions, ending).nodes[-1]
+
+
+def given(actions: str, ending: str = "py", **options: Any) -> NodeParameters:
+    """Return the parameters of the last node that is started."""
+    return parameters_of(node(actions, ending), Installed(FILES), **options)
+
+
+def values(found: NodeParameters) -> dict[str, Any]:
+    """Return the values of parameters; `?` for one that is unknown."""
+    return {name: "?" if isinstance(it.value, Unknown) else it.value for name, it in found.values.items()}
+
+
+NAMED = "Node(package='a', executable='b', name='driver', parameters=[{}])"
+IN_ROOT = "Node(package='a', executable='b', name='driver', namespace='/', parameters=[{}])"
+XML = '<node pkg="a" exec="b" name="driver" namespace="ns">{}</node>'
+FILE = "CONFIG / 'named.yaml'"
+
+
+@pytest.mark.parametrize(
+    ("actions", "options", "expected"),
+    [
+        (NAMED.format("{'a': 1, 'b': {'c': True, 'd': [1, 2.5]}}"), {}, {"a": 1, "b.c": True, "b.d": [1.0, 2.5]}),
+        (NAMED.format("{'a': '5', 'b': LaunchConfiguration('x', default='5')}"), {}, {"a": "5", "b": 5}),
+        (NAMED.format("{'a': ParameterValue(LaunchConfiguration('x', default='5'), value_type=str)}"), {}, {"a": "5"}),
+        (NAMED.format("{'a': Command(['cat ', str(CONFIG / 'named.yaml')])}"), {}, {"a": "?"}),
+        (NAMED.format("{'a': LaunchConfiguration('x', default=EnvironmentVariable('A'))}, {'b': 1}"), {}, {"a": "?", "b": 1}),
+        (NAMED.format("{'a': 1}, {'a': 2}"), {}, {"a": 2}),
+        ("SetParameter('a', 1), " + NAMED.format("{'b': 1}"), {}, {"a": 1, "b": 1}),
+        ("SetParameter('a', 1), " + NAMED.format("{'a': 2}"), {}, {"a": 2}),
+        ("SetParameter('a', '5'), SetParameter('b', [1]), " + NAMED.format(""), {}, {"a": 5, "b": "?"}),
+        (f"SetParametersFromFile(str({FILE})), " + IN_ROOT.format("{'speed': 9.0}"), {"is_python": True}, {"speed": 9.0}),
+        ("GroupAction([SetParameter('a', 1)]), " + NAMED.format("{'b': 1}"), {}, {"b": 1}),
+        ("SetParameter('c', 1), GroupAction([SetParameter('a', 1)]), " + NAMED.format("{'b': 1}"), {}, {"c": 1, "a": 1, "b": 1}),
+        ("SetUseSimTime(True), " + NAMED.format("{'b': 1}"), {}, {"b": 1}),
+        ("Node(package='a', executable='b', arguments=['--ros-args', '-p', 'x:=1.5', '-p', 'driver:y:=on', '-p', 'other:z:=1'], name='driver')", {}, {"x": 1.5, "y": True}),
+        ("Node(package='a', executable='b', ros_arguments=['-p', 'x:=[1, 2]', '-p', 'y:={'], name='driver')", {}, {"x": [1, 2], "y": "?"}),
+    ],
+)  # fmt: skip
+def test_values(actions: str, options: dict[str, Any], expected: dict[str, Any]) -> None:
+    """A parameter has the value that launch evaluates, and the last one that is given counts."""
+    found = given(actions, **options)
+    assert {name: it for name, it in values(found).items() if name in expected or len(found.values) < 5} == expected
+    assert found.unknown == ""
+
+
+def test_files() -> None:
+    """A file is read as rcl reads it: by the names of nodes, with YAML's numbers, booleans, quotes and nested names."""
+    found = given(IN_ROOT.format(FILE), is_python=True)
+    assert values(found) == {
+        "speed": 2.0, "is_on": True, "quoted": "yes", "empty": "?", "wheels": ["left", "right"], "pid.p": 1, "pid.i": 16,
+    }  # fmt: skip
+    assert found.values["pid.i"].location.line == 5
+    assert found.values["pid.i"].location.path == "config/named.yaml"
+
+
+def test_texts() -> None:
+    """A value that is a substitution, no scalar or a list of several types is unknown; the rest is as in rcl."""
+    found = given(NAMED.format("ParameterFile(CONFIG / 'texts.yaml', allow_substs=True)"), name="x")
+    assert values(found) == {"a": "?", "b": float("inf"), "c": 1000.0, "d": 8, "e": "?", "f": "1:30", "g": "z"}
+    assert values(given(NAMED.format("ParameterFile([str(CONFIG / 'texts.yaml')])")))["a"] == "$(var name)"
+
+
+@pytest.mark.parametrize(
+    ("is_python", "speed"),
+    [(False, 1.0), (True, 2.0), (None, "?")],
+)
+def test_precedence(is_python: bool | None, speed: object) -> None:
+    """Where a file names the node before /**, rclcpp takes the value of /**, rclpy that of the node."""
+    assert values(given(NAMED.format(FILE), is_python=is_python))["speed"] == speed
+
+
+def test_precedence_of_known_packages() -> None:
+    """The nodes of well-known packages in C++ are known."""
+    action = IN_ROOT.replace("'a'", "'controller_manager'")
+    assert values(given(action.format(FILE)))["speed"] == 1.0
+
+
+def test_names() -> None:
+    """The key of a section has wildcards and namespaces; the name is unknown where the launch file gives none."""
+    wild = XML.format("<param from='$(find-pkg-share my_robot)/config/wild.yaml'/>")
+    assert values(given(wild, "xml", is_python=False)) == {"speed": 3, "deep": 4}
+    assert values(given(wild, "xml", is_python=False, name="/other")) == {"speed": 5}
+    nameless = f"Node(package='a', executable='b', parameters=[{FILE}, {{'x': 1}}])"
+    assert values(given(nameless)) == {
+        "speed": "?", "is_on": True, "quoted": "yes", "empty": "?", "wheels": "?", "pid.p": "?", "pid.i": "?", "x": 1,
+    }  # fmt: skip
+    assert values(given(nameless, name="driver", is_python=True))["wheels"] == ["left", "right"]
+    renamed = (
+        "Node(package='a', executable='b', name='x', arguments=['--ros-args', '-r', '__node:=y', '-r', '__ns:=/z'])"
+    )
+    assert (node(renamed).node_name, node(renamed).namespace) == ("y", "/z")
+
+
+@pytest.mark.parametrize(
+    "parameters",
+    ["CONFIG / 'missing.yaml'", "'/tmp/a.yaml'", "CONFIG / 'broken.yaml'", "ParameterValue(1)", "{'b': {'c': EnvironmentVariable('A')}}",
+     "ParameterFile(EnvironmentVariable('A'))", "EnvironmentVariable('A')"],
+)  # fmt: skip
+def test_unknown(parameters: str) -> None:
+    """What is not evaluated may contain any parameter, and replaces those before it."""
+    found = given(NAMED.format(f"{{'a': 1}}, {parameters}, {{'z': 1}}"))
+    assert values(found) == {"a": "?", "z": 1}
+    assert found.unknown
+
+
+def test_for_all_nodes() -> None:
+    """What is set under a condition that is unknown may be given."""
+    condition = "condition=IfCondition(EnvironmentVariable('A', default_value='true'))"
+    assert given(f"SetParameter('a', 1, {condition}), " + NAMED.format("")).unknown
+    remapped = node(f"SetRemap('a', 'b', {condition}), Node(package='a', executable='b')")
+    assert remapped.remaps is None
+    kept = node("GroupAction([SetRemap('a', 'b')]), Node(package='a', executable='b', remappings=[('a', 'c')])")
+    assert kept.remaps == (("a", "c"),)
+    first = "Node(package='a', executable='b', remappings=[('a', 'c')], arguments=['--ros-args', '-r', 'a:=d'])"
+    assert node(f"SetRemap('a', 'b'), {first}").topic("a") == "/d"
+
+
+def test_arguments() -> None:
+    """The words after the program are kept; one that is not evaluated is None."""
+    assert node("Node(package='a', executable='b', arguments=['x', EnvironmentVariable('A')])").arguments == ("x", None)
+    assert node('<node pkg="a" exec="b" ros_args="-p x:=1"/>', "xml").arguments == ()
+    assert values(given('<node pkg="a" exec="b" ros_args="-p x:=1"/>', "xml")) == {"x": 1}
+
+
+def test_included_by() -> None:
+    """A node knows the launch files by which its own is included."""
+    inner = {"share/my_robot/launch/b.launch.xml": b'<launch><node pkg="a" exec="b"/></launch>'}
+    outer = b'<launch><include file="$(dirname)/b.launch.xml"/></launch>'
+    assert read(outer, "a.launch.xml", inner).nodes[0].included_by == ("share/my_robot/launch/a.launch.xml",)
+
+
+def test_files_are_named() -> None:
+    """A launch file names the files of parameters that it gives to nodes, and stops without one for all nodes."""
+    found = launch(f"SetParametersFromFile(str({FILE})), " + NAMED.format("CONFIG / 'wild.yaml'"))
+    named = [[it.path for it in found.named(purpose)] for purpose in ("read", "parameters")]
+    assert named == [
+        [f"/<prefix>/{SHARE}/named.yaml"],
+        [f"/<prefix>/{SHARE}/{name}.yaml" for name in ("named", "wild")],
+    ]
