@@ -20,7 +20,7 @@ _BINDS_UNSEEN = frozenset(
 _MAX_NAMED = 5  # names in a message
 
 
-class EntryPoint(NamedTuple):
+class _EntryPoint(NamedTuple):
     """A program of console_scripts: `average_filter = sensor_hub.average_filter:main`."""
 
     name: str
@@ -29,7 +29,7 @@ class EntryPoint(NamedTuple):
     location: Location
 
 
-def entry_points(package: Package) -> list[EntryPoint]:
+def entry_points(package: Package) -> list[_EntryPoint]:
     """Return the entry points that are known: those of console_scripts in setup.py that are written as texts."""
     setup = package.installation
     groups = setup.entry_points if setup is not None else None
@@ -38,7 +38,7 @@ def entry_points(package: Package) -> list[EntryPoint]:
     for script in scripts if isinstance(scripts, list | tuple) else ():
         parts = _ENTRY.fullmatch(script) if isinstance(script, str) else None
         if parts is not None:
-            found.append(EntryPoint(parts[1], parts[2], parts[3] or "", _place_of(package, parts[1])))
+            found.append(_EntryPoint(parts[1], parts[2], parts[3] or "", _place_of(package, parts[1])))
     return found
 
 
@@ -60,11 +60,11 @@ def entry_fault(package: Package, name: str) -> tuple[str, Location] | None:
     if setup is None or len(named) != 1 or package.tree.links or setup.unknown:
         return None
     [entry] = named
-    path = module_path(package, entry.module)
+    path = _module_path(package, entry.module)
     if path is None:
         return (_missing_module(package, entry), entry.location) if _lacks_module(package, entry.module) else None
     code = read_module(package, path)
-    names = certain_names(code) if code is not None else None
+    names = _certain_names(code) if code is not None else None
     if not entry.function or names is None or entry.function in names:
         return None
     others = [node.name for node in code.tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)] if code else []
@@ -81,7 +81,7 @@ def read_module(package: Package, path: str) -> Code | None:
     return code if isinstance(code, Code) else None
 
 
-def module_path(package: Package, module: str) -> str | None:
+def _module_path(package: Package, module: str) -> str | None:
     """Return the file of a module by its full name; None where the package has none."""
     stem = module.replace(".", "/")
     return next((path for path in (f"{stem}/__init__.py", f"{stem}.py") if path in package.tree.files), None)
@@ -99,10 +99,10 @@ def _lacks_module(package: Package, module: str) -> bool:
         return False
     inits = [path for path in tree.files if path.endswith("/__init__.py") and stem.startswith(path[:-11])]
     codes = [read_module(package, path) for path in inits]
-    return all(code is not None and certain_names(code) is not None for code in codes)
+    return all(code is not None and _certain_names(code) is not None for code in codes)
 
 
-def _missing_module(package: Package, entry: EntryPoint) -> str:
+def _missing_module(package: Package, entry: _EntryPoint) -> str:
     folder = entry.module.rpartition(".")[0].replace(".", "/")
     others = [
         path.removeprefix(f"{folder}/").removesuffix(".py")
@@ -121,7 +121,7 @@ def _guess(name: str, known: list[str], own: str = "") -> str:
     return f"; there is {enumerated([repr(it) for it in known[:_MAX_NAMED]])}" if known else ""
 
 
-def certain_names(code: Code) -> frozenset[str] | None:
+def _certain_names(code: Code) -> frozenset[str] | None:
     """Return the names that a module may bind; None if it may bind others."""
     names: set[str] = set()
     for node in ast.walk(code.tree):

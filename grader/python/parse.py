@@ -137,9 +137,9 @@ def parse_expression(text: str) -> ast.expr | str | None:
 
 
 def own_nodes(node: ast.AST) -> list[ast.AST]:
-    """Return the nodes of a function or statement, without those of the functions and classes in it."""
+    """Return the nodes of a function, class or statement, without those of the functions and classes in it."""
     found: list[ast.AST] = []
-    pending = list(ast.iter_child_nodes(node)) if isinstance(node, ast.FunctionDef) else [node]
+    pending = list(ast.iter_child_nodes(node)) if isinstance(node, ast.FunctionDef | ast.ClassDef) else [node]
     while pending:
         part = pending.pop()
         found.append(part)
