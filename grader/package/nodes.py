@@ -1,17 +1,19 @@
 """The nodes of a package that are written in Python: what they declare and open, read from the text and never run.
 
 Only what is written as a text, number or constant is known. A name is a constant if its scope binds it once.
+Actions and the topics of tf2 are not listed.
 """
 
 import ast
 import builtins
+import sys
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import ClassVar, Literal, NamedTuple
 
-from grader.package.entry_points import entry_points, read_module
+from grader.package.entry_points import binds_unseen, entry_points, read_module
 from grader.package.installation import InstalledFile
 from grader.package.package import Package
 from grader.python.budget import Budget, OutOfBudget
@@ -19,7 +21,7 @@ from grader.python.evaluation import record
 from grader.python.interpreter import Interpreter
 from grader.python.library import imported_names
 from grader.python.parse import START, Code, location_in, own_nodes, position_of
-from grader.python.values import Call, EvaluationFails, QualifiedName, Scope, Undetermined, Unknown, Value
+from grader.python.values import SCALARS, Call, EvaluationFails, QualifiedName, Scope, Undetermined, Unknown, Value
 from grader.source import Location
 
 _MAX_MODULES = 100
@@ -29,24 +31,19 @@ _NODES = frozenset(
     for name in ("node.Node", "Node", "lifecycle.Node", "lifecycle.LifecycleNode", "lifecycle.node.Node")
 )
 _CREATES = frozenset({"rclpy.create_node", *_NODES})
-Kind = Literal["publisher", "subscription", "service", "client"]
-_KINDS: dict[str, Kind] = {
+_Kind = Literal["publisher", "subscription", "service", "client"]
+_KINDS: dict[str, _Kind] = {
     "create_publisher": "publisher", "create_lifecycle_publisher": "publisher", "create_subscription": "subscription",
     "create_service": "service", "create_client": "client",
 }  # fmt: skip
 _READS = ("get_parameter", "get_parameter_or", "has_parameter")
 _METHODS = frozenset({*_KINDS, *_READS, "declare_parameter", "declare_parameters", "create_timer"})
-# Functions that are given a node and open nothing for it.
-_HARMLESS = (
-    "spin",
-    "spin_once",
-    "spin_until_future_complete",
-    "add_node",
-    "remove_node",
-    "super",
-    "isinstance",
-    "print",
-)
+# What may be given a node, and declares and opens nothing but actions and the topics of tf2.
+_HARMLESS = frozenset(
+    {"spin", "spin_once", "spin_until_future_complete", "add_node", "remove_node", "super", "isinstance", "print",
+     "hasattr", "getattr", "ActionClient", "ActionServer", "TransformListener", "TransformBroadcaster",
+     "StaticTransformBroadcaster"}
+)  # fmt: skip
 # By rclpy/qos.py of Jazzy: depth, reliability, durability.
 _PROFILES = {
     "qos_profile_sensor_data": (5, "best_effort", "volatile"), "SENSOR_DATA": (5, "best_effort", "volatile"),
@@ -66,7 +63,7 @@ _OPTIONS = (
 )  # fmt: skip
 
 
-class Qos(NamedTuple):
+class _Qos(NamedTuple):
     """A quality of service; None for what is not known."""
 
     depth: int | None = None
@@ -77,10 +74,10 @@ class Qos(NamedTuple):
 class Endpoint(NamedTuple):
     """A publisher, subscription, service or client. `type` is a full name: std_msgs.msg.Float32."""
 
-    kind: Kind
+    kind: _Kind
     type: str | None
     name: str | None  # of the topic or service, as it is written
-    qos: Qos
+    qos: _Qos
     location: Location
 
 
@@ -100,7 +97,7 @@ class Timer(NamedTuple):
     location: Location
 
 
-class Doubt(NamedTuple):
+class _Doubt(NamedTuple):
     """What may declare or open more, and where."""
 
     reason: str
@@ -113,7 +110,7 @@ class _Name(NamedTuple):
     name: str | None
 
 
-_Fact = Endpoint | NodeParameter | Timer | Doubt | _Name
+_Fact = Endpoint | NodeParameter | Timer | _Doubt | _Name
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,10 +126,10 @@ class PythonNode:
     endpoints: tuple[Endpoint, ...]
     parameters: tuple[NodeParameter, ...]
     timers: tuple[Timer, ...]
-    doubts: tuple[Doubt, ...]
+    doubts: tuple[_Doubt, ...]
 
 
-class Program(NamedTuple):
+class _Program(NamedTuple):
     """A program, and the nodes that its function creates, as far as they are known."""
 
     name: str
@@ -144,18 +141,18 @@ class PythonNodes(NamedTuple):
     """The nodes of a package, and its programs. With `doubts`, a node may declare or open more, or be missing."""
 
     nodes: tuple[PythonNode, ...]
-    programs: tuple[Program, ...]
-    doubts: tuple[Doubt, ...]
+    programs: tuple[_Program, ...]
+    doubts: tuple[_Doubt, ...]
 
 
 def read_nodes(package: Package) -> PythonNodes:
     """Return the nodes in the Python modules that a build of a package installs. Never raises."""
     modules: dict[str, _Module] = {}
-    doubts: list[Doubt] = []
+    doubts: list[_Doubt] = []
     for name, path in _module_paths(package).items():
         code = read_module(package, path)
         if code is None:
-            doubts.append(Doubt("the file is not read", Location(package.path(path), 1, 1)))
+            doubts.append(_Doubt("the file is not read", Location(package.path(path), 1, 1)))
         else:
             modules[name] = _Module(code, name, is_package=path.endswith("/__init__.py"))
     bases = {full: found for module in modules.values() for full, found in module.bases.items()}
@@ -190,13 +187,13 @@ def _scripts(package: Package) -> list[InstalledFile]:
     return [copy for copy in copies if copy.target.startswith(lib) and copy.source.endswith(".py")]
 
 
-def _programs(package: Package, modules: "dict[str, _Module]", nodes: Sequence[PythonNode]) -> Iterator[Program]:
+def _programs(package: Package, modules: "dict[str, _Module]", nodes: Sequence[PythonNode]) -> Iterator[_Program]:
     """Yield the entry points, and the files that are programs, with the nodes that they create."""
     for entry in entry_points(package):
-        yield Program(entry.name, _created_by(modules, nodes, entry.module, entry.function), entry.location)
+        yield _Program(entry.name, _created_by(modules, nodes, entry.module, entry.function), entry.location)
     for copy in _scripts(package):
         at = Location(package.path(copy.source), 1, 1)
-        yield Program(copy.target.rpartition("/")[2], _created_by(modules, nodes, copy.source, ""), at)
+        yield _Program(copy.target.rpartition("/")[2], _created_by(modules, nodes, copy.source, ""), at)
 
 
 def _created_by(
@@ -262,6 +259,17 @@ def _dotted(node: ast.AST) -> str:
     return ""
 
 
+def _offset(node: ast.AST) -> tuple[int, int]:
+    return getattr(node, "lineno", 0), getattr(node, "col_offset", 0)
+
+
+def _replaces_names(node: ast.ImportFrom) -> bool:
+    """Return whether a star import may bind names of constants: those of messages and of Python itself do not."""
+    *_, last = (node.module or "").split(".")
+    is_known = last in ("msg", "srv", "action") or last in sys.stdlib_module_names
+    return node.names[0].name == "*" and not is_known
+
+
 def _bindings(nodes: Sequence[ast.AST]) -> tuple[Counter[str], dict[str, ast.expr]]:
     """Return how often statements bind or change each name with dots, and the expressions that are assigned."""
     counts, values = Counter[str](), dict[str, ast.expr]()
@@ -304,8 +312,9 @@ class _Module:
         self._evaluator = _Evaluator(functions, {}, budget=Budget(_MAX_STEPS))
         parts = ast.walk(code.tree)
         self._shared = {it for part in parts if isinstance(part, ast.Global | ast.Nonlocal) for it in part.names}
+        self._is_open = binds_unseen(code)
         self.bases: dict[str, list[str]] = {}  # of the classes, by full names
-        self.doubts: list[Doubt] = []
+        self.doubts: list[_Doubt] = []
         self._classes: dict[Location, str] = {}
         self._facts: dict[Location, list[_Fact]] = {}  # of each node
         self._parts: list[_Part] = []
@@ -327,16 +336,18 @@ class _Module:
 
     def _bound(self, nodes: Sequence[ast.AST], scope: Scope) -> Scope:
         """Return a scope with the names that statements bind: constants, and what is not known."""
-        nodes = sorted((it for it in nodes if hasattr(it, "lineno")), key=lambda it: (it.lineno, it.col_offset))
+        nodes = sorted(nodes, key=_offset)
         counts, values = _bindings(nodes)
         unknown = Unknown("it is not bound once", START)
+        star = max((it.lineno for it in nodes if isinstance(it, ast.ImportFrom) and _replaces_names(it)), default=0)
         names = [name for name in counts if name.partition(".")[0] not in self._shared]
         scope.names |= dict.fromkeys(names, unknown)
         for node in nodes:
             if isinstance(node, ast.Import | ast.ImportFrom):
                 found = {name: it for alias in node.names for name, it in self._imported(node, alias).items()}
                 scope.names |= {name: it for name, it in found.items() if counts[name] == 1}
-        for name in (it for it in values if it in names and counts[it] == 1):
+        assigned = [it for it in values if it in names and counts[it] == 1 and values[it].lineno > star]
+        for name in assigned if not self._is_open else ():
             value = self._evaluator.value_of(values[name], scope)
             scope.names[name] = unknown if isinstance(value, list | dict) else value  # which may be changed
         return scope
@@ -376,8 +387,10 @@ class _Module:
             if full in kinds:
                 self._facts[at] = []
                 others = [base for base in self.bases[full] if base not in _NODES]
-                self._facts[at] += [Doubt("what another base class does is not added", at) for _ in others[:1]]
-        calls = [(part, node) for part in self._parts for node in part.nodes if isinstance(node, ast.Call)]
+                self._facts[at] += [_Doubt("what another base class does is not added", at) for _ in others[:1]]
+        calls = [
+            (part, it) for part in self._parts for it in sorted(part.nodes, key=_offset) if isinstance(it, ast.Call)
+        ]
         for part, call in calls:
             if self._called(part, call) in _CREATES:
                 self._facts[self._at(call)] = [_Name(_text(self._argument(part, call, 0, "node_name")))]
@@ -394,7 +407,7 @@ class _Module:
             endpoints=tuple(it for it in facts if isinstance(it, Endpoint)),
             parameters=tuple(it for it in facts if isinstance(it, NodeParameter)),
             timers=tuple(it for it in facts if isinstance(it, Timer)),
-            doubts=tuple(it for it in facts if isinstance(it, Doubt)),
+            doubts=tuple(it for it in facts if isinstance(it, _Doubt)),
         )
 
     def calls_in(self, function: str) -> Iterator[tuple[str, Location]]:
@@ -434,7 +447,7 @@ class _Module:
                 at = self._receiver(part, owner)
                 facts = self._facts.get(at) if at is not None else None
                 if facts is None:
-                    self.doubts.append(Doubt(f"the node of this {method}() is not known", self._at(call)))
+                    self.doubts.append(_Doubt(f"the node of this {method}() is not known", self._at(call)))
                 else:
                     facts += self._read_method(part, call, method)
             case function:
@@ -442,7 +455,7 @@ class _Module:
                     at = self._receiver(part, argument) if isinstance(argument, ast.Name) else None
                     name = (_dotted(function) or "this call").rpartition(".")[2]
                     if at is not None and name not in _HARMLESS:
-                        self._facts[at].append(Doubt(f"{name} is given the node", self._at(call)))
+                        self._facts[at].append(_Doubt(f"{name} is given the node", self._at(call)))
 
     def _read_init(self, part: _Part, call: ast.Call, owner: ast.expr) -> "Iterator[_Fact]":
         """Yield the name that a class gives its node, if its base is rclpy's Node itself."""
@@ -455,7 +468,7 @@ class _Module:
             yield _Name(name if isinstance(name, str) else None)
             for keyword in call.keywords:
                 if keyword.arg in _OPTIONS:
-                    yield Doubt(f"{keyword.arg or 'more arguments'} of its Node", self._at(call))
+                    yield _Doubt(f"{keyword.arg or 'more arguments'} of its Node", self._at(call))
 
     def _read_method(self, part: _Part, call: ast.Call, method: str) -> "Iterator[_Fact]":
         """Yield what a method of a node declares, opens or reads."""
@@ -484,7 +497,11 @@ def _text(value: Value) -> str | None:
 
 def _default(value: Value) -> Value:
     """Return the default of a parameter; a type in its place, as Parameter.Type.DOUBLE, is none."""
-    return None if isinstance(value, QualifiedName) else value
+    if isinstance(value, QualifiedName) and value.name.startswith("rclpy."):
+        return None
+    items = value if isinstance(value, list | tuple) else [value]
+    is_known = all(isinstance(it, SCALARS) or it is None for it in items)
+    return value if is_known else Unknown("the default is computed", getattr(value, "at", START))
 
 
 def _declared(namespace: Value, parameters: Value, at: Location) -> Iterator[NodeParameter]:
@@ -496,23 +513,23 @@ def _declared(namespace: Value, parameters: Value, at: Location) -> Iterator[Nod
         yield NodeParameter(f"{before}{name}" if is_known else None, _default(default), at)
 
 
-def _qos(value: Value) -> Qos:
+def _qos(value: Value) -> _Qos:
     """Return a quality of service: a depth, a QoSProfile, or one of the profiles of rclpy."""
     match value:
         case bool():
-            return Qos()
+            return _Qos()
         case int():
-            return Qos(value, "reliable", "volatile")
+            return _Qos(value, "reliable", "volatile")
         case QualifiedName(name=name) if name.startswith("rclpy.qos."):
-            return Qos(*_PROFILES.get(name.removesuffix(".value").rpartition(".")[2], ()))
+            return _Qos(*_PROFILES.get(name.removesuffix(".value").rpartition(".")[2], ()))
         case Call(name="rclpy.qos.QoSProfile", kwargs=given):
             depth = given.get("depth")
             reliability, durability = (
                 _policy(given[name]) if name in given else default
                 for name, default in (("reliability", "reliable"), ("durability", "volatile"))
             )
-            return Qos(depth if isinstance(depth, int) else None, reliability, durability)
-    return Qos()
+            return _Qos(depth if isinstance(depth, int) else None, reliability, durability)
+    return _Qos()
 
 
 def _policy(value: Value) -> str | None:
