@@ -78,6 +78,7 @@ def launch_starts(package: Package, *, name: str, nodes: list[str], built: bool 
 
     Launch files that it includes count, if they are part of the submission or of a well-known package. What ros2 launch
     stops at fails: an error in the file, a wrong argument of an action, a file that it reads and that is not installed.
+    So does an entry point in setup.py of one of these nodes whose module or function does not exist.
 
     Args:
         name: The file's name, such as view.launch.py.
@@ -99,6 +100,8 @@ def launch_starts(package: Package, *, name: str, nodes: list[str], built: bool 
         reason, at = _why_missing(launch, {node for choice in missing for node in choice})
         what, detail = f"the launch file does not start {listed}", f"; it {message}{reason}"
         return judged(False, what, tuple(sorted(started)), tuple(nodes), at=at, detail=detail)
+    if fault := _faulty_program(package, launch, nodes):
+        raise fault
     if built and (wrong := [it for it in places if it.state == "wrong" and _stops_launch(it.file)]):
         return _fail_places(package, wrong)
     if stopping := next(filter(None, (_warning_that_stops(package, it) for it in places)), None):
@@ -173,6 +176,26 @@ def _find_places(package: Package, launch: "Launch", *purposes: "Purpose", built
 def _stops_launch(file: "NamedFile") -> bool:
     """Return whether ros2 launch stops if it does not find a file."""
     return file.purpose in ("read", "include") or file.by != ""
+
+
+def _faulty_program(package: Package, launch: "Launch", nodes: Sequence[str]) -> MissingElement | None:
+    """Return the fault of a wanted node that certainly ends at once: setup.py names no function for its program."""
+    from grader.package.entry_points import entry_fault  # late: most launch files start programs of ROS 2 only
+
+    for choice in (node.split(" or ") for node in nodes):
+        faults = {}
+        for node in launch.nodes:
+            owner = package.find(node.package)
+            if node.when is not False and node.name in choice:
+                faults[node.name] = entry_fault(owner, node.executable) if owner is not None else None
+        found = [fault for fault in faults.values() if fault is not None]
+        if found and len(found) == len(faults):
+            name, (reason, at) = next(iter(faults)), found[0]
+            message = f"the entry point of {name.rpartition('/')[2]!r} names no function"
+            return MissingElement(
+                "entry point", name, message=message, detail=f": {reason}", location=at, costs_once=True
+            )
+    return None
 
 
 def _may_start(launch: "Launch", missing: Sequence[Sequence[str]]) -> bool:

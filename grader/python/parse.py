@@ -137,9 +137,9 @@ def parse_expression(text: str) -> ast.expr | str | None:
 
 
 def own_nodes(node: ast.AST) -> list[ast.AST]:
-    """Return the nodes of a function or statement, without those of the functions and classes in it."""
+    """Return the nodes of a function, class or statement, without those of the functions and classes in it."""
     found: list[ast.AST] = []
-    pending = list(ast.iter_child_nodes(node)) if isinstance(node, ast.FunctionDef) else [node]
+    pending = list(ast.iter_child_nodes(node)) if isinstance(node, ast.FunctionDef | ast.ClassDef) else [node]
     while pending:
         part = pending.pop()
         found.append(part)
@@ -148,8 +148,8 @@ def own_nodes(node: ast.AST) -> list[ast.AST]:
     return found
 
 
-def bound_in(node: ast.FunctionDef) -> frozenset[str]:
-    """Return the names that a function binds itself."""
+def bound_in(node: ast.FunctionDef | ast.Module) -> frozenset[str]:
+    """Return the names that a function or module binds itself."""
     nodes = own_nodes(node)
     declared = {name for part in nodes if isinstance(part, ast.Global | ast.Nonlocal) for name in part.names}
     loops = [part.target for part in nodes if isinstance(part, ast.comprehension)]  # they have scopes of their own
@@ -161,7 +161,11 @@ def bound_in(node: ast.FunctionDef) -> frozenset[str]:
                 names.add(name)
             case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
                 names.add(name)
-            case ast.ExceptHandler(name=str() as name) | ast.MatchAs(name=str() as name):
+            case (
+                ast.ExceptHandler(name=str() as name)
+                | ast.MatchAs(name=str() as name)
+                | ast.MatchStar(name=str() as name)
+            ):
                 names.add(name)
             case ast.alias(name=full, asname=asname):
                 names.add(asname or full.partition(".")[0])

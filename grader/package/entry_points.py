@@ -1,0 +1,138 @@
+"""The programs of a Python package: the entry points that its setup.py names, and whether their functions exist."""
+
+import ast
+import re
+from typing import NamedTuple
+
+from grader.errors import InputError
+from grader.names import closest
+from grader.package.package import Package
+from grader.python.budget import PYTHON_LIMIT
+from grader.python.parse import Code, bound_in, parse
+from grader.source import Location
+from grader.text import enumerated
+
+_ENTRY = re.compile(r"\s*([^=\s]+)\s*=\s*(\w+(?:\.\w+)*)\s*(?::\s*(\w+)(?:\.\w+)*\s*)?(?:\[.*)?", re.ASCII)
+# What binds names of a module, or finds its submodules, in ways that are not seen.
+_BINDS_UNSEEN = frozenset(
+    {"exec", "eval", "globals", "locals", "vars", "setattr", "modules", "__dict__", "__path__", "__getattr__"}
+)
+_MAX_NAMED = 5  # names in a message
+
+
+class _EntryPoint(NamedTuple):
+    """A program of console_scripts: `average_filter = sensor_hub.average_filter:main`."""
+
+    name: str
+    module: str
+    function: str  # empty if it names none
+    location: Location
+
+
+def entry_points(package: Package) -> list[_EntryPoint]:
+    """Return the entry points that are known: those of console_scripts in setup.py that are written as texts."""
+    setup = package.installation
+    groups = setup.entry_points if setup is not None else None
+    scripts = groups.get("console_scripts") if isinstance(groups, dict) else None
+    found = []
+    for script in scripts if isinstance(scripts, list | tuple) else ():
+        parts = _ENTRY.fullmatch(script) if isinstance(script, str) else None
+        if parts is not None:
+            found.append(_EntryPoint(parts[1], parts[2], parts[3] or "", _place_of(package, parts[1])))
+    return found
+
+
+def _place_of(package: Package, name: str) -> Location:
+    """Return where setup.py writes an entry point; where it calls setup() if the text is computed."""
+    setup = package.installation
+    assert setup is not None
+    written = re.search(rf"""(?<=['"])[ \t]*{re.escape(name)}[ \t]*=""", setup.source.text)
+    return setup.source.at(written.start()) if written else setup.location(setup.called_at)
+
+
+def entry_fault(package: Package, name: str) -> tuple[str, Location] | None:
+    """Return why a program certainly does not start, and where setup.py names it; None where that is not known.
+
+    Its module or the function in it is not there. Modules of other packages are not known, nor is what a module does to
+    its own names: a star import, `exec`, `globals()`.
+    """
+    setup, named = package.installation, [it for it in entry_points(package) if it.name == name]
+    if setup is None or len(named) != 1 or package.tree.links or setup.unknown:
+        return None
+    [entry] = named
+    path = _module_path(package, entry.module)
+    if path is None:
+        return (_missing_module(package, entry), entry.location) if _lacks_module(package, entry.module) else None
+    code = read_module(package, path)
+    names = _certain_names(code) if code is not None else None
+    if not entry.function or names is None or entry.function in names:
+        return None
+    others = [node.name for node in code.tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)] if code else []
+    guess = _guess(entry.function, others)
+    return f"{path} has no {entry.function!r}{guess}", entry.location
+
+
+def read_module(package: Package, path: str) -> Code | None:
+    """Return a parsed Python file of a package; None for one that is not read."""
+    try:
+        code = parse(package.tree.files[path].read(PYTHON_LIMIT), package.path(path))
+    except InputError:
+        return None
+    return code if isinstance(code, Code) else None
+
+
+def _module_path(package: Package, module: str) -> str | None:
+    """Return the file of a module by its full name; None where the package has none."""
+    stem = module.replace(".", "/")
+    return next((path for path in (f"{stem}/__init__.py", f"{stem}.py") if path in package.tree.files), None)
+
+
+def _lacks_module(package: Package, module: str) -> bool:
+    """Return whether importing a module certainly fails: its parent packages are here, and none of them has it."""
+    top, stem = module.partition(".")[0], module.replace(".", "/")
+    tree = package.tree
+    names = {path: path.rpartition("/")[2] for path in (*tree.files, *tree.folders, *tree.unseen)}
+    homes = [path for path, name in names.items() if name == top and not path.startswith("resource/")]
+    if not homes:  # no other package of ROS 2 installs a Python package of this name
+        return top == package.name and not any(name.startswith((f"{top}.py", f"{top}.so")) for name in names.values())
+    if homes != [top] or any(path == stem or path.startswith((f"{stem}.", f"{stem}/")) for path in names):
+        return False
+    inits = [path for path in tree.files if path.endswith("/__init__.py") and stem.startswith(path[:-11])]
+    codes = [read_module(package, path) for path in inits]
+    return all(code is not None and _certain_names(code) is not None for code in codes)
+
+
+def _missing_module(package: Package, entry: _EntryPoint) -> str:
+    folder = entry.module.rpartition(".")[0].replace(".", "/")
+    others = [
+        path.removeprefix(f"{folder}/").removesuffix(".py")
+        for path in package.tree.files
+        if path.rpartition("/")[0] == folder and path.endswith(".py") and not path.endswith("__init__.py")
+    ]
+    own = entry.name if entry.name in others else ""
+    return f"there is no module {entry.module}{_guess(entry.module.rpartition('.')[2], others, own)}"
+
+
+def _guess(name: str, known: list[str], own: str = "") -> str:
+    """Return the end of a message: the name that may be meant, else the names that there are."""
+    meant = closest(name, known) or own
+    if meant:
+        return f"; did you mean {meant!r}?"
+    return f"; there is {enumerated([repr(it) for it in known[:_MAX_NAMED]])}" if known else ""
+
+
+def binds_unseen(code: Code) -> bool:
+    """Return whether a module may bind names in ways that are not seen."""
+    names = (
+        getattr(it, "id", None) or getattr(it, "attr", None) or getattr(it, "name", None) for it in ast.walk(code.tree)
+    )
+    return any(name in _BINDS_UNSEEN for name in names)
+
+
+def _certain_names(code: Code) -> frozenset[str] | None:
+    """Return the names that a module may bind; None if it may bind others."""
+    nodes = [*ast.walk(code.tree)]
+    if binds_unseen(code) or any(isinstance(node, ast.alias) and node.name == "*" for node in nodes):
+        return None
+    shared = {name for node in nodes if isinstance(node, ast.Global) for name in node.names}
+    return bound_in(code.tree) | shared

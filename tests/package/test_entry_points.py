@@ -1,0 +1,87 @@
+"""Entry points: a program certainly does not start if its module or function is not there; all else is not known."""
+
+import pytest
+
+from grader.files.tree import make_tree, overlaid
+from grader.package.entry_points import entry_fault
+from grader.package.package import Package
+from grader.submission.packages import read_packages
+from grader.submission.submission import Lab
+
+_SETUP = """
+from setuptools import setup
+setup(
+    name='hub',
+    entry_points={'console_scripts': [%s]},
+)
+"""
+
+
+def package_of(scripts: str, **files: str) -> Package:
+    """Return a package with these entry points, and these files: `a` is hub/a.py."""
+    texts = {"package.xml": "<package format='3'><name>hub</name></package>", "setup.py": _SETUP % scripts}
+    texts |= {"hub/__init__.py": "", "resource/hub": ""}
+    texts |= {path if path.startswith("hub/") else f"hub/{path}.py": text for path, text in files.items()}
+    tree = overlaid(make_tree("work", (), ()), {f"src/hub/{path}": text.encode() for path, text in texts.items()})
+    [package] = read_packages(tree, Lab("urdf/hub.urdf"))
+    return package
+
+
+FAULTS = [
+    ("'talk = hub.talker:main'", {}, "there is no module hub.talker"),
+    ("'talk = hub.talker:main'", {"talkr": ""}, "there is no module hub.talker; did you mean 'talkr'?"),
+    ("'talk = hub.node:main'", {"talk": "", "a": ""}, "there is no module hub.node; did you mean 'talk'?"),
+    ("'talk = hub.node:main'", {"a": "", "b": ""}, "there is no module hub.node; there is 'a' and 'b'"),
+    ("'talk = hub.a.node:main'", {"a": ""}, "there is no module hub.a.node"),
+    ("'talk = hub.talker:main'", {"talker": ""}, "hub/talker.py has no 'main'"),
+    ("'talk = hub.talker:mian'", {"talker": "def main(): pass"}, "hub/talker.py has no 'mian'; did you mean 'main'?"),
+    ("'talk = hub.talker:run'", {"talker": "class Talker: pass"}, "hub/talker.py has no 'run'; there is 'Talker'"),
+    ("'talk=hub:main [extra]'", {}, "hub/__init__.py has no 'main'"),
+]
+
+
+@pytest.mark.parametrize(("scripts", "files", "fault"), FAULTS)
+def test_a_program_whose_function_is_not_there_does_not_start(scripts: str, files: dict[str, str], fault: str) -> None:
+    """The message says what is missing, at the entry point in setup.py, and what may be meant."""
+    found = entry_fault(package_of(scripts, **files), "talk")
+    assert found is not None
+    assert (found[0], found[1].path, found[1].line) == (fault, "src/hub/setup.py", 5)
+
+
+UNKNOWN = [
+    ("'talk = hub.talker:main'", {"talker": "def main(): pass"}),
+    ("'talk = hub.talker:Talker.main'", {"talker": "class Talker: pass"}),
+    ("'talk = hub.talker:main'", {"talker": "from hub.other import main"}),
+    ("'talk = hub.talker:main'", {"talker": "if True:\n    main = print"}),
+    ("'talk = hub.talker:main'", {"talker": "try:\n    import rclpy as main\nexcept ImportError as error:\n    pass"}),
+    ("'talk = hub.talker:main'", {"talker": "from hub.other import *"}),
+    ("'talk = hub.talker:main'", {"talker": "def f():\n    global main\n    main = 1"}),
+    ("'talk = hub.talker:main'", {"talker": "globals()['main'] = print"}),
+    ("'talk = hub.talker:main'", {"talker": "def __getattr__(name): return print"}),
+    ("'talk = hub.talker:main'", {"talker": "def ("}),
+    ("'talk = hub.talker:main'", {"__init__": "__path__.append('..')"}),
+    ("'talk = hub.talker:main'", {"hub/talker/node.py": ""}),
+    ("'talk = hub.talker:main'", {"hub/talker.cpython-312-x86_64-linux-gnu.so": ""}),
+    ("'talk = hub.talker:main'", {"hub/src/hub/talker.py": ""}),
+    ("'talk = tools.talker:main'", {}),
+    ("'talk = hub.talker'", {"talker": ""}),
+    ("'talk = hub.talker:main', 'talk = hub.other:main'", {}),
+    ("'talk := hub.talker:main'", {}),
+    ("open('x').read()", {}),
+    ("'listen = hub.talker:main'", {}),
+]
+
+
+@pytest.mark.parametrize(("scripts", "files"), UNKNOWN)
+def test_what_may_be_there_is_no_fault(scripts: str, files: dict[str, str]) -> None:
+    """A name that may be bound, a module that may be elsewhere and a computed entry point are not known to be wrong."""
+    assert entry_fault(package_of(scripts, **files), "talk") is None
+
+
+def test_the_python_package_of_the_entry_point_may_be_missing_as_a_whole() -> None:
+    """An entry point in a Python package with the package's own name, which has no folder, is wrong."""
+    package = package_of("'talk = hub.talker:main'")
+    tree = package.tree.only(lambda path: not path.startswith("hub/"))
+    [renamed] = read_packages(tree, Lab("urdf/hub.urdf"))
+    fault = entry_fault(renamed, "talk")
+    assert fault is not None and fault[0] == "there is no module hub.talker"

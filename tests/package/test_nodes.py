@@ -1,0 +1,258 @@
+"""The nodes of Python modules: what is a text, number or constant is known, and nothing else."""
+
+import pytest
+
+from grader.files.tree import make_tree, overlaid
+from grader.package.nodes import Endpoint, NodeParameter, PythonNode, PythonNodes, Timer, read_nodes
+from grader.python.values import Unknown
+from grader.submission.packages import read_packages
+from grader.submission.submission import Lab
+
+_SETUP = """
+from setuptools import setup
+setup(name='hub', packages=['hub'], entry_points={'console_scripts': ['talk = hub.talker:main', 'b = hub.b:main']})
+"""
+_HEAD = """
+import rclpy
+import std_msgs.msg
+from rclpy.node import Node
+from rclpy.qos import *
+from rclpy.qos import QoSPresetProfiles, QoSProfile, ReliabilityPolicy, DurabilityPolicy, qos_profile_sensor_data
+from std_msgs.msg import Float32
+from std_srvs.srv import Trigger
+TOPIC = 'heat'
+"""
+_CLASS = """
+class Talker(Node):
+    rate = 0.5
+    def __init__(self):
+        super().__init__('talker')
+"""
+
+
+def nodes_of(text: str, **files: str) -> PythonNodes:
+    """Return the nodes of a package whose module talker has this text; other modules are given by their names."""
+    texts = {"package.xml": "<package format='3'><name>hub</name></package>", "setup.py": _SETUP, "hub/__init__.py": ""}
+    texts |= {f"hub/{name}.py": it for name, it in {"talker": text, **files}.items()}
+    tree = overlaid(make_tree("work", (), ()), {f"src/hub/{path}": it.encode() for path, it in texts.items()})
+    [package] = read_packages(tree, Lab("urdf/hub.urdf"))
+    return read_nodes(package)
+
+
+def node_of(*statements: str) -> PythonNode:
+    """Return a node whose __init__ has these statements."""
+    [node] = nodes_of(_HEAD + _CLASS + "".join(f"        {it}\n" for it in statements)).nodes
+    return node
+
+
+ENDPOINTS = [
+    ("self.create_publisher(Float32, 'heat', 10)", ("publisher", "std_msgs.msg.Float32", "heat", (10, "reliable", "volatile"))),
+    ("self.create_publisher(qos_profile=5, topic=TOPIC, msg_type=std_msgs.msg.Bool)",
+     ("publisher", "std_msgs.msg.Bool", "heat", (5, "reliable", "volatile"))),
+    ("self.create_subscription(Float32, f'{TOPIC}/raw', self.on, qos_profile_sensor_data)",
+     ("subscription", "std_msgs.msg.Float32", "heat/raw", (5, "best_effort", "volatile"))),
+    ("self.create_subscription(Float32, 'a' + TOPIC, self.on, QoSPresetProfiles.SENSOR_DATA.value)",
+     ("subscription", "std_msgs.msg.Float32", "aheat", (5, "best_effort", "volatile"))),
+    ("self.create_publisher(Float32, 'a', QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))",
+     ("publisher", "std_msgs.msg.Float32", "a", (1, "reliable", "transient_local"))),
+    ("self.create_publisher(Float32, 'a', QoSProfile(depth=n(), reliability=ReliabilityPolicy.BEST_EFFORT))",
+     ("publisher", "std_msgs.msg.Float32", "a", (None, "best_effort", "volatile"))),
+    ("self.create_publisher(Float32, 'a', QoSProfile(depth=1, reliability=n()))",
+     ("publisher", "std_msgs.msg.Float32", "a", (1, None, "volatile"))),
+    ("self.create_publisher(Float32, 'a', True)", ("publisher", "std_msgs.msg.Float32", "a", (None, None, None))),
+    ("self.create_service(Trigger, 'reset', self.on)", ("service", "std_srvs.srv.Trigger", "reset", (None, None, None))),
+    ("self.create_client(Trigger, 'reset')", ("client", "std_srvs.srv.Trigger", "reset", (None, None, None))),
+    ("self.create_publisher(kind(), topic(), 10)", ("publisher", None, None, (10, "reliable", "volatile"))),
+    ("self.create_publisher(*given)", ("publisher", None, None, (None, None, None))),
+    ("self.create_publisher(**given)", ("publisher", None, None, (None, None, None))),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("statement", "expected"), ENDPOINTS)
+def test_publishers_subscriptions_services_and_clients_are_known_as_far_as_they_are_constants(
+    statement: str, expected: tuple[object, ...]
+) -> None:
+    """Type, name and quality of service are known by themselves; what is computed is None."""
+    [endpoint] = node_of(statement).endpoints
+    assert isinstance(endpoint, Endpoint)
+    assert (*endpoint[:3], tuple(endpoint.qos)) == expected
+    assert (endpoint.location.path, endpoint.location.column) == ("src/hub/hub/talker.py", 9)
+    assert endpoint.location.line == (_HEAD + _CLASS).count("\n") + 1
+
+
+CONSTANTS = [
+    (["topic = 'a'"], "topic", "a"),
+    (["self.topic = 'a'"], "self.topic", "a"),
+    (["topic = 'a'", "topic = 'b'"], "topic", None),
+    (["topic = 'a'", "topic += 'b'"], "topic", None),
+    (["self.topic = 'a'", "self.topic = 'b'"], "self.topic", None),
+    (["for topic in ('a', 'b'): pass"], "topic", None),
+    (["topic: str = 'a'"], "topic", "a"),
+    (["topic = undefined"], "topic", None),
+    (["topics = ['a']", "topics[0] = 'b'"], "topics[0]", None),
+    (["topic = self.get_parameter('topic').value"], "topic", None),
+    (["topic = str(5)"], "topic", "5"),
+    (["def inner(topic): pass", "topic = 'a'"], "topic", None),
+]
+
+
+@pytest.mark.parametrize(("statements", "topic", "expected"), CONSTANTS)
+def test_a_name_that_is_bound_once_is_a_constant(statements: list[str], topic: str, expected: str | None) -> None:
+    """A name that is bound twice, changed, a parameter or in a list is not known."""
+    node = node_of(*statements, f"self.create_publisher(Float32, {topic}, 10)")
+    assert [it.name for it in node.endpoints] == [expected]
+
+
+OPEN = [
+    ("global TOPIC; TOPIC = 'b'", None),
+    ("exec('TOPIC = 1')", None),
+    ("pass", "heat"),
+]
+
+
+@pytest.mark.parametrize(("statement", "expected"), OPEN)
+def test_what_may_be_bound_elsewhere_is_no_constant(statement: str, expected: str | None) -> None:
+    """A global statement, and what binds names unseen, make a constant of the module unknown."""
+    text = f"{_HEAD}def change():\n    {statement}\n{_CLASS}        self.create_publisher(Float32, TOPIC, 10)\n"
+    [node] = nodes_of(text).nodes
+    assert [it.name for it in node.endpoints] == [expected]
+
+
+def test_a_star_import_below_a_constant_may_replace_it() -> None:
+    """Names of messages do not replace it; those of an unknown module do."""
+    for module, expected in (("std_msgs.msg", "heat"), ("math", "heat"), ("hub.settings", None)):
+        [node] = nodes_of(
+            f"{_HEAD}from {module} import *\n{_CLASS}        self.create_publisher(Float32, TOPIC, 1)\n"
+        ).nodes
+        assert [it.name for it in node.endpoints] == [expected]
+
+
+PARAMETERS = [
+    ("self.declare_parameter('rate', 10.0)", [("rate", 10.0, True)]),
+    ("self.declare_parameter('rate', Parameter.Type.DOUBLE)", [("rate", "?", True)]),
+    ("self.declare_parameter('rate', rclpy.Parameter.Type.DOUBLE)", [("rate", None, True)]),
+    ("self.declare_parameter('rate', n())", [("rate", "?", True)]),
+    ("self.declare_parameter(n(), 1)", [(None, 1, True)]),
+    ("self.declare_parameters('', [('a', 1), ('b', [2.0], Descriptor()), ('c',)])",
+     [("a", 1, True), ("b", [2.0], True), ("c", None, True)]),
+    ("self.declare_parameters('arm', [('a', 1)])", [("arm.a", 1, True)]),
+    ("self.declare_parameters(n(), [('a', 1)])", [(None, 1, True)]),
+    ("self.declare_parameters('', n())", [(None, "?", True)]),
+    ("x = self.get_parameter('rate').value", [("rate", None, False)]),
+    ("x = self.get_parameter_or('rate', 5)", [("rate", None, False)]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("statement", "expected"), PARAMETERS)
+def test_parameters_are_known_with_their_defaults(statement: str, expected: list[tuple[object, ...]]) -> None:
+    """Each parameter has a name and a default, as far as they are constants, and is declared or read."""
+    found: tuple[NodeParameter, ...] = node_of(statement).parameters
+    shown = [(it.name, "?" if isinstance(it.default, Unknown) else it.default, it.is_declared) for it in found]
+    assert shown == expected
+
+
+def test_timers_have_periods() -> None:
+    """A period is a number or a constant of the class; one that is computed is not known."""
+    statements = ("self.create_timer(self.rate, self.on)", "self.create_timer(1 / n(), self.on)")
+    timers: tuple[Timer, ...] = node_of(*statements).timers
+    assert [it.period for it in timers] == [0.5, None]
+
+
+BASES = [
+    ("from rclpy.node import Node\n", "Node"),
+    ("import rclpy\n", "rclpy.node.Node"),
+    ("from rclpy import node as n\n", "n.Node"),
+    ("from rclpy.lifecycle import LifecycleNode as L\n", "L"),
+]
+
+
+@pytest.mark.parametrize(("head", "base"), BASES)
+def test_a_class_of_nodes_is_one_whatever_its_base_is_called(head: str, base: str) -> None:
+    """The base is known by its full name; super() or the base itself names the node."""
+    for call in ("super().__init__('a')", "super(T, self).__init__(node_name='a')", f"{base}.__init__(self, 'a')"):
+        [node] = nodes_of(f"{head}class T({base}):\n    def __init__(self):\n        {call}\n").nodes
+        assert (node.class_name, node.name, node.location.line, node.doubts) == ("hub.talker.T", "a", 2, ())
+
+
+NAMES = ["pass", "super().__init__(name)", "super().__init__(name); super().__init__('b')", "Mixin.__init__(self, 'a')"]
+
+
+@pytest.mark.parametrize("call", NAMES)
+def test_a_name_that_is_computed_is_not_known(call: str) -> None:
+    """So is one of a node that is named twice, or whose base class is given the name."""
+    [node] = nodes_of(f"{_HEAD}class T(Node):\n    def __init__(self, name):\n        {call}\n").nodes
+    assert node.name is None
+
+
+DOUBTS = [
+    ("super().__init__('a', namespace='b')", "namespace of its Node"),
+    ("super().__init__('a', **given)", "more arguments of its Node"),
+    ("Helper(self)", "Helper is given the node"),
+    ("helpers[0](node=self)", "this call is given the node"),
+    ("rclpy.spin(self)", None),
+    ("other.create_publisher(Float32, 'x', 10)", None),
+]
+
+
+@pytest.mark.parametrize(("statement", "doubt"), DOUBTS)
+def test_what_may_open_more_is_a_doubt(statement: str, doubt: str | None) -> None:
+    """A function that is given the node, and options of Node, may declare or open more."""
+    [node] = nodes_of(f"{_HEAD}class T(Node):\n    def __init__(self):\n        {statement}\n").nodes
+    assert [it.reason for it in node.doubts] == [doubt] * (doubt is not None)
+
+
+def test_a_node_may_be_made_by_a_function() -> None:
+    """rclpy.create_node and Node itself make a node, whose calls are found by the name that it is bound to."""
+    text = f"{_HEAD}def main():\n    n = rclpy.create_node('a')\n    n.create_publisher(Float32, 'x', 10)\n    rclpy.spin(n)\n"
+    found = nodes_of(text)
+    [node] = found.nodes
+    assert (node.class_name, node.name, [it.name for it in node.endpoints], node.doubts) == ("", "a", ["x"], ())
+    assert [(it.name, it.nodes) for it in found.programs] == [("talk", (node,)), ("b", ())]
+    [other] = nodes_of(_HEAD + "node = Node('b')\nnode.create_client(Trigger, 'x')").nodes
+    assert (other.name, len(other.endpoints)) == ("b", 1)
+
+
+def test_calls_of_an_unknown_node_are_a_doubt_of_the_package() -> None:
+    """The node that a function is given is not known, nor is a file that is not read."""
+    text = f"{_HEAD}def helper(node):\n    node.create_publisher(Float32, 'x', 10)\n"
+    found = nodes_of(text, broken="def (")
+    assert found.nodes == ()
+    reasons = {"the node of this create_publisher() is not known", "the file is not read"}
+    assert {it.reason for it in found.doubts} == reasons
+
+
+def test_a_program_has_the_nodes_that_its_function_creates() -> None:
+    """Also those of functions that it calls, and of a function or class of another module; a derived class is one."""
+    text = f"{_HEAD}from .base import Base, run\nclass T(Base):\n    pass\ndef start():\n    T()\ndef main():\n    start(); run()\n"
+    base = (
+        f"{_HEAD}class Base(Node):\n    def __init__(self):\n        super().__init__('base')\ndef run():\n    Base()\n"
+    )
+    found = nodes_of(text, base=base)
+    assert {it.class_name for it in found.nodes} == {"hub.base.Base", "hub.talker.T"}
+    assert [{it.class_name for it in program.nodes} for program in found.programs] == [
+        {"hub.base.Base", "hub.talker.T"},
+        set(),
+    ]
+    [derived] = [it for it in found.nodes if it.class_name == "hub.talker.T"]
+    assert [it.reason for it in derived.doubts] == ["what another base class does is not added"]
+
+
+def test_a_script_that_cmake_installs_is_a_program() -> None:
+    """Its body creates the node."""
+    texts = {
+        "package.xml": "<package format='3'><name>hub</name><export><build_type>ament_cmake</build_type></export></package>",
+        "CMakeLists.txt": "project(hub)\nfind_package(ament_cmake)\n"
+        "install(PROGRAMS scripts/talk.py DESTINATION lib/${PROJECT_NAME})\nament_package()",
+        "scripts/talk.py": f"{_HEAD}{_CLASS}\nif __name__ == '__main__':\n    Talker()\n",
+    }
+    tree = overlaid(make_tree("work", (), ()), {f"src/hub/{path}": it.encode() for path, it in texts.items()})
+    [package] = read_packages(tree, Lab("urdf/hub.urdf"))
+    [program] = read_nodes(package).programs
+    assert (program.name, [it.name for it in program.nodes]) == ("talk.py", ["talker"])
+
+
+def test_a_package_without_a_build_file_has_no_nodes() -> None:
+    """Nothing of it is installed."""
+    tree = overlaid(make_tree("work", (), ()), {"hub/package.xml": b"<package format='3'><name>hub</name></package>"})
+    [package] = read_packages(tree, Lab("urdf/hub.urdf"))
+    assert read_nodes(package) == PythonNodes((), (), ())
