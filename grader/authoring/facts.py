@@ -25,10 +25,23 @@ from grader.robot.shapes import is_empty
 from grader.robot.transforms import rotation_from_rpy
 from grader.submission.submission import Submission
 from grader.text import enumerated
+from grader.workspace.names import FAMILIES, Family
+from grader.workspace.reading import read_agreement
 from grader.xml.parsing import Element
 from grader.xml.wanted_element import foreign_elements, name_of, readable, text_in, words_of_foreign
 
 _THE_FILE, _THE_ROBOT, _THE_PACKAGE = "The file", "The robot", "The package"  # headings
+_THE_NAMES = "The names"
+_NAME_TITLES: Mapping[Family, str] = {
+    "files": "every file that is named is where a build installs it",
+    "frames": "every frame, link and joint that is named exists",
+    "controllers": "spawners, controllers and interfaces fit together",
+    "parameters": "every file of parameters has parameters of the nodes that get it",
+    "arguments": "every launch and xacro argument that is passed is declared",
+    "programs": "every program, entry point and node that is named exists",
+    "topics": "topics have the same names, types and quality of service in all nodes",
+    "dependencies": "package.xml declares the packages that the files use",
+}
 _WITH_AXIS = ("continuous", "revolute", "prismatic", "planar")
 _COUNTED = ("revolute", "continuous", "prismatic")
 _SLIDING_TOLERANCE = 0.002  # m: the tolerance of other limits is in degrees
@@ -339,6 +352,15 @@ def _facts_of(package: Package, path: str) -> Iterator[Fact]:
     for launch in (it for it in package.launch_files if not it.startswith("test/")):
         yield from _launch_facts(posixpath.basename(launch), package.launch(launch))
     yield from _rviz_facts(package)
+
+
+def name_facts(submission: Submission) -> _Facts:
+    """Yield that the names of each family that the packages use agree, or why they do not."""
+    found = read_agreement(submission)
+    for family in (it for it in FAMILIES if it in found.families):
+        yield _package_fact("names_agree", f"{family}", of=family)._replace(
+            about=_THE_NAMES, title=_NAME_TITLES[family]
+        )
 
 
 def _package_fact(check: str, label: str = "", **arguments: Any) -> Fact:

@@ -62,6 +62,7 @@ CHECKS = (
     "rviz.rviz_shows_robot",
     "rviz.rviz_display_on",
     "xacro_source.xacro_uses",
+    "names_agree.names_agree",
     "manual.answered",
     "manual.evidence_shown",
 )

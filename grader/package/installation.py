@@ -109,6 +109,11 @@ class Installation:
         return f"{'install()' if self.is_cmake else 'data_files'} in {self.file}"
 
     @property
+    def entry(self) -> str:
+        """One of these: entry of data_files in setup.py, install() in CMakeLists.txt."""
+        return self.entries if self.is_cmake else f"entry of {self.entries}"
+
+    @property
     def misspelt(self) -> IgnoredArgument | None:
         """The argument that stands for data_files, so that a build installs none of its files."""
         return next((argument for argument in self.ignored if argument.meant == "data_files"), None)

@@ -283,7 +283,9 @@ class UrdfSearch(NamedTuple):
         if len(robots) < 2:
             return UrdfChoice(next((robot.path for robot in robots), None), generated)
         best, *others = sorted(self._candidates(robots))
-        named = (OtherCandidate(it.path, _reason_against(best, it, self.lab)) for it in others)
+        named = (
+            OtherCandidate(it.path, _reason_against(best, it, self.lab), it.is_part or it.is_fragment) for it in others
+        )
         fitting = tuple(it.path for it in others if _may_be_meant(best, it, self.lab))
         return UrdfChoice(best.path, (*named, *generated), fitting, best.reading)
 

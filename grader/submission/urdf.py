@@ -35,6 +35,7 @@ class OtherCandidate(NamedTuple):
 
     path: str
     reason: str
+    is_part: bool = False  # of a robot: another file includes it, or it has no name
 
 
 # These are no dataclasses: making each one takes 1 ms of the start of every command.

@@ -41,7 +41,7 @@ def facts(report: Report) -> Iterator[Fact]:
             yield Fact("problem", spellings, problem.code)
     submission = report.submission
     yield from (Fact("note", (note,)) for note in report.notes)
-    yield from (Fact("aside", (words,)) for candidate in submission.unused_candidates for words in candidate)
+    yield from (Fact("aside", (words,)) for candidate in submission.unused_candidates for words in candidate[:2])
     yield from (Fact("aside", (path,)) for path in submission.ignored)
     if submission.package is not None and any(report.rubric.part(part).needs == "package" for part in report.parts):
         yield Fact("package", (submission.package.folder or submission.package.name,))

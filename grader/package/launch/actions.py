@@ -9,7 +9,15 @@ from dataclasses import dataclass, field, replace
 
 from grader.package.launch.api import CONDITION, ENTITY, SOURCE, class_named, is_a
 from grader.package.launch.arguments import items_in, kind_of
-from grader.package.launch.model import ANY, NAMESPACE, Context, Findings, GivenParameters, Resolved
+from grader.package.launch.model import (
+    ANY,
+    NAMESPACE,
+    Context,
+    Findings,
+    GivenParameters,
+    PassedArguments,
+    Resolved,
+)
 from grader.package.launch.nodes import (
     REMAPS,
     evaluate_node,
@@ -212,10 +220,10 @@ def _visit_description(visitor: ActionVisitor, call: Call, context: Context, whe
 
 
 def _declare_argument(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
-    del visitor
     name, choices, default = (call.kwargs.get(it) for it in ("name", "choices", "default_value"))
     if not isinstance(name, str):
         raise Undetermined("the name of this launch argument is not evaluated", call.at)
+    visitor.findings.declared.append(name)
     if when is False:
         return
     is_given = name in context.given or (name in context.arguments and call.kwargs.get("condition") is not None)
@@ -365,6 +373,9 @@ def _include_file(visitor: ActionVisitor, call: Call, context: Context, when: bo
         source = source.kwargs.get("launch_file_path", Unknown("this launch description is not evaluated", call.at))
     given = _launch_arguments(call.kwargs.get("launch_arguments"), context, call.at)
     path = known_text(source, context, call.at)
+    values = tuple((name, value if isinstance(value, str) else None) for name, value in given.items())
+    at = visitor.findings.locate(call.at)
+    visitor.findings.passed.append(PassedArguments(path.removeprefix(f"{PREFIX}/"), values, at))
     arguments = {**context.arguments, **given}
     inner = replace(context, path=path, arguments=arguments, when=when, reads=[], given=frozenset(given))
     inner.included_by = (*context.included_by, context.path.removeprefix(f"{PREFIX}/"))

@@ -172,6 +172,17 @@ class NamedFile:
     is_deprecated: bool = False  # whether xacro has an option of which it warns
 
 
+class PassedArguments(NamedTuple):
+    """The launch arguments that an include passes to a launch file, by its path below the prefix.
+
+    The value of one is None where it is not known.
+    """
+
+    path: str
+    values: tuple[tuple[str, str | None], ...]
+    location: Location
+
+
 @dataclass(frozen=True, slots=True)
 class LaunchFault:
     """An error that stops the launch or a node, or something unknown, with its location."""
@@ -191,6 +202,8 @@ class Launch:
     faults: tuple[LaunchFault, ...] = ()
     unknown: tuple[LaunchFault, ...] = ()  # what may start more
     doubts: tuple[LaunchFault, ...] = ()  # what may stop the launch
+    declared: tuple[str, ...] = ()  # the launch arguments that it and the files that it includes declare
+    passed: tuple[PassedArguments, ...] = ()
     forgotten: tuple[StartedNode, ...] = ()  # created in the file, but not part of its LaunchDescription
     unread: str = ""  # why the file was not read at all: too large, damaged
 
@@ -218,6 +231,8 @@ class Findings:
     faults: list[LaunchFault] = field(default_factory=list)
     unknown: list[LaunchFault] = field(default_factory=list)
     doubts: list[LaunchFault] = field(default_factory=list)
+    declared: list[str] = field(default_factory=list)
+    passed: list[PassedArguments] = field(default_factory=list)
     sets_parameters: bool = False
     is_silent: bool = False  # while what may never be executed is visited
 

@@ -52,7 +52,7 @@ _ENTRY = "generate_launch_description"
 _NODE = "launch_ros.actions.node.Node"
 _MAX_INCLUDES = 10
 # What a launch file shares with those that it includes.
-_JOINED = ("nodes", "references", "faults", "unknown", "doubts")
+_JOINED = ("nodes", "references", "faults", "unknown", "doubts", "declared", "passed")
 _MAX_KEPT = 4  # launch files
 
 
@@ -259,6 +259,8 @@ def _launch_of_findings(source: Source, findings: Findings, forgotten: tuple[Sta
         faults=tuple(sorted(set(findings.faults), key=order)),
         unknown=tuple(dict.fromkeys(findings.unknown)),
         doubts=tuple(dict.fromkeys(findings.doubts)),
+        declared=tuple(dict.fromkeys(findings.declared)),
+        passed=tuple(dict.fromkeys(findings.passed)),
         forgotten=forgotten,
     )
 

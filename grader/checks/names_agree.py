@@ -1,0 +1,34 @@
+"""The check of names: those that files of the packages use are defined in one of them."""
+
+from grader.checks.outcome import Outcome, failed, passed
+from grader.errors import NotDecided
+from grader.submission.submission import Submission
+from grader.text import first_lines
+from grader.workspace.names import Family, place_text
+
+_MAX_NAMED = 3  # mistakes in a message
+
+
+def names_agree(submission: Submission, *, of: Family) -> Outcome:
+    """The names that files of the packages use are defined: files, frames, parameters, programs and so on.
+
+    A name fails only where everything that could define it was read. One that a package which is not submitted may
+    define is not wrong.
+
+    Args:
+        of: What is named: files, frames, controllers, parameters, arguments, programs, topics or dependencies.
+    """
+    from grader.workspace.reading import read_agreement  # late: few rubrics ask for it
+
+    submission.needed_package()
+    found = read_agreement(submission)
+    wrong = [it for it in found.mismatches if it.family == of and it.is_sure]
+    if wrong:
+        texts = [f"{place_text(it.location)}: {it.message}" for it in wrong[1:]]
+        message = "; ".join([wrong[0].message, *first_lines(texts, _MAX_NAMED - 1)])
+        return failed(message, wrong[0].location, mistake=wrong[0].message)
+    if of in found.undecided:
+        reason = found.undecided[of]
+        cause = f"cannot determine statically whether the names of {of} agree"
+        raise NotDecided(f"{cause}: {reason}", cause)
+    return passed(f"the names of {of} agree")

@@ -1,0 +1,106 @@
+"""Controllers of ros2_control: their YAML, the spawners that start them, and the interfaces of their joints."""
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from grader.names import closest
+from grader.package.yaml_nodes import YamlNode
+from grader.source import Location
+from grader.workspace.known import known
+from grader.workspace.names import Definition, Fact, Mismatch, Open, Use, place_text
+from grader.workspace.workspace import Workspace
+from grader.workspace.yaml_values import sections_in
+
+_MANAGER = "controller_manager"
+_SPAWNERS = ("spawner", "spawner.py")
+
+
+class _Controller(NamedTuple):
+    """A controller that a file of parameters defines for the controller manager."""
+
+    name: str
+    type: YamlNode
+    location: Location
+
+
+def controller_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the controllers that YAML files define, and those that spawners load; types, sections, interfaces."""
+    controllers = list(_controllers(workspace))
+    if not controllers:
+        return
+    yield from (Definition("controller", it.name, it.location) for it in controllers)
+    sections = {keys[-1].rpartition("/")[2]: node for keys, node in _sections(workspace)}
+    for controller in controllers:
+        yield from _type_facts(workspace, controller)
+        yield from _section_facts(workspace, controller, sections)
+    yield from _spawner_facts(workspace)
+
+
+def _sections(workspace: Workspace) -> Iterator[tuple[tuple[str, ...], YamlNode]]:
+    """Yield the parameters of nodes, also those that are inside of others, which is another mistake."""
+    for _, tree in workspace.trees:
+        for keys, node in sections_in(tree):
+            if keys:
+                yield keys, node
+                yield from sections_in(node, keys)
+
+
+def _controllers(workspace: Workspace) -> Iterator[_Controller]:
+    for keys, node in _sections(workspace):
+        own = keys[-1].rpartition("/")[2]
+        is_manager = own == _MANAGER and isinstance(node.value, dict)
+        for name, inner in node.value.items() if is_manager and isinstance(node.value, dict) else [(own, node)]:
+            kind = inner.get("type")
+            if kind is not None and kind.text is not None and "/" in kind.text:  # or in its own section, for a spawner
+                yield _Controller(name, kind, kind.location)
+
+
+def _type_facts(workspace: Workspace, controller: _Controller) -> Iterator[Fact]:
+    """Yield that no package has a class of the controller's type, where all classes of its package are known."""
+    types, written = known()["controllers"], controller.type.text or ""
+    package = written.partition("/")[0]
+    if written in types or any(it.name == package for it in workspace.packages):
+        return
+    similar = closest(written, types)
+    is_known = any(name.startswith(f"{package}/") for name in types)
+    if is_known or similar is not None:
+        guess = f"; did you mean {similar!r}?" if similar is not None else ""
+        message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
+        yield Mismatch("controllers", message, controller.location, is_sure=is_known)
+
+
+def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapping[str, YamlNode]) -> Iterator[Fact]:
+    """Yield that the parameters of a controller are missing, and the interfaces that its joints need."""
+    needed: Mapping[str, str] = known()["controllers"].get(controller.type.text, {})
+    section = sections.get(controller.name)
+    if section is None:
+        if needed:
+            message = f"the controller {controller.name!r} has no parameters: there is no key {controller.name}"
+            yield Mismatch("controllers", f"{message} with ros__parameters", controller.location)
+        return
+    interfaces = workspace.command_interfaces
+    for key, wanted in needed.items():
+        joints = section.get(key)
+        given = section.get(wanted.removeprefix("=")) if wanted.startswith("=") else None
+        names = [wanted] if given is None else [it.text or "" for it in (given.items or [given])]
+        for joint in (joints.items or [joints]) if joints is not None and interfaces is not None else ():
+            own = interfaces.get(joint.text or "") if interfaces is not None else None
+            for name in [it for it in names if own is not None and it not in own[0]]:
+                message = f"{controller.name} needs the command interface {joint.text}/{name}"
+                there = ", ".join(sorted(own[0])) if own is not None and own[0] else "none"
+                at = own[1] if own is not None else joint.location
+                text = f"{message}; <ros2_control> has {there} ({place_text(at)})"
+                yield Mismatch("controllers", text, joint.location, at)
+
+
+def _spawner_facts(workspace: Workspace) -> Iterator[Fact]:
+    if any(launch.unread or launch.syntax for _, _, launch in workspace.launches):
+        yield Open("controller", reason="a launch file cannot be read")
+    for _, node in workspace.nodes:
+        if node.package != _MANAGER or node.executable not in _SPAWNERS or node.arguments is None:
+            continue
+        for word in node.arguments:
+            if word is None or word.startswith("-"):
+                break
+            for name in word.split():
+                yield Use("controller", name, node.location, "spawner")

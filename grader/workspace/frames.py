@@ -1,0 +1,170 @@
+"""Frames and joints: those of the robot and of static transforms, and where other files name them."""
+
+import re
+from collections.abc import Iterator
+
+from grader.errors import InputError
+from grader.package.launch.model import StartedNode
+from grader.robot.model import Robot
+from grader.source import LazyLocation, Location, Source
+from grader.workspace.known import known
+from grader.workspace.names import Definition, Fact, Mismatch, Open, Use
+from grader.workspace.workspace import Workspace
+from grader.workspace.yaml_values import YamlValue, is_parameters, values_in
+from grader.xml.parsing import XmlFault, XmlFile
+
+_JOINTS = re.compile(r"(^|_)joints?$|(wheels?|joints?)_names?$")
+_FRAMES = re.compile(r"(^|_)(frame|frame_id)$")
+# What a program calls the frames that it makes itself.
+_OWN_FRAMES = re.compile(r"^(odom|map|world|global|fixed|parent|target)_frame(_id)?$|^frame_prefix$")
+_STATIC = ("tf2_ros", "static_transform_publisher")
+_MAX_XML = 512 * 1024
+_SRDF_LINKS = ("link1", "link2", "parent_link", "child_link", "base_link", "tip_link")
+_GAZEBO_FRAMES = ("gz_frame_id", "ignition_frame_id", "frame_id", "frame_name", "frameName")
+_GAZEBO_JOINTS = ("left_joint", "right_joint", "joint_name", "left_steering_joint", "right_steering_joint")
+
+
+def frame_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the frames and joints that are defined, and those that YAML, SRDF, Gazebo and transforms name."""
+    robot = workspace.robot
+    if robot is None or not robot.links:
+        return
+    for link in robot.links:
+        yield Definition("frame", link.name, _place(link.location))
+        yield Definition("link", link.name, _place(link.location))
+    yield from (Definition("joint", joint.name, _place(joint.location)) for joint in robot.joints)
+    start = _place(robot.links[0].location)
+    yield from (Definition("frame", name, start) for name in known()["frames"])
+    yield from _openings(workspace)
+    yield from _static_transforms(workspace, robot)
+    for _, tree in workspace.trees:
+        if is_parameters(tree):
+            for value in values_in(tree):
+                yield from _in_yaml(value)
+    yield from _in_robot(workspace)
+    yield from _in_srdf(workspace)
+
+
+def _place(location: LazyLocation | None) -> Location:
+    return location.resolve() if location is not None else Location("", 1, 1)
+
+
+def _openings(workspace: Workspace) -> Iterator[Fact]:
+    """Yield that there may be other names: of other robots, and of programs that may publish frames."""
+    if workspace.has_other_robots:
+        yield from (Open("frame"), Open("link"), Open("joint"), Open("group"))
+    for _, _, launch in workspace.launches:
+        if launch.unknown or launch.syntax is not None:
+            reason = launch.unknown[0].message if launch.unknown else "a launch file cannot be read"
+            yield Open("frame", reason=reason)
+    packages = {package.name for package in workspace.packages}
+    for _, node in workspace.nodes:
+        if node.package not in known()["without_frames"] and node.package not in packages:
+            yield Open("frame")
+    if any(
+        package.is_cmake and package.installation and package.installation.programs for package in workspace.packages
+    ):
+        yield Open("frame")
+    if any("TransformBroadcaster" in text for text in workspace.python_texts):
+        yield Open("frame")
+
+
+def static_transform(node: StartedNode) -> tuple[str, str] | None:
+    """Return the parent and the child of a static_transform_publisher; None where they are not known."""
+    words = node.arguments
+    if words is None or None in words:
+        return None
+    texts = [word for word in words if word is not None]
+    if "--ros-args" in texts:
+        texts = texts[: texts.index("--ros-args")]
+    found = [texts[texts.index(option) + 1] for option in ("--frame-id", "--child-frame-id") if option in texts[:-1]]
+    if len(found) == 2:
+        return found[0], found[1]
+    return (texts[-2], texts[-1]) if len(texts) in (8, 9) else None
+
+
+def _static_transforms(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
+    children = {joint.child: joint for joint in robot.joints}
+    for _, node in workspace.nodes:
+        if (node.package, node.executable) != _STATIC:
+            continue
+        frames = static_transform(node)
+        if frames is None:
+            yield Open("frame", reason="the frames of a static_transform_publisher are not evaluated")
+            continue
+        parent, child = (frame.removeprefix("/") for frame in frames)
+        yield Definition("frame", child, node.location)
+        yield Use("frame", parent, node.location, "static_transform_publisher")
+        if child in children:
+            at = _place(children[child].location)
+            own = children[child].parent
+            message = f"the frame {child!r} has two parents: {own!r} in the robot, {parent!r} here"
+            yield Mismatch("frames", message, node.location, at, is_sure=own != parent)
+
+
+def _in_yaml(value: YamlValue) -> Iterator[Fact]:
+    key = value.keys[-1] if value.keys else ""
+    if _JOINTS.search(key):
+        for text, node in value.texts():
+            if text and "/" not in text and "$" not in text:
+                yield Use("joint", text, node.location, value.said)
+    elif _FRAMES.search(key) and not _OWN_FRAMES.search(key):
+        for text, node in value.texts():
+            if text.strip("/") and "$" not in text:
+                yield Use("frame", text.removeprefix("/"), node.location, value.said)
+
+
+def _in_robot(workspace: Workspace) -> Iterator[Fact]:
+    """Yield what the elements for Gazebo and ros2_control name."""
+    root, robot = workspace.robot_root, workspace.robot
+    if root is None or robot is None:
+        return
+    joints = {joint.name for joint in robot.joints}
+    for element in root.iterchildren("gazebo"):
+        at = workspace.place(element)
+        reference = element.get("reference")
+        if reference and reference not in joints:
+            yield Use("link", reference, at, "<gazebo reference>")
+        for inner in element.iter(*_GAZEBO_FRAMES, *_GAZEBO_JOINTS):
+            text = (inner.text or "").strip()
+            if text and inner.tag in _GAZEBO_JOINTS:
+                yield Use("joint", text, workspace.place(inner), f"<{inner.tag}>")
+            elif text:
+                yield Use("frame", text, workspace.place(inner), f"<{inner.tag}>")
+    for system in root.iterchildren("ros2_control"):
+        for element in system.iterchildren("joint"):
+            yield Use("joint", element.get("name", ""), workspace.place(element), "<ros2_control>")
+
+
+def _in_srdf(workspace: Workspace) -> Iterator[Fact]:
+    for package in workspace.packages:
+        for path in [it for it in package.tree.files if it.endswith(".srdf")]:
+            try:
+                data = package.tree.files[path].read(_MAX_XML)
+                file = XmlFile(data, Source(package.path(path), data.decode("utf-8", "replace")))
+            except (InputError, XmlFault):
+                continue
+            yield from _names_of_srdf(file)
+
+
+def _names_of_srdf(file: XmlFile) -> Iterator[Fact]:
+    root = file.root
+    virtual = {it.get("name") for it in root.iterchildren("virtual_joint")}
+    yield from (Definition("group", it.get("name", ""), file.location(it)) for it in root.iterchildren("group"))
+    for element in root.iter("*"):
+        if not isinstance(element.tag, str):
+            continue
+        at, name = file.location(element), element.get("name", "")
+        said = f"<{element.tag}>"
+        # The parent of a virtual joint is a frame of the world.
+        for key in [key for key in _SRDF_LINKS if element.get(key)]:
+            yield Use("link", element.get(key, ""), at, f"{said} {key}")
+        if element.tag in ("joint", "passive_joint") and name and name not in virtual:
+            yield Use("joint", name, at, said)
+        if element.tag == "link" and name:
+            yield Use("link", name, at, said)
+        for key in ("group", "parent_group"):
+            if element.get(key):
+                yield Use("group", element.get(key, ""), at, f"{said} {key}")
+        if element.tag == "group" and element.getparent() is not root and name:
+            yield Use("group", name, at, said)

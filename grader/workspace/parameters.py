@@ -1,0 +1,120 @@
+"""Parameters: whether files of parameters have some for the node that gets them, and whether own nodes declare them."""
+
+from collections.abc import Iterator, Sequence
+from fnmatch import fnmatchcase
+
+from grader.names import near
+from grader.package.launch.model import StartedNode
+from grader.package.launch.parameters import parameters_of
+from grader.package.nodes import PythonNode
+from grader.package.package import Package
+from grader.package.yaml_nodes import YamlFault, YamlNode
+from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use
+from grader.workspace.workspace import Workspace
+from grader.workspace.yaml_values import PARAMETERS, is_parameters, sections_in
+
+_OF_EVERY_NODE = ("use_sim_time",)
+# Keys of lists whose entries name sections beside them, in the files of Nav2, MoveIt and others.
+_LISTS = ("plugins", "navigators", "observation_sources", "filters", "controller_names")
+_NOT_LISTS = ("plugin_lib_names",)
+
+
+def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield what files of parameters have for nodes, what own nodes declare, and lists of plugins."""
+    for path, tree in workspace.yaml_files.items():
+        if isinstance(tree, YamlFault):
+            is_sure = path in workspace.parameter_files
+            yield Mismatch("parameters", f"this is not YAML: {tree}", tree.location, is_sure=is_sure)
+    for path, nodes in workspace.parameter_files.items():
+        yield Compared("parameters")
+        yield from _file_given(workspace, path, nodes)
+    for package, node in workspace.nodes:
+        own = workspace.python_node(node)
+        if own is not None:
+            yield from _declared(workspace, package, node, own)
+    for _, tree in workspace.trees:
+        if is_parameters(tree) or "controller_names" in tree.source.text:
+            yield from _plugin_lists(tree)
+
+
+def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -> Iterator[Fact]:
+    """Yield that a file of parameters has nothing for a node that is given it, but for a node that is not."""
+    tree = workspace.yaml_files.get(path)
+    if not isinstance(tree, YamlNode) or any(node.package == "ros_gz_bridge" for node in nodes):
+        return
+    yield from _misplaced(tree)
+    names = [(node, workspace.name_of(node)) for node in nodes]
+    sections = {keys[-1].rpartition("/")[2]: section for keys, section in sections_in(tree) if keys}
+    read = [name for _, name in names if name is not None]
+    if len(read) < len(names) or not sections:
+        return
+    own = {child for name in read for child in workspace.children_of(name)}
+    unread = [key for key in sections if key not in own and not any(fnmatchcase(name, key) for name in read)]
+    for node, name in names:
+        has_none = not any(fnmatchcase(name or "", key) or key == "**" for key in sections)
+        if has_none and unread and "**" not in sections:
+            key = near(name or "", unread) or unread[0]
+            message = f"there are parameters for {key}, but none for the node {name!r}, which gets this file"
+            yield Mismatch("parameters", message, sections[key].location, node.location)
+
+
+def _misplaced(tree: YamlNode) -> Iterator[Fact]:
+    """Yield values that are not below ros__parameters, and ros__parameters inside of ros__parameters."""
+    waiting: list[tuple[str, YamlNode, bool]] = [("", tree, False)]
+    while waiting:
+        name, node, is_below = waiting.pop()
+        if isinstance(node.value, dict) and node.value:
+            for key, inner in node.value.items():
+                if key == PARAMETERS and is_below:
+                    message = f"{name}: ros__parameters is inside of other ros__parameters"
+                    yield Mismatch("parameters", message, inner.location)
+                else:
+                    waiting.append((key, inner, is_below or key == PARAMETERS))
+        elif not is_below and name:
+            message = f"{name} is not below a key ros__parameters, so rcl cannot read the file"
+            yield Mismatch("parameters", message, node.location)
+
+
+def _declared(workspace: Workspace, package: Package, node: StartedNode, own: PythonNode) -> Iterator[Fact]:
+    """Yield the parameters that a node of the workspace declares, reads and is given."""
+    owner = f"{node.package}/{node.executable}"
+    for it in own.parameters:
+        if it.name is None:
+            yield Open("parameter", owner)
+        elif it.is_declared:
+            yield Definition("parameter", it.name, it.location, owner)
+    yield from (Definition("parameter", name, own.location, owner) for name in _OF_EVERY_NODE)
+    if own.doubts:
+        yield Open("parameter", owner)
+    for it in own.parameters:
+        if it.name is not None and not it.is_declared:
+            yield Use("parameter", it.name, it.location, "get_parameter", owner)
+    found = parameters_of(node, package, own.name or "", is_python=True)
+    if found.unknown:
+        yield Undecided("parameters", found.unknown)
+    wide = workspace.wildcard_places(node)
+    for name, value in found.values.items():
+        if value.location not in wide:
+            yield Use("parameter", name, value.location, f"the node {workspace.name_of(node)!r}", owner)
+
+
+def _plugin_lists(tree: YamlNode) -> Iterator[Fact]:
+    """Yield the entries of lists of plugins that have no section beside them."""
+    waiting = [tree]
+    while waiting:
+        node = waiting.pop()
+        if not isinstance(node.value, dict):
+            continue
+        waiting += node.value.values()
+        sections = {key: inner.location for key, inner in node.value.items() if isinstance(inner.value, dict)}
+        for key, inner in node.value.items():
+            if not sections or key in _NOT_LISTS or not (key in _LISTS or key.endswith("_plugins")):
+                continue
+            texts = [(it.text or "", it.location) for it in inner.items]
+            if inner.text is not None and key == "observation_sources":
+                texts = [(word, inner.location) for word in inner.text.split()]
+            owner = f"{tree.source.path}:{inner.location.line}"
+            yield from (Definition("plugin section", name, at, owner) for name, at in sections.items())
+            for text, at in texts:
+                if text and "/" not in text and "::" not in text:
+                    yield Use("plugin section", text, at, key, owner)

@@ -1,0 +1,64 @@
+"""Programs and nodes: what launch files start, entry points, and the nodes that a lifecycle manager looks after."""
+
+from collections.abc import Iterator
+
+from grader.names import closest
+from grader.package.entry_points import entry_fault, entry_points
+from grader.package.launch.parameters import parameters_of
+from grader.package.package import Package
+from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use
+from grader.workspace.workspace import Workspace
+
+
+def program_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the programs that launch files start and no package has, and nodes that nothing starts."""
+    for package in workspace.packages:
+        for entry in entry_points(package):
+            yield Compared("programs")
+            fault = entry_fault(package, entry.name)
+            if fault is not None:
+                yield Mismatch("programs", f"the entry point of {entry.name!r} names no function: {fault[0]}", fault[1])
+    for package, node in workspace.nodes:
+        owner = package.find(node.package)
+        if owner is not None:
+            yield Compared("programs")
+        if owner is not None and owner.has_program(node.package, node.executable) is False:
+            yield Mismatch("programs", _why_no_program(owner, node.executable), node.location)
+    yield from _lifecycle(workspace)
+
+
+def _why_no_program(package: Package, name: str) -> str:
+    """Return that ros2 run does not find a program, and where it is installed, or which there are."""
+    setup, entries = package.installation, [entry.name for entry in entry_points(package)]
+    folder = setup.scripts_folder if setup is not None else ""
+    if name in entries:
+        return f"a build installs {name!r} in {folder}, not in lib/{package.name}: see install_scripts of setup.cfg"
+    files = [*setup.programs, *(copy.target for copy in setup.copies)] if setup is not None else []
+    elsewhere = next((path for path in files if path.rpartition("/")[2] == name), None)
+    if elsewhere is not None:
+        return f"a build installs {name!r} as {elsewhere}, but ros2 run looks in lib/{package.name}"
+    names = sorted({*(path.rpartition("/")[2] for path in files if path.startswith(f"lib/{package.name}/")), *entries})
+    guess = closest(name, names)
+    there = f"; did you mean {guess!r}?" if guess else f"; it has {', '.join(names) or 'none'}"
+    return f"the package {package.name!r} has no program {name!r}{there}"
+
+
+def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the nodes that are started, and those that a lifecycle manager is told of."""
+    managers = [(package, node) for package, node in workspace.nodes if node.executable == "lifecycle_manager"]
+    if not managers:
+        return
+    for _, _, launch in workspace.launches:
+        if launch.unknown or launch.syntax or launch.unread:
+            yield Open("node", reason=launch.unknown[0].message if launch.unknown else "a launch file cannot be read")
+    for _, node in workspace.nodes:
+        name = workspace.name_of(node)
+        yield Open("node") if name is None else Definition("node", name, node.location)
+    for package, node in managers:
+        found = parameters_of(node, package, "lifecycle_manager")
+        given = found.values.get("node_names")
+        if found.unknown and given is None:
+            yield Undecided("programs", found.unknown)
+        if given is not None and isinstance(given.value, list):
+            for name in given.value:
+                yield Use("node", str(name).rpartition("/")[2], given.location, "node_names")

@@ -1,0 +1,28 @@
+"""Read a workspace: what its files define and use, and what does not agree."""
+
+from functools import lru_cache
+from itertools import chain
+
+from grader.submission.submission import Submission
+from grader.workspace.arguments import argument_facts
+from grader.workspace.controllers import controller_facts
+from grader.workspace.dependencies import dependency_facts
+from grader.workspace.files import file_facts
+from grader.workspace.frames import frame_facts
+from grader.workspace.names import Agreement, agreement
+from grader.workspace.parameters import parameter_facts
+from grader.workspace.programs import program_facts
+from grader.workspace.topics import topic_facts
+from grader.workspace.workspace import Workspace
+
+_READERS = (
+    file_facts, frame_facts, controller_facts, parameter_facts, argument_facts, program_facts, topic_facts,
+    dependency_facts,
+)  # fmt: skip
+
+
+@lru_cache(maxsize=2)
+def read_agreement(submission: Submission) -> Agreement:
+    """Return what does not agree in the packages of a submission."""
+    workspace = Workspace(submission)
+    return agreement(chain.from_iterable(reader(workspace) for reader in _READERS))

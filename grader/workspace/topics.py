@@ -1,0 +1,96 @@
+"""Topics: those of own Python nodes as they are started, with their types and quality of service, and bridge rows."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from grader.package.launch.model import StartedNode
+from grader.package.nodes import Endpoint
+from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Use, place_text
+from grader.workspace.workspace import Workspace
+
+
+class _Opened(NamedTuple):
+    """A publisher or subscription of a node as it is started, with the full name of its topic."""
+
+    topic: str
+    endpoint: Endpoint
+    launch: int  # of those that are started on their own
+
+
+def topic_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield topics of own nodes that differ in type or quality of service, and remappings of names that no node has."""
+    opened: list[_Opened] = []
+    for launch, node in workspace.launched:
+        own = workspace.python_node(node)
+        if own is None or node.when is False:
+            continue
+        for endpoint in own.endpoints:
+            topic = node.topic(endpoint.name) if endpoint.name is not None else None
+            if topic is not None and endpoint.kind in ("publisher", "subscription"):
+                yield Compared("topics")
+                opened.append(_Opened(topic, endpoint, launch))
+        yield from _remappings(workspace, node)
+    publishers = [it for it in opened if it.endpoint.kind == "publisher"]
+    for it in opened:
+        if it.endpoint.kind == "subscription":
+            for other in [other for other in publishers if other.topic == it.topic]:
+                is_sure = it.launch == other.launch
+                yield from (found._replace(is_sure=is_sure) for found in _differences(it, other))
+    yield from _unconnected(workspace, opened)
+
+
+def _differences(subscription: _Opened, publisher: _Opened) -> Iterator[Mismatch]:
+    """Yield why a subscription does not get what a publisher of its topic sends."""
+    own, other = subscription.endpoint, publisher.endpoint
+    at = place_text(other.location)
+    if own.type is not None and other.type is not None and own.type != other.type:
+        message = (
+            f"the topic {subscription.topic} is subscribed to with {own.type}, but published with {other.type} ({at})"
+        )
+        yield Mismatch("topics", message, own.location, other.location)
+    for wanted, given, words in (
+        (own.qos.reliability, other.qos.reliability, ("reliable", "best_effort")),
+        (own.qos.durability, other.qos.durability, ("transient_local", "volatile")),
+    ):
+        if (wanted, given) == words:
+            message = (
+                f"the subscription of {subscription.topic} asks for {words[0]}, but its publisher is {words[1]} ({at})"
+            )
+            yield Mismatch("topics", message, own.location, other.location)
+
+
+def _remappings(workspace: Workspace, node: StartedNode) -> Iterator[Fact]:
+    """Yield the names that a node has, and those that remappings of it alone replace."""
+    own = workspace.python_node(node)
+    if own is None or node.remaps is None:
+        return
+    owner = f"{node.package}/{node.executable} {place_text(node.location)}"
+    if own.doubts or any(it.name is None for it in own.endpoints):
+        yield Open("topic", owner)
+    for endpoint in own.endpoints:
+        if endpoint.name is not None:
+            yield Definition("topic", _bare(endpoint.name), endpoint.location, owner)
+    shared = [rule for _, other in workspace.nodes if other is not node for rule in other.remaps or ()]
+    for rule in node.remaps:
+        name = _bare(rule[0])
+        if rule not in shared and not name.startswith("__") and ":" not in name:
+            yield Use("topic", name, node.location, f"the remapping of {node.executable}", owner)
+
+
+def _bare(name: str) -> str:
+    return name.removeprefix("~").removeprefix("/")
+
+
+def _unconnected(workspace: Workspace, opened: list[_Opened]) -> Iterator[Fact]:
+    """Yield subscriptions to topics that nothing publishes, where a similar one is published and not subscribed to."""
+    published = {it.topic: it for it in opened if it.endpoint.kind == "publisher"}
+    subscribed = {it.topic for it in opened if it.endpoint.kind == "subscription"}
+    bridged = {f"/{name.strip('/')}": at for name, at in workspace.bridged_topics}
+    yield Open("topic")
+    for topic, it in published.items():
+        if topic not in subscribed:
+            yield Definition("topic", topic, it.endpoint.location)
+    yield from (Definition("topic", name, at) for name, at in bridged.items() if name not in subscribed)
+    for it in opened:
+        if it.endpoint.kind == "subscription" and it.topic not in published and it.topic not in bridged:
+            yield Use("topic", it.topic, it.endpoint.location, "create_subscription")

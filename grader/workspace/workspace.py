@@ -1,0 +1,230 @@
+"""The files of a workspace whose names are compared: packages, launch files, parameter files, the robot, nodes."""
+
+import posixpath
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from grader.errors import InputError
+from grader.package.launch.model import Launch, StartedNode
+from grader.package.launch.places import PREFIX
+from grader.package.nodes import PythonNode, PythonNodes, read_nodes
+from grader.package.package import MANIFEST, Package
+from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
+from grader.robot.model import Robot
+from grader.source import LazyLocation, Location, Source
+from grader.submission.submission import Submission
+from grader.submission.urdf import Read
+from grader.workspace.known import known
+from grader.workspace.yaml_values import sections_in, values_in
+from grader.xml.parsing import Element
+
+_MAX_FILES = 60  # of one kind in a package
+_MAX_YAML = 512 * 1024  # bytes
+
+
+@dataclass(frozen=True, eq=False)
+class Workspace:
+    """The packages of a submission, or of a folder, as the readers of names see them. Each file is read once."""
+
+    submission: Submission
+
+    @property
+    def packages(self) -> tuple[Package, ...]:
+        """The packages that are compared: those of the lab; all if it names none."""
+        named = tuple(self.submission.lab_packages.values())
+        return named if len(named) > 1 else self.submission.packages
+
+    @cached_property
+    def launches(self) -> tuple[tuple[Package, str, Launch], ...]:
+        """The launch files, each with its package and its path in it; without those of tests."""
+        return tuple(
+            (package, path, package.launch(path))
+            for package in self.packages
+            for path in [it for it in package.launch_files if not it.startswith("test/")][:_MAX_FILES]
+        )
+
+    @cached_property
+    def nodes(self) -> tuple[tuple[Package, StartedNode], ...]:
+        """The nodes that launch files start, or may start: those that no other launch file includes."""
+        return tuple((package, node) for package, launch in self.roots for node in launch.nodes)
+
+    @cached_property
+    def roots(self) -> tuple[tuple[Package, Launch], ...]:
+        """The launch files that no other one includes, with their packages."""
+        included = {passed.path for _, _, launch in self.launches for passed in launch.passed}
+        return tuple(
+            (package, launch)
+            for package, path, launch in self.launches
+            if included.isdisjoint(target for target, source in package.installed.items() if source == path)
+        )
+
+    @property
+    def launched(self) -> Iterator[tuple[int, StartedNode]]:
+        """The nodes, each with the number of the launch file that starts it on its own."""
+        yield from ((number, node) for number, (_, launch) in enumerate(self.roots) for node in launch.nodes)
+
+    @cached_property
+    def yaml_files(self) -> Mapping[str, YamlNode | YamlFault]:
+        """The YAML files that are no launch files, by their paths in the submission; or why one is not read."""
+        found: dict[str, YamlNode | YamlFault] = {}
+        for package in self.packages:
+            files = [it for it in package.tree.files if it.endswith((".yaml", ".yml")) and not it.startswith("test/")]
+            paths = [it for it in files if it not in package.launch_files]
+            for path in paths[:_MAX_FILES]:
+                own = package.path(path)
+                try:
+                    found[own] = read_yaml(package.tree.files[path].read(_MAX_YAML), own)
+                except YamlFault as fault:
+                    found[own] = fault
+                except InputError:
+                    continue
+        return found
+
+    @property
+    def trees(self) -> Iterator[tuple[str, YamlNode]]:
+        """The YAML files that are read, with their paths."""
+        yield from ((path, node) for path, node in self.yaml_files.items() if isinstance(node, YamlNode))
+
+    @cached_property
+    def robot(self) -> Robot | None:
+        """The robot; None without one, or where not all of it is known."""
+        urdf = self.submission.urdf
+        if not isinstance(urdf, Read) or urdf.loaded.robot is None or not urdf.loaded.is_certain:
+            return None
+        return urdf.loaded.robot
+
+    @property
+    def has_other_robots(self) -> bool:
+        """Return whether there may be other robots than the one that is read, which names may belong to."""
+        return any(not it.is_part for it in self.submission.unused_candidates if not it.path.endswith(MANIFEST))
+
+    @cached_property
+    def robot_root(self) -> Element | None:
+        """The <robot> of the expanded robot."""
+        urdf = self.submission.urdf
+        return urdf.loaded.root if isinstance(urdf, Read) and self.robot is not None else None
+
+    @cached_property
+    def python_nodes(self) -> Mapping[str, PythonNodes]:
+        """The nodes of the installed Python modules, by the names of packages."""
+        return {package.name: read_nodes(package) for package in self.packages}
+
+    def place(self, element: Element) -> Location:
+        """Return where an element of the expanded robot is written."""
+        urdf, root = self.submission.urdf, self.robot_root
+        assert isinstance(urdf, Read)
+        assert root is not None
+        return LazyLocation(urdf.loaded.source, self._positions[element]).resolve()
+
+    @cached_property
+    def _positions(self) -> Mapping[Element, int]:
+        """The position of each element of the robot in document order."""
+        root = self.robot_root
+        return {element: tag for tag, element in enumerate(root.iter("*"))} if root is not None else {}
+
+    @cached_property
+    def command_interfaces(self) -> Mapping[str, tuple[frozenset[str], Location]] | None:
+        """The command interfaces of joints in <ros2_control>; None without one."""
+        root = self.robot_root
+        found: dict[str, tuple[frozenset[str], Location]] = {}
+        systems = list(root.iterchildren("ros2_control")) if root is not None else []
+        for joint in (joint for system in systems for joint in system.iterchildren("joint")):
+            names = frozenset(it.get("name", "") for it in joint.iterchildren("command_interface"))
+            before, at = found.get(joint.get("name", ""), (frozenset[str](), self.place(joint)))
+            found[joint.get("name", "")] = (before | names, at)
+        return found if systems else None
+
+    def python_node(self, node: StartedNode) -> PythonNode | None:
+        """Return the Python node of the workspace that a program starts, if it starts one that is known."""
+        owner = self.package_of(node)
+        found = self.python_nodes[owner.name] if owner is not None and owner.name in self.python_nodes else None
+        programs = [it for it in found.programs if it.name == node.executable] if found is not None else []
+        return programs[0].nodes[0] if len(programs) == 1 and len(programs[0].nodes) == 1 else None
+
+    def package_of(self, node: StartedNode) -> Package | None:
+        """Return the package of the workspace whose program a node is."""
+        return self.packages[0].find(node.package) if self.packages else None
+
+    def name_of(self, node: StartedNode) -> str | None:
+        """Return the name that a node has, without its namespace; None where it is not known."""
+        if node.node_name is None or node.node_name:
+            return node.node_name
+        own = self.python_node(node)
+        return own.name if own is not None else known()["node_names"].get(f"{node.package}/{node.executable}")
+
+    def children_of(self, name: str) -> frozenset[str]:
+        """Return the nodes that a node of another package makes in its process, and that read its parameters."""
+        return frozenset(known()["children"].get(name, ())) | (
+            self.controllers if name == "controller_manager" else frozenset()
+        )
+
+    @cached_property
+    def controllers(self) -> frozenset[str]:
+        """The names of sections in files of parameters that may be those of controllers."""
+        return frozenset(keys[-1] for _, tree in self.trees for keys, _ in sections_in(tree) if keys)
+
+    def has_file(self, path: str) -> bool:
+        """Return whether a build of the workspace installs a file at a path below the prefix."""
+        return any(path in package.installed for package in self.packages)
+
+    def installed_yaml(self, path: str) -> YamlNode | None:
+        """Return the YAML file that is installed at a path, which begins with the prefix's stand-in."""
+        found = self.yaml_files.get(self.source_of(path) or "")
+        return found if isinstance(found, YamlNode) else None
+
+    def source_of(self, path: str) -> str | None:
+        """Return the file of the submission that is installed at a path, which begins with the prefix's stand-in."""
+        inside = posixpath.normpath(path).removeprefix(f"{PREFIX}/")
+        holding = [package for package in self.packages if inside in package.installed]
+        return holding[0].path(holding[0].installed[inside]) if holding else None
+
+    @cached_property
+    def parameter_files(self) -> Mapping[str, list[StartedNode]]:
+        """The files of parameters, by their paths in the submission, with the nodes that are given them."""
+        found: dict[str, list[StartedNode]] = {}
+        for _, node in self.nodes:
+            for given in node.parameters or ():
+                path = self.source_of(given.path) if given.path and given.is_plain else None
+                if path is not None:
+                    found.setdefault(path, []).append(node)
+        return found
+
+    def wildcard_places(self, node: StartedNode) -> frozenset[Location]:
+        """Return the places of parameters that a file gives to every node."""
+        trees = [self.installed_yaml(given.path) for given in node.parameters or () if given.path]
+        wide = [
+            section
+            for tree in trees
+            if tree is not None
+            for keys, section in sections_in(tree)
+            if not keys or any(key.strip("/") in ("*", "**") for key in keys)
+        ]
+        return frozenset(value.node.location for section in wide for value in values_in(section))
+
+    def sources_of(self, package: Package, endings: tuple[str, ...]) -> Iterator[Source]:
+        """Yield the texts of the files of a package with these endings, without those of tests."""
+        paths = [it for it in package.tree.files if it.endswith(endings) and not it.startswith("test/")]
+        for path in paths[:_MAX_FILES]:
+            try:
+                data = package.tree.files[path].read(_MAX_YAML)
+            except InputError:
+                continue
+            yield Source(package.path(path), data.decode("utf-8", "replace"))
+
+    @cached_property
+    def xacro_sources(self) -> tuple[Source, ...]:
+        """The texts of the xacro files and URDFs."""
+        return tuple(it for package in self.packages for it in self.sources_of(package, (".xacro", ".urdf")))
+
+    @cached_property
+    def python_texts(self) -> tuple[str, ...]:
+        """The texts of the Python files."""
+        return tuple(it.text for package in self.packages for it in self.sources_of(package, (".py",)))
+
+    @cached_property
+    def bridged_topics(self) -> tuple[tuple[str, Location], ...]:
+        """The topics of ROS that rows of a bridge name."""
+        rows = [row for _, tree in self.trees for row in tree.items if row.get("ros_type_name") is not None]
+        named = [row.get("ros_topic_name") or row.get("topic_name") for row in rows]
+        return tuple((it.text, it.location) for it in named if it is not None and it.text)
