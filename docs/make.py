@@ -30,7 +30,7 @@ KEYS = {
     "[test]": TEST,
     "[[test.ignore]]": IGNORE,
 }
-LANGUAGES = {
+LANGUAGES = {".yaml": "yaml", 
     ".md": "markdown",
     ".py": "python",
     ".rviz": "yaml",

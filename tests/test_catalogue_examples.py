@@ -19,6 +19,8 @@ from grader.report.explanations import EVERY_KIND, example_blocks, explanation
 from grader.submission.opening import open_submission
 from grader.submission.submission import Lab, Submission
 from grader.submission.urdf import Read
+from grader.workspace.name_problems import name_problems
+from grader.workspace.reading import read_agreement
 from tests.checks.submissions import png
 from tests.command_line import ROOT
 from tests.oracles.check_urdf import check_urdf
@@ -35,7 +37,7 @@ ALSO = {
     "URDF031": "URDF071 URDF015", "URDF061": "URDF015", "URDF071": "URDF015", "URDF041": "URDF091", "URDF043": "URDF062", "URDF070": "URDF080", "URDF082": "URDF084",
     "URDF085": "URDF084", "URDF095": "URDF009", "URDF099": "URDF031",
 }  # fmt: skip
-FOLDERS = {".urdf": "urdf", ".xacro": "urdf", ".rviz": "rviz"}
+FOLDERS = {".urdf": "urdf", ".xacro": "urdf", ".rviz": "rviz", ".yaml": "config"}
 WHEEL = """\
 <robot xmlns:xacro="http://www.ros.org/wiki/xacro">
 <xacro:macro name="wheel" params="name"><link name="${name}"/></xacro:macro>
@@ -126,6 +128,9 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(code: str, tmp_pa
         found = list(submission.urdf.problems) if isinstance(submission.urdf, Read) else []
         found += mesh_problems(submission, submission.urdf) if isinstance(submission.urdf, Read) else []
         found += package_problems(submission.package) if submission.package else []
+        if code.startswith("REF"):
+            names = name_problems(read_agreement(submission))
+            found = [it for it in names if it.code == code or it.severity == "error" == CODES[code].severity]
         if side == "right":
             assert found == []
         else:

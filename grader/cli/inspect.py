@@ -1,4 +1,4 @@
-"""grader inspect: a URDF as ROS 2 reads it."""
+"""grader inspect: a URDF as ROS 2 reads it, and the names in packages."""
 
 from typing import Annotated
 
@@ -11,7 +11,7 @@ from grader.commands.writing import write_stdout
 from grader.files.reading import URDF_LIMIT
 from grader.report.formats import InspectFormat, render_inspection
 
-_PATH = "A .urdf file, a folder or archive with one in it, or - for standard input."
+_PATH = "A .urdf file, a package, workspace or archive, or - for standard input."
 _JOINT = "Position of a joint, in radians or metres; repeatable."
 _RELATIVE = "The frame of the poses; default: the root."
 
@@ -26,8 +26,9 @@ def inspect(
 ) -> int:
     """Show a URDF as ROS 2 reads it: problems, tree, joints, poses.
 
-    A xacro file is expanded as xacro does, without running it. Exits 1 if ROS 2 or xacro rejects the file, or if
-    this cannot be determined statically.
+    A xacro file is expanded as xacro does, without running it. Of packages it also lists the names that files use and
+    nothing defines: files, frames, controllers, parameters, arguments, programs, topics, dependencies. Exits 1 if
+    ROS 2 or xacro rejects the file, if this cannot be determined statically, or if a name is certainly wrong.
 
     Examples:
 
@@ -37,6 +38,8 @@ def inspect(
 
       grader inspect my_robot.urdf --joint base_left_wheel_joint=1.57
 
+      grader inspect my_workspace
+
       grader inspect my_robot.urdf --format svg > my_robot.svg
 
       grader inspect my_robot.urdf --format html > my_robot.html
@@ -45,4 +48,4 @@ def inspect(
 
     inspection = read(path, joint or [], relative_to, max_size, arg or [], warn)
     write_stdout(render_inspection(inspection, output_format, screen()))
-    return ExitCode.FAILED if inspection.verdict in ("rejected", "undecided") else ExitCode.PASSED
+    return ExitCode.PASSED if inspection.is_passed else ExitCode.FAILED

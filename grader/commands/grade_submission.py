@@ -115,9 +115,9 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
         from grader.commands.hints_and_fix import add_hints  # late: many submissions lose nothing
 
         report, fix = add_hints(report, submission, request.hints, warn, is_fixed=request.fix is not None)
-    folder = _folder_of(request.path, submission.path) if submission.is_single else None
+    folder = folder_of(request.path, submission.path) if submission.is_single else None
     besides = tuple(folder / path for path in submission.besides) if folder is not None else ()
-    return GradeRun(report, _base_of(request.path, folder), exit_code(report, threshold), fix, besides)
+    return GradeRun(report, base_of(request.path, folder), exit_code(report, threshold), fix, besides)
 
 
 def check_saves(saves: Saves, rubric: Sequence[Path], *paths: str) -> None:
@@ -168,12 +168,12 @@ def requested_rubric(request: GradeRequest) -> "Rubric":
     return rubric
 
 
-def _folder_of(path: str, inside: str | None) -> Path:
+def folder_of(path: str, inside: str | None) -> Path:
     """Return the folder that the paths of a single URDF start in, given the path in it."""
     return Path(path).parent.resolve().joinpath(*[".."] * (inside or "").count("/")).resolve()
 
 
-def _base_of(path: str, single: Path | None) -> Base:
+def base_of(path: str, single: Path | None) -> Base:
     """Return where a submission is in its repository; `single` is the folder in which paths of a single URDF start."""
     if path == "-":
         return Base(is_outside=True)

@@ -1,18 +1,19 @@
-"""Read a URDF as ROS 2 does, with its joints at given positions."""
+"""Read a URDF as ROS 2 does, with its joints at given positions, and the names in the packages around it."""
 
 from collections.abc import Sequence
 from math import isfinite, nan
 
 from grader.checks.meshes import mesh_problems
+from grader.commands.grade_submission import base_of, folder_of
 from grader.commands.invocation import read_arguments
 from grader.commands.writing import Warn
 from grader.errors import GraderError, InputError, MissingElement, NotDecided
-from grader.problems import in_order
+from grader.problems import Problem, in_order
 from grader.report.inspection import Inspection, main_root
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading
 from grader.submission.opening import open_submission
-from grader.submission.submission import Lab, Opening
+from grader.submission.submission import Lab, Opening, Submission
 from grader.submission.urdf import Absent, Unreadable
 from grader.text import printable_path
 
@@ -22,14 +23,18 @@ _MAX_NAMED = 20
 def inspect(
     path: str, joints: Sequence[str], relative_to: str | None, max_size: int, arguments: Sequence[str], warn: Warn
 ) -> Inspection:
-    """Return the inspection of the URDF at a path. Raises GraderError."""
+    """Return the inspection of the URDF and the packages at a path. Raises GraderError."""
     given = read_arguments(arguments)
     submission = open_submission(path, Lab("robot.urdf"), Opening(max_size, given), with_neighbours=True)
+    base = base_of(path, folder_of(path, submission.path) if submission.is_single else None)
     match urdf := submission.urdf:
         case Unreadable(reason=reason):
             raise InputError(reason)
+        case Absent() if submission.packages:
+            names = _name_problems(submission)
+            return Inspection(submission.id, None, names=names, source_of=submission.source, base=base)
         case Absent():
-            raise InputError(f"{printable_path(path)} has no URDF: no file in it has a <robot>")
+            raise InputError(f"{printable_path(path)} has neither a URDF nor a package: no file in it has a <robot>")
     if submission.other_candidates:
         others = ", ".join(file.path for file in submission.other_candidates)
         warn(f"inspecting {urdf.path}; other candidates: {others}")
@@ -45,7 +50,18 @@ def inspect(
         known = ", ".join(repr(link.name) for link in robot.robot.links[:_MAX_NAMED])
         raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
     problems = in_order((*urdf.loaded.problems, *mesh_problems(submission, urdf)))
-    return Inspection(urdf.path, urdf.loaded._replace(problems=problems), robot, relative_to)
+    reading = urdf.loaded._replace(problems=problems)
+    return Inspection(urdf.path, reading, robot, relative_to, _name_problems(submission), submission.source, base)
+
+
+def _name_problems(submission: Submission) -> tuple[Problem, ...]:
+    """Return the names in packages that do not agree; none of a URDF on its own."""
+    if not submission.packages:
+        return ()
+    from grader.workspace.name_problems import name_problems  # late: most inspections are of a URDF
+    from grader.workspace.reading import read_agreement
+
+    return name_problems(read_agreement(submission))
 
 
 def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None:

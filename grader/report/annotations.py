@@ -13,6 +13,7 @@ from grader.grading.report import Report
 from grader.problems import Severity
 from grader.report.content import closing_lines, head, other_problems, report_sections, score_text
 from grader.report.criteria import Entry, earned_text, is_failure, is_manual, remarks_on
+from grader.report.inspection import Inspection
 from grader.report.locations import SourceOf, archive_around, location_text, width_of
 from grader.source import Base, Location
 from grader.text import printable, without_tag_commands
@@ -35,12 +36,30 @@ def render_github(report: Report, base: Base) -> str:
     """Return the annotations of a report: the score as a notice, then the findings, most points first."""
     found = [*_findings(report, base)]
     lines = [command("notice", {}, f"{score_text(report)}: {printable(report.rubric.title)}", _overview(report))]
+    return "".join([*lines, *_limited(found, 1)])
+
+
+def inspection_github(inspection: Inspection) -> str:
+    """Return the annotations of an inspection: its problems, errors first."""
+    found = [
+        _Finding(
+            problem.code,
+            problem.severity,
+            _annotation_text([printable(problem.message)], problem.location, inspection.base),
+            _annotation_place(problem.location, inspection.source, inspection.base),
+        )
+        for problem in inspection.problems
+    ]
+    return "".join(_limited(found, 0))
+
+
+def _limited(found: Sequence[_Finding], notices: int) -> Iterator[str]:
+    """Yield at most as many annotations of each type as GitHub shows, besides some notices."""
     for level, name in _COMMANDS.items():
         some = [finding for finding in found if finding.level == level]
-        room = _MAX_ANNOTATIONS - (level == "note")
+        room = _MAX_ANNOTATIONS - notices * (level == "note")
         listed = some if len(some) <= room else [*some[: room - 1], _rest_finding(some[room - 1 :])]
-        lines += [command(name, one.place, one.title, one.text) for one in listed]
-    return "".join(lines)
+        yield from (command(name, one.place, one.title, one.text) for one in listed)
 
 
 def _findings(report: Report, base: Base) -> Iterator[_Finding]:

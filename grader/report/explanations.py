@@ -19,12 +19,13 @@ from grader.problems import Kind
 from grader.report.criteria import model_lines, sentence
 from grader.robot.urdf_problems import CATALOGUE
 from grader.text import enumerated, format_points, printable
+from grader.workspace.name_problems import NAME_CATALOGUE
 from grader.xacro.xacro_problems import XACRO_CATALOGUE
 
 _WIDTH = 80
 _MAX_SIMILAR = 6  # criteria that are named
 _CHECKS = "checks"
-EVERY_KIND = (*CATALOGUE, *XACRO_CATALOGUE, *PACKAGE_CATALOGUE)
+EVERY_KIND = (*CATALOGUE, *XACRO_CATALOGUE, *PACKAGE_CATALOGUE, *NAME_CATALOGUE)
 EFFECTS = {
     "rejects": "ROS 2 rejects the file.",
     "undetermined": "The criteria that depend on it need manual grading.",

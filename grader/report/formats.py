@@ -55,6 +55,7 @@ class InspectFormat(_FormatRow):
 
     TERMINAL = "terminal", "inspection:inspection_terminal", "console"
     JSON = "json", "inspection:inspection_json"
+    GITHUB = "github", "annotations:inspection_github"
     SVG = "svg", "svg:inspection_svg"
     HTML = "html", "pages.student:inspection_html"
 
@@ -110,7 +111,10 @@ def render(
 def render_inspection(inspection: "Inspection", kind: InspectFormat, screen: Screen) -> str:
     """Return an inspection in a format, for a screen or a file."""
     function = partial(_load(kind.function), inspection)
-    return draw(function, screen) if kind.needs == "console" else without_commands(function())
+    if kind.needs == "console":
+        return draw(function, screen)
+    text: str = function()
+    return text if kind is InspectFormat.GITHUB else without_commands(text)  # whose lines are commands
 
 
 def _load(place: str) -> Any:

@@ -1,6 +1,6 @@
-"""A URDF as `grader inspect` shows it: problems, tree, joints, poses."""
+"""A URDF as `grader inspect` shows it: problems, tree, joints, poses; and the names in packages that do not agree."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice
 from math import isfinite
@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.errors import MissingElement, NotDecided
+from grader.problems import Problem
 from grader.report.as_json import PROBLEM
 from grader.report.content import UNDECIDED, VERDICTS
 from grader.report.criteria import alike
@@ -32,7 +33,8 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.reader import Reading
 from grader.robot.transforms import Transform
-from grader.text import printable
+from grader.source import Base, Source
+from grader.text import counted, printable
 
 MAX_LISTED, _MAX_PROBLEMS = 500, 30  # links, or problems on a page; problems on a terminal
 _MAX_INDENT = 60
@@ -40,19 +42,49 @@ _EFFECTS = {**{verdict: text.replace("the file", "it") for verdict, text in VERD
 _STYLES = dict(zip(_EFFECTS, ("green", "yellow", "bold red", "bold red"), strict=True))
 
 
+_NO_BASE = Base(is_outside=True)
+
+
+def _no_source(_: str) -> Source | None:
+    return None
+
+
 @dataclass(frozen=True, slots=True)
 class Inspection:
-    """A URDF as read, with its joints at given positions; `robot` is None if ROS 2 reads nothing."""
+    """A URDF as read, with its joints at given positions; `robot` is None if ROS 2 reads nothing.
+
+    Packages without a URDF have no `reading`. `names` are the problems of names in packages.
+    """
 
     path: str
-    reading: Reading
-    robot: Configuration | None
-    relative_to: str | None
+    reading: Reading | None
+    robot: Configuration | None = None
+    relative_to: str | None = None
+    names: tuple[Problem, ...] = ()
+    source_of: Callable[[str], Source | None] = _no_source
+    base: Base = _NO_BASE  # its place in a repository
 
     @property
-    def verdict(self) -> str:
-        """ROS 2's verdict; `undecided` where it depends on what cannot be determined statically."""
+    def verdict(self) -> str | None:
+        """ROS 2's verdict; `undecided` where it cannot be determined statically; None without a URDF."""
+        if self.reading is None:
+            return None
         return self.reading.verdict if self.reading.is_certain else "undecided"
+
+    @property
+    def is_passed(self) -> bool:
+        """Return whether ROS 2 loads the URDF, and no name is certainly wrong."""
+        return self.verdict not in ("rejected", "undecided") and all(it.severity != "error" for it in self.names)
+
+    @property
+    def problems(self) -> tuple[Problem, ...]:
+        """The problems of the URDF, then those of names."""
+        return (*(self.reading.problems if self.reading is not None else ()), *self.names)
+
+    def source(self, path: str) -> Source | None:
+        """Return the text of a file, for quoting."""
+        own = self.reading.source if self.reading is not None else None
+        return own if own is not None and own.path == path else self.source_of(path)
 
     def poses(self) -> Iterator[tuple[str, Transform | str]]:
         """Yield the pose of every link in the frame `relative_to`, in file order, or the reason why it has none."""
@@ -97,8 +129,8 @@ INSPECTION = JsonObject(
     {
         **schema_key("grader/inspect/v1"),
         "path": TEXT,
-        "verdict": ({"enum": list(_EFFECTS)}, "verdict"),
-        "problems": (Many(PROBLEM), "reading.problems"),
+        "verdict": (nullable({"enum": list(_EFFECTS)}), "verdict"),
+        "problems": Many(PROBLEM),
         "robot": Maybe(_ROBOT),
         "relative_to": nullable(TEXT),
         "poses": (mapping(nullable(_vector(_vector(NUMBER, 4), 4))), _poses),
@@ -114,13 +146,13 @@ def inspection_json(inspection: Inspection) -> str:
 def inspection_terminal(inspection: Inspection, console: Console) -> None:
     """Print the inspection."""
     page = Page(console, [])
-    reading, robot = inspection.reading, inspection.robot
+    robot = inspection.robot
     name = f"robot {robot.robot.name!r}" if robot is not None else "no robot"
-    verdict = (effect(inspection), _STYLES[inspection.verdict])
+    verdict = (effect(inspection), _STYLES[inspection.verdict or "clean"])
     page.inset(Text.assemble((printable(inspection.path), "bold"), ": ", verdict, f", {printable(name)}"), indent=0)
-    if reading.problems:
+    if inspection.problems:
         page.title("Problems")
-        page.rows.extend(_problem_rows(console, reading))
+        page.rows.extend(_problem_rows(console, inspection))
     for title, rows in lists(inspection):
         page.title(title)
         for name, words in rows:
@@ -128,20 +160,22 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
     page.print()
 
 
-def _problem_rows(console: Console, reading: Reading) -> Iterator[Text]:
+def _problem_rows(console: Console, inspection: Inspection) -> Iterator[Text]:
     """Yield problems with their code and location, errors with their source line."""
-    for problem in reading.problems[:_MAX_PROBLEMS]:
+    own = inspection.reading.source.path if inspection.reading is not None else ""
+    for problem in inspection.problems[:_MAX_PROBLEMS]:
         where = problem.location
         head = Text.assemble("  ", (f"{problem.code} {problem.severity:<7} ", LOOKS[problem.severity]))
-        named = "" if where.path == reading.source.path else f"{printable(where.path)}:"
+        named = "" if where.path == own else f"{printable(where.path)}:"
         message = Text.assemble(
             (f"{named or 'line '}{where.line}{calls_text(where)}: ", "dim"), printable(problem.message)
         )
         yield block(console, message, len(head), head)
-        if problem.severity == "error":
-            yield excerpt_block(console, reading.source, where, min(len(head), console.width // 5))
-    if len(reading.problems) > _MAX_PROBLEMS:
-        yield block(console, Text(f"... and {len(reading.problems) - _MAX_PROBLEMS} more"), INDENT)
+        source = inspection.source(where.path) if problem.severity == "error" else None
+        if source is not None:
+            yield excerpt_block(console, source, where, min(len(head), console.width // 5))
+    if len(inspection.problems) > _MAX_PROBLEMS:
+        yield block(console, Text(f"... and {len(inspection.problems) - _MAX_PROBLEMS} more"), INDENT)
 
 
 def lists(inspection: Inspection) -> Iterator[tuple[str, list[tuple[str, str]]]]:
@@ -159,8 +193,10 @@ def _first_rows(rows: Iterator[tuple[str, str]]) -> list[tuple[str, str]]:
 
 
 def effect(inspection: Inspection) -> str:
-    """Return what ROS 2 does with a URDF."""
-    return _EFFECTS[inspection.verdict]
+    """Return what ROS 2 does with a URDF; without one, how many names are wrong."""
+    if inspection.verdict is not None:
+        return _EFFECTS[inspection.verdict]
+    return f"{counted(len(inspection.names), 'problem')} of names" if inspection.names else "the names agree"
 
 
 def _tree(robot: Configuration) -> Iterator[tuple[str, str, Joint | None]]:

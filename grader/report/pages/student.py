@@ -87,17 +87,16 @@ def _part_card(title: str, some: list[CriteriaGroup]) -> tuple[str, str, list[Cr
 
 def inspection_html(inspection: Inspection) -> str:
     """Return the inspection as an HTML page, with the joints at the given positions."""
-    reading, robot = inspection.reading, inspection.robot
-    sources = {reading.source.path: reading.source}
+    robot = inspection.robot
     values = {
         "version": __version__,
         "title": printable(robot.robot.name if robot is not None else inspection.path),
         "path": inspection.path,
         "effect": effect(inspection),
-        "verdict": _CLASSES.get(inspection.verdict, "failed"),
+        "verdict": _CLASSES.get(inspection.verdict or "clean", "failed"),
         "problems": [
-            (problem.severity, content.problem_line(problem), source_lines(problem.location, sources.get))
-            for problem in reading.problems[:MAX_LISTED]
+            (problem.severity, content.problem_line(problem), source_lines(problem.location, inspection.source))
+            for problem in inspection.problems[:MAX_LISTED]
         ],
         "lists": lists(inspection),
     }
