@@ -30,7 +30,8 @@ KEYS = {
     "[test]": TEST,
     "[[test.ignore]]": IGNORE,
 }
-LANGUAGES = {".yaml": "yaml", 
+LANGUAGES = {
+    ".yaml": "yaml",
     ".md": "markdown",
     ".py": "python",
     ".rviz": "yaml",

@@ -7,7 +7,7 @@ which ROS 2 itself does not read, and last those of the package.
 import posixpath
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import permutations
 from math import degrees, isfinite
 from typing import Any, NamedTuple
@@ -332,8 +332,10 @@ def package_facts(submission: Submission) -> _Facts:
     """Yield what may be true of the packages that are graded, first of the main one."""
     path, main = submission.path, submission.package
     packages = sorted(submission.lab_packages.values(), key=lambda it: it is not main)
+    found = read_agreement(submission) if packages else None
+    named = found.files if found is not None and found.holds("files") else frozenset()
     for package in packages:
-        facts = _facts_of(package, path if path is not None and package.holds(path) else "")
+        facts = _facts_of(package, path if path is not None and package.holds(path) else "", named)
         if package is main:
             yield from facts
             continue
@@ -342,20 +344,25 @@ def package_facts(submission: Submission) -> _Facts:
             yield fact._replace(about=about, package=package.name, words=f"{package.name} {fact.words}")
 
 
-def _facts_of(package: Package, path: str) -> Iterator[Fact]:
-    """Yield what may be true of a package, in which the URDF has this path."""
+def _facts_of(package: Package, path: str, named: Collection[str]) -> Iterator[Fact]:
+    """Yield what may be true of a package, in which the URDF has this path.
+
+    That the files are installed which are `named` somewhere is a fact about names.
+    """
     yield _package_fact("package_found", name=package.name)
     if package.manifest is not None and package.manifest.build_type:
         yield _package_fact("package_type", build_type=package.manifest.build_type)
     yield _package_fact("setup_imports")._replace(title="`colcon build` of the package succeeds")
-    yield from _installs(package, path)
+    yield from _installs(package, path, named)
     for launch in (it for it in package.launch_files if not it.startswith("test/")):
-        yield from _launch_facts(posixpath.basename(launch), package.launch(launch))
+        yield from _launch_facts(posixpath.basename(launch), package.launch(launch), has_names=bool(named))
     yield from _rviz_facts(package)
 
 
 def name_facts(submission: Submission) -> _Facts:
     """Yield that the names of each family that the packages use agree, or why they do not."""
+    if submission.package is None:
+        return
     found = read_agreement(submission)
     for family in (it for it in FAMILIES if it in found.families):
         yield _package_fact("names_agree", f"{family}", of=family)._replace(
@@ -367,11 +374,14 @@ def _package_fact(check: str, label: str = "", **arguments: Any) -> Fact:
     return Fact(_THE_PACKAGE, check, arguments, f"{label} {check}".strip(), package="")
 
 
-def _installs(package: Package, urdf: str) -> Iterator[Fact]:
+def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[Fact]:
     """Yield that a build installs the URDF, the launch and RViz files, and a file of each other folder."""
-    installed = [path for target, path in package.installed.items() if target.startswith(package.share)]
+    own = {target: path for target, path in package.installed.items() if target.startswith(package.share)}
+    elsewhere = {path for target, path in own.items() if any(f"{target}/".startswith(f"{it}/") for it in named)}
+    installed = [path for path in own.values() if path not in elsewhere]
     launches = [path for path in package.launch_files if path in installed or not path.startswith("test/")]
     kinds = {"urdf": [urdf] if urdf else [], "launch": launches, "rviz": package.rviz_files}
+    kinds = {kind: [path for path in paths if path not in elsewhere] for kind, paths in kinds.items()}
     for kind, paths in kinds.items():
         for name in map(posixpath.basename, paths):
             yield _package_fact("build_installs", name, kind=kind, name=name, despite_errors=True)
@@ -385,11 +395,11 @@ def _installs(package: Package, urdf: str) -> Iterator[Fact]:
     yield from (_package_fact("installs_files", pattern, files=[pattern], despite_errors=True) for pattern in patterns)
 
 
-def _launch_facts(name: str, launch: Launch) -> Iterator[Fact]:
+def _launch_facts(name: str, launch: Launch, *, has_names: bool) -> Iterator[Fact]:
     yield _package_fact("launch_found", name, name=name)
     if nodes := _nodes_that_start(launch):
         yield _package_fact("launch_starts", name, name=name, nodes=nodes)
-    if launch.named("urdf", "rviz", "include"):
+    if launch.named("urdf", "rviz", "include") and not has_names:
         yield _package_fact("launch_finds_files", name, name=name)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from grader.names import closest, near
 from grader.package.launch.model import Launch
-from grader.package.launch.places import SHARE
+from grader.package.launch.places import PREFIX, SHARE
 from grader.package.package import Package
 from grader.source import Location
 from grader.workspace.names import Compared, Fact, Mismatch, Undecided
@@ -21,7 +21,7 @@ def file_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the paths at which a build of the workspace installs no file."""
     seen: set[tuple[str, Location]] = set()
     for package, path, at in _named(workspace):
-        yield Compared("files")
+        yield Compared("files", posixpath.normpath(path).removeprefix(f"{PREFIX}/"))
         if (path, at) not in seen:
             seen.add((path, at))
             yield from _fault_of(workspace, package, path, at)

@@ -64,9 +64,10 @@ class Mismatch(NamedTuple):
 
 
 class Compared(NamedTuple):
-    """That something of a family is there to be compared."""
+    """That something of a family is there to be compared; of a file its path below the prefix."""
 
     family: Family
+    name: str = ""
 
 
 class Undecided(NamedTuple):
@@ -85,6 +86,12 @@ class Agreement(NamedTuple):
     mismatches: tuple[Mismatch, ...]
     undecided: Mapping[Family, str]
     families: frozenset[Family]  # of which something is there
+    files: frozenset[str]  # the paths below the prefix at which files are looked for
+
+    def holds(self, family: Family) -> bool:
+        """Return whether something of a family is there, and all of it certainly agrees."""
+        is_wrong = any(it.family == family and it.is_sure for it in self.mismatches)
+        return family in self.families and family not in self.undecided and not is_wrong
 
 
 def agreement(facts: Iterable[Fact]) -> Agreement:
@@ -113,7 +120,8 @@ def agreement(facts: Iterable[Fact]) -> Agreement:
     order = sorted(dict.fromkeys(found), key=lambda it: (it.location.path, it.location.line, it.location.column))
     families = {_FAMILY_OF[it.kind] for it in uses}
     families |= {fact.family for fact in every if isinstance(fact, Compared | Mismatch)}
-    return Agreement(tuple(order), undecided, frozenset(families))
+    files = frozenset(fact.name for fact in every if isinstance(fact, Compared) and fact.name)
+    return Agreement(tuple(order), undecided, frozenset(families), files)
 
 
 def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mismatch | None:
