@@ -1,6 +1,6 @@
 """The check of the entries of a file: of the expanded robot, of YAML, SDF, SRDF and package.xml."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from copy import deepcopy
 from typing import Annotated, Any, NamedTuple
 
@@ -236,23 +236,18 @@ def _no_entry(tree: Entry, search: Search, wanted: _Wanted, where: str) -> Outco
         detail = did_you_mean(step.name, filter(None, (it.name for it in above.children)))
         return failed(f"there is no {shown}{place}", above.place, detail=detail)
     message = f"there is no <{step.name}> {where}"
-    inside = _found_deeper(tree, step.name)
-    if inside is not None:
-        return failed(message, inside[1].place, detail=f"; there is one in <{inside[0].name}>")
+    for above, inside in _nested(tree):
+        if inside.name == step.name:
+            return failed(message, inside.place, detail=f"; there is one in <{above.name}>")
     meant = did_you_mean(step.name, {it.name for it in tree.children})
     return failed(message, detail=meant)._replace(absent=() if meant else (shown,))
 
 
-def _found_deeper(tree: Entry, name: str) -> tuple[Entry, Entry] | None:
-    """Return the first element of a name that is not directly in the root, after the one that it is in."""
-    for above in tree.children:
-        for child in above.children:
-            if child.name == name:
-                return above, child
-        found = _found_deeper(above, name) if above.element is not None else None
-        if found is not None:
-            return found
-    return None
+def _nested(entry: Entry) -> Iterator[tuple[Entry, Entry]]:
+    """Yield everything in an entry, each after what it is in."""
+    for child in entry.children:
+        yield entry, child
+        yield from _nested(child)
 
 
 def _none_fits(search: Search, named: Sequence[Entry], step: Step, shown: str) -> Outcome:

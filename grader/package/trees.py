@@ -9,16 +9,18 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.names import did_you_mean
 from grader.package.package import Package
-from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.python.budget import Budget, OutOfBudget
 from grader.source import LazyLocation, Location, Source
 from grader.xml.elements import attributes_of, matches_value, name_of, readable, text_in
 from grader.xml.parsing import Element, XmlFault, XmlFile
+
+if TYPE_CHECKING:
+    from grader.package.yaml_nodes import YamlNode
 
 _MAX_TREE = 512 * 1024  # bytes
 _YAML = (".yaml", ".yml", ".rviz", ".repos")
@@ -142,7 +144,7 @@ def _children_of(element: Element, locate: Callable[[Element, str | None], _Plac
     return [*attributes, *(xml_entry(child, locate) for child in element.iterchildren("*"))]
 
 
-def _yaml_entry(node: YamlNode, name: str = "") -> Entry:
+def _yaml_entry(node: "YamlNode", name: str = "") -> Entry:
     """Return the entry of a node of YAML."""
     return Entry(
         name,
@@ -155,7 +157,7 @@ def _yaml_entry(node: YamlNode, name: str = "") -> Entry:
     )
 
 
-def _entries_of(node: YamlNode) -> list[Entry]:
+def _entries_of(node: "YamlNode") -> list[Entry]:
     match node.value:
         case list(rows):
             return [_yaml_entry(row) for row in rows]
@@ -176,6 +178,8 @@ def read_tree(package: Package, file: str) -> Entry:
     if not found:
         message, meant = f"the package has no file {file!r}", did_you_mean(file, files)
         raise MissingElement("file", file, message=message, detail=meant, absent="" if meant else file)
+    from grader.package.yaml_nodes import YamlFault, read_yaml  # late: the robot needs no YAML
+
     [path], own = found, package.path(found[0])
     try:
         data = files[path].read(_MAX_TREE)
