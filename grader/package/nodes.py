@@ -25,7 +25,7 @@ from grader.python.values import SCALARS, Call, EvaluationFails, QualifiedName, 
 from grader.source import Location
 
 _MAX_MODULES = 100
-_MAX_STEPS = 50_000  # of the evaluation of one module
+_MAX_STEPS = 500_000  # of the evaluation of one module
 _NODES = frozenset(
     f"rclpy.{name}"
     for name in ("node.Node", "Node", "lifecycle.Node", "lifecycle.LifecycleNode", "lifecycle.node.Node")
@@ -44,13 +44,10 @@ _HARMLESS = frozenset(
      "hasattr", "getattr", "ActionClient", "ActionServer", "TransformListener", "TransformBroadcaster",
      "StaticTransformBroadcaster"}
 )  # fmt: skip
-# By rclpy/qos.py of Jazzy: depth, reliability, durability.
+# By rclpy/qos.py of Jazzy, as qos_profile_NAME and as QoSPresetProfiles.NAME.value: depth, reliability, durability.
 _PROFILES = {
-    "qos_profile_sensor_data": (5, "best_effort", "volatile"), "SENSOR_DATA": (5, "best_effort", "volatile"),
-    "qos_profile_services_default": (10, "reliable", "volatile"), "SERVICES_DEFAULT": (10, "reliable", "volatile"),
-    "qos_profile_parameters": (1000, "reliable", "volatile"), "PARAMETERS": (1000, "reliable", "volatile"),
-    "qos_profile_system_default": (None, "system_default", "system_default"),
-    "SYSTEM_DEFAULT": (None, "system_default", "system_default"),
+    "sensor_data": (5, "best_effort", "volatile"), "services_default": (10, "reliable", "volatile"),
+    "parameters": (1000, "reliable", "volatile"), "system_default": (None, "system_default", "system_default"),
 }  # fmt: skip
 # The policies that are told apart, by the group that older names begin with.
 _GROUPS = {
@@ -385,9 +382,8 @@ class _Module:
         """Return the nodes, once the full names of all classes of nodes are known."""
         for at, full in self._classes.items():
             if full in kinds:
-                self._facts[at] = []
-                others = [base for base in self.bases[full] if base not in _NODES]
-                self._facts[at] += [_Doubt("what another base class does is not added", at) for _ in others[:1]]
+                is_own = _NODES.issuperset(self.bases[full])
+                self._facts[at] = [] if is_own else [_Doubt("what another base class does is not added", at)]
         calls = [
             (part, it) for part in self._parts for it in sorted(part.nodes, key=_offset) if isinstance(it, ast.Call)
         ]
@@ -396,6 +392,8 @@ class _Module:
                 self._facts[self._at(call)] = [_Name(_text(self._argument(part, call, 0, "node_name")))]
         for part, call in calls:
             self._read_call(part, call)
+        if self._evaluator.budget.left < 0:
+            self.doubts.append(_Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1)))
         return [self._node(at, facts) for at, facts in self._facts.items()]
 
     def _node(self, at: Location, facts: "Sequence[_Fact]") -> PythonNode:
@@ -422,13 +420,13 @@ class _Module:
 
     def _argument(self, part: _Part, call: ast.Call, position: int, name: str) -> Value:
         """Return an argument of a call; None where it is missing, Unknown where * or ** may give it."""
-        for keyword in call.keywords:
-            if keyword.arg in (name, None):
-                unpacked = Unknown("it is unpacked", position_of(call))
-                return self._evaluator.value_of(keyword.value, part.scope) if keyword.arg else unpacked
+        given: list[ast.expr | None] = [it.value for it in call.keywords if it.arg == name]
         if any(isinstance(it, ast.Starred) for it in call.args[: position + 1]):
             return Unknown("it is unpacked", position_of(call))
-        return self._evaluator.value_of(call.args[position] if position < len(call.args) else None, part.scope)
+        given += call.args[position : position + 1]
+        if not given and any(it.arg is None for it in call.keywords):
+            return Unknown("it is unpacked", position_of(call))
+        return self._evaluator.value_of(given[0] if given else None, part.scope)
 
     def _receiver(self, part: _Part, node: ast.expr) -> Location | None:
         """Return the place of the node that an expression is; None where that is not known."""
@@ -465,7 +463,7 @@ class _Module:
         is_base = isinstance(base, QualifiedName) and base.name in _NODES
         if (is_super or is_base) and _NODES.intersection(self.bases[self._classes[part.of]]):
             name = self._argument(part, call, 0 if is_super else 1, "node_name")
-            yield _Name(name if isinstance(name, str) else None)
+            yield _Name(_text(name))
             for keyword in call.keywords:
                 if keyword.arg in _OPTIONS:
                     yield _Doubt(f"{keyword.arg or 'more arguments'} of its Node", self._at(call))
@@ -521,7 +519,8 @@ def _qos(value: Value) -> _Qos:
         case int():
             return _Qos(value, "reliable", "volatile")
         case QualifiedName(name=name) if name.startswith("rclpy.qos."):
-            return _Qos(*_PROFILES.get(name.removesuffix(".value").rpartition(".")[2], ()))
+            profile = name.removesuffix(".value").rpartition(".")[2].lower().removeprefix("qos_profile_")
+            return _Qos(*_PROFILES.get(profile, ()))
         case Call(name="rclpy.qos.QoSProfile", kwargs=given):
             depth = given.get("depth")
             reliability, durability = (

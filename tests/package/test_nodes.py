@@ -177,6 +177,13 @@ def test_a_class_of_nodes_is_one_whatever_its_base_is_called(head: str, base: st
 NAMES = ["pass", "super().__init__(name)", "super().__init__(name); super().__init__('b')", "Mixin.__init__(self, 'a')"]
 
 
+def test_a_name_is_known_beside_other_arguments() -> None:
+    """It is the first one, or has a name."""
+    for call in ("'a', **given", "node_name='a', **given"):
+        [node] = nodes_of(f"{_HEAD}class T(Node):\n    def __init__(self):\n        super().__init__({call})\n").nodes
+        assert node.name == "a"
+
+
 @pytest.mark.parametrize("call", NAMES)
 def test_a_name_that_is_computed_is_not_known(call: str) -> None:
     """So is one of a node that is named twice, or whose base class is given the name."""
@@ -187,6 +194,7 @@ def test_a_name_that_is_computed_is_not_known(call: str) -> None:
 DOUBTS = [
     ("super().__init__('a', namespace='b')", "namespace of its Node"),
     ("super().__init__('a', **given)", "more arguments of its Node"),
+    ("super().__init__(**given)", "more arguments of its Node"),
     ("Helper(self)", "Helper is given the node"),
     ("helpers[0](node=self)", "this call is given the node"),
     ("rclpy.spin(self)", None),
@@ -249,6 +257,13 @@ def test_a_script_that_cmake_installs_is_a_program() -> None:
     [package] = read_packages(tree, Lab("urdf/hub.urdf"))
     [program] = read_nodes(package).programs
     assert (program.name, [it.name for it in program.nodes]) == ("talk.py", ["talker"])
+
+
+def test_a_module_may_be_too_long_to_evaluate(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is not read is a doubt."""
+    text = _HEAD + _CLASS + "        f(self.a.b.c.d)\n" * 3000
+    monkeypatch.setattr("grader.package.nodes._MAX_STEPS", 5_000)
+    assert "the module is too long to evaluate" in {it.reason for it in nodes_of(text).doubts}
 
 
 def test_a_package_without_a_build_file_has_no_nodes() -> None:
