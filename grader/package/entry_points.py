@@ -2,6 +2,7 @@
 
 import ast
 import re
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from grader.errors import InputError
@@ -121,18 +122,16 @@ def _guess(name: str, known: list[str], own: str = "") -> str:
     return f"; there is {enumerated([repr(it) for it in known[:_MAX_NAMED]])}" if known else ""
 
 
-def binds_unseen(code: Code) -> bool:
-    """Return whether a module may bind names in ways that are not seen."""
-    names = (
-        getattr(it, "id", None) or getattr(it, "attr", None) or getattr(it, "name", None) for it in ast.walk(code.tree)
-    )
+def binds_unseen(nodes: Sequence[ast.AST]) -> bool:
+    """Return whether a module with these nodes may bind names in ways that are not seen."""
+    names = (getattr(it, "id", None) or getattr(it, "attr", None) or getattr(it, "name", None) for it in nodes)
     return any(name in _BINDS_UNSEEN for name in names)
 
 
 def _certain_names(code: Code) -> frozenset[str] | None:
     """Return the names that a module may bind; None if it may bind others."""
     nodes = [*ast.walk(code.tree)]
-    if binds_unseen(code) or any(isinstance(node, ast.alias) and node.name == "*" for node in nodes):
+    if binds_unseen(nodes) or any(isinstance(node, ast.alias) and node.name == "*" for node in nodes):
         return None
     shared = {name for node in nodes if isinstance(node, ast.Global) for name in node.names}
     return bound_in(code.tree) | shared

@@ -229,20 +229,22 @@ class _Evaluator(Interpreter):
             return Unknown(str(error), position_of(node))
 
     def _constant_name(self, node: ast.Name, scope: Scope) -> Value:
-        try:
-            return scope.find(node.id)
-        except KeyError:
-            if hasattr(builtins, node.id):
-                return self._builtin(node.id)
-            raise Undetermined(f"the value of {node.id} is not known") from None
+        unknown = Unknown("it is not a constant", position_of(node))
+        return _constant(scope, node.id, self._builtin(node.id) if hasattr(builtins, node.id) else unknown)
 
     def _constant_attribute(self, node: ast.Attribute, scope: Scope) -> Value:
-        try:
-            return scope.find(_dotted(node))
-        except KeyError:
-            return Interpreter.KINDS[ast.Attribute](self, node, scope)
+        found = _constant(scope, _dotted(node), self)
+        return found if found is not self else Interpreter.KINDS[ast.Attribute](self, node, scope)
 
     KINDS: ClassVar = {**Interpreter.KINDS, ast.Name: _constant_name, ast.Attribute: _constant_attribute}
+
+
+def _constant(scope: Scope, name: str, default: Value = None) -> Value:
+    """Return the value of a name with dots in a scope."""
+    try:
+        return scope.find(name)
+    except KeyError:
+        return default
 
 
 def _dotted(node: ast.AST) -> str:
@@ -258,6 +260,10 @@ def _dotted(node: ast.AST) -> str:
 
 def _offset(node: ast.AST) -> tuple[int, int]:
     return getattr(node, "lineno", 0), getattr(node, "col_offset", 0)
+
+
+def _calls_of(nodes: Sequence[ast.AST]) -> list[ast.Call]:
+    return sorted((it for it in nodes if isinstance(it, ast.Call)), key=_offset)
 
 
 def _replaces_names(node: ast.ImportFrom) -> bool:
@@ -292,10 +298,10 @@ def _bindings(nodes: Sequence[ast.AST]) -> tuple[Counter[str], dict[str, ast.exp
 
 
 class _Part(NamedTuple):
-    """A function or method, or the module without these, with its scope and the place of its class."""
+    """A function or method, or the module without these: its calls, its scope and the place of its class."""
 
     name: str
-    nodes: Sequence[ast.AST]
+    calls: Sequence[ast.Call]
     scope: Scope
     of: Location | None = None
 
@@ -307,9 +313,9 @@ class _Module:
         self._code, self._name, self._is_package = code, name, is_package
         functions = dict.fromkeys(("rclpy.qos.QoSProfile", *_CREATES), record)
         self._evaluator = _Evaluator(functions, {}, budget=Budget(_MAX_STEPS))
-        parts = ast.walk(code.tree)
-        self._shared = {it for part in parts if isinstance(part, ast.Global | ast.Nonlocal) for it in part.names}
-        self._is_open = binds_unseen(code)
+        nodes = [*ast.walk(code.tree)]
+        self._shared = {it for node in nodes if isinstance(node, ast.Global | ast.Nonlocal) for it in node.names}
+        self._is_open = binds_unseen(nodes)
         self.bases: dict[str, list[str]] = {}  # of the classes, by full names
         self.doubts: list[_Doubt] = []
         self._classes: dict[Location, str] = {}
@@ -320,11 +326,11 @@ class _Module:
         for part in body:
             if isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef) and part.name in scope.names:
                 scope.names[part.name] = QualifiedName(f"{name}.{part.name}")
-        self._parts.append(_Part("", body, scope))
+        self._parts.append(_Part("", _calls_of(body), scope))
         for part in body:
             if isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef):
                 inner = [*ast.walk(part)]
-                self._parts.append(_Part(part.name, inner, self._bound(inner, Scope({}, scope))))
+                self._parts.append(_Part(part.name, _calls_of(inner), self._bound(inner, Scope({}, scope))))
             elif isinstance(part, ast.ClassDef):
                 self._add_class(part, scope)
 
@@ -364,7 +370,6 @@ class _Module:
         self.bases[full] = [base.name if isinstance(base, QualifiedName) else "?" for base in bases]
         self._classes[at] = full
         own = own_nodes(node)
-        counts, _ = _bindings([*ast.walk(node)])
         constants = self._bound(own, Scope({}, scope)).names
         attributes = Scope({f"self.{name}": value for name, value in constants.items()}, scope)
         for method in own:
@@ -374,9 +379,9 @@ class _Module:
             local = self._bound(nodes, Scope({}, attributes))
             for name in [name for name in local.names if name.startswith("self.")]:
                 value = local.names.pop(name)
-                is_constant = counts[name] == 1 and name not in attributes.names
-                attributes.names[name] = value if is_constant else Unknown("it is not bound once", START)
-            self._parts.append(_Part(method.name, nodes, local, at))
+                is_first = name not in attributes.names
+                attributes.names[name] = value if is_first else Unknown("it is not bound once", START)
+            self._parts.append(_Part(method.name, _calls_of(nodes), local, at))
 
     def read_nodes(self, kinds: Collection[str]) -> list[PythonNode]:
         """Return the nodes, once the full names of all classes of nodes are known."""
@@ -384,9 +389,7 @@ class _Module:
             if full in kinds:
                 is_own = _NODES.issuperset(self.bases[full])
                 self._facts[at] = [] if is_own else [_Doubt("what another base class does is not added", at)]
-        calls = [
-            (part, it) for part in self._parts for it in sorted(part.nodes, key=_offset) if isinstance(it, ast.Call)
-        ]
+        calls = [(part, call) for part in self._parts for call in part.calls]
         for part, call in calls:
             if self._called(part, call) in _CREATES:
                 self._facts[self._at(call)] = [_Name(_text(self._argument(part, call, 0, "node_name")))]
@@ -412,11 +415,12 @@ class _Module:
         """Yield the full name and place of each call in a function of the module, or in its body."""
         for part in self._parts:
             if part.name == function and part.of is None:
-                yield from ((self._called(part, it), self._at(it)) for it in part.nodes if isinstance(it, ast.Call))
+                yield from ((self._called(part, call), self._at(call)) for call in part.calls)
 
     def _called(self, part: _Part, call: ast.Call) -> str:
-        function = self._evaluator.value_of(call.func, part.scope)
-        return function.name if isinstance(function, QualifiedName) else ""
+        first, dot, rest = _dotted(call.func).partition(".")
+        found = _constant(part.scope, first)
+        return f"{found.name}{dot}{rest}" if isinstance(found, QualifiedName) else ""
 
     def _argument(self, part: _Part, call: ast.Call, position: int, name: str) -> Value:
         """Return an argument of a call; None where it is missing, Unknown where * or ** may give it."""
@@ -430,9 +434,10 @@ class _Module:
 
     def _receiver(self, part: _Part, node: ast.expr) -> Location | None:
         """Return the place of the node that an expression is; None where that is not known."""
-        if isinstance(node, ast.Name) and node.id == "self":
+        name = _dotted(node)
+        if name == "self":
             return part.of if part.of in self._facts else None
-        value = self._evaluator.value_of(node, part.scope)
+        value = _constant(part.scope, name)
         at = location_in(self._code.source, value.at) if isinstance(value, Call) and value.name in _CREATES else None
         return at if at in self._facts else None
 
