@@ -39,6 +39,7 @@ MAIN = f"{URDF}.xacro"
         ("entry_is", SENSOR + "{ update_rate = [[1]] }", 2, CONTENT),
         ("entry_is", SENSOR + "{ update_rate = [] }", 2, CONTENT),
         ("entry_is", SENSOR + "5", 2, CONTENT),
+        ("entry_is", 'at = "gazebo[@reference"', 2, "at of entry_is must be a path such as"),
         ("counts", "links = -1", 2, "links"),
         ("counts", "links = 2.0", 2, "links"),
         ("counts", 'links = "2"', 2, "links"),
