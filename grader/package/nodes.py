@@ -1,7 +1,7 @@
 """The nodes of a package that are written in Python: what they declare and open, read from the text and never run.
 
 Only what is written as a text, number or constant is known. A name is a constant if its scope binds it once.
-Actions and the topics of tf2 are not listed.
+What is opened under a condition is listed as well; actions and the topics of tf2 are not.
 """
 
 import ast

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from grader.package.yaml_nodes import YamlNode
 
 _MAX_TREE = 512 * 1024  # bytes
-_YAML = (".yaml", ".yml", ".rviz", ".repos")
+_YAML = (".yaml", ".yml", ".rviz", ".repos", ".json")  # other files are XML
 _STEP = re.compile(r"""([^\[\]]*)((?:\[[^\[\]=]+=(?:'[^']*'|"[^"]*"|[^\[\]'"]*)\])*)""")
 _CONDITION = re.compile(r"""\[([^\[\]=]+)=(?:'([^']*)'|"([^"]*)"|([^\[\]'"]*))\]""")
 _MAX_LOOKED_AT = 200_000  # entries, by one search
@@ -35,7 +35,7 @@ _Place = Location | LazyLocation
 class Entry:
     """An entry of a tree: an element, attribute, key or row, with its text, what it contains, and its place.
 
-    The name of an attribute begins with @, that of a row is empty. `rows` are those of a list, else None.
+    The name of an attribute begins with @, that of the root and of a row of YAML is empty.
     """
 
     name: str
