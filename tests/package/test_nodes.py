@@ -262,7 +262,7 @@ def test_a_script_that_cmake_installs_is_a_program() -> None:
 def test_a_module_may_be_too_long_to_evaluate(monkeypatch: pytest.MonkeyPatch) -> None:
     """What is not read is a doubt."""
     text = _HEAD + _CLASS + "        self.create_client(Trigger, 'a' + 'b')\n" * 2000
-    monkeypatch.setattr("grader.package.nodes._MAX_STEPS", 5_000)
+    monkeypatch.setattr("grader.python.constants._MAX_STEPS", 5_000)
     assert "the module is too long to evaluate" in {it.reason for it in nodes_of(text).doubts}
 
 
