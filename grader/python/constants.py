@@ -96,13 +96,11 @@ def constant_in(scope: Scope, name: str, default: Value = None) -> Value:
 
 def dotted(node: ast.AST) -> str:
     """Return the text of a name with dots; empty for any other expression."""
-    match node:
-        case ast.Name(id=name):
-            return name
-        case ast.Attribute(value=owner, attr=name):
-            above = dotted(owner)
-            return f"{above}.{name}" if above else ""
-    return ""
+    names: list[str] = []
+    while isinstance(node, ast.Attribute):
+        names.append(node.attr)
+        node = node.value
+    return ".".join([node.id, *reversed(names)]) if isinstance(node, ast.Name) else ""
 
 
 def offset_of(node: ast.AST) -> tuple[int, int]:
