@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Literal, NamedTuple
 
+from grader.errors import InputError
 from grader.package.entry_points import entry_points, read_module
 from grader.package.installation import InstalledFile
 from grader.package.package import Package
@@ -20,6 +21,7 @@ from grader.python.values import SCALARS, Call, QualifiedName, Scope, Unknown, V
 from grader.source import Location
 
 _MAX_MODULES = 100
+_MAX_FIRST_LINE = 100  # bytes
 _NODES = frozenset(
     f"rclpy.{name}"
     for name in ("node.Node", "Node", "lifecycle.Node", "lifecycle.LifecycleNode", "lifecycle.node.Node")
@@ -175,7 +177,16 @@ def _scripts(package: Package) -> list[InstalledFile]:
     """Return the Python files that a build installs as programs."""
     copies = package.installation.copies if package.installation is not None else ()
     lib = f"lib/{package.name}/"
-    return [copy for copy in copies if copy.target.startswith(lib) and copy.source.endswith(".py")]
+    return [copy for copy in copies if copy.target.startswith(lib) and _is_python(package, copy.source)]
+
+
+def _is_python(package: Package, path: str) -> bool:
+    """Return whether a file is a Python program, by its ending or its first line."""
+    try:
+        start = package.tree.files[path].read(_MAX_FIRST_LINE, first=True)
+    except InputError:
+        return False
+    return path.endswith(".py") or (start.startswith(b"#!") and b"python" in start.partition(b"\n")[0])
 
 
 def _programs(package: Package, modules: "dict[str, _Module]", nodes: Sequence[PythonNode]) -> Iterator[_Program]:

@@ -245,18 +245,20 @@ def test_a_program_has_the_nodes_that_its_function_creates() -> None:
     assert [it.reason for it in derived.doubts] == ["what another base class does is not added"]
 
 
-def test_a_script_that_cmake_installs_is_a_program() -> None:
-    """Its body creates the node."""
+@pytest.mark.parametrize(("file", "expected"), [("talk.py", ["talker"]), ("talk", ["talker"]), ("other", None)])
+def test_a_script_that_cmake_installs_is_a_program(file: str, expected: list[str] | None) -> None:
+    """Its body creates the node; it is Python by its ending or its first line."""
+    first = "#!/bin/sh" if file == "other" else "#!/usr/bin/env python3"
     texts = {
         "package.xml": "<package format='3'><name>hub</name><export><build_type>ament_cmake</build_type></export></package>",
         "CMakeLists.txt": "project(hub)\nfind_package(ament_cmake)\n"
-        "install(PROGRAMS scripts/talk.py DESTINATION lib/${PROJECT_NAME})\nament_package()",
-        "scripts/talk.py": f"{_HEAD}{_CLASS}\nif __name__ == '__main__':\n    Talker()\n",
+        f"install(PROGRAMS scripts/{file} DESTINATION lib/${{PROJECT_NAME}})\nament_package()",
+        f"scripts/{file}": f"{first}\n{_HEAD}{_CLASS}\nif __name__ == '__main__':\n    Talker()\n",
     }
     tree = overlaid(make_tree("work", (), ()), {f"src/hub/{path}": it.encode() for path, it in texts.items()})
     [package] = read_packages(tree, Lab("urdf/hub.urdf"))
-    [program] = read_nodes(package).programs
-    assert (program.name, [it.name for it in program.nodes]) == ("talk.py", ["talker"])
+    found = [(it.name, [node.name for node in it.nodes]) for it in read_nodes(package).programs]
+    assert found == ([(file, expected)] if expected else [])
 
 
 def test_a_module_may_be_too_long_to_evaluate(monkeypatch: pytest.MonkeyPatch) -> None:
