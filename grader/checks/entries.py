@@ -51,11 +51,11 @@ def entry_is(
     values: Mapping[str, Content] | None = None,
     tolerance: NonNegative = 1e-6,
 ) -> Outcome:
-    """A file has an entry at a path, with the given values: the robot after xacro, YAML, SDF, SRDF or package.xml.
+    """The expanded robot, or a file of the package, has an entry at a path, with the given values.
 
-    Numbers, and lists of numbers in a text of XML, are compared as numbers; in XML, true is equal to 1, and false to 0.
-    In YAML, a text in quotes is no number and no boolean. Comments do not count. If several entries are at the path,
-    one of them must be as expected.
+    The file is YAML, or XML such as SDF, SRDF and package.xml. Numbers, and lists of numbers in a text of XML, are
+    compared as numbers; in XML, true is equal to 1, and false to 0. In YAML, a text in quotes is no number and no
+    boolean. Comments do not count. If several entries are at the path, one of them must be as expected.
 
     Args:
         file: The end of the path of a file in the package, such as "config/nav.yaml"; "robot" is the expanded robot.
