@@ -85,8 +85,9 @@ class Source:
 
     def line(self, number: int) -> str:
         """Return the text of a line, counted from 1, without its line break."""
-        lines = self.text.split("\n", number)
-        return lines[number - 1].rstrip("\r").removeprefix("\ufeff") if 0 < number <= len(lines) else ""
+        if not 0 < number < len(self._lines):
+            return ""
+        return self.text[self._lines[number - 1] : self._lines[number] - 1].rstrip("\r").removeprefix("\ufeff")
 
     def _attribute(self, start: int, name: str) -> int:
         from grader import markup  # late: its patterns are for a fault

@@ -245,7 +245,7 @@ def sample(annotation: Any) -> Any:
     if origin is Literal:
         return inner[0]
     if origin is list:
-        return [SAMPLES[inner[0]]]
+        return [sample(inner[0])]
     if origin is tuple:
         return [SAMPLES[inner[0]]] * (3 if Ellipsis in inner else len(inner))
     return {"a": "b"} if origin is not None else SAMPLES[annotation]

@@ -7,9 +7,9 @@ from xml.sax.saxutils import escape
 
 from lxml import etree
 
+from grader.xml.elements import FOREIGN
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import PARTS
-from grader.xml.wanted_element import FOREIGN
 
 _COMMENTS = ("<!---->", "<!-- a robot -->", '<!-- <link name="ghost"/> -->', "<!--\n  0.6 / 4\n  -->", "<!-- $ & % -->")
 

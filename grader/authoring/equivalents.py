@@ -25,9 +25,9 @@ from grader.checks.check import EQUIVALENTS
 from grader.robot.normal_form import normal_form
 from grader.robot.transforms import Transform, rotation_from_rpy, unit
 from grader.submission.urdf import Read, Urdf
+from grader.xml.elements import foreign_elements, words_of_foreign
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import PARTS
-from grader.xml.wanted_element import foreign_elements, words_of_foreign
 
 _SORTED = ("link", "joint", "material", "visual", "collision")  # of these the order does not matter
 _COMMENTS = ("", " a robot ", ' <link name="ghost"/> ', "\n  0.6 / 4\n  ", " $ & % ")

@@ -18,6 +18,7 @@ from grader.errors import MissingElement, NotDecided
 from grader.package.launch.model import Launch
 from grader.package.launch.places import is_of_one_machine
 from grader.package.package import Package
+from grader.package.trees import is_path
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Collision, Cylinder, Joint, Link, Mesh, Sphere, Visual
 from grader.robot.reader import Reading
@@ -27,8 +28,8 @@ from grader.submission.submission import Submission
 from grader.text import enumerated
 from grader.workspace.names import FAMILIES, Family
 from grader.workspace.reading import read_agreement
+from grader.xml.elements import attributes_of, foreign_elements, name_of, readable, text_in, words_of_foreign
 from grader.xml.parsing import Element
-from grader.xml.wanted_element import foreign_elements, name_of, readable, text_in, words_of_foreign
 
 _THE_FILE, _THE_ROBOT, _THE_PACKAGE = "The file", "The robot", "The package"  # headings
 _THE_NAMES = "The names"
@@ -259,11 +260,13 @@ def element_facts(solution: Solution) -> _Facts:
         if sum(1 + len(inner.attrib) for inner in element.iter()) > _MAX_VALUES:
             yield Omission(_label(element), f"it has more than {_MAX_VALUES} elements and attributes")
             continue
-        attributes = {str(key): str(value) for key, value in element.attrib.items()}
+        conditions = "".join(f"[@{key}='{value}']" for key, value in attributes_of(element))
         for label, path, values in _element_values(element):
-            arguments = {"tag": name_of(element), "attributes": attributes, "path": path, "values": values}
-            given = {key: value for key, value in arguments.items() if value}
-            yield Fact(about, "element_present", given, label)
+            at = f"{name_of(element)}{conditions}{f'/{path}' if path else ''}"
+            if is_path(at):
+                yield Fact(about, "entry_is", {"at": at, **({"values": values} if values else {})}, label)
+            else:
+                yield Omission(label, "a path cannot name it")
 
 
 def _element_values(element: Element) -> Iterator[tuple[str, str, _Values]]:

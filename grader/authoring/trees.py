@@ -7,8 +7,8 @@ from lxml import etree
 
 from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_from_rpy
 from grader.xacro.texts import INSTALLED
+from grader.xml.elements import FOREIGN
 from grader.xml.parsing import Element
-from grader.xml.wanted_element import FOREIGN
 
 XACRO = "http://www.ros.org/wiki/xacro"
 _FOUND = re.compile(rf"\Afile:/*{INSTALLED}/([^/]+)/share/\1/")

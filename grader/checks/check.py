@@ -45,12 +45,14 @@ class About(NamedTuple):
     `looks_at` are the files of a package (`setup.py`, `package.xml`, `launch`, `rviz`) or the tags of a URDF (`limit`,
     `visual/origin`, `joint@type`) on which the result depends, where hints propose edits. `breaks_under` are the
     equivalents of a robot under which a criterion with such arguments may fail. `picture` is what a failure shows of
-    the reference: the outline of the link or its frame; a `wheel` shows how it rolls.
+    the reference: the outline of the link or its frame; a `wheel` shows how it rolls. `function_for` returns what is
+    called for such arguments, where they decide what is examined.
     """
 
     looks_at: tuple[str, ...] = ()
     breaks_under: _BreaksUnder = _breaks_under_none
     picture: Literal["", "outline", "wheel", "frame"] = ""
+    function_for: Callable[[Mapping[str, Any]], Callable[..., Outcome]] | None = None
 
 
 # The arguments of checks that name links, or list their names.
@@ -84,6 +86,13 @@ class Check(NamedTuple):
     parameters: Mapping[str, _CheckParameter]  # what the rubric's `with` table gives
     distribution: str = ""  # the installed package that it comes from; empty for the grader's own
     about: About = About()  # what its module declares of it
+
+    def for_arguments(self, arguments: Mapping[str, Any]) -> "Check":
+        """Return the check as it is called with these arguments, which may decide what is examined."""
+        function = self.about.function_for(arguments) if self.about.function_for is not None else self.function
+        if function is self.function:
+            return self
+        return self._replace(function=function, examined=describe(function).examined)
 
     @property
     def subject(self) -> Subject:

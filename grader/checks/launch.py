@@ -180,22 +180,26 @@ def _stops_launch(file: "NamedFile") -> bool:
 
 def _faulty_program(package: Package, launch: "Launch", nodes: Sequence[str]) -> MissingElement | None:
     """Return the fault of a wanted node that certainly ends at once: setup.py names no function for its program."""
-    from grader.package.entry_points import entry_fault  # late: most launch files start programs of ROS 2 only
-
     for choice in (node.split(" or ") for node in nodes):
-        faults = {}
-        for node in launch.nodes:
-            owner = package.find(node.package)
-            if node.when is not False and node.name in choice:
-                faults[node.name] = entry_fault(owner, node.executable) if owner is not None else None
-        found = [fault for fault in faults.values() if fault is not None]
+        started = {node.name: node for node in launch.nodes if node.when is not False and node.name in choice}
+        faults = [_fault_of_program(package.find(node.package), node.executable) for node in started.values()]
+        found = [fault for fault in faults if fault is not None]
         if found and len(found) == len(faults):
-            name, (reason, at) = next(iter(faults)), found[0]
+            (reason, at), name = found[0], next(iter(started))
             message = f"the entry point of {name.rpartition('/')[2]!r} names no function"
             return MissingElement(
                 "entry point", name, message=message, detail=f": {reason}", location=at, costs_once=True
             )
     return None
+
+
+def _fault_of_program(owner: Package | None, name: str) -> tuple[str, Location] | None:
+    """Return why a program of a submitted package does not start, and where setup.py names it."""
+    if owner is None:
+        return None
+    from grader.package.entry_points import entry_fault  # late: most launch files start programs of ROS 2 only
+
+    return entry_fault(owner, name)
 
 
 def _may_start(launch: "Launch", missing: Sequence[Sequence[str]]) -> bool:

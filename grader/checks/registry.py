@@ -48,7 +48,7 @@ CHECKS = (
     "collisions.collides_as",
     "meshes.shows_mesh",
     "reference.kinematics_match_reference",
-    "xml_elements.element_present",
+    "entries.entry_is",
     "package_build.package_found",
     "package_build.package_type",
     "package_build.build_installs",

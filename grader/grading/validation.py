@@ -193,7 +193,8 @@ class Validation:
         for key, parameter in check.parameters.items():
             if parameter.required and key not in given and key not in defaults:
                 self._complain((*where, "with"), f"the check {check.name} needs {key}: {parameter.type.name}")
-        return check, {**{key: value for key, value in defaults.items() if key not in given}, **arguments}
+        arguments = {**{key: value for key, value in defaults.items() if key not in given}, **arguments}
+        return check.for_arguments(arguments), arguments
 
     def _parse_arguments(self, where: TomlPath, check: Check, given: TomlRow) -> TomlRow:
         """Return the valid arguments of a check, converted; complain of the others."""

@@ -8,15 +8,12 @@ from grader.errors import InputError
 from grader.names import closest
 from grader.package.package import Package
 from grader.python.budget import PYTHON_LIMIT
+from grader.python.constants import binds_unseen
 from grader.python.parse import Code, bound_in, parse
 from grader.source import Location
 from grader.text import enumerated
 
 _ENTRY = re.compile(r"\s*([^=\s]+)\s*=\s*(\w+(?:\.\w+)*)\s*(?::\s*(\w+)(?:\.\w+)*\s*)?(?:\[.*)?", re.ASCII)
-# What binds names of a module, or finds its submodules, in ways that are not seen.
-_BINDS_UNSEEN = frozenset(
-    {"exec", "eval", "globals", "locals", "vars", "setattr", "modules", "__dict__", "__path__", "__getattr__"}
-)
 _MAX_NAMED = 5  # names in a message
 
 
@@ -121,18 +118,10 @@ def _guess(name: str, known: list[str], own: str = "") -> str:
     return f"; there is {enumerated([repr(it) for it in known[:_MAX_NAMED]])}" if known else ""
 
 
-def binds_unseen(code: Code) -> bool:
-    """Return whether a module may bind names in ways that are not seen."""
-    names = (
-        getattr(it, "id", None) or getattr(it, "attr", None) or getattr(it, "name", None) for it in ast.walk(code.tree)
-    )
-    return any(name in _BINDS_UNSEEN for name in names)
-
-
 def _certain_names(code: Code) -> frozenset[str] | None:
     """Return the names that a module may bind; None if it may bind others."""
     nodes = [*ast.walk(code.tree)]
-    if binds_unseen(code) or any(isinstance(node, ast.alias) and node.name == "*" for node in nodes):
+    if binds_unseen(nodes) or any(isinstance(node, ast.alias) and node.name == "*" for node in nodes):
         return None
     shared = {name for node in nodes if isinstance(node, ast.Global) for name in node.names}
     return bound_in(code.tree) | shared

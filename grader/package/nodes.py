@@ -1,31 +1,27 @@
 """The nodes of a package that are written in Python: what they declare and open, read from the text and never run.
 
-Only what is written as a text, number or constant is known. A name is a constant if its scope binds it once.
-Actions and the topics of tf2 are not listed.
+Only what is written as a text, number or constant is known.
+What is opened under a condition is listed as well; actions and the topics of tf2 are not.
 """
 
 import ast
-import builtins
-import sys
-from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import ClassVar, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
-from grader.package.entry_points import binds_unseen, entry_points, read_module
+from grader.errors import InputError
+from grader.package.entry_points import entry_points, read_module
 from grader.package.installation import InstalledFile
 from grader.package.package import Package
-from grader.python.budget import Budget, OutOfBudget
+from grader.python.constants import Constants, constant_in, dotted, offset_of
 from grader.python.evaluation import record
-from grader.python.interpreter import Interpreter
-from grader.python.library import imported_names
 from grader.python.parse import START, Code, location_in, own_nodes, position_of
-from grader.python.values import SCALARS, Call, EvaluationFails, QualifiedName, Scope, Undetermined, Unknown, Value
+from grader.python.values import SCALARS, Call, QualifiedName, Scope, Unknown, Value
 from grader.source import Location
 
 _MAX_MODULES = 100
-_MAX_STEPS = 50_000  # of the evaluation of one module
+_MAX_FIRST_LINE = 100  # bytes
 _NODES = frozenset(
     f"rclpy.{name}"
     for name in ("node.Node", "Node", "lifecycle.Node", "lifecycle.LifecycleNode", "lifecycle.node.Node")
@@ -44,13 +40,10 @@ _HARMLESS = frozenset(
      "hasattr", "getattr", "ActionClient", "ActionServer", "TransformListener", "TransformBroadcaster",
      "StaticTransformBroadcaster"}
 )  # fmt: skip
-# By rclpy/qos.py of Jazzy: depth, reliability, durability.
+# By rclpy/qos.py of Jazzy, as qos_profile_NAME and as QoSPresetProfiles.NAME.value: depth, reliability, durability.
 _PROFILES = {
-    "qos_profile_sensor_data": (5, "best_effort", "volatile"), "SENSOR_DATA": (5, "best_effort", "volatile"),
-    "qos_profile_services_default": (10, "reliable", "volatile"), "SERVICES_DEFAULT": (10, "reliable", "volatile"),
-    "qos_profile_parameters": (1000, "reliable", "volatile"), "PARAMETERS": (1000, "reliable", "volatile"),
-    "qos_profile_system_default": (None, "system_default", "system_default"),
-    "SYSTEM_DEFAULT": (None, "system_default", "system_default"),
+    "sensor_data": (5, "best_effort", "volatile"), "services_default": (10, "reliable", "volatile"),
+    "parameters": (1000, "reliable", "volatile"), "system_default": (None, "system_default", "system_default"),
 }  # fmt: skip
 # The policies that are told apart, by the group that older names begin with.
 _GROUPS = {
@@ -184,7 +177,16 @@ def _scripts(package: Package) -> list[InstalledFile]:
     """Return the Python files that a build installs as programs."""
     copies = package.installation.copies if package.installation is not None else ()
     lib = f"lib/{package.name}/"
-    return [copy for copy in copies if copy.target.startswith(lib) and copy.source.endswith(".py")]
+    return [copy for copy in copies if copy.target.startswith(lib) and _is_python(package, copy.source)]
+
+
+def _is_python(package: Package, path: str) -> bool:
+    """Return whether a file is a Python program, by its ending or its first line."""
+    try:
+        start = package.tree.files[path].read(_MAX_FIRST_LINE, first=True)
+    except InputError:
+        return False
+    return path.endswith(".py") or (start.startswith(b"#!") and b"python" in start.partition(b"\n")[0])
 
 
 def _programs(package: Package, modules: "dict[str, _Module]", nodes: Sequence[PythonNode]) -> Iterator[_Program]:
@@ -214,91 +216,15 @@ def _created_by(
     return tuple(found.values())
 
 
-class _Evaluator(Interpreter):
-    """Evaluates expressions whose names are constants. What it cannot evaluate is Unknown."""
-
-    def value_of(self, node: ast.expr | None, scope: Scope) -> Value:
-        """Return the value of an expression; None for none."""
-        try:
-            return self.evaluate(node, scope) if node is not None else None
-        except (OutOfBudget, RecursionError) as error:
-            return Unknown(str(error), START)
-
-    def evaluate(self, node: ast.expr, scope: Scope) -> Value:
-        """Return the value of an expression; Unknown where it cannot be determined: nothing else depends on it."""
-        try:
-            return self.value(node, scope)
-        except (Undetermined, EvaluationFails) as error:
-            return Unknown(str(error), position_of(node))
-
-    def _constant_name(self, node: ast.Name, scope: Scope) -> Value:
-        try:
-            return scope.find(node.id)
-        except KeyError:
-            if hasattr(builtins, node.id):
-                return self._builtin(node.id)
-            raise Undetermined(f"the value of {node.id} is not known") from None
-
-    def _constant_attribute(self, node: ast.Attribute, scope: Scope) -> Value:
-        try:
-            return scope.find(_dotted(node))
-        except KeyError:
-            return Interpreter.KINDS[ast.Attribute](self, node, scope)
-
-    KINDS: ClassVar = {**Interpreter.KINDS, ast.Name: _constant_name, ast.Attribute: _constant_attribute}
-
-
-def _dotted(node: ast.AST) -> str:
-    """Return the text of a name with dots; empty for any other expression."""
-    match node:
-        case ast.Name(id=name):
-            return name
-        case ast.Attribute(value=owner, attr=name):
-            above = _dotted(owner)
-            return f"{above}.{name}" if above else ""
-    return ""
-
-
-def _offset(node: ast.AST) -> tuple[int, int]:
-    return getattr(node, "lineno", 0), getattr(node, "col_offset", 0)
-
-
-def _replaces_names(node: ast.ImportFrom) -> bool:
-    """Return whether a star import may bind names of constants: those of messages and of Python itself do not."""
-    *_, last = (node.module or "").split(".")
-    is_known = last in ("msg", "srv", "action") or last in sys.stdlib_module_names
-    return node.names[0].name == "*" and not is_known
-
-
-def _bindings(nodes: Sequence[ast.AST]) -> tuple[Counter[str], dict[str, ast.expr]]:
-    """Return how often statements bind or change each name with dots, and the expressions that are assigned."""
-    counts, values = Counter[str](), dict[str, ast.expr]()
-    for part in nodes:
-        match part:
-            case ast.Name(ctx=ast.Store() | ast.Del()):
-                counts[part.id] += 1
-            case ast.Attribute(ctx=ast.Store() | ast.Del()):
-                counts.update((_dotted(part), _dotted(part.value)))
-            case ast.Subscript(ctx=ast.Store() | ast.Del()):
-                counts[_dotted(part.value)] += 1
-            case ast.Assign(targets=[target], value=value) | ast.AnnAssign(target=target, value=ast.expr() as value):
-                values[_dotted(target)] = value
-            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
-                counts[name] += 1
-            case ast.arg(arg=name) | ast.ExceptHandler(name=str(name)) | ast.MatchAs(name=str(name)):
-                counts[name] += 1
-            case ast.MatchStar(name=str(name)) | ast.MatchMapping(rest=str(name)):
-                counts[name] += 1
-            case ast.alias(name=full, asname=asname):
-                counts[asname or full.partition(".")[0]] += 1
-    return counts, values
+def _calls_of(nodes: Sequence[ast.AST]) -> list[ast.Call]:
+    return sorted((it for it in nodes if isinstance(it, ast.Call)), key=offset_of)
 
 
 class _Part(NamedTuple):
-    """A function or method, or the module without these, with its scope and the place of its class."""
+    """A function or method, or the module without these: its calls, its scope and the place of its class."""
 
     name: str
-    nodes: Sequence[ast.AST]
+    calls: Sequence[ast.Call]
     scope: Scope
     of: Location | None = None
 
@@ -307,95 +233,64 @@ class _Module:
     """A module: first its scopes and the bases of its classes, then, once all nodes are known, their calls."""
 
     def __init__(self, code: Code, name: str, *, is_package: bool) -> None:
-        self._code, self._name, self._is_package = code, name, is_package
+        self._code, self._name = code, name
         functions = dict.fromkeys(("rclpy.qos.QoSProfile", *_CREATES), record)
-        self._evaluator = _Evaluator(functions, {}, budget=Budget(_MAX_STEPS))
-        parts = ast.walk(code.tree)
-        self._shared = {it for part in parts if isinstance(part, ast.Global | ast.Nonlocal) for it in part.names}
-        self._is_open = binds_unseen(code)
+        self._constants = Constants([*ast.walk(code.tree)], name, functions, is_package=is_package)
         self.bases: dict[str, list[str]] = {}  # of the classes, by full names
         self.doubts: list[_Doubt] = []
         self._classes: dict[Location, str] = {}
         self._facts: dict[Location, list[_Fact]] = {}  # of each node
         self._parts: list[_Part] = []
         body = own_nodes(code.tree)
-        scope = self._bound(body, Scope({}))
+        scope = self._constants.bound(body, Scope({}))
         for part in body:
             if isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef) and part.name in scope.names:
                 scope.names[part.name] = QualifiedName(f"{name}.{part.name}")
-        self._parts.append(_Part("", body, scope))
+        self._parts.append(_Part("", _calls_of(body), scope))
         for part in body:
             if isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef):
                 inner = [*ast.walk(part)]
-                self._parts.append(_Part(part.name, inner, self._bound(inner, Scope({}, scope))))
+                self._parts.append(_Part(part.name, _calls_of(inner), self._constants.bound(inner, Scope({}, scope))))
             elif isinstance(part, ast.ClassDef):
                 self._add_class(part, scope)
 
     def _at(self, node: ast.expr | ast.stmt) -> Location:
         return location_in(self._code.source, position_of(node))
 
-    def _bound(self, nodes: Sequence[ast.AST], scope: Scope) -> Scope:
-        """Return a scope with the names that statements bind: constants, and what is not known."""
-        nodes = sorted(nodes, key=_offset)
-        counts, values = _bindings(nodes)
-        unknown = Unknown("it is not bound once", START)
-        star = max((it.lineno for it in nodes if isinstance(it, ast.ImportFrom) and _replaces_names(it)), default=0)
-        names = [name for name in counts if name.partition(".")[0] not in self._shared]
-        scope.names |= dict.fromkeys(names, unknown)
-        for node in nodes:
-            if isinstance(node, ast.Import | ast.ImportFrom):
-                found = {name: it for alias in node.names for name, it in self._imported(node, alias).items()}
-                scope.names |= {name: it for name, it in found.items() if counts[name] == 1}
-        assigned = [it for it in values if it in names and counts[it] == 1 and values[it].lineno > star]
-        for name in assigned if not self._is_open else ():
-            value = self._evaluator.value_of(values[name], scope)
-            scope.names[name] = unknown if isinstance(value, list | dict) else value  # which may be changed
-        return scope
-
-    def _imported(self, node: ast.Import | ast.ImportFrom, alias: ast.alias) -> dict[str, QualifiedName]:
-        level = node.level if isinstance(node, ast.ImportFrom) else 0
-        module = (node.module or "") if isinstance(node, ast.ImportFrom) else ""
-        if level:
-            above = self._name.split(".")[: None if self._is_package and level == 1 else -level + self._is_package]
-            module = ".".join(filter(None, (*above, module)))
-        return imported_names(module, alias, {})
-
     def _add_class(self, node: ast.ClassDef, scope: Scope) -> None:
         """Keep a class and its methods, which reach its constants as attributes of self."""
         at, full = self._at(node), f"{self._name}.{node.name}"
-        bases = [self._evaluator.value_of(base, scope) for base in node.bases]
+        bases = [self._constants.value_of(base, scope) for base in node.bases]
         self.bases[full] = [base.name if isinstance(base, QualifiedName) else "?" for base in bases]
         self._classes[at] = full
         own = own_nodes(node)
-        counts, _ = _bindings([*ast.walk(node)])
-        constants = self._bound(own, Scope({}, scope)).names
+        constants = self._constants.bound(own, Scope({}, scope)).names
         attributes = Scope({f"self.{name}": value for name, value in constants.items()}, scope)
         for method in own:
             if not isinstance(method, ast.FunctionDef | ast.AsyncFunctionDef):
                 continue
             nodes = [*ast.walk(method)]
-            local = self._bound(nodes, Scope({}, attributes))
+            local = self._constants.bound(nodes, Scope({}, attributes))
             for name in [name for name in local.names if name.startswith("self.")]:
                 value = local.names.pop(name)
-                is_constant = counts[name] == 1 and name not in attributes.names
-                attributes.names[name] = value if is_constant else Unknown("it is not bound once", START)
-            self._parts.append(_Part(method.name, nodes, local, at))
+                is_first = name not in attributes.names
+                attributes.names[name] = value if is_first else Unknown("it is not bound once", START)
+            self._parts.append(_Part(method.name, _calls_of(nodes), local, at))
 
     def read_nodes(self, kinds: Collection[str]) -> list[PythonNode]:
         """Return the nodes, once the full names of all classes of nodes are known."""
         for at, full in self._classes.items():
             if full in kinds:
-                self._facts[at] = []
-                others = [base for base in self.bases[full] if base not in _NODES]
-                self._facts[at] += [_Doubt("what another base class does is not added", at) for _ in others[:1]]
-        calls = [
-            (part, it) for part in self._parts for it in sorted(part.nodes, key=_offset) if isinstance(it, ast.Call)
-        ]
+                is_own = _NODES.issuperset(self.bases[full])
+                self._facts[at] = [] if is_own else [_Doubt("what another base class does is not added", at)]
+        calls = [(part, call) for part in self._parts for call in part.calls]
         for part, call in calls:
             if self._called(part, call) in _CREATES:
                 self._facts[self._at(call)] = [_Name(_text(self._argument(part, call, 0, "node_name")))]
         for part, call in calls:
             self._read_call(part, call)
+        if self._constants.budget.left < 0:
+            self.doubts.append(_Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1)))
         return [self._node(at, facts) for at, facts in self._facts.items()]
 
     def _node(self, at: Location, facts: "Sequence[_Fact]") -> PythonNode:
@@ -414,27 +309,29 @@ class _Module:
         """Yield the full name and place of each call in a function of the module, or in its body."""
         for part in self._parts:
             if part.name == function and part.of is None:
-                yield from ((self._called(part, it), self._at(it)) for it in part.nodes if isinstance(it, ast.Call))
+                yield from ((self._called(part, call), self._at(call)) for call in part.calls)
 
     def _called(self, part: _Part, call: ast.Call) -> str:
-        function = self._evaluator.value_of(call.func, part.scope)
-        return function.name if isinstance(function, QualifiedName) else ""
+        first, dot, rest = dotted(call.func).partition(".")
+        found = constant_in(part.scope, first)
+        return f"{found.name}{dot}{rest}" if isinstance(found, QualifiedName) else ""
 
     def _argument(self, part: _Part, call: ast.Call, position: int, name: str) -> Value:
         """Return an argument of a call; None where it is missing, Unknown where * or ** may give it."""
-        for keyword in call.keywords:
-            if keyword.arg in (name, None):
-                unpacked = Unknown("it is unpacked", position_of(call))
-                return self._evaluator.value_of(keyword.value, part.scope) if keyword.arg else unpacked
+        given: list[ast.expr | None] = [it.value for it in call.keywords if it.arg == name]
         if any(isinstance(it, ast.Starred) for it in call.args[: position + 1]):
             return Unknown("it is unpacked", position_of(call))
-        return self._evaluator.value_of(call.args[position] if position < len(call.args) else None, part.scope)
+        given += call.args[position : position + 1]
+        if not given and any(it.arg is None for it in call.keywords):
+            return Unknown("it is unpacked", position_of(call))
+        return self._constants.value_of(given[0] if given else None, part.scope)
 
     def _receiver(self, part: _Part, node: ast.expr) -> Location | None:
         """Return the place of the node that an expression is; None where that is not known."""
-        if isinstance(node, ast.Name) and node.id == "self":
+        name = dotted(node)
+        if name == "self":
             return part.of if part.of in self._facts else None
-        value = self._evaluator.value_of(node, part.scope)
+        value = constant_in(part.scope, name)
         at = location_in(self._code.source, value.at) if isinstance(value, Call) and value.name in _CREATES else None
         return at if at in self._facts else None
 
@@ -453,19 +350,19 @@ class _Module:
             case function:
                 for argument in (*call.args, *(keyword.value for keyword in call.keywords)):
                     at = self._receiver(part, argument) if isinstance(argument, ast.Name) else None
-                    name = (_dotted(function) or "this call").rpartition(".")[2]
+                    name = (dotted(function) or "this call").rpartition(".")[2]
                     if at is not None and name not in _HARMLESS:
                         self._facts[at].append(_Doubt(f"{name} is given the node", self._at(call)))
 
     def _read_init(self, part: _Part, call: ast.Call, owner: ast.expr) -> "Iterator[_Fact]":
         """Yield the name that a class gives its node, if its base is rclpy's Node itself."""
         assert part.of is not None
-        is_super = isinstance(owner, ast.Call) and _dotted(owner.func) == "super"
-        base = self._evaluator.value_of(owner, part.scope)
+        is_super = isinstance(owner, ast.Call) and dotted(owner.func) == "super"
+        base = self._constants.value_of(owner, part.scope)
         is_base = isinstance(base, QualifiedName) and base.name in _NODES
         if (is_super or is_base) and _NODES.intersection(self.bases[self._classes[part.of]]):
             name = self._argument(part, call, 0 if is_super else 1, "node_name")
-            yield _Name(name if isinstance(name, str) else None)
+            yield _Name(_text(name))
             for keyword in call.keywords:
                 if keyword.arg in _OPTIONS:
                     yield _Doubt(f"{keyword.arg or 'more arguments'} of its Node", self._at(call))
@@ -521,7 +418,8 @@ def _qos(value: Value) -> _Qos:
         case int():
             return _Qos(value, "reliable", "volatile")
         case QualifiedName(name=name) if name.startswith("rclpy.qos."):
-            return _Qos(*_PROFILES.get(name.removesuffix(".value").rpartition(".")[2], ()))
+            profile = name.removesuffix(".value").rpartition(".")[2].lower().removeprefix("qos_profile_")
+            return _Qos(*_PROFILES.get(profile, ()))
         case Call(name="rclpy.qos.QoSProfile", kwargs=given):
             depth = given.get("depth")
             reliability, durability = (

@@ -200,9 +200,12 @@ class XmlFile:
             raise XmlFault(" ".join(message.split()), error_location(error, source)) from None
         self._indices = {element: index for index, element in enumerate(self.root.iter("*"))}
 
-    def location(self, element: Element) -> Location:
-        """Return the location of an element; the start of the file in an encoding in which its tags are not found."""
+    def location(self, element: Element, attribute: str | None = None) -> Location:
+        """Return the location of an element, or of an attribute of it.
+
+        It is the start of the file in an encoding in which tags are not found.
+        """
         try:
-            return self.source.tag(self._indices[element])
+            return self.source.tag(self._indices[element], attribute)
         except IndexError:
             return Location(self.source.path, 1, 1)

@@ -23,7 +23,7 @@ points = 1
 check = "{}"
 with = {{ {} }}
 """
-SENSOR = 'tag = "gazebo", attributes = { reference = "@tip" }, path = "sensor", values = '
+SENSOR = "at = \"gazebo[@reference='@tip']/sensor\", values = "
 CONTENT = "must be a table of strings, numbers, booleans or lists of these, not"
 CODES = "problems of without_problems must be codes of problems"
 HEIGHT = '<link name="base_link"/><xacro:property name="height" value="1"/><link name="l${height}"/>'
@@ -33,12 +33,13 @@ MAIN = f"{URDF}.xacro"
 @pytest.mark.parametrize(
     ("check", "arguments", "code", "message"),
     [
-        ("element_present", SENSOR + '{ "@type" = "camera", update_rate = 30, "camera/image/width" = [640] }', 0, ""),
-        ("element_present", SENSOR + '{ "@type" = "lidar" }', 1, ""),
-        ("element_present", SENSOR + "{ update_rate = { a = 1 } }", 2, CONTENT),
-        ("element_present", SENSOR + "{ update_rate = [[1]] }", 2, CONTENT),
-        ("element_present", SENSOR + "{ update_rate = [] }", 2, CONTENT),
-        ("element_present", SENSOR + "5", 2, CONTENT),
+        ("entry_is", SENSOR + '{ "@type" = "camera", update_rate = 30, "camera/image/width" = [640] }', 0, ""),
+        ("entry_is", SENSOR + '{ "@type" = "lidar" }', 1, ""),
+        ("entry_is", SENSOR + "{ update_rate = { a = 1 } }", 2, CONTENT),
+        ("entry_is", SENSOR + "{ update_rate = [[1]] }", 2, CONTENT),
+        ("entry_is", SENSOR + "{ update_rate = [] }", 2, CONTENT),
+        ("entry_is", SENSOR + "5", 2, CONTENT),
+        ("entry_is", 'at = "gazebo[@reference"', 2, "at of entry_is must be a path such as"),
         ("counts", "links = -1", 2, "links"),
         ("counts", "links = 2.0", 2, "links"),
         ("counts", 'links = "2"', 2, "links"),
@@ -52,7 +53,7 @@ MAIN = f"{URDF}.xacro"
 def test_a_rubric_is_refused_in_one_line(tmp_path: Path, check: str, arguments: str, code: int, message: str) -> None:
     """Names of links may be selectors; a value of another type or range is a mistake of the rubric."""
     (tmp_path / "rubric.toml").write_text(RUBRIC.format(check, arguments))
-    (tmp_path / "robot.urdf").write_text(CASE["element_present"].passing.text)
+    (tmp_path / "robot.urdf").write_text(CASE["entry_is"].passing.text)
     done = run(("grade", tmp_path / "robot.urdf", "--rubric", tmp_path / "rubric.toml"))
     assert (done.returncode, done.stderr.count(b"\n")) == (code, int(code == 2)), done
     assert message.encode() in done.stderr

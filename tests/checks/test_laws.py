@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from grader.checks.appearance import shows_box, shows_grey
 from grader.checks.collisions import collision_matches_visual
 from grader.checks.contact import clear_of
+from grader.checks.entries import entry_is
 from grader.checks.heights import bottom_at_height
 from grader.checks.inertia import inertia_plausible
 from grader.checks.joints import joint_axis
@@ -18,7 +19,6 @@ from grader.checks.placement import centre_at, frame_at
 from grader.checks.reference import kinematics_match_reference
 from grader.checks.structure import held_by
 from grader.checks.xacro_source import xacro_uses
-from grader.checks.xml_elements import element_present
 from grader.errors import MissingElement, NotDecided
 from grader.robot.kinematics import Configuration
 from grader.robot.mass_properties import turned as turned_inertia
@@ -338,4 +338,4 @@ def test_a_submission_that_used_up_its_work() -> None:
 def test_an_element_of_a_file_that_is_no_xml() -> None:
     """It misses the robot, as everything in it does."""
     with pytest.raises(MissingElement, match="the file is not well-formed XML, so it has no elements"):
-        element_present(ARM.robot, Scene("nothing").submission, tag="gazebo")
+        entry_is(ARM.robot, Scene("nothing").submission, at="gazebo")

@@ -21,15 +21,15 @@ id = "sensor"
 part = "a"
 title = "Sensor"
 points = 2
-check = "element_present"
-with = { tag = "gazebo", attributes = { reference = "@tip" }, path = "sensor", values = { "@type" = "camera", rate = 30, "camera/image/width" = 640 } }
+check = "entry_is"
+with = { at = "gazebo[@reference='@tip']/sensor", values = { "@type" = "camera", rate = 30, "camera/image/width" = 640 } }
 [[criterion]]
 id = "control"
 part = "a"
 title = "Control"
 points = 2
-check = "element_present"
-with = { tag = "ros2_control", path = "joint", values = { "@name" = "j", "command/@name" = ["position", "velocity"] } }
+check = "entry_is"
+with = { at = "ros2_control/joint", values = { "@name" = "j", "command/@name" = ["position", "velocity"] } }
 """
 SENSOR = """\
 <sensor type="camera">

@@ -177,6 +177,13 @@ def test_a_class_of_nodes_is_one_whatever_its_base_is_called(head: str, base: st
 NAMES = ["pass", "super().__init__(name)", "super().__init__(name); super().__init__('b')", "Mixin.__init__(self, 'a')"]
 
 
+def test_a_name_is_known_beside_other_arguments() -> None:
+    """It is the first one, or has a name."""
+    for call in ("'a', **given", "node_name='a', **given"):
+        [node] = nodes_of(f"{_HEAD}class T(Node):\n    def __init__(self):\n        super().__init__({call})\n").nodes
+        assert node.name == "a"
+
+
 @pytest.mark.parametrize("call", NAMES)
 def test_a_name_that_is_computed_is_not_known(call: str) -> None:
     """So is one of a node that is named twice, or whose base class is given the name."""
@@ -187,6 +194,7 @@ def test_a_name_that_is_computed_is_not_known(call: str) -> None:
 DOUBTS = [
     ("super().__init__('a', namespace='b')", "namespace of its Node"),
     ("super().__init__('a', **given)", "more arguments of its Node"),
+    ("super().__init__(**given)", "more arguments of its Node"),
     ("Helper(self)", "Helper is given the node"),
     ("helpers[0](node=self)", "this call is given the node"),
     ("rclpy.spin(self)", None),
@@ -237,18 +245,27 @@ def test_a_program_has_the_nodes_that_its_function_creates() -> None:
     assert [it.reason for it in derived.doubts] == ["what another base class does is not added"]
 
 
-def test_a_script_that_cmake_installs_is_a_program() -> None:
-    """Its body creates the node."""
+@pytest.mark.parametrize(("file", "expected"), [("talk.py", ["talker"]), ("talk", ["talker"]), ("other", None)])
+def test_a_script_that_cmake_installs_is_a_program(file: str, expected: list[str] | None) -> None:
+    """Its body creates the node; it is Python by its ending or its first line."""
+    first = "#!/bin/sh" if file == "other" else "#!/usr/bin/env python3"
     texts = {
         "package.xml": "<package format='3'><name>hub</name><export><build_type>ament_cmake</build_type></export></package>",
         "CMakeLists.txt": "project(hub)\nfind_package(ament_cmake)\n"
-        "install(PROGRAMS scripts/talk.py DESTINATION lib/${PROJECT_NAME})\nament_package()",
-        "scripts/talk.py": f"{_HEAD}{_CLASS}\nif __name__ == '__main__':\n    Talker()\n",
+        f"install(PROGRAMS scripts/{file} DESTINATION lib/${{PROJECT_NAME}})\nament_package()",
+        f"scripts/{file}": f"{first}\n{_HEAD}{_CLASS}\nif __name__ == '__main__':\n    Talker()\n",
     }
     tree = overlaid(make_tree("work", (), ()), {f"src/hub/{path}": it.encode() for path, it in texts.items()})
     [package] = read_packages(tree, Lab("urdf/hub.urdf"))
-    [program] = read_nodes(package).programs
-    assert (program.name, [it.name for it in program.nodes]) == ("talk.py", ["talker"])
+    found = [(it.name, [node.name for node in it.nodes]) for it in read_nodes(package).programs]
+    assert found == ([(file, expected)] if expected else [])
+
+
+def test_a_module_may_be_too_long_to_evaluate(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is not read is a doubt."""
+    text = _HEAD + _CLASS + "        self.create_client(Trigger, 'a' + 'b')\n" * 2000
+    monkeypatch.setattr("grader.python.constants._MAX_STEPS", 5_000)
+    assert "the module is too long to evaluate" in {it.reason for it in nodes_of(text).doubts}
 
 
 def test_a_package_without_a_build_file_has_no_nodes() -> None:
