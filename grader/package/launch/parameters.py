@@ -20,6 +20,7 @@ from grader.package.launch.model import (
     ParameterValue,
     Resolved,
     StartedNode,
+    UnknownTable,
     UnknownText,
 )
 from grader.package.launch.places import PREFIX
@@ -365,8 +366,19 @@ def parameters_of(
             }
             continue
         for key, values in tables:
-            by_key.setdefault(key, {}).update(values)
-    return NodeParameters(_counting(by_key, full, is_cpp), "; ".join(reasons))
+            opened = {name: it.value for name, it in values.items() if isinstance(it.value, UnknownTable)}
+            reasons += [table.reason for table in opened.values()]
+            _forget_below(opened, by_key)
+            by_key.setdefault(key, {}).update((name, it) for name, it in values.items() if name not in opened)
+    return NodeParameters(_counting(by_key, full, is_cpp), "; ".join(dict.fromkeys(reasons)))
+
+
+def _forget_below(tables: Mapping[str, Unknown], by_key: dict[str, dict[str, ParameterValue]]) -> None:
+    """Make the values unknown that parameters in a table that is not known may replace."""
+    for name, doubt in tables.items():
+        for values in by_key.values():
+            below = [it for it in values if not name or f"{it}.".startswith(f"{name}.")]
+            values.update((it, values[it]._replace(value=doubt)) for it in below)
 
 
 def _full_name(node: StartedNode, name: str) -> str | None:

@@ -25,6 +25,7 @@ from grader.package.launch.model import (
     StartedNode,
     UnknownText,
 )
+from grader.package.launch.moveit import MoveItConfigurations, moveit_exports
 from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.package.launch.substitutions import resolve
 from grader.python.evaluation import Evaluation, record
@@ -73,6 +74,12 @@ class _Recorder:
         """Return whether a package certainly is on the machine."""
         found = self._installation.has_package(name)
         self._answers.append((methodcaller("has_package", name), found))
+        return found
+
+    def files_in(self, folder: str) -> Sequence[str] | None:
+        """Return the names of the installed files in a folder."""
+        found = self._installation.files_in(folder)
+        self._answers.append((methodcaller("files_in", folder), found))
         return found
 
     def has_program(self, package: str, name: str) -> bool | None:
@@ -274,8 +281,8 @@ class _PythonLaunchFile:
     def run(self, code: Code, installed: str) -> dict[str, Value]:
         """Evaluate the file, and return its names."""
         names = {"__file__": f"{PREFIX}/{installed}", "__name__": _MODULE_NAME}
-        packages_last = sorted(exports().items(), key=lambda it: -it[0].count("."))
-        known_names = {module: own.keys() for module, own in packages_last}
+        packages_last = sorted({**exports(), **moveit_exports()}.items(), key=lambda it: -it[0].count("."))
+        known_names = {module: [*own] for module, own in packages_last}
         self.interpreter = Interpreter(self._functions(), names, stand_ins=(PREFIX, HOME), exports=known_names)
         return self.interpreter.run(code).names
 
@@ -294,6 +301,7 @@ class _PythonLaunchFile:
         return LaunchFunctions(
             {
                 **standard_functions(WORKING_FOLDER),
+                **MoveItConfigurations(lambda: self.context, self.reads).functions(),
                 **dict.fromkeys(_RECORDED, record),
                 **dict.fromkeys(adds, _add_action),
                 **dict.fromkeys(performs, self._perform),
