@@ -14,7 +14,7 @@ from typing import Any
 
 from grader.package.launch.api import DESCRIPTION
 from grader.package.launch.model import Contents, Context, FileText, UnknownTable, UnknownText
-from grader.package.launch.places import PREFIX, SHARE
+from grader.package.launch.places import BY_MOVEIT, PREFIX, SHARE
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_value
 from grader.python.evaluation import Evaluation
 from grader.python.parse import Position
@@ -84,8 +84,15 @@ class _Configuration:
 
     robot: str
     folder: str  # the share folder of its package
-    description: str = "robot_description"  # the name of the parameter
+    description: str  # the name of the parameter
+    doubt: Callable[[Unknown], Unknown]
     parts: dict[str, dict[str, Value]] = field(default_factory=dict)
+
+    def doubted(self, reason: str, at: Position) -> UnknownText:
+        """Return a text that is not known, with the doubt whether MoveIt finds it at all."""
+        found = UnknownText(reason, at)
+        self.doubt(found)
+        return found
 
 
 @dataclass(slots=True)
@@ -119,7 +126,7 @@ class MoveItConfigurations:
                 evaluation.doubted(Unknown(f"whether the package {name!r} is installed is not evaluated", call.at))
         made = Call(_BUILDER, [], {}, call.at)
         made.is_object = True
-        self._built[made] = _Configuration(robot, f"{SHARE}/{package}", description)
+        self._built[made] = _Configuration(robot, f"{SHARE}/{package}", description, evaluation.doubted)
         return made
 
     def _step(self, name: str, _: Evaluation, call: Call) -> Call:
@@ -177,14 +184,17 @@ class MoveItConfigurations:
         """Return the names of the files that are installed in the folder config; None where this is not known."""
         return self.context().installation.files_in(f"{own.folder}/config".removeprefix(f"{PREFIX}/"))
 
-    def _read(self, path: str, at: Position, by: str = "open", arguments: Any = ()) -> Contents:
+    def _is_there(self, path: str) -> bool:
+        return self.context().text_of(path) is not None
+
+    def _read(self, path: str, at: Position, by: str, arguments: Any = ()) -> Contents:
         contents = Contents(path, by, arguments)
         self.reads.append((contents, at))
         return contents
 
     def _yaml(self, path: str, at: Position) -> Value:
         """Return the table in a file that has to be there."""
-        self._read(path, at)
+        self._read(path, at, BY_MOVEIT)
         found = self.context().installation.open_installed(posixpath.normpath(path).removeprefix(f"{PREFIX}/"))
         if found is None:
             return UnknownTable("a file for MoveIt is not evaluated", at)
@@ -195,23 +205,19 @@ class MoveItConfigurations:
 
     def _description(self, own: _Configuration, at: Position, given: Mapping[str, Value]) -> dict[str, Value]:
         """Return the robot; if its file is not there, MoveIt waits for a topic."""
-        names = self._names(own)
-        default = f"{own.robot}.urdf.xacro"
-        if "file_path" not in given and (names is None or default not in names):
-            return {own.description: UnknownText("the file of the robot that MoveIt finds is not evaluated", at)}
-        path = self._path(own, given, f"config/{default}")
-        if self.context().text_of(path) is None:
-            return {own.description: FileText("the content of a file is not evaluated", at, Contents(path, "xacro"))}
-        contents = self._read(path, at, "xacro", _mappings(given))
+        path = self._path(own, given, f"config/{own.robot}.urdf.xacro")
+        is_there = self._is_there(path)
+        if not is_there and "file_path" not in given:
+            return {own.description: own.doubted("the file of the robot that MoveIt finds is not evaluated", at)}
+        contents = self._read(path, at, "xacro", _mappings(given)) if is_there else Contents(path, "xacro")
         return {own.description: FileText("the output of xacro is not evaluated", at, contents)}
 
     def _semantic(self, own: _Configuration, at: Position, given: Mapping[str, Value]) -> dict[str, Value]:
-        names, default = self._names(own), f"{own.robot}.srdf"
-        key = f"{own.description}_semantic"
-        others = names is None or any(name.endswith(".srdf") for name in names)
-        if "file_path" not in given and others and default not in (names or ()):
-            return {key: UnknownText("the SRDF that MoveIt finds is not evaluated", at)}
-        contents = self._read(self._path(own, given, f"config/{default}"), at, "xacro", _mappings(given))
+        path, key = self._path(own, given, f"config/{own.robot}.srdf"), f"{own.description}_semantic"
+        is_open = "file_path" not in given and any(name.endswith(".srdf") for name in self._names(own) or ())
+        if is_open and not self._is_there(path):
+            return {key: own.doubted("the SRDF that MoveIt finds is not evaluated", at)}
+        contents = self._read(path, at, "xacro", _mappings(given))
         return {key: FileText("the output of xacro is not evaluated", at, contents)}
 
     def _pipelines(self, own: _Configuration, at: Position, given: Mapping[str, Value]) -> dict[str, Value]:
@@ -243,12 +249,11 @@ class MoveItConfigurations:
         made: dict[str, Value] = {"moveit_manage_controllers": given.get("moveit_manage_controllers", True)}
         if "file_path" in given:
             return made | _spread(self._yaml(self._path(own, given, ""), at))
-        ending = "_controllers.yaml"
-        names = self._names(own)
-        if names is None:
+        ending, names = "_controllers.yaml", self._names(own)
+        usual = [it for it in ("moveit", "moveit2", own.robot) if self._is_there(f"{own.folder}/config/{it}{ending}")]
+        if names is None and not usual:
             return made | _spread(UnknownTable("the controllers that MoveIt finds are not evaluated", at))
-        found = [name.removesuffix(ending) for name in names if name.endswith(ending)]
-        usual = [name for name in ("moveit", "moveit2", own.robot) if name in found]
+        found = [name.removesuffix(ending) for name in names or () if name.endswith(ending)]
         if len(found) > 1 and not usual:
             listed = ", ".join(sorted(name + ending for name in found))
             raise EvaluationFails(f"MoveIt cannot choose between {listed}: give trajectory_execution a file_path", at)
@@ -257,7 +262,7 @@ class MoveItConfigurations:
 
     def _sensors(self, own: _Configuration, at: Position, given: Mapping[str, Value]) -> dict[str, Value]:
         path = self._path(own, given, "config/sensors_3d.yaml")
-        if self.context().text_of(path) is None:
+        if not self._is_there(path):
             return {} if self._names(own) is not None else _spread(UnknownTable("sensors are not evaluated", at))
         table = self._yaml(path, at)
         sensors = table.get("sensors") if isinstance(table, dict) else None
