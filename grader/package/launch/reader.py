@@ -281,7 +281,7 @@ class _PythonLaunchFile:
     def run(self, code: Code, installed: str) -> dict[str, Value]:
         """Evaluate the file, and return its names."""
         names = {"__file__": f"{PREFIX}/{installed}", "__name__": _MODULE_NAME}
-        packages_last = sorted({**exports(), **moveit_exports()}.items(), key=lambda it: -it[0].count("."))
+        packages_last = sorted({**moveit_exports(), **exports()}.items(), key=lambda it: -it[0].count("."))
         known_names = {module: [*own] for module, own in packages_last}
         self.interpreter = Interpreter(self._functions(), names, stand_ins=(PREFIX, HOME), exports=known_names)
         return self.interpreter.run(code).names
