@@ -28,7 +28,7 @@ from grader.package.launch.model import (
     Resolved,
     StartedNode,
 )
-from grader.package.launch.parameters import given_parameters
+from grader.package.launch.parameters import controllers_of, given_parameters
 from grader.package.launch.places import PREFIX, ROS, SHARE
 from grader.package.launch.programs import is_part_of_ros
 from grader.package.launch.substitutions import PART_UNKNOWN, check_program, known_text, resolve
@@ -60,7 +60,11 @@ def start_node(findings: Findings, call: Call, context: Context, when: bool | No
         return
     prefix = _frame_prefix(call, context) if executable == STATE_PUBLISHER else ""
     node = StartedNode(package, executable, when, findings.locate(call.at), prefix)
-    findings.nodes.append(_with_names(node, call, context, findings))
+    started = _with_names(node, call, context, findings)
+    findings.nodes.append(started)
+    for controller in (controllers_of(started) if executable == "spawner" else ()) or ():
+        for given in controller.parameters or ():
+            findings.refer("parameters", given.path, call)
     if when is not False and executable == STATE_PUBLISHER:
         _find_description(findings, call, context)
     elif when is not False and executable == _RVIZ:
