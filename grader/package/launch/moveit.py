@@ -6,10 +6,11 @@ installed stops it. `.setup_assistant`, a hidden file, is no part of a submissio
 
 import posixpath
 import re
-from collections.abc import Callable, Mapping, Sequence
+import tomllib
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
-from pathlib import PurePosixPath
+from functools import cache, partial
+from pathlib import Path, PurePosixPath
 from typing import Any
 
 from grader.package.launch.api import DESCRIPTION
@@ -35,6 +36,10 @@ _BUILDER = f"{_PACKAGE}.moveit_configs_builder.MoveItConfigsBuilder"
 _OF_BUILDER = ("MoveItConfigs", "MoveItConfigsBuilder")
 _LAUNCHES = f"{_PACKAGE}.launches"
 _NODE = "launch_ros.actions.node.Node"
+_INCLUDE = "launch.actions.include_launch_description.IncludeLaunchDescription"
+_DECLARED = "launch.actions.declare_launch_argument.DeclareLaunchArgument"
+_CONFIGURATION = "launch.substitutions.launch_configuration.LaunchConfiguration"
+_IF, _UNLESS = (f"launch.conditions.{it}" for it in ("if_condition.IfCondition", "unless_condition.UnlessCondition"))
 _MAX_DEPTH, _MAX_NUMBER = 40, 50
 _DEFAULT_PIPELINES = ("chomp", "ompl", "pilz_industrial_motion_planner", "stomp")  # of moveit_configs_utils
 _PILZ = "pilz_industrial_motion_planner"
@@ -74,7 +79,7 @@ def moveit_exports() -> Mapping[str, Sequence[str]]:
         _PACKAGE: (*_OF_BUILDER, *modules),
         f"{_PACKAGE}.moveit_configs_builder": (*_OF_BUILDER, "get_pattern_matches", "moveit_configs_utils_path"),
         f"{_PACKAGE}.launch_utils": of_utils,
-        _LAUNCHES: (*_STARTED, *of_launches, "PythonLaunchDescriptionSource", "SRDF", "os"),
+        _LAUNCHES: (*_launches(), *of_launches, "PythonLaunchDescriptionSource", "SRDF", "os"),
     }
 
 
@@ -112,7 +117,7 @@ class MoveItConfigurations:
             **steps,
             f"{_BUILDER}.to_moveit_configs": self._finish,
             f"{_BUILDER}.to_dict": lambda evaluation, call: self._finish(evaluation, call).find("to_dict").run(),
-            **{f"{_LAUNCHES}.{name}": partial(self._start, function) for name, function in _STARTED.items()},
+            **{f"{_LAUNCHES}.{name}": partial(self._start, name) for name in _launches()},
         }
 
     def _build(self, evaluation: Evaluation, call: Call) -> Call:
@@ -271,16 +276,34 @@ class MoveItConfigurations:
     def _scene(self, _: _Configuration, __: Position, given: Mapping[str, Value]) -> dict[str, Value]:
         return {**_MONITOR, **given}
 
-    def _start(self, function: "_Launch", _: Evaluation, call: Call) -> Value:
+    def _start(self, name: str, _: Evaluation, call: Call) -> Value:
         """Return the description that a function of moveit_configs_utils.launches makes."""
-        given = _named(call, ("moveit_config", "launch_package_path"))
+        given, row = _named(call, ("moveit_config", "launch_package_path")), _launches()[name]
         configs = given.get("moveit_config")
         if not isinstance(configs, Namespace):
             raise Undetermined("the configuration of MoveIt is not evaluated", call.at)
-        path = given.get("launch_package_path")
-        folder = str(configs.find("package_path") if path is None else known(path))
-        actions = function(configs, folder, _Actions(call.at, self.context()))
+        package, folder = str(configs.find("package_path")), given.get("launch_package_path")
+        make = _Actions(call.at, configs, {"package": package, "folder": str(known(folder)) if folder else package})
+        rows = [it for it in row["start"] if not it.get("optional") or self._is_there(make.value(it["include"]))]
+        actions: list[Value] = [make.argument(*pair, is_flag=True) for pair in row.get("flags", {}).items()]
+        actions += [make.argument(*pair, is_flag=False) for pair in row.get("arguments", {}).items()]
+        for it in [*rows, *self._found_in(configs, name, call.at)]:
+            actions += [it] if isinstance(it, Unknown) else make.started(it)
         return Call(DESCRIPTION, [], {"initial_entities": actions}, call.at)
+
+    def _found_in(self, configs: Namespace, name: str, at: Position) -> Iterator[Any]:
+        """Yield the rows of what a function starts for controllers or virtual joints; Unknown for unknown ones."""
+        if name == "generate_spawn_controllers_launch":
+            for it in _controllers_in(configs.find("trajectory_execution"), at):
+                yield it if isinstance(it, Unknown) else {"node": "controller_manager/spawner", "arguments": [it]}
+        elif name == "generate_static_virtual_joint_tfs_launch":
+            srdf = next(iter(configs.find("robot_description_semantic").values()))
+            text = self.context().text_of(srdf.contents.path) if isinstance(srdf, FileText) else None
+            if text is None or "xacro:" in text:
+                yield Unknown("the virtual joints of the SRDF are not evaluated", at)
+                return
+            for words in _virtual_joints(text):
+                yield {"node": "tf2_ros/static_transform_publisher", "arguments": words}
 
 
 def _named(call: Call, names: Sequence[str]) -> dict[str, Value]:
@@ -332,147 +355,75 @@ def _as_dict(parts: Mapping[str, Value]) -> dict[str, Value]:
     return found
 
 
-@dataclass(slots=True)
+@cache
+def _launches() -> Mapping[str, Any]:
+    """Return what each of MoveIt's launch functions starts."""
+    return tomllib.loads(Path(__file__).with_name("moveit_launches.toml").read_text("utf-8"))
+
+
+@dataclass(frozen=True, slots=True)
 class _Actions:
-    """Makes the actions of a description, as if they were written at a place of the launch file."""
+    """Makes the actions of a description from the rows of the table, as if they were written at a place."""
 
     at: Position
-    context: Context
+    configs: Namespace
+    folders: Mapping[str, str]
 
-    def node(self, package: str, executable: str, **kwargs: Value) -> Call:
-        """Return a node."""
-        return Call(_NODE, [], {"package": package, "executable": executable, **kwargs}, self.at)
+    def made(self, kind: str, **kwargs: Value) -> Call:
+        """Return an action, condition or substitution; arguments that are None are left out."""
+        return Call(kind, [], {name: value for name, value in kwargs.items() if value is not None}, self.at)
 
-    def argument(self, name: str, default: Value, *, is_boolean: bool = False) -> Call:
+    def argument(self, name: str, default: str, *, is_flag: bool) -> Call:
         """Return the declaration of a launch argument."""
-        choices = {"choices": ["true", "false", "True", "False"]} if is_boolean else {}
-        kwargs = {"name": name, "default_value": default, **choices}
-        return Call("launch.actions.declare_launch_argument.DeclareLaunchArgument", [], kwargs, self.at)
+        choices = ["true", "false", "True", "False"] if is_flag else None
+        return self.made(_DECLARED, name=name, default_value=default.format(**self.folders), choices=choices)
 
-    def given(self, name: str) -> Call:
-        """Return the value of a launch argument."""
-        kwargs = {"variable_name": name}
-        return Call("launch.substitutions.launch_configuration.LaunchConfiguration", [], kwargs, self.at)
+    def value(self, value: Any) -> Value:
+        """Return a value; "$name" is that of a launch argument."""
+        if isinstance(value, str) and value.startswith("$"):
+            return self.made(_CONFIGURATION, variable_name=value[1:])
+        return value.format(**self.folders) if isinstance(value, str) else value
 
-    def when(self, name: str, *, holds: bool = True) -> Call:
-        """Return the condition that a launch argument is true, or false."""
-        kind = "if_condition.IfCondition" if holds else "unless_condition.UnlessCondition"
-        return Call(f"launch.conditions.{kind}", [], {"predicate_expression": self.given(name)}, self.at)
+    def started(self, row: Mapping[str, Any]) -> list[Value]:
+        """Return the node or include of a row; two nodes if one has a debugger."""
+        condition = self.when(row["if"]) if "if" in row else None
+        if "include" in row:
+            return [self.made(_INCLUDE, launch_description_source=self.value(row["include"]), condition=condition)]
+        package, _, executable = row["node"].partition("/")
+        parts = [self.configs.find(name) for name in row.get("parts", ())]
+        table = {name: self.value(value) for name, value in row.get("parameters", {}).items()}
+        given = [it.run() if isinstance(it, PlainFunction) else it for it in parts] + ([table] if table else [])
+        node = partial(
+            self.made,
+            _NODE,
+            package=package,
+            executable=executable,
+            arguments=[*map(self.value, row.get("arguments", ()))],
+            parameters=[*given, *map(self.value, row.get("files", ()))],
+            remappings=[*map(tuple, row.get("remappings", ()))],
+        )
+        if not row.get("debug"):
+            return [node(condition=condition)]
+        debugged = node(condition=self.when("debug"), prefix=["gdb --ex run --args"])
+        return [node(condition=self.when("debug", _UNLESS)), debugged]
 
-    def include(self, path: str, **kwargs: Value) -> Call:
-        """Return the include of a launch file."""
-        own = {"launch_description_source": path, **kwargs}
-        return Call("launch.actions.include_launch_description.IncludeLaunchDescription", [], own, self.at)
-
-    def debuggable(self, package: str, executable: str, **kwargs: Value) -> list[Value]:
-        """Return a node that is started with a debugger if the argument debug is true."""
-        return [
-            self.argument("debug", "False", is_boolean=True),
-            self.node(package, executable, condition=self.when("debug", holds=False), **kwargs),
-            self.node(package, executable, condition=self.when("debug"), prefix=["gdb --ex run --args"], **kwargs),
-        ]
-
-
-_Launch = Callable[[Namespace, str, _Actions], list[Value]]
-
-
-def _start_rsp(configs: Namespace, _: str, make: _Actions) -> list[Value]:
-    parameters = [configs.find("robot_description"), {"publish_frequency": make.given("publish_frequency")}]
-    publisher = make.node("robot_state_publisher", "robot_state_publisher", parameters=parameters)
-    return [make.argument("publish_frequency", "15.0"), publisher]
-
-
-def _start_rviz(configs: Namespace, _: str, make: _Actions) -> list[Value]:
-    tables = ("planning_pipelines", "robot_description_kinematics", "joint_limits")
-    default = f"{configs.find('package_path')}/config/moveit.rviz"
-    kwargs = {"arguments": ["-d", make.given("rviz_config")], "parameters": [configs.find(it) for it in tables]}
-    return [make.argument("rviz_config", default), *make.debuggable("rviz2", "rviz2", **kwargs)]
+    def when(self, name: str, kind: str = _IF) -> Call:
+        """Return the condition that a launch argument is true, or with another kind that it is not."""
+        return self.made(kind, predicate_expression=self.value(f"${name}"))
 
 
-def _start_move_group(configs: Namespace, _: str, make: _Actions) -> list[Value]:
-    published = make.given("publish_monitored_planning_scene")
-    scene = dict.fromkeys([*_MONITOR][:4], published)
-    names = ("capabilities", "disable_capabilities")
-    kind = "launch_ros.parameter_descriptions.ParameterValue"
-    text = Call("builtins.str", [], {}, make.at)
-    typed = {it: Call(kind, [], {"value": make.given(it), "value_type": text}, make.at) for it in names}
-    allowed = make.given("allow_trajectory_execution")
-    own = {"publish_robot_description_semantic": True, "allow_trajectory_execution": allowed, "monitor_dynamics": False}
-    return [
-        make.argument("allow_trajectory_execution", "True", is_boolean=True),
-        make.argument("publish_monitored_planning_scene", "True", is_boolean=True),
-        *(make.argument(it, configs.find("move_group_capabilities")[it]) for it in names),
-        make.argument("monitor_dynamics", "False", is_boolean=True),
-        *make.debuggable(
-            "moveit_ros_move_group", "move_group", parameters=[configs.find("to_dict").run(), {**own, **typed, **scene}]
-        ),
-    ]
-
-
-def _start_controllers(configs: Namespace, _: str, make: _Actions) -> list[Value]:
-    table = configs.find("trajectory_execution")
+def _controllers_in(table: Mapping[str, Value], at: Position) -> list[Value]:
+    """Return the arguments of the spawners of the controllers that MoveIt uses."""
     manager = table.get("moveit_simple_controller_manager", {})
     names = manager.get("controller_names", []) if isinstance(manager, dict) else None
-    if not isinstance(names, list) or "" in table:
-        names = [Unknown("the controllers of MoveIt are not evaluated", make.at)]
-    spawner = partial(make.node, "controller_manager", "spawner")
-    spawned = (it if isinstance(it, Unknown) else spawner(arguments=[it]) for it in names)
-    return [*spawned, spawner(arguments=["joint_state_broadcaster"])]
+    if isinstance(names, list) and "" not in table:
+        return names
+    return [Unknown("the controllers of MoveIt are not evaluated", at)]
 
 
-def _start_virtual_joints(configs: Namespace, _: str, make: _Actions) -> list[Value]:
-    """Return the publishers of the virtual joints of the SRDF, if this is no xacro."""
-    found = next(iter(configs.find("robot_description_semantic").values()))
-    text = make.context.text_of(found.contents.path) if isinstance(found, FileText) else None
-    if text is None or "xacro:" in text:
-        return [Unknown("the virtual joints of the SRDF are not evaluated", make.at)]
-    joints = re.findall(r"<virtual_joint\b[^>]*>", re.sub(r"(?s)<!--.*?-->", "", text))
-    frames = [[re.search(rf"\b{name}=[\"']([^\"']*)", it) for name in ("parent_frame", "child_link")] for it in joints]
-    options = ("--frame-id", "--child-frame-id")
-    return [
-        make.node("tf2_ros", "static_transform_publisher", name=f"static_transform_publisher{number}", arguments=[
-            word for option, it in zip(options, pair, strict=True) for word in (option, it[1] if it is not None else "")
-        ])
-        for number, pair in enumerate(frames)
-    ]  # fmt: skip
-
-
-def _start_warehouse(_: Namespace, __: str, make: _Actions) -> list[Value]:
-    return [
-        make.argument("reset", "False", is_boolean=True),
-        make.node("warehouse_ros_mongo", "mongo_wrapper_ros.py"),
-        make.node("moveit_ros_warehouse", "moveit_init_demo_warehouse", condition=make.when("reset")),
-    ]
-
-
-def _start_assistant(_: Namespace, __: str, make: _Actions) -> list[Value]:
-    return make.debuggable("moveit_setup_assistant", "moveit_setup_assistant")
-
-
-def _start_demo(configs: Namespace, folder: str, make: _Actions) -> list[Value]:
-    virtual_joints = f"{folder}/launch/static_virtual_joint_tfs.launch.py"
-    is_there = make.context.text_of(virtual_joints) is not None
-    controllers = f"{configs.find('package_path')}/config/ros2_controllers.yaml"
-    declared = (("db", "False"), ("debug", "False"), ("use_rviz", "True"))
-    remapped = [("/controller_manager/robot_description", "/robot_description")]
-    return [
-        *(make.argument(name, default, is_boolean=True) for name, default in declared),
-        *([make.include(virtual_joints)] if is_there else []),
-        *(make.include(f"{folder}/launch/{name}.launch.py") for name in ("rsp", "move_group")),
-        make.include(f"{folder}/launch/moveit_rviz.launch.py", condition=make.when("use_rviz")),
-        make.include(f"{folder}/launch/warehouse_db.launch.py", condition=make.when("db")),
-        make.node("controller_manager", "ros2_control_node", parameters=[controllers], remappings=remapped),
-        make.include(f"{folder}/launch/spawn_controllers.launch.py"),
-    ]
-
-
-_STARTED: Mapping[str, _Launch] = {
-    "generate_rsp_launch": _start_rsp,
-    "generate_moveit_rviz_launch": _start_rviz,
-    "generate_setup_assistant_launch": _start_assistant,
-    "generate_static_virtual_joint_tfs_launch": _start_virtual_joints,
-    "generate_spawn_controllers_launch": _start_controllers,
-    "generate_warehouse_db_launch": _start_warehouse,
-    "generate_move_group_launch": _start_move_group,
-    "generate_demo_launch": _start_demo,
-}
+def _virtual_joints(text: str) -> Iterator[list[str]]:
+    """Yield the arguments of the publishers of the virtual joints in an SRDF."""
+    for joint in re.findall(r"<virtual_joint\b[^>]*>", re.sub(r"(?s)<!--.*?-->", "", text)):
+        found = (re.search(rf"\b{name}=[\"']([^\"']*)", joint) for name in ("parent_frame", "child_link"))
+        parent, child = (it[1] if it is not None else "" for it in found)
+        yield ["--frame-id", parent, "--child-frame-id", child]
