@@ -342,10 +342,15 @@ def _fault_of_owner(package: Package, owner: str, rest: str, what: str) -> str:
 
 
 def _is_misspelt(name: str, known: str) -> bool:
-    """Return whether a name is similar to another, and no other name with the same number of words: a_x and a_y."""
-    pairs = [*zip(name.split("_"), known.split("_"), strict=False)]
-    is_other = name.count("_") == known.count("_") and any(one != two and not closest(one, [two]) for one, two in pairs)
-    return closest(name, [known]) is not None and not is_other
+    """Return whether a name is similar to another, unless one word of it is another: robot_arm, robot_base."""
+    own, others = name.split("_"), known.split("_")
+    pairs = zip(own, others, strict=True) if len(own) == len(others) else ()
+    return closest(name, [known]) is not None and all(_is_slip(one, two) for one, two in pairs)
+
+
+def _is_slip(word: str, known: str) -> bool:
+    differing = sum(one != two for one, two in zip(word, known, strict=False)) + abs(len(word) - len(known))
+    return differing < 2 or closest(word, [known]) is not None
 
 
 def _place_in_package(owner: Package, target: str, file: "NamedFile") -> _FilePlace:
