@@ -10,6 +10,7 @@ from grader.errors import InputError, MissingElement, NotDecided
 from grader.files.reading import URDF_LIMIT
 from grader.names import closest
 from grader.package.launch.places import (
+    BY_MOVEIT,
     BY_UTF8,
     HOME,
     PREFIX,
@@ -142,7 +143,7 @@ def launch_finds_files(package: Package, *, name: str, built: bool = True, start
     if not started:
         return passed("the launch file looks for no file in a wrong place")
     unknown = next((it for it in places if it.state == "unknown"), None)
-    names_none = all(it.file.purpose in ("include", "read") for it in places)
+    names_none = all(it.file.purpose in ("include", "read") and it.file.by != BY_MOVEIT for it in places)
     if launch.faults and (unknown or names_none):
         raise _fault_that_stops(package, name, launch)
     if names_none:
@@ -369,9 +370,21 @@ def _fault_of_owner(package: Package, owner: str, rest: str, what: str) -> str:
     if owner.startswith(package.name) and is_known:
         path = posixpath.join("share", owner, rest).rstrip("/")
         return f"the launch file looks for the {what} at {path}: a slash is missing after {package.name!r}"
-    if closest(owner, [package.name]):
+    if _is_misspelt(owner, package.name):
         return f"the launch file looks in a package {owner!r}, but the graded package is named {package.name!r}"
     return ""
+
+
+def _is_misspelt(name: str, known: str) -> bool:
+    """Return whether a name is similar to another, unless one word of it is another: robot_arm, robot_base."""
+    own, others = name.split("_"), known.split("_")
+    pairs = zip(own, others, strict=True) if len(own) == len(others) else ()
+    return closest(name, [known]) is not None and all(_is_slip(one, two) for one, two in pairs)
+
+
+def _is_slip(word: str, known: str) -> bool:
+    differing = sum(one != two for one, two in zip(word, known, strict=False)) + abs(len(word) - len(known))
+    return differing < 2 or closest(word, [known]) is not None
 
 
 def _place_in_package(owner: Package, target: str, file: "NamedFile") -> _FilePlace:

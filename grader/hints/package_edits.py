@@ -48,6 +48,7 @@ _MAX_CALL = 80  # characters before an argument that are looked at
 _REST_OF_ARGUMENT = re.compile(r"\s*,\s*")
 _ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".launch.py", ".launch.xml", ".launch.yaml")}
 _ENDINGS["read"] = _ENDINGS["urdf"]
+_ENDINGS["parameters"] = (".yaml", ".yml")
 _SHARE_FUNCTION = "get_package_share_directory"
 _MAX_PATHS = 8  # that are wrong in one file
 _MAX_EDITS = 3  # of one path

@@ -16,7 +16,7 @@ from grader.text import enumerated, was_not_committed
 
 # The readers are imported when they are needed: a URDF on its own needs none of them.
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from grader.package.installation import Installation
     from grader.package.launch.model import Launch, NamedFile
@@ -273,6 +273,13 @@ class Package:
         if owner is None:
             return not lacks_program(package, name)
         return owner.installation.has_program(name, package) if owner.installation is not None else None
+
+    def files_in(self, folder: str) -> "Sequence[str] | None":
+        """Return the names of the files that builds install in a folder below the prefix; None if not all are known."""
+        owner = self.find(folder.removeprefix("share/").partition("/")[0])
+        if owner is None or owner.installation is None or owner.installation.fault or owner.installation.unknown:
+            return None
+        return tuple(path.rpartition("/")[2] for path in owner.installed if path.rpartition("/")[0] == folder)
 
     def open_installed(self, path: str) -> tuple[bytes, str] | None:
         """Return what a build of any submitted package installs at a path below the prefix, with the file's path."""

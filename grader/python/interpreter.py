@@ -278,6 +278,8 @@ class Interpreter(Evaluation):
             case PurePosixPath() if name in _PARTS:
                 value = getattr(owner, name)
                 return self.budget.checked(list(value) if name == "parents" else value, "path")
+            case py.Namespace():
+                return owner.find(name)
         if isinstance(owner, py.PLAIN) and not has_attribute(owner, name):
             raise py.EvaluationFails(f"{type(owner).__name__!r} has no attribute {name!r}")
         return py.BoundMethod(owner, name, node)

@@ -111,7 +111,7 @@ def _import_error(module: str, name: str) -> str | None:
         or (module, name) == ("distutils.core", "setup")
         or (top in sys.stdlib_module_names and full == top and not module)
     )
-    guess = closest(top, ("os", "glob", "pathlib", "setuptools", "sys", "shutil"))
+    guess = closest(top, ("os", "glob", "pathlib", "setuptools", "sys", "shutil")) if top != "psutil" else None
     if is_there or not guess or top.startswith(guess) or top in sys.stdlib_module_names or top == "setuptools":
         return None if is_there else UNCERTAIN
     return f"there is no module {top!r}; did you mean {guess!r}?"

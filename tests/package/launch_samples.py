@@ -51,6 +51,10 @@ class Installed(NamedTuple):
         """Return whether a package is there."""
         return name != ""
 
+    def files_in(self, folder: str) -> tuple[str, ...]:
+        """Return the names of the files in a folder."""
+        return tuple(path.rpartition("/")[2] for path in self.files if path.rpartition("/")[0] == folder)
+
     def has_program(self, package: str, name: str) -> bool:
         """Return whether a package has a program."""
         return "" not in (package, name)

@@ -89,6 +89,10 @@ class _Installed(Installed):
     def has_package(self, name: str) -> bool:
         return name in _INSTALLED
 
+    def files_in(self, folder: str) -> tuple[str, ...]:
+        """Return the names of the files in a folder."""
+        return tuple(path.rpartition("/")[2] for path in self.files if path.rpartition("/")[0] == folder)
+
     def has_program(self, package: str, name: str) -> bool:
         del name
         return package != "my_robot"

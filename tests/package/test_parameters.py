@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from grader.package.launch.model import Launch, StartedNode
-from grader.package.launch.parameters import NodeParameters, parameters_of
+from grader.package.launch.parameters import NodeParameters, controllers_of, parameters_of
 from grader.python.values import Unknown
 from tests.package.launch_samples import Installed, read
 
@@ -192,7 +192,29 @@ def test_files_are_named() -> None:
     """A launch file names the files of parameters that it gives to nodes, and stops without one for all nodes."""
     found = launch(f"SetParametersFromFile(str({FILE})), " + NAMED.format("CONFIG / 'wild.yaml'"))
     named = [[it.path for it in found.named(purpose)] for purpose in ("read", "parameters")]
+    spawned = launch("Node(package='controller_manager', executable='spawner', arguments=['a', '-p', 'x.yaml'])")
+    assert [it.path for it in spawned.named("parameters")] == ["x.yaml"]
     assert named == [
         [f"/<prefix>/{SHARE}/named.yaml"],
         [f"/<prefix>/{SHARE}/{name}.yaml" for name in ("named", "wild")],
     ]
+
+
+def controllers(words: str) -> list[tuple[str | None, str | None, dict[str, Any]]] | None:
+    """Return the names, namespaces and parameters of the controllers that a spawner with these arguments starts."""
+    found = controllers_of(node(f"Node(package='controller_manager', executable='spawner', arguments=[{words}])"))
+    if found is None:
+        return None
+    return [(it.node_name, it.namespace, values(parameters_of(it, Installed(FILES), is_python=False))) for it in found]
+
+
+def test_controllers() -> None:
+    """A spawner starts controllers in the namespace of their manager, with the parameters of its files."""
+    path = "str(CONFIG / 'wild.yaml')"
+    assert controllers(f"'other', 'driver', '--param-file', {path}, '-c', '/ns/controller_manager'") == [
+        ("other", "/ns", {}),
+        ("driver", "/ns", {"speed": 3, "deep": 4}),
+    ]
+    assert controllers(f"'--inactive', 'other', '-p', {path}") == [("other", "/", {"speed": 5})]
+    assert controllers("'other', '--controller-manager=cm', '--ros-args', '-p', 'a:=1'") == [("other", "/", {})]
+    assert controllers("'other', EnvironmentVariable('A')") is None

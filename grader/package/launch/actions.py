@@ -52,7 +52,7 @@ _MAX_ACTIONS = 5_000
 _MAX_DEPTH = 40
 _MAX_PERIOD = 60.0  # seconds that a person waits for a timer
 _LATE = ("sigterm_timeout", "sigkill_timeout", "default_value")  # arguments that are not evaluated at once
-_PROCESSES = ("Node", "ExecuteProcess")
+_PROCESSES = ("Node", "LifecycleNode", "ExecuteProcess")
 # Takes the path of a launch file below the prefix and the context for it; returns why it is not read, or nothing.
 Include = Callable[[str, Context], str]
 CIRCULAR_INCLUDE = "it includes itself"

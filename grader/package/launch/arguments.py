@@ -59,7 +59,7 @@ _ACTIONS = (
     "Node", "ExecuteProcess", "LogInfo", "LaunchDescription", "DeclareLaunchArgument", "SetLaunchConfiguration",
     "GroupAction", "SetEnvironmentVariable", "AppendEnvironmentVariable", "IncludeLaunchDescription", "OpaqueFunction",
     "TimerAction", "RegisterEventHandler", "OnProcessExit", "OnProcessStart", "Shutdown", "EmitEvent",
-    "PushROSNamespace", "SetParameter", "SetParametersFromFile", "SetRemap", "SetUseSimTime",
+    "LifecycleNode", "PushROSNamespace", "SetParameter", "SetParametersFromFile", "SetRemap", "SetUseSimTime",
 )  # fmt: skip
 _MAX_DEPTH = 20  # of lists in others
 _OF_ONE_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")

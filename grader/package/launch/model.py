@@ -1,7 +1,7 @@
 """The nodes that a launch file starts and the files that it names, and the state while its actions are visited."""
 
 import posixpath
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, Literal, NamedTuple, Protocol
@@ -37,6 +37,10 @@ class UnknownText(Unknown):
     """A value that is not known, but certainly is a text."""
 
 
+class UnknownTable(UnknownText):
+    """A table of parameters that is not known, whose names are not known either."""
+
+
 class FileText(UnknownText):
     """The text of a file, as a Python function gives it."""
 
@@ -61,6 +65,9 @@ class Installation(Protocol):
 
     def has_package(self, name: str) -> bool:
         """Return whether a package certainly is on the machine."""
+
+    def files_in(self, folder: str) -> "Sequence[str] | None":
+        """Return the names of the installed files in a folder below the prefix; None where they are not all known."""
 
     def has_program(self, package: str, name: str) -> bool | None:
         """Return whether a package has a program; None where this is not known."""

@@ -28,7 +28,7 @@ from grader.package.launch.model import (
     Resolved,
     StartedNode,
 )
-from grader.package.launch.parameters import given_parameters
+from grader.package.launch.parameters import controllers_of, given_parameters
 from grader.package.launch.places import PREFIX, ROS, SHARE
 from grader.package.launch.programs import is_part_of_ros
 from grader.package.launch.substitutions import PART_UNKNOWN, check_program, known_text, resolve
@@ -60,7 +60,11 @@ def start_node(findings: Findings, call: Call, context: Context, when: bool | No
         return
     prefix = _frame_prefix(call, context) if executable == STATE_PUBLISHER else ""
     node = StartedNode(package, executable, when, findings.locate(call.at), prefix)
-    findings.nodes.append(_with_names(node, call, context, findings))
+    started = _with_names(node, call, context, findings)
+    findings.nodes.append(started)
+    for controller in (controllers_of(started) if executable == "spawner" else ()) or ():
+        for given in controller.parameters or ():
+            findings.refer("parameters", given.path, call)
     if when is not False and executable == STATE_PUBLISHER:
         _find_description(findings, call, context)
     elif when is not False and executable == _RVIZ:
@@ -86,6 +90,13 @@ def _with_names(node: StartedNode, call: Call, context: Context, findings: Findi
         parameters=parameters,
         included_by=context.included_by,
     )
+    return _with_remaps(node, rules, [*words, *own], call, context)
+
+
+def _with_remaps(
+    node: StartedNode, rules: Sequence[tuple[str, str, str]], words: Sequence[str], call: Call, context: Context
+) -> StartedNode:
+    """Return a node with its namespace and remappings; `rules` are those among the words of its command line."""
     try:
         namespace: str | None = namespace_below(call.kwargs.get("namespace") or "", context, call.at)
         given = [tuple(known_text(it, context, call.at) for it in rule) for rule in call.kwargs.get("remappings") or ()]
@@ -93,7 +104,7 @@ def _with_names(node: StartedNode, call: Call, context: Context, findings: Findi
         return replace(node, namespace=None, remaps=None)
     namespace = next((value for name, _, value in rules if name == "__ns"), namespace)
     remaps = (*((name, to) for name, _, to in rules), *context.to_all.get(REMAPS, ()), *given)
-    is_known = None not in remaps and not any(PART_UNKNOWN in word for word in (*words, *own))
+    is_known = None not in remaps and not any(PART_UNKNOWN in word for word in words)
     known = tuple(rule for rule in remaps if rule is not None)
     return replace(node, namespace=namespace, remaps=known if is_known else None)
 

@@ -6,6 +6,7 @@ Launch evaluates them first; rclcpp and rclpy then read the files and rules on t
 import posixpath
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from math import inf, nan
 from pathlib import PurePosixPath
@@ -20,6 +21,7 @@ from grader.package.launch.model import (
     ParameterValue,
     Resolved,
     StartedNode,
+    UnknownTable,
     UnknownText,
 )
 from grader.package.launch.places import PREFIX
@@ -48,6 +50,12 @@ _IN_CPP = re.compile(
     r"robot_state_publisher|controller_manager|rviz2|slam_toolbox|robot_localization|ros_gz_(bridge|sim|image)"
     r"|nav2_(?!simple_commander).*|moveit_(ros_)?(move_group|servo|task_constructor.*)|tf2_ros|twist_mux|topic_tools"
 )
+# The options of the spawner of ros2_control (Jazzy) that a value follows; the others are switches.
+_OF_SPAWNER = frozenset(
+    {"-c", "--controller-manager", "-p", "--param-file", "-n", "--namespace", "--controller-manager-timeout",
+     "--switch-timeout", "--service-call-timeout", "--controller-ros-args", "-t", "--controller-type"}
+)  # fmt: skip
+_PARAM_FILES = ("-p", "--param-file")
 
 
 def evaluate_parameters(parameters: Value, context: Context, at: Position) -> None:
@@ -365,8 +373,19 @@ def parameters_of(
             }
             continue
         for key, values in tables:
-            by_key.setdefault(key, {}).update(values)
-    return NodeParameters(_counting(by_key, full, is_cpp), "; ".join(reasons))
+            opened = {name: it.value for name, it in values.items() if isinstance(it.value, UnknownTable)}
+            reasons += [table.reason for table in opened.values()]
+            _forget_below(opened, by_key)
+            by_key.setdefault(key, {}).update((name, it) for name, it in values.items() if name not in opened)
+    return NodeParameters(_counting(by_key, full, is_cpp), "; ".join(dict.fromkeys(reasons)))
+
+
+def _forget_below(tables: Mapping[str, Unknown], by_key: dict[str, dict[str, ParameterValue]]) -> None:
+    """Make the values unknown that parameters in a table that is not known may replace."""
+    for name, doubt in tables.items():
+        for values in by_key.values():
+            below = [it for it in values if not name or f"{it}.".startswith(f"{name}.")]
+            values.update((it, values[it]._replace(value=doubt)) for it in below)
 
 
 def _full_name(node: StartedNode, name: str) -> str | None:
@@ -462,3 +481,31 @@ def _matches(key: str, full: str) -> bool:
     """Return whether the key of a section names a node, as rclcpp reads it."""
     pattern = re.sub(r"/\\\*(\\\*)?", lambda it: r"(/\w+)*" if it[1] else r"(/\w+)", re.escape(key))
     return re.fullmatch(pattern, full) is not None
+
+
+def controllers_of(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
+    """Return the controllers that a spawner starts, as nodes with the files that it gives them; None if not all known.
+
+    A controller has the namespace of its controller manager, in whose process it runs: what that is given applies to
+    it as well, and what the spawner gives counts more.
+    """
+    words = spawner.arguments
+    if words is None or None in words or spawner.namespace is None:
+        return None
+    known = [word for word in (words[: words.index("--ros-args")] if "--ros-args" in words else words) if word]
+    names: list[str] = []
+    given: dict[str, list[str]] = {}
+    rest = iter(known)
+    for word in rest:
+        option, is_joined, value = word.partition("=")
+        if option in _OF_SPAWNER:
+            given.setdefault(option, []).append(value if is_joined else next(rest, ""))
+        elif not word.startswith("-"):
+            names.append(word)
+    files = [path for option in _PARAM_FILES for path in given.get(option, ())]
+    manager = [*given.get("-c", ()), *given.get("--controller-manager", ())][-1:] or ["controller_manager"]
+    full = manager[0] if manager[0].startswith("/") else f"/{spawner.namespace.strip('/')}/{manager[0]}"
+    namespace = full.replace("//", "/").rpartition("/")[0] or "/"
+    parameters = tuple(GivenParameters(spawner.location, path) for path in files)
+    started = replace(spawner, namespace=namespace, parameters=parameters, arguments=())
+    return tuple(replace(started, node_name=name) for name in names)

@@ -10,6 +10,7 @@ WORKING_FOLDER = "/<current folder>"
 HOME = "/<home>"
 SHARE = f"{PREFIX}/share"
 BY_UTF8 = ("cat", "open")  # what reads a file as text in UTF-8, and stops at any other
+BY_MOVEIT = "moveit"  # reads its configuration
 ENDINGS = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", "_launch.py", "_launch.xml", "_launch.yaml")
 
 

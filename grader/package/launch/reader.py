@@ -5,7 +5,7 @@ One in Python is evaluated without running it: `_PythonLaunchFile` gives what th
 
 import posixpath
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from operator import attrgetter, methodcaller
 from pathlib import PurePosixPath
@@ -50,6 +50,7 @@ _RECORDED = ("builtins.open.close", "builtins.open.__enter__", "xacro.process_do
 _TEXTS = [f"{name}.{method}" for name in ("xacro.process_file", "xacro.parse") for method in ("toxml", "toprettyxml")]
 _ENTRY = "generate_launch_description"
 _NODE = "launch_ros.actions.node.Node"
+_MOVEIT = "moveit_configs_utils"
 _MAX_INCLUDES = 10
 # What a launch file shares with those that it includes.
 _JOINED = ("nodes", "references", "faults", "unknown", "doubts", "declared", "passed")
@@ -73,6 +74,12 @@ class _Recorder:
         """Return whether a package certainly is on the machine."""
         found = self._installation.has_package(name)
         self._answers.append((methodcaller("has_package", name), found))
+        return found
+
+    def files_in(self, folder: str) -> Sequence[str] | None:
+        """Return the names of the installed files in a folder."""
+        found = self._installation.files_in(folder)
+        self._answers.append((methodcaller("files_in", folder), found))
         return found
 
     def has_program(self, package: str, name: str) -> bool | None:
@@ -272,13 +279,19 @@ class _PythonLaunchFile:
     context: Context
     reads: list[tuple[Contents, Position]] = field(default_factory=list)  # what it certainly reads while it is loaded
     interpreter: Interpreter = field(init=False)
+    moveit: FunctionTable = field(default_factory=dict)  # the functions of MoveIt's package, if the file uses it
 
     def run(self, code: Code, installed: str) -> dict[str, Value]:
         """Evaluate the file, and return its names."""
         names = {"__file__": f"{PREFIX}/{installed}", "__name__": _MODULE_NAME}
-        packages_last = sorted(exports().items(), key=lambda it: -it[0].count("."))
-        known_names = {module: own.keys() for module, own in packages_last}
-        self.interpreter = Interpreter(self._functions(), names, stand_ins=(PREFIX, HOME), exports=known_names)
+        known: dict[str, Collection[str]] = {module: own.keys() for module, own in exports().items()}
+        if _MOVEIT in code.source.text:
+            from grader.package.launch.moveit import MoveItConfigurations, moveit_exports  # late: few files use it
+
+            known = {**moveit_exports(), **known}
+            self.moveit = MoveItConfigurations(lambda: self.context, self.reads).functions()
+        packages_last = sorted(known.items(), key=lambda it: -it[0].count("."))
+        self.interpreter = Interpreter(self._functions(), names, stand_ins=(PREFIX, HOME), exports=dict(packages_last))
         return self.interpreter.run(code).names
 
     def call(self, function: Function, at: Position, args: Sequence[Value] | None, context: Context) -> Value:
@@ -296,6 +309,7 @@ class _PythonLaunchFile:
         return LaunchFunctions(
             {
                 **standard_functions(WORKING_FOLDER),
+                **self.moveit,
                 **dict.fromkeys(_RECORDED, record),
                 **dict.fromkeys(adds, _add_action),
                 **dict.fromkeys((f"{it}.__truediv__" for it in (JOINED_PATH, PATH)), join_path),
