@@ -9,7 +9,16 @@ from itertools import chain, islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from grader.authoring.facts import Fact, Omission, Solution, element_facts, name_facts, package_facts, robot_facts
+from grader.authoring.facts import (
+    Fact,
+    Omission,
+    Solution,
+    element_facts,
+    measure_facts,
+    name_facts,
+    package_facts,
+    robot_facts,
+)
 from grader.checks.outcome import Outcome
 from grader.checks.registry import find_check
 from grader.checks.toml_types import WrongValue
@@ -82,7 +91,9 @@ def draft(submission: Submission, solution: Solution | None, head: Head, path: P
     Without a robot it has no `solution`. Raises InputError.
     """
     of_robot = chain(robot_facts(solution), element_facts(solution)) if solution is not None else ()
-    found = list(islice(chain(of_robot, package_facts(submission), name_facts(submission)), _MAX_FACTS + 1))
+    measured = measure_facts(solution) if solution is not None else ()
+    of_packages = chain(package_facts(submission), name_facts(submission), measured)
+    found = list(islice(chain(of_robot, of_packages), _MAX_FACTS + 1))
     if len(found) > _MAX_FACTS:
         raise InputError(
             f"the reference has more than {_MAX_FACTS} facts, which is too long for a rubric: name a smaller one"

@@ -7,12 +7,13 @@ which ROS 2 itself does not read, and last those of the package.
 import posixpath
 import re
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from itertools import permutations
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import combinations, permutations
 from math import degrees, isfinite
 from typing import Any, NamedTuple
 
 from grader.checks.meshes import mesh_file
+from grader.checks.parameters import measures
 from grader.checks.visuals import MAX_SHAPES
 from grader.errors import MissingElement, NotDecided
 from grader.package.launch.model import Launch
@@ -28,6 +29,7 @@ from grader.submission.submission import Submission
 from grader.text import enumerated
 from grader.workspace.names import FAMILIES, Family
 from grader.workspace.reading import read_agreement
+from grader.workspace.workspace import Workspace
 from grader.xml.elements import attributes_of, foreign_elements, name_of, readable, text_in, words_of_foreign
 from grader.xml.parsing import Element
 
@@ -43,6 +45,9 @@ _NAME_TITLES: Mapping[Family, str] = {
     "topics": "topics have the same names, types and quality of service in all nodes",
     "dependencies": "package.xml declares the packages that the files use",
 }
+_WHEEL = re.compile("wheel|axle|tire|tyre")
+_DISTANCE = re.compile("separation|wheel_?base|wheel_?track|track_?width")
+_EXACT = 1e-6
 _WITH_AXIS = ("continuous", "revolute", "prismatic", "planar")
 _COUNTED = ("revolute", "continuous", "prismatic")
 _SLIDING_TOLERANCE = 0.002  # m: the tolerance of other limits is in degrees
@@ -360,6 +365,42 @@ def _facts_of(package: Package, path: str, named: Collection[str]) -> Iterator[F
     for launch in (it for it in package.launch_files if not it.startswith("test/")):
         yield from _launch_facts(posixpath.basename(launch), package.launch(launch), has_names=bool(named))
     yield from _rviz_facts(package)
+
+
+def measure_facts(solution: Solution) -> Iterator[Fact]:
+    """Yield the parameters of nodes that are a radius in the robot, or a distance between two links."""
+    workspace = Workspace(solution.submission)
+    links = [link.name for link in solution.robot.robot.links]
+    for node, given in workspace.parameter_owners.items():
+        for name, found in {name: it for one in given for name, it in one.values.items()}.items():
+            words = {*name.split("_")}
+            alike = sorted(links, key=lambda it: (not _WHEEL.search(it), -len(words & {*it.split("_")})))
+            sizes = _sizes_meant(name, alike)
+            if sizes is None or not isinstance(found.value, float):
+                continue
+            measure, candidates = sizes
+            fits = (it for it in candidates if _is_measured(solution.robot, measure, it, found.value))
+            if (fitting := next(fits, None)) is not None:
+                what = {"node": node, "parameter": name, "measure": measure, "links": [*fitting]}
+                fact = _package_fact("parameter_is", f"{node} {name}", **what)
+                of = enumerated([repr(link) for link in fitting])
+                yield fact._replace(about=_THE_NAMES, title=f"{name} of {node} is the {measure} of {of} in the robot")
+
+
+def _sizes_meant(name: str, links: Sequence[str]) -> tuple[str, Iterable[tuple[str, ...]]] | None:
+    """Return what a parameter measures by its name, and of which links it may be; None for any other parameter."""
+    if "radius" in name:
+        return "radius", ((link,) for link in links)
+    return ("distance", combinations(links, 2)) if _DISTANCE.search(name) else None
+
+
+def _is_measured(robot: Configuration, measure: str, links: tuple[str, ...], value: float) -> bool:
+    """Return whether a value is a measure of links."""
+    try:
+        found = measures(robot, [*links]).get(measure)
+        return found is not None and abs(found() - value) <= _EXACT
+    except (MissingElement, NotDecided):
+        return False
 
 
 def name_facts(submission: Submission) -> _Facts:

@@ -63,6 +63,7 @@ CHECKS = (
     "rviz.rviz_display_on",
     "xacro_source.xacro_uses",
     "names_agree.names_agree",
+    "parameters.parameter_is",
     "manual.answered",
     "manual.evidence_shown",
 )

@@ -1,13 +1,15 @@
 """The files of a workspace whose names are compared: packages, launch files, parameter files, the robot, nodes."""
 
 import posixpath
+import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from grader.errors import InputError
-from grader.package.launch.model import Launch, StartedNode
-from grader.package.launch.places import PREFIX
+from grader.package.launch.model import GivenParameters, Launch, StartedNode
+from grader.package.launch.parameters import NodeParameters, controllers_of, parameters_of
+from grader.package.launch.places import PREFIX, SHARE
 from grader.package.nodes import PythonNode, PythonNodes, read_nodes
 from grader.package.package import MANIFEST, Package
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
@@ -17,8 +19,11 @@ from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.workspace.known import known
 from grader.workspace.yaml_values import sections_in, values_in
+from grader.xml.elements import readable
 from grader.xml.parsing import Element
 
+_MANAGER, _SPAWNERS = "controller_manager", ("spawner", "spawner.py")
+_FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
 _MAX_FILES = 60  # of one kind in a package
 _MAX_YAML = 512 * 1024  # bytes
 
@@ -189,6 +194,38 @@ class Workspace:
                 if path is not None:
                     found.setdefault(path, []).append(node)
         return found
+
+    @cached_property
+    def parameter_owners(self) -> Mapping[str, list[NodeParameters]]:
+        """The parameters that nodes and controllers are given, by their names without namespaces."""
+        found: dict[str, list[NodeParameters]] = {}
+        for package, launch in self.roots:
+            managers = [it for it in launch.nodes if self.name_of(it) == _MANAGER]
+            for node in launch.nodes:
+                name, own = self.name_of(node), self.python_node(node)
+                if (name is not None and node.package != _MANAGER) or node in managers:
+                    given = parameters_of(node, package, name or "", is_python=own is not None or None)
+                    found.setdefault(name or "", []).append(given)
+                for controller in (controllers_of(node) or ()) if node.executable in _SPAWNERS else ():
+                    before = [it for manager in managers for it in manager.parameters or ()]
+                    files = (*before, *self._simulated, *(controller.parameters or ()))
+                    given = parameters_of(replace(controller, parameters=files), package, is_python=False)
+                    found.setdefault(controller.node_name or "", []).append(given)
+        return found
+
+    @property
+    def _simulated(self) -> Iterator[GivenParameters]:
+        """The files that the robot gives to the controller manager in Gazebo."""
+        for element in self.robot_root.iter("parameters") if self.robot_root is not None else ():
+            path = _FOUND.sub(rf"{SHARE}/\1/", readable((element.text or "").strip()))
+            if path.startswith(SHARE):
+                yield GivenParameters(self.place(element), path)
+
+    @property
+    def unknown_nodes(self) -> str:
+        """Why launch files may start more nodes; empty where they do not."""
+        reasons = [it.message for _, launch in self.roots for it in launch.unknown]
+        return next(iter([*reasons, *(launch.unread for _, launch in self.roots if launch.unread)]), "")
 
     def wildcard_places(self, node: StartedNode) -> frozenset[Location]:
         """Return the places of parameters that a file gives to every node."""

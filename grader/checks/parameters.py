@@ -1,0 +1,160 @@
+"""The check of parameters: the values that nodes get, wherever they are written, also measured on the robot."""
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, Literal
+
+from grader.checks.outcome import Outcome, failed, passed
+from grader.checks.toml_types import Content, NonNegative, Scalar
+from grader.errors import MissingElement, NotDecided
+from grader.names import did_you_mean
+from grader.package.launch.model import ParameterValue
+from grader.python.values import Unknown
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Cylinder, Joint, Sphere
+from grader.submission.submission import Submission
+from grader.text import enumerated, quoted
+
+_Measure = Literal["radius", "length", "distance", "lower", "upper", "velocity", "effort"]
+_EXACT = 1e-6
+
+
+def parameter_is(
+    submission: Submission,
+    *,
+    node: str,
+    parameter: str,
+    value: Content | None = None,
+    one_of: list[Scalar] | None = None,
+    has: list[Scalar] | None = None,
+    measure: _Measure | None = None,
+    links: list[str] | None = None,
+    tolerance: NonNegative = _EXACT,
+) -> Outcome:
+    """A node gets this value of a parameter, wherever it is written.
+
+    Files of parameters, values in launch files and arguments of the node count as in ROS 2. Controllers get those of
+    the controller manager's files, and those that their spawner is given.
+
+    Args:
+        node: The name of the node, or of the controller, without its namespace.
+        parameter: The name of the parameter, with dots for those in tables.
+        value: The value that it should have; for a list all items, in order.
+        one_of: Values of which it should have one.
+        has: Values that a list should have among its items.
+        measure: What of the robot the value should equal: the radius or length of what the first of the links shows,
+            the distance between the frames of two links, or a limit of the joint that moves the first one.
+        links: The links that are measured.
+        tolerance: How far a number may be off, in the number's own unit.
+    """
+    found = _value_of(submission, node, parameter)
+    if isinstance(found.value, Unknown):
+        cause = f"the parameter {parameter} of {node} cannot be determined statically"
+        raise NotDecided(f"{cause}: {found.value.reason}", cause)
+    if measure is not None:
+        value = _measured(submission, measure, links or [])
+    actual, wanted, fits = found.value, "", True
+    if value is not None:
+        wanted, fits = f"should be {_text(value)}", _equal(actual, value, tolerance)
+    if one_of is not None:
+        wanted, fits = f"should be {enumerated([*map(_text, one_of)], word='or')}", _is_one(actual, one_of, tolerance)
+    if has is not None:
+        items = actual if isinstance(actual, list) else [actual]
+        wanted = f"should have {enumerated([*map(_text, has)])}"
+        fits = all(any(_equal(item, one, tolerance) for item in items) for one in has)
+    message = f"{node} gets {parameter} = {_text(actual)}"
+    if measure is not None:
+        wanted += f", the {measure} of {enumerated(links or [])} in the robot"
+    return passed(message) if fits else failed(f"{message}; it {wanted}", found.location)
+
+
+def _value_of(submission: Submission, node: str, parameter: str) -> ParameterValue:
+    """Return the value that a node gets. Raises MissingElement if it gets none, NotDecided where that is not known."""
+    from grader.workspace.workspace import Workspace  # late: few rubrics ask for it
+
+    submission.needed_package()
+    workspace = Workspace(submission)
+    given = workspace.parameter_owners.get(node, [])
+    values = [found.values[parameter] for found in given if parameter in found.values]
+    if len({repr(it.value) for it in values}) == 1 and len(values) == len(given):
+        return values[0]
+    unknown = next((found.unknown for found in given if found.unknown), "") or workspace.unknown_nodes
+    if values and not unknown:
+        places = enumerated([f"{it.location.path}:{it.location.line}" for it in values])
+        raise NotDecided(f"{node} gets different values of {parameter}: {places}", "a parameter has several values")
+    if unknown:
+        raise NotDecided(f"the parameters of {node} are not known: {unknown}", "parameters of a node are not known")
+    if not given:
+        guess = did_you_mean(node, workspace.parameter_owners)
+        message = f"nothing gives parameters to a node {quoted(node)}{guess}"
+        raise MissingElement("parameters of the node", node, message=message)
+    names = [name for found in given for name in found.values]
+    message = f"{node} does not get the parameter {quoted(parameter)}{did_you_mean(parameter, names)}"
+    at = next((it.location for found in given for it in found.values.values()), None)
+    raise MissingElement("parameter", f"{node} {parameter}", message=message, location=at)
+
+
+def _equal(actual: Any, wanted: Any, tolerance: float) -> bool:
+    """Return whether a value is a wanted one: numbers within a tolerance, lists item by item."""
+    if isinstance(actual, list) and isinstance(wanted, list | tuple):
+        return len(actual) == len(wanted) and all(map(_equal, actual, wanted, [tolerance] * len(actual)))
+    are_numbers = all(isinstance(it, int | float) and not isinstance(it, bool) for it in (actual, wanted))
+    if are_numbers:
+        return abs(actual - wanted) <= tolerance
+    is_same: bool = type(actual) is type(wanted) and actual == wanted
+    return is_same
+
+
+def _is_one(actual: Any, choices: list[Scalar], tolerance: float) -> bool:
+    return any(_equal(actual, one, tolerance) for one in choices)
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_text, value))}]"
+    if isinstance(value, bool):
+        return str(value).lower()
+    return quoted(value) if isinstance(value, str) else f"{value:.12g}"
+
+
+def _measured(submission: Submission, measure: _Measure, links: list[str]) -> float:
+    """Return a measure of the robot, in metres or radians. Raises MissingElement for a link that is not there."""
+    robot = submission.needed_urdf().robot
+    if robot is None:
+        raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot")
+    found = measures(Configuration(robot), links).get(measure)
+    if found is None:
+        raise MissingElement("measure", " ".join(links), message=f"{enumerated(links)} has no {measure}")
+    return found()
+
+
+def measures(robot: Configuration, links: list[str]) -> Mapping[str, Callable[[], float]]:
+    """Return what can be measured of one link, or of two: a radius, a distance, the limits of a joint.
+
+    Args:
+        robot: The robot.
+        links: The names of one or two links.
+    """
+    return dict(_measures(robot, links))
+
+
+def _measures(robot: Configuration, links: list[str]) -> Iterator[tuple[str, Callable[[], float]]]:
+    first = robot.robot.link(links[0]) if links else None
+    if first is None:
+        return
+    if len(links) > 1:
+        pose = robot.pose(links[1], relative_to=links[0])
+        x, y, z = pose.translation
+        yield "distance", lambda: float((x * x + y * y + z * z) ** 0.5)
+        return
+    for visual in first.visuals:
+        match visual.geometry:
+            case Cylinder(radius=radius, length=length):
+                yield "radius", lambda: radius
+                yield "length", lambda: length
+            case Sphere(radius=radius):
+                yield "radius", lambda: radius
+    joint: Joint | None = next((it for it in reversed(robot.chain(links[0]) or ()) if it.type != "fixed"), None)
+    if joint is not None and joint.limit is not None:
+        limit = joint.limit
+        yield from (("lower", lambda: limit.lower), ("upper", lambda: limit.upper))
+        yield from (("velocity", lambda: limit.velocity), ("effort", lambda: limit.effort))
