@@ -5,7 +5,7 @@ from typing import Any, Literal
 
 from grader.checks.outcome import Outcome, failed, passed
 from grader.checks.toml_types import Content, NonNegative, Scalar
-from grader.errors import MissingElement, NotDecided
+from grader.errors import MissingElement, NotDecided, RubricError
 from grader.names import did_you_mean
 from grader.package.launch.model import ParameterValue
 from grader.python.values import Unknown
@@ -63,7 +63,7 @@ def parameter_is(
         fits = all(any(_equal(item, one, tolerance) for item in items) for one in has)
     message = f"{node} gets {parameter} = {_text(actual)}"
     if measure is not None:
-        wanted += f", the {measure} of {enumerated(links or [])} in the robot"
+        wanted += f", the {measure} of {enumerated([*map(quoted, links or [])])} in the robot"
     return passed(message) if fits else failed(f"{message}; it {wanted}", found.location)
 
 
@@ -95,13 +95,14 @@ def _value_of(submission: Submission, node: str, parameter: str) -> ParameterVal
 
 def _equal(actual: Any, wanted: Any, tolerance: float) -> bool:
     """Return whether a value is a wanted one: numbers within a tolerance, lists item by item."""
-    if isinstance(actual, list) and isinstance(wanted, list | tuple):
-        return len(actual) == len(wanted) and all(map(_equal, actual, wanted, [tolerance] * len(actual)))
-    are_numbers = all(isinstance(it, int | float) and not isinstance(it, bool) for it in (actual, wanted))
-    if are_numbers:
-        return abs(actual - wanted) <= tolerance
-    is_same: bool = type(actual) is type(wanted) and actual == wanted
-    return is_same
+    match actual, wanted:
+        case (list(), list()):
+            return len(actual) == len(wanted) and all(map(_equal, actual, wanted, [tolerance] * len(actual)))
+        case (bool() | str(), bool() | str()):
+            return (type(actual), actual) == (type(wanted), wanted)
+        case (int() | float(), int() | float()) if not isinstance(actual, bool) and not isinstance(wanted, bool):
+            return abs(actual - wanted) <= tolerance
+    return False
 
 
 def _is_one(actual: Any, choices: list[Scalar], tolerance: float) -> bool:
@@ -109,7 +110,7 @@ def _is_one(actual: Any, choices: list[Scalar], tolerance: float) -> bool:
 
 
 def _text(value: Any) -> str:
-    if isinstance(value, list | tuple):
+    if isinstance(value, list):
         return f"[{', '.join(map(_text, value))}]"
     if isinstance(value, bool):
         return str(value).lower()
@@ -121,9 +122,13 @@ def _measured(submission: Submission, measure: _Measure, links: list[str]) -> fl
     robot = submission.needed_urdf().robot
     if robot is None:
         raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot")
+    if len(links) != 1 + (measure == "distance"):
+        raise RubricError(
+            (f"parameter_is measures a {measure}: give {'two links' if measure == 'distance' else 'a link'}",)
+        )
     found = measures(Configuration(robot), links).get(measure)
     if found is None:
-        raise MissingElement("measure", " ".join(links), message=f"{enumerated(links)} has no {measure}")
+        raise MissingElement("measure", links[0], message=f"{quoted(links[0])} has no {measure}")
     return found()
 
 
@@ -138,9 +143,7 @@ def measures(robot: Configuration, links: list[str]) -> Mapping[str, Callable[[]
 
 
 def _measures(robot: Configuration, links: list[str]) -> Iterator[tuple[str, Callable[[], float]]]:
-    first = robot.robot.link(links[0]) if links else None
-    if first is None:
-        return
+    first = robot.robot.link(links[0])
     if len(links) > 1:
         pose = robot.pose(links[1], relative_to=links[0])
         x, y, z = pose.translation
