@@ -6,6 +6,7 @@ from grader.names import closest
 from grader.package.entry_points import entry_fault, entry_points
 from grader.package.launch.parameters import parameters_of
 from grader.package.package import Package
+from grader.workspace.known import known
 from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use
 from grader.workspace.workspace import Workspace
 
@@ -53,7 +54,10 @@ def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
             yield Open("node", reason=launch.unknown[0].message if launch.unknown else "a launch file cannot be read")
     for _, node in workspace.nodes:
         name = workspace.name_of(node)
-        yield Open("node") if name is None else Definition("node", name, node.location)
+        if name is not None:
+            yield Definition("node", name, node.location)
+        elif node.package not in known()["without_lifecycle"]:
+            yield Open("node")
     for package, node in managers:
         found = parameters_of(node, package, "lifecycle_manager")
         given = found.values.get("node_names")

@@ -1,0 +1,145 @@
+"""What each family compares: a mistake in the workspace of the cart, and other ways to write it that agree."""
+
+import pytest
+
+from grader.workspace.names import Family
+from tests.workspace.carts import agreement_of, edited, sure
+
+_LAUNCH, _ROBOT_LAUNCH = "launch/cart.launch.py", "launch/robot.launch.py"
+_CONTROLLERS, _URDF = "config/controllers.yaml", "cart.urdf.xacro"
+_DETECTOR, _ALARM = "cart_nodes/detector.py", "cart_nodes/alarm.py"
+_Edit = tuple[str, str, str]
+
+WRONG: list[tuple[Family, str, list[_Edit]]] = [
+    ("files", "share/cart_bringup/config/detectors.yaml is looked for, but the package has no file 'detectors.yaml';"
+     " did you mean 'detector.yaml'?", [(_LAUNCH, '"detector.yaml"', '"detectors.yaml"')]),
+    ("files", "share/cart_bringup/config/hall.yaml is looked for, but a build installs it as"
+     " share/cart_bringup/worlds/hall.yaml", [(_LAUNCH, '"worlds"', '"config"')]),
+    ("files", "share/cart_bringup/worlds/hall.yaml is looked for, but a build does not install worlds/hall.yaml: no"
+     " install() in CMakeLists.txt names it", [("cart_bringup/CMakeLists.txt", " worlds", "")]),
+    ("files", "the image of the map, 'hall.png', does not exist; did you mean 'hall.pgm'?",
+     [("worlds/hall.yaml", "hall.pgm", "hall.png")]),
+    ("files", "there is no package 'cart_bringups'; did you mean 'cart_bringup'?",
+     [("navigation.yaml", "controller_plugins", "tree: $(find-pkg-share cart_bringups)/tree.xml\n    controller_plugins")]),
+    ("frames", "wheel_controller.left_wheel_names: there is no joint 'wheel_left_joint'; did you mean 'left_wheel_joint'"
+     " (cart_description/urdf/wheel.xacro:5)?", [(_CONTROLLERS, "[left_wheel_joint]", "[wheel_left_joint]")]),
+    ("frames", "static_transform_publisher: there is no frame 'base'; did you mean 'base_link'"
+     " (cart_description/urdf/cart.urdf.xacro:5)?", [(_ROBOT_LAUNCH, '"base_link"', '"base"')]),
+    ("frames", "the frame 'left_wheel' has two parents: 'base_link' in the robot, 'camera_link' here",
+     [(_ROBOT_LAUNCH, '"base_link", "--child-frame-id", "laser"', '"camera_link", "--child-frame-id", "left_wheel"')]),
+    ("frames", "<gazebo reference>: there is no link 'camera'; did you mean 'camera_link'"
+     " (cart_description/urdf/cart.urdf.xacro:8)?", [(_URDF, 'reference="camera_link"', 'reference="camera"')]),
+    ("frames", "<gz_frame_id>: there is no frame 'camera'; did you mean 'camera_link'"
+     " (cart_description/urdf/cart.urdf.xacro:8)?", [(_URDF, "id>camera_link", "id>camera")]),
+    ("frames", "<ros2_control>: there is no joint 'left_joint'; did you mean 'left_wheel_joint'"
+     " (cart_description/urdf/wheel.xacro:5)?", [(_URDF, '"left_wheel_joint"', '"left_joint"')]),
+    ("controllers", "spawner: there is no controller 'cart_controller'; did you mean 'wheel_controller'"
+     " (cart_bringup/config/controllers.yaml:7)?", [(_ROBOT_LAUNCH, '"wheel_controller"', '"cart_controller"')]),
+    ("controllers", "wheel_controller.type: there is no controller of the type 'diff_drive_controller/DiffDrive'; did"
+     " you mean 'diff_drive_controller/DiffDriveController'?", [(_CONTROLLERS, "/DiffDriveController", "/DiffDrive")]),
+    ("controllers", "the controller 'wheel_controller' has no parameters: there is no key wheel_controller with"
+     " ros__parameters", [(_CONTROLLERS, "\nwheel_controller:", "\nwheels:")]),
+    ("controllers", "wheel_controller needs the command interface left_wheel_joint/velocity; <ros2_control> has position"
+     " (cart_description/urdf/cart.urdf.xacro:18)",
+     [(_URDF, '"left_wheel_joint">\n      <command_interface name="velocity"',
+       '"left_wheel_joint">\n      <command_interface name="position"')]),
+    ("parameters", "there are parameters for detect, but none for the node 'detector', which gets this file",
+     [("config/detector.yaml", "detector:", "detect:")]),
+    ("parameters", "threshold is not below a key ros__parameters, so rcl cannot read the file",
+     [("config/detector.yaml", "  ros__parameters:\n    threshold: 0.5\n    camera_frame: camera_link",
+       "  threshold: 0.5")]),
+    ("parameters", "the node 'detector': there is no parameter 'treshold'; did you mean 'threshold'"
+     " (cart_nodes/cart_nodes/detector.py:10)?", [("config/detector.yaml", "threshold", "treshold")]),
+    ("parameters", "get_parameter: there is no parameter 'level'", [(_DETECTOR, 'get_parameter("threshold")', 'get_parameter("level")')]),
+    ("parameters", "plugins: there is no plugin section 'obstacle'; did you mean 'obstacle_layer'"
+     " (cart_bringup/config/navigation.yaml:13)?", [("navigation.yaml", "[obstacle_layer]", "[obstacle]")]),
+    ("arguments", "the include of robot.launch.py: there is no launch argument 'use_sim_time'; did you mean 'sim_time'"
+     " (cart_bringup/launch/robot.launch.py:1)?", [(_LAUNCH, '"sim_time"', '"use_sim_time"')]),
+    ("arguments", "Command of xacro: there is no xacro argument 'controller_file'; did you mean 'controllers_file'"
+     " (cart_description/urdf/cart.urdf.xacro:3)?", [(_ROBOT_LAUNCH, "controllers_file:=", "controller_file:=")]),
+    ("programs", "the package 'cart_nodes' has no program 'detect'; did you mean 'detector'?",
+     [(_LAUNCH, 'executable="detector"', 'executable="detect"')]),
+    ("programs", "the entry point of 'alarm' names no function: there is no module cart_nodes.siren; did you mean 'alarm'?",
+     [("cart_nodes/setup.py", "cart_nodes.alarm", "cart_nodes.siren")]),
+    ("programs", "a build installs 'alarm' in bin, not in lib/cart_nodes: see install_scripts of setup.cfg",
+     [("setup.cfg", "[install]\ninstall_scripts=$base/lib/cart_nodes\n", "")]),
+    ("programs", "node_names: there is no node 'controller'; did you mean 'controller_server'"
+     " (cart_bringup/launch/cart.launch.py:32)?", [(_LAUNCH, '"controller_server"]}', '"controller"]}')]),
+    ("topics", "the topic /obstacle is subscribed to with std_msgs.msg.Int8, but published with std_msgs.msg.Bool"
+     " (cart_nodes/cart_nodes/detector.py:13)", [(_ALARM, "import Bool", "import Int8"), (_ALARM, "(Bool", "(Int8")]),
+    ("topics", "the subscription of /obstacle asks for reliable, but its publisher is best_effort"
+     " (cart_nodes/cart_nodes/detector.py:14)", [(_DETECTOR, '"obstacle", 10', '"obstacle", qos_profile_sensor_data'),
+     (_DETECTOR, "import Node", "import Node\nfrom rclpy.qos import qos_profile_sensor_data")]),
+    ("topics", "the remapping of detector: there is no topic 'images'; did you mean 'image'"
+     " (cart_nodes/cart_nodes/detector.py:14)?", [(_LAUNCH, '("image"', '("images"')]),
+    ("dependencies", "package.xml of 'cart_bringup' does not declare 'nav2_controller', which is used here",
+     [("cart_bringup/package.xml", "  <exec_depend>nav2_controller</exec_depend>\n", "")]),
+    ("dependencies", "package.xml of 'cart_bringup' does not declare 'diff_drive_controller', which is used here",
+     [("cart_bringup/package.xml", "  <exec_depend>diff_drive_controller</exec_depend>\n", "")]),
+    ("dependencies", "package.xml of 'cart_nodes' does not declare 'std_msgs', which is used here",
+     [("cart_nodes/package.xml", "  <exec_depend>std_msgs</exec_depend>\n", "")]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("family", "message", "edits"), WRONG, ids=[f"{it[0]}: {it[1][:50]}" for it in WRONG])
+def test_a_wrong_name_is_a_sure_problem_of_one_family(family: Family, message: str, edits: list[_Edit]) -> None:
+    """What certainly fails at run time is named with both places, and counts in one family."""
+    found = sure(agreement_of(edited(*edits)))
+    assert message in [it.message for it in found], found
+    assert {it.family for it in found} == {family}
+
+
+CORRECT: list[tuple[str, list[_Edit]]] = [
+    ("parameters of every node", [("config/detector.yaml", "detector:", "/**:")]),
+    ("parameters by the full name of a node", [("config/detector.yaml", "detector:", "/detector:")]),
+    ("parameters of every node are not declared by each", [
+        ("config/detector.yaml", "detector:", "/**:"), ("config/detector.yaml", "threshold", "level")]),
+    ("a node that declares what it is given", [
+        (_DETECTOR, 'super().__init__("detector")',
+         'super().__init__("detector", automatically_declare_parameters_from_overrides=True)'),
+        ("config/detector.yaml", "threshold", "level")]),
+    ("parameters of which some names are computed", [
+        (_DETECTOR, 'self.declare_parameter("threshold", 0.5)', 'self.declare_parameter(name_of(self), 0.5)')]),
+    ("block style", [(_CONTROLLERS, "left_wheel_names: [left_wheel_joint]", "left_wheel_names:\n      - left_wheel_joint")]),
+    ("spawners of one node", [(_ROBOT_LAUNCH, '["wheel_controller", "--param-file"',
+                               '["wheel_controller", "joint_state_broadcaster", "--param-file"')]),
+    ("frames of localization", [(_ROBOT_LAUNCH, '"--frame-id", "base_link", "--child-frame-id", "laser"',
+                                 '"--frame-id", "map", "--child-frame-id", "odom"')]),
+    ("a frame of a static transform", [("config/detector.yaml", "camera_frame: camera_link", "camera_frame: laser")]),
+    ("a frame that a node of another package may publish", [
+        (_LAUNCH, 'package="nav2_map_server"', 'package="apriltag_ros"'),
+        ("cart_bringup/package.xml", "nav2_map_server", "apriltag_ros"),
+        ("config/detector.yaml", "camera_frame: camera_link", "camera_frame: tag_7")]),
+    ("a frame that a node of the workspace publishes", [
+        (_DETECTOR, "import rclpy", "import rclpy\nfrom tf2_ros import TransformBroadcaster"),
+        ("cart_nodes/package.xml", "<exec_depend>rclpy", "<exec_depend>tf2_ros</exec_depend><exec_depend>rclpy"),
+        ("config/detector.yaml", "camera_frame: camera_link", "camera_frame: target")]),
+    ("a reference to a joint", [(_URDF, '<gazebo reference="camera_link">', '<gazebo reference="camera_mount">')]),
+    ("a controller that is not known", [
+        (_CONTROLLERS, "diff_drive_controller/DiffDriveController", "cart_control/CartController"),
+        (_CONTROLLERS, "left_wheel_names", "wheels"), (_CONTROLLERS, "right_wheel_names", "others")]),
+    ("an argument that nothing declares and nothing is like", [(_LAUNCH, '"sim_time": "true"', '"sim_time": "true", "colour": "red"')]),
+    ("a file that a program writes", [(_LAUNCH, '"worlds", "hall.yaml"', '"recorded", "mine.bag"')]),
+    ("programs of packages that are not submitted", [(_LAUNCH, 'executable="map_server"', 'executable="map_saver"')]),
+    ("a topic that nobody publishes", [(_ALARM, 'Bool, "obstacle"', 'Bool, "emergency"')]),
+    ("reliable to best effort", [
+        (_ALARM, "on_obstacle, 10", "on_obstacle, qos_profile_sensor_data"),
+        (_ALARM, "import Node", "import Node\nfrom rclpy.qos import qos_profile_sensor_data")]),
+    ("a remapping of a node whose topics are computed", [
+        (_DETECTOR, 'Image, "image"', "Image, topic_of(self)"), (_LAUNCH, '("image"', '("images"')]),
+    ("a dependency for the build too", [("cart_nodes/package.xml", "<exec_depend>std_msgs</exec_depend>", "<depend>std_msgs</depend>")]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("edits", [it[1] for it in CORRECT], ids=[it[0] for it in CORRECT])
+def test_what_ros_accepts_is_no_sure_problem(edits: list[_Edit]) -> None:
+    """Other ways to write the same, and names that something which is not submitted may define, are not wrong."""
+    assert sure(agreement_of(edited(*edits))) == []
+
+
+def test_a_family_is_undecided_where_what_defines_its_names_is_not_evaluated() -> None:
+    """A CMakeLists.txt that calls an own function may install the file."""
+    texts = edited(("cart_bringup/CMakeLists.txt", "install(", "install_all("))
+    found = agreement_of(texts)
+    assert "files" in found.undecided
+    assert [it for it in sure(found) if it.family == "files"] == []
