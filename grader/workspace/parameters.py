@@ -13,7 +13,7 @@ from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, U
 from grader.workspace.workspace import Workspace
 from grader.workspace.yaml_values import PARAMETERS, is_parameters, sections_in
 
-_OF_EVERY_NODE = ("use_sim_time",)
+_OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
 # Keys of lists whose entries name sections beside them, in the files of Nav2, MoveIt and others.
 _LISTS = ("plugins", "navigators", "observation_sources", "filters", "controller_names")
 _NOT_LISTS = ("plugin_lib_names",)
@@ -94,7 +94,7 @@ def _declared(workspace: Workspace, package: Package, node: StartedNode, own: Py
         yield Undecided("parameters", found.unknown)
     wide = workspace.wildcard_places(node)
     for name, value in found.values.items():
-        if value.location not in wide:
+        if value.location not in wide and not name.startswith("qos_overrides."):
             yield Use("parameter", name, value.location, f"the node {workspace.name_of(node)!r}", owner)
 
 

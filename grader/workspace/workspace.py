@@ -1,6 +1,7 @@
 """The files of a workspace whose names are compared: packages, launch files, parameter files, the robot, nodes."""
 
 import posixpath
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -21,6 +22,8 @@ from grader.xml.parsing import Element
 
 _MAX_FILES = 60  # of one kind in a package
 _MAX_YAML = 512 * 1024  # bytes
+_OF_YAML = (".yaml", ".yml", ".py")
+_COMMENT = {False: re.compile(r"<!--.*?-->", re.DOTALL), True: re.compile(r"(?:^|(?<=\s))#[^\n]*")}
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,7 +213,16 @@ class Workspace:
                 data = package.tree.files[path].read(_MAX_YAML)
             except InputError:
                 continue
-            yield Source(package.path(path), data.decode("utf-8", "replace"))
+            text = data.decode("utf-8", "replace")
+            yield Source(package.path(path), _COMMENT[path.endswith(_OF_YAML)].sub(_blank, text))
+
+    @cached_property
+    def robot_files(self) -> frozenset[str] | None:
+        """The files that the robot is made of, by their paths; None where it is not known."""
+        root, urdf = self.robot_root, self.submission.urdf
+        if root is None or not isinstance(urdf, Read):
+            return None
+        return frozenset({urdf.path, *(self.place(element).path for element in root.iter("*"))})
 
     @cached_property
     def xacro_sources(self) -> tuple[Source, ...]:
@@ -228,3 +240,8 @@ class Workspace:
         rows = [row for _, tree in self.trees for row in tree.items if row.get("ros_type_name") is not None]
         named = [row.get("ros_topic_name") or row.get("topic_name") for row in rows]
         return tuple((it.text, it.location) for it in named if it is not None and it.text)
+
+
+def _blank(found: re.Match[str]) -> str:
+    """Return blanks in place of a comment, so that places stay the same."""
+    return re.sub(r"\S", " ", found[0])

@@ -128,6 +128,23 @@ CORRECT: list[tuple[str, list[_Edit]]] = [
     ("a remapping of a node whose topics are computed", [
         (_DETECTOR, 'Image, "image"', "Image, topic_of(self)"), (_LAUNCH, '("image"', '("images"')]),
     ("a dependency for the build too", [("cart_nodes/package.xml", "<exec_depend>std_msgs</exec_depend>", "<depend>std_msgs</depend>")]),
+    ("a comment in xacro", [(_URDF, '<link name="base_link"/>',
+                             '<link name="base_link"/><!-- $(find cart_description)/urdf/old.xacro -->')]),
+    ("a comment in YAML", [("navigation.yaml", "controller_plugins",
+                            "# $(find-pkg-share cart_bringup)/worlds/old.yaml\n    controller_plugins")]),
+    ("a default that the include replaces", [
+        (_LAUNCH, '{"sim_time": "true"}', '{"sim_time": "true", "gui": "false"}'),
+        (_ROBOT_LAUNCH, 'DeclareLaunchArgument("sim_time"', """DeclareLaunchArgument("gui", default_value="true"),
+        Node(package="ros_gz_bridge", executable="parameter_bridge", condition=IfCondition(LaunchConfiguration("gui")),
+             arguments=["-d", PathJoinSubstitution([share, "config", "gui.yaml"])]),
+        DeclareLaunchArgument("sim_time\""""),
+        (_ROBOT_LAUNCH, "launch_ros.actions", "launch.conditions import IfCondition\nfrom launch_ros.actions")]),
+    ("a metapackage", [("cart_bringup/package.xml", "  <exec_depend>nav2_map_server</exec_depend>\n",
+                        "  <exec_depend>navigation2</exec_depend>\n")]),
+    ("what a declared package needs", [
+        ("cart_bringup/package.xml", "  <exec_depend>robot_state_publisher</exec_depend>\n", ""),
+        ("cart_description/package.xml", "<exec_depend>xacro", "<exec_depend>robot_state_publisher</exec_depend><exec_depend>xacro")]),
+    ("overrides of the quality of service", [("config/detector.yaml", "threshold: 0.5", "qos_overrides: {/obstacle: {publisher: {depth: 3}}}")]),
 ]  # fmt: skip
 
 
@@ -135,6 +152,43 @@ CORRECT: list[tuple[str, list[_Edit]]] = [
 def test_what_ros_accepts_is_no_sure_problem(edits: list[_Edit]) -> None:
     """Other ways to write the same, and names that something which is not submitted may define, are not wrong."""
     assert sure(agreement_of(edited(*edits))) == []
+
+
+def test_a_module_beside_is_no_package() -> None:
+    """A module of the package itself may be named like messages."""
+    texts = edited((_ALARM, "import rclpy\n", "import rclpy\nimport own_msgs\n"))
+    assert [it.family for it in sure(agreement_of(texts))] == ["dependencies"]
+    assert sure(agreement_of({**texts, "cart_nodes/cart_nodes/own_msgs.py": ""})) == []
+
+
+def test_a_robot_that_is_not_used_is_no_sure_problem() -> None:
+    """What an old file beside the robot names is looked for by nobody: it is a warning."""
+    old = '<robot name="x"><link name="{}"><visual><geometry><mesh filename="package://cart_description/urdf/wheel.stl"/>'
+    texts = {**edited(), "cart_description/urdf/old.xacro": f"{old}</geometry></visual></link></robot>"}
+    found = agreement_of(texts)
+    assert [(it.family, it.is_sure) for it in found.mismatches] == [("files", False)]
+
+
+def test_a_launch_file_that_is_not_installed_finds_what_is_beside_it() -> None:
+    """Started by its path, it has the folder of the sources."""
+    include = """from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription
+from launch.substitutions import ThisLaunchFileDir, PathJoinSubstitution
+
+
+def generate_launch_description():
+    return LaunchDescription([IncludeLaunchDescription(PathJoinSubstitution([ThisLaunchFileDir(), "b.launch.py"]))])
+"""
+    texts = {**edited(), "cart_bringup/examples/a.launch.py": include, "cart_bringup/examples/b.launch.py": include}
+    assert sure(agreement_of(texts)) == []
+
+
+def test_what_is_installed_for_tests_leaves_files_undecided() -> None:
+    """BUILD_TESTING is on by default, but not where packages are built for others."""
+    texts = edited(("cart_bringup/CMakeLists.txt", "install(DIRECTORY launch config worlds",
+                    "if(BUILD_TESTING)\n  install(DIRECTORY worlds DESTINATION share/x)\nendif()\ninstall(DIRECTORY launch config"))
+    assert "files" in agreement_of(texts).undecided
+    assert sure(agreement_of(texts)) == []
 
 
 def test_a_family_is_undecided_where_what_defines_its_names_is_not_evaluated() -> None:
