@@ -1,5 +1,6 @@
 """Parameters: whether files of parameters have some for the node that gets them, and whether own nodes declare them."""
 
+import re
 from collections.abc import Iterator, Sequence
 from fnmatch import fnmatchcase
 
@@ -9,11 +10,13 @@ from grader.package.launch.parameters import parameters_of
 from grader.package.nodes import PythonNode
 from grader.package.package import Package
 from grader.package.yaml_nodes import YamlFault, YamlNode
+from grader.workspace.known import known
 from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use
 from grader.workspace.workspace import Workspace
-from grader.workspace.yaml_values import PARAMETERS, is_parameters, sections_in
+from grader.workspace.yaml_values import PARAMETERS, is_parameters, sections_in, values_in
 
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
+_SEPARATORS = re.compile(r"[:/]+")
 # Keys of lists whose entries name sections beside them, in the files of Nav2, MoveIt and others.
 _LISTS = ("plugins", "navigators", "observation_sources", "filters", "controller_names")
 _NOT_LISTS = ("plugin_lib_names",)
@@ -35,6 +38,7 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     for _, tree in workspace.trees:
         if is_parameters(tree) or "controller_names" in tree.source.text:
             yield from _plugin_lists(tree)
+            yield from _plugin_names(tree)
 
 
 def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -> Iterator[Fact]:
@@ -118,3 +122,14 @@ def _plugin_lists(tree: YamlNode) -> Iterator[Fact]:
             for text, at in texts:
                 if text and "/" not in text and "::" not in text:
                     yield Use("plugin section", text, at, key, owner)
+
+
+def _plugin_names(tree: YamlNode) -> Iterator[Fact]:
+    """Yield plugins that are written with other separators than pluginlib knows them by."""
+    names = {_SEPARATORS.sub("::", name): name for name in known()["plugins"]}
+    for value in values_in(tree):
+        text = value.node.text or ""
+        meant = names.get(_SEPARATORS.sub("::", text)) if value.keys[-1:] == ("plugin",) else None
+        if meant is not None and meant != text:
+            message = f"{value.said}: there is no plugin {text!r}; did you mean {meant!r}?"
+            yield Mismatch("parameters", message, value.node.location)

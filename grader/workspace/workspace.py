@@ -234,13 +234,6 @@ class Workspace:
         """The texts of the Python files."""
         return tuple(it.text for package in self.packages for it in self.sources_of(package, (".py",)))
 
-    @cached_property
-    def bridged_topics(self) -> tuple[tuple[str, Location], ...]:
-        """The topics of ROS that rows of a bridge name."""
-        rows = [row for _, tree in self.trees for row in tree.items if row.get("ros_type_name") is not None]
-        named = [row.get("ros_topic_name") or row.get("topic_name") for row in rows]
-        return tuple((it.text, it.location) for it in named if it is not None and it.text)
-
 
 def _blank(found: re.Match[str]) -> str:
     """Return blanks in place of a comment, so that places stay the same."""

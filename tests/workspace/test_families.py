@@ -11,36 +11,36 @@ _DETECTOR, _ALARM = "cart_nodes/detector.py", "cart_nodes/alarm.py"
 _Edit = tuple[str, str, str]
 
 WRONG: list[tuple[Family, str, list[_Edit]]] = [
-    ("files", "share/cart_bringup/config/detectors.yaml is looked for, but the package has no file 'detectors.yaml';"
-     " did you mean 'detector.yaml'?", [(_LAUNCH, '"detector.yaml"', '"detectors.yaml"')]),
-    ("files", "share/cart_bringup/config/hall.yaml is looked for, but a build installs it as"
-     " share/cart_bringup/worlds/hall.yaml", [(_LAUNCH, '"worlds"', '"config"')]),
-    ("files", "share/cart_bringup/worlds/hall.yaml is looked for, but a build does not install worlds/hall.yaml: no"
-     " install() in CMakeLists.txt names it", [("cart_bringup/CMakeLists.txt", " worlds", "")]),
+    ("files", ("share/cart_bringup/config/detectors.yaml is looked for, but the package has no file 'detectors.yaml';"
+     " did you mean 'detector.yaml'?"), [(_LAUNCH, '"detector.yaml"', '"detectors.yaml"')]),
+    ("files", ("share/cart_bringup/config/hall.yaml is looked for, but a build installs it as"
+     " share/cart_bringup/worlds/hall.yaml"), [(_LAUNCH, '"worlds"', '"config"')]),
+    ("files", ("share/cart_bringup/worlds/hall.yaml is looked for, but a build does not install worlds/hall.yaml: no"
+     " install() in CMakeLists.txt names it"), [("cart_bringup/CMakeLists.txt", " worlds", "")]),
     ("files", "the image of the map, 'hall.png', does not exist; did you mean 'hall.pgm'?",
      [("worlds/hall.yaml", "hall.pgm", "hall.png")]),
     ("files", "there is no package 'cart_bringups'; did you mean 'cart_bringup'?",
      [("navigation.yaml", "controller_plugins", "tree: $(find-pkg-share cart_bringups)/tree.xml\n    controller_plugins")]),
-    ("frames", "wheel_controller.left_wheel_names: there is no joint 'wheel_left_joint'; did you mean 'left_wheel_joint'"
-     " (cart_description/urdf/wheel.xacro:5)?", [(_CONTROLLERS, "[left_wheel_joint]", "[wheel_left_joint]")]),
-    ("frames", "static_transform_publisher: there is no frame 'base'; did you mean 'base_link'"
-     " (cart_description/urdf/cart.urdf.xacro:5)?", [(_ROBOT_LAUNCH, '"base_link"', '"base"')]),
+    ("frames", ("wheel_controller.left_wheel_names: there is no joint 'wheel_left_joint'; did you mean 'left_wheel_joint'"
+     " (cart_description/urdf/wheel.xacro:5)?"), [(_CONTROLLERS, "[left_wheel_joint]", "[wheel_left_joint]")]),
+    ("frames", ("static_transform_publisher: there is no frame 'base'; did you mean 'base_link'"
+     " (cart_description/urdf/cart.urdf.xacro:5)?"), [(_ROBOT_LAUNCH, '"base_link"', '"base"')]),
     ("frames", "the frame 'left_wheel' has two parents: 'base_link' in the robot, 'camera_link' here",
      [(_ROBOT_LAUNCH, '"base_link", "--child-frame-id", "laser"', '"camera_link", "--child-frame-id", "left_wheel"')]),
-    ("frames", "<gazebo reference>: there is no link 'camera'; did you mean 'camera_link'"
-     " (cart_description/urdf/cart.urdf.xacro:8)?", [(_URDF, 'reference="camera_link"', 'reference="camera"')]),
-    ("frames", "<gz_frame_id>: there is no frame 'camera'; did you mean 'camera_link'"
-     " (cart_description/urdf/cart.urdf.xacro:8)?", [(_URDF, "id>camera_link", "id>camera")]),
-    ("frames", "<ros2_control>: there is no joint 'left_joint'; did you mean 'left_wheel_joint'"
-     " (cart_description/urdf/wheel.xacro:5)?", [(_URDF, '"left_wheel_joint"', '"left_joint"')]),
-    ("controllers", "spawner: there is no controller 'cart_controller'; did you mean 'wheel_controller'"
-     " (cart_bringup/config/controllers.yaml:7)?", [(_ROBOT_LAUNCH, '"wheel_controller"', '"cart_controller"')]),
-    ("controllers", "wheel_controller.type: there is no controller of the type 'diff_drive_controller/DiffDrive'; did"
-     " you mean 'diff_drive_controller/DiffDriveController'?", [(_CONTROLLERS, "/DiffDriveController", "/DiffDrive")]),
-    ("controllers", "the controller 'wheel_controller' has no parameters: there is no key wheel_controller with"
-     " ros__parameters", [(_CONTROLLERS, "\nwheel_controller:", "\nwheels:")]),
-    ("controllers", "wheel_controller needs the command interface left_wheel_joint/velocity; <ros2_control> has position"
-     " (cart_description/urdf/cart.urdf.xacro:18)",
+    ("frames", ("<gazebo reference>: there is no link 'camera'; did you mean 'camera_link'"
+     " (cart_description/urdf/cart.urdf.xacro:8)?"), [(_URDF, 'reference="camera_link"', 'reference="camera"')]),
+    ("frames", ("<gz_frame_id>: there is no frame 'camera'; did you mean 'camera_link'"
+     " (cart_description/urdf/cart.urdf.xacro:8)?"), [(_URDF, "id>camera_link", "id>camera")]),
+    ("frames", ("<ros2_control>: there is no joint 'left_joint'; did you mean 'left_wheel_joint'"
+     " (cart_description/urdf/wheel.xacro:5)?"), [(_URDF, '"left_wheel_joint"', '"left_joint"')]),
+    ("controllers", ("spawner: there is no controller 'cart_controller'; did you mean 'wheel_controller'"
+     " (cart_bringup/config/controllers.yaml:7)?"), [(_ROBOT_LAUNCH, '"wheel_controller"', '"cart_controller"')]),
+    ("controllers", ("wheel_controller.type: there is no controller of the type 'diff_drive_controller/DiffDrive'; did"
+     " you mean 'diff_drive_controller/DiffDriveController'?"), [(_CONTROLLERS, "/DiffDriveController", "/DiffDrive")]),
+    ("controllers", ("the controller 'wheel_controller' has no parameters: there is no key wheel_controller with"
+     " ros__parameters"), [(_CONTROLLERS, "\nwheel_controller:", "\nwheels:")]),
+    ("controllers", ("wheel_controller needs the command interface left_wheel_joint/velocity; <ros2_control> has position"
+     " (cart_description/urdf/cart.urdf.xacro:18)"),
      [(_URDF, '"left_wheel_joint">\n      <command_interface name="velocity"',
        '"left_wheel_joint">\n      <command_interface name="position"')]),
     ("parameters", "there are parameters for detect, but none for the node 'detector', which gets this file",
@@ -48,30 +48,40 @@ WRONG: list[tuple[Family, str, list[_Edit]]] = [
     ("parameters", "threshold is not below a key ros__parameters, so rcl cannot read the file",
      [("config/detector.yaml", "  ros__parameters:\n    threshold: 0.5\n    camera_frame: camera_link",
        "  threshold: 0.5")]),
-    ("parameters", "the node 'detector': there is no parameter 'treshold'; did you mean 'threshold'"
-     " (cart_nodes/cart_nodes/detector.py:10)?", [("config/detector.yaml", "threshold", "treshold")]),
+    ("parameters", ("the node 'detector': there is no parameter 'treshold'; did you mean 'threshold'"
+     " (cart_nodes/cart_nodes/detector.py:10)?"), [("config/detector.yaml", "threshold", "treshold")]),
     ("parameters", "get_parameter: there is no parameter 'level'", [(_DETECTOR, 'get_parameter("threshold")', 'get_parameter("level")')]),
-    ("parameters", "plugins: there is no plugin section 'obstacle'; did you mean 'obstacle_layer'"
-     " (cart_bringup/config/navigation.yaml:13)?", [("navigation.yaml", "[obstacle_layer]", "[obstacle]")]),
-    ("arguments", "the include of robot.launch.py: there is no launch argument 'use_sim_time'; did you mean 'sim_time'"
-     " (cart_bringup/launch/robot.launch.py:1)?", [(_LAUNCH, '"sim_time"', '"use_sim_time"')]),
-    ("arguments", "Command of xacro: there is no xacro argument 'controller_file'; did you mean 'controllers_file'"
-     " (cart_description/urdf/cart.urdf.xacro:3)?", [(_ROBOT_LAUNCH, "controllers_file:=", "controller_file:=")]),
+    ("parameters", ("plugins: there is no plugin section 'obstacle'; did you mean 'obstacle_layer'"
+     " (cart_bringup/config/navigation.yaml:13)?"), [("navigation.yaml", "[obstacle_layer]", "[obstacle]")]),
+    ("parameters", ("obstacle_layer.plugin: there is no plugin 'nav2_costmap_2d/ObstacleLayer'; did you mean"
+     " 'nav2_costmap_2d::ObstacleLayer'?"), [("navigation.yaml", "2d::Obs", "2d/Obs")]),
+    ("arguments", ("the include of robot.launch.py: there is no launch argument 'use_sim_time'; did you mean 'sim_time'"
+     " (cart_bringup/launch/robot.launch.py:1)?"), [(_LAUNCH, '"sim_time"', '"use_sim_time"')]),
+    ("arguments", ("Command of xacro: there is no xacro argument 'controller_file'; did you mean 'controllers_file'"
+     " (cart_description/urdf/cart.urdf.xacro:3)?"), [(_ROBOT_LAUNCH, "controllers_file:=", "controller_file:=")]),
     ("programs", "the package 'cart_nodes' has no program 'detect'; did you mean 'detector'?",
      [(_LAUNCH, 'executable="detector"', 'executable="detect"')]),
     ("programs", "the entry point of 'alarm' names no function: there is no module cart_nodes.siren; did you mean 'alarm'?",
      [("cart_nodes/setup.py", "cart_nodes.alarm", "cart_nodes.siren")]),
     ("programs", "a build installs 'alarm' in bin, not in lib/cart_nodes: see install_scripts of setup.cfg",
      [("setup.cfg", "[install]\ninstall_scripts=$base/lib/cart_nodes\n", "")]),
-    ("programs", "node_names: there is no node 'controller'; did you mean 'controller_server'"
-     " (cart_bringup/launch/cart.launch.py:32)?", [(_LAUNCH, '"controller_server"]}', '"controller"]}')]),
-    ("topics", "the topic /obstacle is subscribed to with std_msgs.msg.Int8, but published with std_msgs.msg.Bool"
-     " (cart_nodes/cart_nodes/detector.py:13)", [(_ALARM, "import Bool", "import Int8"), (_ALARM, "(Bool", "(Int8")]),
-    ("topics", "the subscription of /obstacle asks for reliable, but its publisher is best_effort"
-     " (cart_nodes/cart_nodes/detector.py:14)", [(_DETECTOR, '"obstacle", 10', '"obstacle", qos_profile_sensor_data'),
+    ("programs", ("node_names: there is no node 'controller'; did you mean 'controller_server'"
+     " (cart_bringup/launch/cart.launch.py:32)?"), [(_LAUNCH, '"controller_server"]}', '"controller"]}')]),
+    ("topics", ("the topic /obstacle is subscribed to with std_msgs.msg.Int8, but published with std_msgs.msg.Bool"
+     " (cart_nodes/cart_nodes/detector.py:13)"), [(_ALARM, "import Bool", "import Int8"), (_ALARM, "(Bool", "(Int8")]),
+    ("topics", ("the subscription of /obstacle asks for reliable, but its publisher is best_effort"
+     " (cart_nodes/cart_nodes/detector.py:14)"), [(_DETECTOR, '"obstacle", 10', '"obstacle", qos_profile_sensor_data'),
      (_DETECTOR, "import Node", "import Node\nfrom rclpy.qos import qos_profile_sensor_data")]),
-    ("topics", "the remapping of detector: there is no topic 'images'; did you mean 'image'"
-     " (cart_nodes/cart_nodes/detector.py:14)?", [(_LAUNCH, '("image"', '("images"')]),
+    ("topics", ("the remapping of detector: there is no topic 'images'; did you mean 'image'"
+     " (cart_nodes/cart_nodes/detector.py:14)?"), [(_LAUNCH, '("image"', '("images"')]),
+    ("topics", ("no sensor publishes 'camera' in Gazebo; did you mean 'front_camera'"
+      " (cart_description/urdf/cart.urdf.xacro:29)?"), [("bridge.yaml", "front_camera", "camera")]),
+    ("topics", "the bridge sends the time of ROS to Gazebo: the clock is Gazebo's, so write GZ_TO_ROS",
+     [("bridge.yaml", "msgs.Clock\n  direction: GZ_TO_ROS", "msgs.Clock\n  direction: ROS_TO_GZ")]),
+    ("topics", "nothing publishes /camera/image_raw; did you mean /camera/image (cart_bringup/config/bridge.yaml:7)?",
+     [(_LAUNCH, '"camera/image"', '"camera/image_raw"')]),
+    ("topics", "nothing publishes /obstacles; did you mean /obstacle (cart_nodes/cart_nodes/detector.py:13)?",
+     [(_ALARM, 'Bool, "obstacle"', 'Bool, "obstacles"')]),
     ("dependencies", "package.xml of 'cart_bringup' does not declare 'nav2_controller', which is used here",
      [("cart_bringup/package.xml", "  <exec_depend>nav2_controller</exec_depend>\n", "")]),
     ("dependencies", "package.xml of 'cart_bringup' does not declare 'diff_drive_controller', which is used here",
@@ -99,7 +109,7 @@ CORRECT: list[tuple[str, list[_Edit]]] = [
          'super().__init__("detector", automatically_declare_parameters_from_overrides=True)'),
         ("config/detector.yaml", "threshold", "level")]),
     ("parameters of which some names are computed", [
-        (_DETECTOR, 'self.declare_parameter("threshold", 0.5)', 'self.declare_parameter(name_of(self), 0.5)')]),
+        (_DETECTOR, 'self.declare_parameter("threshold", 0.5)', "self.declare_parameter(name_of(self), 0.5)")]),
     ("block style", [(_CONTROLLERS, "left_wheel_names: [left_wheel_joint]", "left_wheel_names:\n      - left_wheel_joint")]),
     ("spawners of one node", [(_ROBOT_LAUNCH, '["wheel_controller", "--param-file"',
                                '["wheel_controller", "joint_state_broadcaster", "--param-file"')]),
@@ -144,6 +154,35 @@ CORRECT: list[tuple[str, list[_Edit]]] = [
     ("what a declared package needs", [
         ("cart_bringup/package.xml", "  <exec_depend>robot_state_publisher</exec_depend>\n", ""),
         ("cart_description/package.xml", "<exec_depend>xacro", "<exec_depend>robot_state_publisher</exec_depend><exec_depend>xacro")]),
+    ("what a camera publishes beside its pictures", [("bridge.yaml", "- ros_topic_name: camera/image", """- topic_name: /camera_info
+  ros_type_name: sensor_msgs/msg/CameraInfo
+  gz_type_name: gz.msgs.CameraInfo
+- ros_topic_name: camera/image""")]),
+    ("a topic of Gazebo's own name", [("bridge.yaml", "front_camera", "/world/hall/model/cart/link/camera_link/sensor/front/image")]),
+    ("rows in arguments", [
+        ("bridge.yaml", """- ros_topic_name: camera/image
+  gz_topic_name: front_camera
+  ros_type_name: sensor_msgs/msg/Image
+  gz_type_name: gz.msgs.Image
+  direction: GZ_TO_ROS
+""", ""),
+        (_ROBOT_LAUNCH, 'executable="parameter_bridge"',
+         'executable="parameter_bridge", arguments=["/front_camera@sensor_msgs/msg/Image[gz.msgs.Image"]'),
+        (_LAUNCH, '"camera/image"', '"front_camera"')]),
+    ("pictures of a model that is not submitted", [
+        ("bridge.yaml", "front_camera", "camera"), (_URDF, "<topic>front_camera</topic>", "")]),
+    ("a topic that a node of another package may publish", [
+        (_LAUNCH, '"camera/image"', '"camera/image_raw"'), (_LAUNCH, '"nav2_map_server"', '"usb_cam"'),
+        ("cart_bringup/package.xml", "nav2_map_server", "usb_cam")]),
+    ("a topic that a file of parameters names", [
+        (_LAUNCH, '"camera/image"', '"camera/image_raw"'),
+        ("navigation.yaml", "robot_base_frame", "image_topic: camera/image_raw\n      robot_base_frame")]),
+    ("a topic of a driver that is started by hand", [
+        (_ALARM, 'Bool, "obstacle"', 'Bool, "joy"'), (_DETECTOR, 'Bool, "obstacle"', 'Bool, "joys"')]),
+    ("topics below the names of nodes", [
+        (_DETECTOR, 'Bool, "obstacle"', 'Bool, "~/state"'), (_ALARM, 'Bool, "obstacle"', 'Image, "~/state"'),
+        (_ALARM, "import rclpy\n", "import rclpy\nfrom sensor_msgs.msg import Image\n")]),
+    ("a plugin that is not known", [("navigation.yaml", "nav2_costmap_2d::ObstacleLayer", "cart_layers/Layer")]),
     ("overrides of the quality of service", [("config/detector.yaml", "threshold: 0.5", "qos_overrides: {/obstacle: {publisher: {depth: 3}}}")]),
 ]  # fmt: skip
 
@@ -163,7 +202,9 @@ def test_a_module_beside_is_no_package() -> None:
 
 def test_a_robot_that_is_not_used_is_no_sure_problem() -> None:
     """What an old file beside the robot names is looked for by nobody: it is a warning."""
-    old = '<robot name="x"><link name="{}"><visual><geometry><mesh filename="package://cart_description/urdf/wheel.stl"/>'
+    old = (
+        '<robot name="x"><link name="{}"><visual><geometry><mesh filename="package://cart_description/urdf/wheel.stl"/>'
+    )
     texts = {**edited(), "cart_description/urdf/old.xacro": f"{old}</geometry></visual></link></robot>"}
     found = agreement_of(texts)
     assert [(it.family, it.is_sure) for it in found.mismatches] == [("files", False)]
@@ -185,8 +226,13 @@ def generate_launch_description():
 
 def test_what_is_installed_for_tests_leaves_files_undecided() -> None:
     """BUILD_TESTING is on by default, but not where packages are built for others."""
-    texts = edited(("cart_bringup/CMakeLists.txt", "install(DIRECTORY launch config worlds",
-                    "if(BUILD_TESTING)\n  install(DIRECTORY worlds DESTINATION share/x)\nendif()\ninstall(DIRECTORY launch config"))
+    texts = edited(
+        (
+            "cart_bringup/CMakeLists.txt",
+            "install(DIRECTORY launch config worlds",
+            "if(BUILD_TESTING)\n  install(DIRECTORY worlds DESTINATION share/x)\nendif()\ninstall(DIRECTORY launch config",
+        )
+    )
     assert "files" in agreement_of(texts).undecided
     assert sure(agreement_of(texts)) == []
 

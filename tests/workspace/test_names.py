@@ -1,7 +1,7 @@
 """A name that is used has to be defined: definitions and uses made by hand."""
 
 from grader.source import Location
-from grader.workspace.names import Agreement, Compared, Definition, Mismatch, Open, Undecided, Use, agreement
+from grader.workspace.names import Agreement, Compared, Definition, Fact, Mismatch, Open, Undecided, Use, agreement
 
 _HERE, _THERE, _LATER = Location("a.yaml", 3, 5), Location("robot.urdf", 7, 2), Location("a.yaml", 9, 1)
 _WHEEL = Definition("joint", "left_wheel_joint", _THERE)
@@ -38,7 +38,11 @@ def test_an_open_kind_makes_a_near_name_a_warning_and_says_nothing_of_others() -
 
 def test_what_was_not_evaluated_leaves_the_family_undecided() -> None:
     """The reason of the first opening that has one is given, but only if a name is not found."""
-    facts = [Open("joint"), Open("joint", reason="line 4 is not evaluated"), Open("joint", reason="nor is line 5")]
+    facts: list[Fact] = [
+        Open("joint"),
+        Open("joint", reason="line 4 is not evaluated"),
+        Open("joint", reason="nor is line 5"),
+    ]
     assert agreement([_WHEEL, *facts, _use("elbow")]).undecided == {"frames": "line 4 is not evaluated"}
     assert agreement([_WHEEL, *facts, _use("left_wheel_joint")]).undecided == {}
 
@@ -51,14 +55,24 @@ def test_only_a_similar_name_makes_an_optional_use_wrong() -> None:
 
 def test_names_of_one_owner_do_not_define_those_of_another() -> None:
     """The arguments of one launch file are not those of another one."""
-    facts = [Definition("launch argument", "gui", _THERE, "a"), Use("launch argument", "gui", _HERE, "include", "b")]
+    facts: list[Fact] = [
+        Definition("launch argument", "gui", _THERE, "a"),
+        Use("launch argument", "gui", _HERE, "include", "b"),
+    ]
     assert [it.family for it in agreement(facts).mismatches] == ["arguments"]
 
 
 def test_mismatches_are_in_the_order_of_their_places_and_once() -> None:
     """What two readers find is listed once; the first reason for which a family is undecided is kept."""
     wrong = Mismatch("topics", "not alike", _LATER)
-    facts = [wrong, wrong, _use("elbow"), Undecided("topics", "one"), Undecided("topics", "two"), Compared("files")]
+    facts: list[Fact] = [
+        wrong,
+        wrong,
+        _use("elbow"),
+        Undecided("topics", "one"),
+        Undecided("topics", "two"),
+        Compared("files"),
+    ]
     found = agreement(facts)
     assert [it.location for it in found.mismatches] == [_HERE, _LATER]
     assert found.undecided == {"topics": "one"}

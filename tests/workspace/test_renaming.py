@@ -36,6 +36,7 @@ _NAMES = [
     _Name("map_server", "cart.launch.py", '"node_names": ["{}"', "programs"),
     _Name("detector", "cart.launch.py", 'executable="{}"', "programs"),
     _Name("image", "cart.launch.py", 'remappings=[("{}"', "topics"),
+    _Name("front_camera", "config/bridge.yaml", "gz_topic_name: {}", "topics"),
     _Name("robot.launch", "cart.launch.py", '"launch", "{}.py"', "files"),
     _Name("hall", "worlds/hall.yaml", "image: {}.pgm", "files"),
     _Name("nav2_controller", "cart_bringup/package.xml", "<exec_depend>{}</exec_depend>", "dependencies"),
@@ -77,6 +78,8 @@ def test_a_name_that_is_changed_everywhere_still_agrees(name: str, new: str) -> 
 
 def _joint_of(name: str, new: str) -> str:
     """Return the name of a wheel's joint in xacro, where the one on the right has a new name."""
-    return f"${{'{new}' if side == 'right' else 'left_wheel_joint'}}" if name == "right_wheel_joint" else (
-        "${side}_wheel_joint"
+    return (
+        f"${{'{new}' if side == 'right' else 'left_wheel_joint'}}"
+        if name == "right_wheel_joint"
+        else ("${side}_wheel_joint")
     )
