@@ -30,7 +30,7 @@ _DERIVED = ("points", "image", "depth_image", "camera_info")  # below the topic,
 _WITHOUT_SENSORS = ("sun", "ground_plane", "ground plane")
 
 
-class BridgeRow(NamedTuple):
+class _BridgeRow(NamedTuple):
     """What a bridge takes from a topic on one side to one on the other, without the first slash of the names."""
 
     ros: str
@@ -53,7 +53,7 @@ class _Sensor(NamedTuple):
     location: Location
 
 
-def bridge_rows(workspace: Workspace) -> Iterator[BridgeRow]:
+def bridge_rows(workspace: Workspace) -> Iterator[_BridgeRow]:
     """Yield the rows of bridges in YAML files, and those in the arguments of bridges."""
     launches = [source.text for package in workspace.packages for source in workspace.sources_of(package, _LAUNCHES)]
     for path, tree in workspace.trees:
@@ -66,10 +66,10 @@ def bridge_rows(workspace: Workspace) -> Iterator[BridgeRow]:
             found = _ARGUMENT.fullmatch(word or "")
             if found is not None:
                 name, types = found["topic"].strip("/"), (found["ros"].replace("/", "."), found["gz"].split(".")[-1])
-                yield BridgeRow(name, name, *types, _DIRECTIONS[found["direction"]], node.location, is_used=True)
+                yield _BridgeRow(name, name, *types, _DIRECTIONS[found["direction"]], node.location, is_used=True)
 
 
-def _row_in_yaml(row: YamlNode, *, is_used: bool) -> Iterator[BridgeRow]:
+def _row_in_yaml(row: YamlNode, *, is_used: bool) -> Iterator[_BridgeRow]:
     both = row.get("topic_name")
     ros, gz = row.get("ros_topic_name") or both, row.get("gz_topic_name") or both
     types = [row.get(key) for key in ("ros_type_name", "gz_type_name")]
@@ -79,7 +79,7 @@ def _row_in_yaml(row: YamlNode, *, is_used: bool) -> Iterator[BridgeRow]:
     direction = row.get("direction")
     way = _BOTH if direction is None else direction.text or _BOTH
     names = ros.text.strip("/"), gz.text.strip("/")
-    yield BridgeRow(*names, ros_type.replace("/", "."), gz_type.split(".")[-1], way, gz.location, is_used)
+    yield _BridgeRow(*names, ros_type.replace("/", "."), gz_type.split(".")[-1], way, gz.location, is_used)
 
 
 def bridge_facts(workspace: Workspace) -> Iterator[Fact]:

@@ -247,7 +247,7 @@ def _attributes_of(entity: _Entity, known: str) -> dict[str, Any]:
         if (
             name == "<<"
             or names.get(name, "").startswith("-")
-            or (name.removesuffix("-sep") in names and (name not in names or entity.is_yaml))
+            or (name.endswith("-sep") and name[:-4] in names and (name not in names or entity.is_yaml))
         ):
             raise Undetermined(f"{name} of <{entity.kind}> is not evaluated", entity.at)
     for name in inner:
