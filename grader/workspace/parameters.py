@@ -127,9 +127,14 @@ def _plugin_lists(tree: YamlNode) -> Iterator[Fact]:
 def _plugin_names(tree: YamlNode) -> Iterator[Fact]:
     """Yield plugins that are written with other separators than pluginlib knows them by."""
     names = {_SEPARATORS.sub("::", name): name for name in known()["plugins"]}
-    for value in values_in(tree):
+    values = [it for it in values_in(tree) if it.keys[-1:] == ("plugin",)]
+    older = tuple(known()["slash_before_jazzy"])
+    # A file for an older release, which other launch files may choose, writes all of these with a slash.
+    is_of_jazzy = any("::" in (it.node.text or "") and (it.node.text or "").startswith(older) for it in values)
+    for value in values:
         text = value.node.text or ""
-        meant = names.get(_SEPARATORS.sub("::", text)) if value.keys[-1:] == ("plugin",) else None
+        meant = names.get(_SEPARATORS.sub("::", text))
         if meant is not None and meant != text:
             message = f"{value.said}: there is no plugin {text!r}; did you mean {meant!r}?"
-            yield Mismatch("parameters", message, value.node.location)
+            is_sure = is_of_jazzy or not text.startswith(older)
+            yield Mismatch("parameters", message, value.node.location, is_sure=is_sure)

@@ -55,6 +55,12 @@ WRONG: list[tuple[Family, str, list[_Edit]]] = [
      " (cart_bringup/config/navigation.yaml:13)?"), [("navigation.yaml", "[obstacle_layer]", "[obstacle]")]),
     ("parameters", ("obstacle_layer.plugin: there is no plugin 'nav2_costmap_2d/ObstacleLayer'; did you mean"
      " 'nav2_costmap_2d::ObstacleLayer'?"), [("navigation.yaml", "2d::Obs", "2d/Obs")]),
+    ("parameters", "planner.plugin: there is no plugin 'nav2_navfn_planner/NavfnPlanner'; did you mean 'nav2_navfn_planner::NavfnPlanner'?",
+     [("navigation.yaml", "    controller_plugins", """    planner:
+      plugin: nav2_navfn_planner/NavfnPlanner
+    spin:
+      plugin: nav2_behaviors::Spin
+    controller_plugins""")]),
     ("arguments", ("the include of robot.launch.py: there is no launch argument 'use_sim_time'; did you mean 'sim_time'"
      " (cart_bringup/launch/robot.launch.py:1)?"), [(_LAUNCH, '"sim_time"', '"use_sim_time"')]),
     ("arguments", ("Command of xacro: there is no xacro argument 'controller_file'; did you mean 'controllers_file'"
@@ -182,6 +188,9 @@ CORRECT: list[tuple[str, list[_Edit]]] = [
     ("topics below the names of nodes", [
         (_DETECTOR, 'Bool, "obstacle"', 'Bool, "~/state"'), (_ALARM, 'Bool, "obstacle"', 'Image, "~/state"'),
         (_ALARM, "import rclpy\n", "import rclpy\nfrom sensor_msgs.msg import Image\n")]),
+    ("parameters of an older release of Nav2", [("navigation.yaml", "    controller_plugins", """    planner:
+      plugin: nav2_navfn_planner/NavfnPlanner
+    controller_plugins""")]),
     ("a plugin that is not known", [("navigation.yaml", "nav2_costmap_2d::ObstacleLayer", "cart_layers/Layer")]),
     ("overrides of the quality of service", [("config/detector.yaml", "threshold: 0.5", "qos_overrides: {/obstacle: {publisher: {depth: 3}}}")]),
 ]  # fmt: skip
