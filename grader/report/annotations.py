@@ -13,7 +13,7 @@ from grader.grading.report import Report
 from grader.problems import Severity
 from grader.report.content import closing_lines, head, other_problems, report_sections, score_text
 from grader.report.criteria import Entry, earned_text, is_failure, is_manual, remarks_on
-from grader.report.inspection import Inspection
+from grader.report.inspection import Inspection, effect
 from grader.report.locations import SourceOf, archive_around, location_text, width_of
 from grader.source import Base, Location
 from grader.text import printable, without_tag_commands
@@ -40,7 +40,7 @@ def render_github(report: Report, base: Base) -> str:
 
 
 def inspection_github(inspection: Inspection) -> str:
-    """Return the annotations of an inspection: its problems, errors first."""
+    """Return the annotations of an inspection: what ROS 2 does as a notice, then its problems, errors first."""
     found = [
         _Finding(
             problem.code,
@@ -50,7 +50,8 @@ def inspection_github(inspection: Inspection) -> str:
         )
         for problem in inspection.problems
     ]
-    return "".join(_limited(found, 0))
+    first = command("notice", {}, printable(inspection.path), effect(inspection))
+    return "".join([first, *_limited(found, 1)])
 
 
 def _limited(found: Sequence[_Finding], notices: int) -> Iterator[str]:

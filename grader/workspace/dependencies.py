@@ -13,7 +13,7 @@ from grader.workspace.yaml_values import sections_in
 
 _FIND = re.compile(r"\$\(find ([\w-]+)\)|package://([\w-]+)/")
 _OF_ROS = ("rclpy", "tf2_ros")
-_IMPORT = re.compile(r"^\s*(?:from|import)\s+(\w+)", re.MULTILINE)
+_IMPORT = re.compile(r"^(?:from|import)\s+(\w+)", re.MULTILINE)
 
 
 def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -22,6 +22,9 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
         if package.manifest is None or package.manifest.refusals:
             continue
         declared = {*package.manifest.dependencies, *package.names}
+        declared |= {name for it in declared for name in known()["metapackages"].get(it, ())}
+        others = [package.find(name) for name in declared]
+        brought = {name for it in others if it is not None and it.manifest for name in it.manifest.dependencies}
         used: dict[str, Location] = {}
         for name, at in _used(workspace, package):
             used.setdefault(name, at)
@@ -29,7 +32,9 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
         for name, at in used.items():
             if name not in declared:
                 message = f"package.xml of {package.name!r} does not declare {name!r}, which is used here"
-                yield Mismatch("dependencies", message, at, package.manifest.name_location)
+                # rosdep installs what packages need that are declared.
+                is_sure = name not in brought
+                yield Mismatch("dependencies", message, at, package.manifest.name_location, is_sure)
 
 
 def _used(workspace: Workspace, package: Package) -> Iterator[tuple[str, Location]]:
@@ -42,9 +47,11 @@ def _used(workspace: Workspace, package: Package) -> Iterator[tuple[str, Locatio
     for source in workspace.sources_of(package, (".xacro", ".urdf")):
         yield from ((found[1] or found[2], source.at(found.start())) for found in _FIND.finditer(source.text))
     own = {it.name for it in workspace.packages}
+    modules = {part.removesuffix(".py") for path in package.tree.files for part in path.split("/")}
     for source in workspace.sources_of(package, (".py",)):
         for found in _IMPORT.finditer(source.text):
-            if found[1] in own or found[1].endswith("_msgs") or found[1] in _OF_ROS:
+            is_ros = found[1] in own or found[1].endswith("_msgs") or found[1] in _OF_ROS
+            if is_ros and found[1] not in modules:
                 yield found[1], source.at(found.start(1))
     for tree in (tree for path, tree in workspace.trees if package.holds(path)):
         for _, section in sections_in(tree):

@@ -3,52 +3,72 @@
 import posixpath
 import re
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from grader.names import closest, near
 from grader.package.launch.model import Launch
 from grader.package.launch.places import PREFIX, SHARE
-from grader.package.package import Package
+from grader.package.package import CMAKE, Package
 from grader.source import Location
 from grader.workspace.names import Compared, Fact, Mismatch, Undecided
 from grader.workspace.workspace import Workspace
 
 _FIND = re.compile(r"\$\(find(?:-pkg-share)? ([\w-]+)\)/?([^\"'<>\s$]*)(?=[\"'<\s])")
 _PACKAGE = re.compile(r"package://([\w-]+)/([\w./-]+)(?=[\"'<\s])")
+_FOR_TESTS = re.compile(r"if\s*\(\s*BUILD_TESTING.*?endif", re.DOTALL)
+_MAX_CMAKE = 128 * 1024
 _PATH = re.compile(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
 
 
 def file_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the paths at which a build of the workspace installs no file."""
     seen: set[tuple[str, Location]] = set()
-    for package, path, at in _named(workspace):
+    for package, path, at, is_read in _named(workspace):
         yield Compared("files", posixpath.normpath(path).removeprefix(f"{PREFIX}/"))
         if (path, at) not in seen:
             seen.add((path, at))
-            yield from _fault_of(workspace, package, path, at)
+            for fact in _fault_of(workspace, package, path, at):
+                yield fact._replace(is_sure=fact.is_sure and is_read) if isinstance(fact, Mismatch) else fact
     yield from _map_images(workspace)
 
 
-def _named(workspace: Workspace) -> Iterator[tuple[Package, str, Location]]:
-    """Yield the paths that are named, below the prefix, with the package whose file names each."""
-    for package, _, launch in workspace.launches:
-        for text, at in _texts_of(launch):
-            yield from ((package, path, at) for path in _PATH.findall(text or ""))
+class _Named(NamedTuple):
+    """A path below the prefix, with the package whose file names it, and whether it is certainly looked for."""
+
+    package: Package
+    path: str
+    location: Location
+    is_read: bool
+
+
+def _named(workspace: Workspace) -> Iterator[_Named]:
+    """Yield the paths that are named."""
+    for package, own, launch in workspace.launches:
+        # From the folder of the sources, a launch file finds what is beside it.
+        beside = "" if own in package.installed.values() else f"{package.share}{posixpath.dirname(own)}/"
+        for text, at, is_read in _texts_of(launch):
+            for path in _PATH.findall(text or ""):
+                is_beside = bool(beside) and path.startswith(f"{PREFIX}/{beside}")
+                yield _Named(package, path, at, is_read and not is_beside)
     for package in workspace.packages:
         for source in workspace.sources_of(package, (".xacro", ".urdf", ".yaml")):
+            of_robot = source.path.endswith(".yaml") or source.path in (workspace.robot_files or (source.path,))
             for found in (*_FIND.finditer(source.text), *_PACKAGE.finditer(source.text)):
-                yield package, f"{SHARE}/{found[1]}/{found[2]}", source.at(found.start())
+                yield _Named(package, f"{SHARE}/{found[1]}/{found[2]}", source.at(found.start()), of_robot)
 
 
-def _texts_of(launch: Launch) -> Iterator[tuple[str | None, Location]]:
-    """Yield the texts of a launch file that may name files."""
-    yield from ((reference.path, reference.location) for reference in launch.references)
-    yield from ((value, passed.location) for passed in launch.passed for _, value in passed.values)
+def _texts_of(launch: Launch) -> Iterator[tuple[str | None, Location, bool]]:
+    """Yield the texts of a launch file that may name files, and whether they are used."""
+    yield from ((value, passed.location, True) for passed in launch.passed for _, value in passed.values)
     for node in launch.nodes:
-        yield from ((word, node.location) for word in node.arguments or ())
+        # The launch file that includes it may never start it, whatever the arguments.
+        is_read = node.when is not False or not node.included_by
+        yield from ((word, node.location, is_read) for word in node.arguments or ())
         for given in node.parameters or ():
-            yield given.path, given.location
+            yield given.path, given.location, is_read
             values = (it for it in given.values.values() if isinstance(it.value, str))
-            yield from ((it.value, it.location) for it in values)
+            yield from ((it.value, it.location, is_read) for it in values)
+    yield from ((reference.path, reference.location, True) for reference in launch.references)
 
 
 def _fault_of(workspace: Workspace, package: Package, path: str, at: Location) -> Iterator[Fact]:
@@ -63,10 +83,16 @@ def _fault_of(workspace: Workspace, package: Package, path: str, at: Location) -
     target, setup = f"share/{name}/{rest}", owner.installation
     if not rest or target in owner.installed or any(it.startswith(f"{target}/") for it in owner.installed):
         return
-    if setup is None or setup.fault is not None or setup.unknown:
-        yield Undecided("files", f"cannot determine statically whether a build installs {target}")
+    if setup is None or setup.fault is not None or setup.unknown or _installs_for_tests(owner):
+        yield Undecided("files", f"whether a build installs {target} is not evaluated")
         return
     yield _not_there(owner, target, at)
+
+
+def _installs_for_tests(package: Package) -> bool:
+    """Return whether CMakeLists.txt installs something only if BUILD_TESTING is on, as it is by default."""
+    text = package.tree.files[CMAKE].read(_MAX_CMAKE).decode("utf-8", "replace") if package.is_cmake else ""
+    return any("install(" in block.lower() for block in _FOR_TESTS.findall(text))
 
 
 def _not_there(owner: Package, target: str, at: Location) -> Mismatch:

@@ -69,7 +69,7 @@ def _openings(workspace: Workspace) -> Iterator[Fact]:
         yield Open("frame")
 
 
-def static_transform(node: StartedNode) -> tuple[str, str] | None:
+def _static_transform(node: StartedNode) -> tuple[str, str] | None:
     """Return the parent and the child of a static_transform_publisher; None where they are not known."""
     words = node.arguments
     if words is None or None in words:
@@ -88,7 +88,7 @@ def _static_transforms(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
     for _, node in workspace.nodes:
         if (node.package, node.executable) != _STATIC:
             continue
-        frames = static_transform(node)
+        frames = _static_transform(node)
         if frames is None:
             yield Open("frame", reason="the frames of a static_transform_publisher are not evaluated")
             continue

@@ -11,11 +11,11 @@ Family = Literal[
     "files", "frames", "controllers", "parameters", "arguments", "programs", "topics", "dependencies"
 ]  # fmt: skip
 FAMILIES: tuple[Family, ...] = get_args(Family)
-Kind = Literal[
+_Kind = Literal[
     "frame", "link", "joint", "group", "controller", "interface", "plugin section", "parameter", "launch argument",
     "xacro argument", "node", "topic", "Gazebo topic",
 ]  # fmt: skip
-_FAMILY_OF: Mapping[Kind, Family] = {
+_FAMILY_OF: Mapping[_Kind, Family] = {
     **dict.fromkeys(("frame", "link", "joint", "group"), "frames"),
     **dict.fromkeys(("controller", "interface"), "controllers"),
     **dict.fromkeys(("plugin section", "parameter"), "parameters"),
@@ -28,7 +28,7 @@ _FAMILY_OF: Mapping[Kind, Family] = {
 class Definition(NamedTuple):
     """A name that a file defines. Those of one kind agree within one owner only, such as the arguments of a file."""
 
-    kind: Kind
+    kind: _Kind
     name: str
     location: Location
     owner: str = ""
@@ -37,7 +37,7 @@ class Definition(NamedTuple):
 class Use(NamedTuple):
     """A name that a file uses, and what the file calls it. Where it is `optional`, only a similar name is wrong."""
 
-    kind: Kind
+    kind: _Kind
     name: str
     location: Location
     said: str
@@ -48,7 +48,7 @@ class Use(NamedTuple):
 class Open(NamedTuple):
     """That names of a kind may be defined by what is not submitted, or, for a reason, by what is not evaluated."""
 
-    kind: Kind
+    kind: _Kind
     owner: str = ""
     reason: str = ""
 
@@ -97,11 +97,11 @@ class Agreement(NamedTuple):
 def agreement(facts: Iterable[Fact]) -> Agreement:
     """Return which of the names that are used are not defined, in the order of their places."""
     every = [*facts]
-    known: dict[tuple[Kind, str], dict[str, Location]] = {}
+    known: dict[tuple[_Kind, str], dict[str, Location]] = {}
     for fact in every:
         if isinstance(fact, Definition):
             known.setdefault((fact.kind, fact.owner), {}).setdefault(fact.name, fact.location)
-    opened: dict[tuple[Kind, str], str] = {}
+    opened: dict[tuple[_Kind, str], str] = {}
     for fact in every:
         if isinstance(fact, Open):
             opened[fact.kind, fact.owner] = opened.get((fact.kind, fact.owner)) or fact.reason

@@ -1,5 +1,6 @@
 """Parameters: whether files of parameters have some for the node that gets them, and whether own nodes declare them."""
 
+import re
 from collections.abc import Iterator, Sequence
 from fnmatch import fnmatchcase
 
@@ -9,11 +10,13 @@ from grader.package.launch.parameters import parameters_of
 from grader.package.nodes import PythonNode
 from grader.package.package import Package
 from grader.package.yaml_nodes import YamlFault, YamlNode
+from grader.workspace.known import known
 from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use
 from grader.workspace.workspace import Workspace
-from grader.workspace.yaml_values import PARAMETERS, is_parameters, sections_in
+from grader.workspace.yaml_values import PARAMETERS, is_parameters, sections_in, values_in
 
-_OF_EVERY_NODE = ("use_sim_time",)
+_OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
+_SEPARATORS = re.compile(r"[:/]+")
 # Keys of lists whose entries name sections beside them, in the files of Nav2, MoveIt and others.
 _LISTS = ("plugins", "navigators", "observation_sources", "filters", "controller_names")
 _NOT_LISTS = ("plugin_lib_names",)
@@ -35,6 +38,7 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     for _, tree in workspace.trees:
         if is_parameters(tree) or "controller_names" in tree.source.text:
             yield from _plugin_lists(tree)
+            yield from _plugin_names(tree)
 
 
 def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -> Iterator[Fact]:
@@ -94,7 +98,7 @@ def _declared(workspace: Workspace, package: Package, node: StartedNode, own: Py
         yield Undecided("parameters", found.unknown)
     wide = workspace.wildcard_places(node)
     for name, value in found.values.items():
-        if value.location not in wide:
+        if value.location not in wide and not name.startswith("qos_overrides."):
             yield Use("parameter", name, value.location, f"the node {workspace.name_of(node)!r}", owner)
 
 
@@ -118,3 +122,19 @@ def _plugin_lists(tree: YamlNode) -> Iterator[Fact]:
             for text, at in texts:
                 if text and "/" not in text and "::" not in text:
                     yield Use("plugin section", text, at, key, owner)
+
+
+def _plugin_names(tree: YamlNode) -> Iterator[Fact]:
+    """Yield plugins that are written with other separators than pluginlib knows them by."""
+    names = {_SEPARATORS.sub("::", name): name for name in known()["plugins"]}
+    values = [it for it in values_in(tree) if it.keys[-1:] == ("plugin",)]
+    older = tuple(known()["slash_before_jazzy"])
+    # A file for an older release, which other launch files may choose, writes all of these with a slash.
+    is_of_jazzy = any("::" in (it.node.text or "") and (it.node.text or "").startswith(older) for it in values)
+    for value in values:
+        text = value.node.text or ""
+        meant = names.get(_SEPARATORS.sub("::", text))
+        if meant is not None and meant != text:
+            message = f"{value.said}: there is no plugin {text!r}; did you mean {meant!r}?"
+            is_sure = is_of_jazzy or not text.startswith(older)
+            yield Mismatch("parameters", message, value.node.location, is_sure=is_sure)

@@ -6,6 +6,7 @@ from grader.names import closest
 from grader.package.entry_points import entry_fault, entry_points
 from grader.package.launch.parameters import parameters_of
 from grader.package.package import Package
+from grader.workspace.known import known
 from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use
 from grader.workspace.workspace import Workspace
 
@@ -44,16 +45,10 @@ def _why_no_program(package: Package, name: str) -> str:
 
 
 def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the nodes that are started, and those that a lifecycle manager is told of."""
+    """Yield the nodes that lifecycle managers are told of, and all that are started."""
     managers = [(package, node) for package, node in workspace.nodes if node.executable == "lifecycle_manager"]
-    if not managers:
-        return
-    for _, _, launch in workspace.launches:
-        if launch.unknown or launch.syntax or launch.unread:
-            yield Open("node", reason=launch.unknown[0].message if launch.unknown else "a launch file cannot be read")
-    for _, node in workspace.nodes:
-        name = workspace.name_of(node)
-        yield Open("node") if name is None else Definition("node", name, node.location)
+    if managers:
+        yield from _started(workspace)
     for package, node in managers:
         found = parameters_of(node, package, "lifecycle_manager")
         given = found.values.get("node_names")
@@ -62,3 +57,16 @@ def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
         if given is not None and isinstance(given.value, list):
             for name in given.value:
                 yield Use("node", str(name).rpartition("/")[2], given.location, "node_names")
+
+
+def _started(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the nodes that launch files start, and that there may be more."""
+    for _, _, launch in workspace.launches:
+        if launch.unknown or launch.syntax or launch.unread:
+            yield Open("node", reason=launch.unknown[0].message if launch.unknown else "a launch file cannot be read")
+    for _, node in workspace.nodes:
+        name = workspace.name_of(node)
+        if name is not None:
+            yield Definition("node", name, node.location)
+        elif node.package not in known()["without_lifecycle"]:
+            yield Open("node")

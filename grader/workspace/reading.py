@@ -5,6 +5,7 @@ from itertools import chain
 
 from grader.submission.submission import Submission
 from grader.workspace.arguments import argument_facts
+from grader.workspace.bridges import bridge_facts
 from grader.workspace.controllers import controller_facts
 from grader.workspace.dependencies import dependency_facts
 from grader.workspace.files import file_facts
@@ -17,7 +18,7 @@ from grader.workspace.workspace import Workspace
 
 _READERS = (
     file_facts, frame_facts, controller_facts, parameter_facts, argument_facts, program_facts, topic_facts,
-    dependency_facts,
+    bridge_facts, dependency_facts,
 )  # fmt: skip
 
 

@@ -3,9 +3,13 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from grader.names import closest
 from grader.package.launch.model import StartedNode
 from grader.package.nodes import Endpoint
+from grader.source import Location
+from grader.workspace.bridges import BRIDGE, bridge_rows
 from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Use, place_text
+from grader.workspace.publishers import may_be_published
 from grader.workspace.workspace import Workspace
 
 
@@ -15,6 +19,12 @@ class _Opened(NamedTuple):
     topic: str
     endpoint: Endpoint
     launch: int  # of those that are started on their own
+    node: StartedNode
+
+    @property
+    def is_started(self) -> bool:
+        """Return whether the node is started under the default arguments."""
+        return self.node.when is True
 
 
 def topic_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -25,16 +35,18 @@ def topic_facts(workspace: Workspace) -> Iterator[Fact]:
         if own is None or node.when is False:
             continue
         for endpoint in own.endpoints:
-            topic = node.topic(endpoint.name) if endpoint.name is not None else None
+            # What begins with ~ is below the name of the node.
+            is_plain = endpoint.name is not None and not endpoint.name.startswith("~")
+            topic = node.topic(endpoint.name or "") if is_plain else None
             if topic is not None and endpoint.kind in ("publisher", "subscription"):
                 yield Compared("topics")
-                opened.append(_Opened(topic, endpoint, launch))
+                opened.append(_Opened(topic, endpoint, launch, node))
         yield from _remappings(workspace, node)
     publishers = [it for it in opened if it.endpoint.kind == "publisher"]
     for it in opened:
         if it.endpoint.kind == "subscription":
             for other in [other for other in publishers if other.topic == it.topic]:
-                is_sure = it.launch == other.launch
+                is_sure = it.launch == other.launch and it.is_started and other.is_started
                 yield from (found._replace(is_sure=is_sure) for found in _differences(it, other))
     yield from _unconnected(workspace, opened)
 
@@ -83,14 +95,40 @@ def _bare(name: str) -> str:
 
 def _unconnected(workspace: Workspace, opened: list[_Opened]) -> Iterator[Fact]:
     """Yield subscriptions to topics that nothing publishes, where a similar one is published and not subscribed to."""
-    published = {it.topic: it for it in opened if it.endpoint.kind == "publisher"}
-    subscribed = {it.topic for it in opened if it.endpoint.kind == "subscription"}
-    bridged = {f"/{name.strip('/')}": at for name, at in workspace.bridged_topics}
+    offers = list(_offers(workspace, opened))
+    topics = {it.topic for it in offers}
+    subscriptions = [it for it in opened if it.endpoint.kind == "subscription"]
+    subscribed = {it.topic for it in subscriptions}
+    unused = [it for it in offers if it.topic not in subscribed]
     yield Open("topic")
-    for topic, it in published.items():
-        if topic not in subscribed:
-            yield Definition("topic", topic, it.endpoint.location)
-    yield from (Definition("topic", name, at) for name, at in bridged.items() if name not in subscribed)
+    yield from (Definition("topic", it.topic, it.location) for it in unused)
+    for own in [it for it in subscriptions if it.topic not in topics]:
+        alike = [it for it in unused if it.type == own.endpoint.type and own.launch in it.launches]
+        names = {it.topic for it in alike}
+        if len(names) == 1 and closest(own.topic, names) and not may_be_published(workspace, own.topic):
+            [meant], at = names, alike[0].location
+            if any(own.node.topic(rule[1]) == meant for rule in own.node.remaps or ()):
+                continue  # a remapping of another name, which is said of it
+            message = f"nothing publishes {own.topic}; did you mean {meant} ({place_text(at)})?"
+            yield Mismatch("topics", message, own.endpoint.location, at)
+        else:
+            yield Use("topic", own.topic, own.endpoint.location, "create_subscription")
+
+
+class _Offer(NamedTuple):
+    """A topic that a node or bridge publishes, and in which launches."""
+
+    topic: str
+    type: str | None
+    location: Location
+    launches: frozenset[int]
+
+
+def _offers(workspace: Workspace, opened: list[_Opened]) -> Iterator[_Offer]:
     for it in opened:
-        if it.endpoint.kind == "subscription" and it.topic not in published and it.topic not in bridged:
-            yield Use("topic", it.topic, it.endpoint.location, "create_subscription")
+        if it.endpoint.kind == "publisher":
+            yield _Offer(it.topic, it.endpoint.type, it.endpoint.location, frozenset({it.launch}))
+    launches = frozenset(number for number, node in workspace.launched if node.package == BRIDGE)
+    for row in bridge_rows(workspace):
+        if row.is_published:
+            yield _Offer(f"/{row.ros}", row.ros_type, row.location, launches)

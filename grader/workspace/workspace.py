@@ -26,6 +26,8 @@ _MANAGER, _SPAWNERS = "controller_manager", ("spawner", "spawner.py")
 _FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
 _MAX_FILES = 60  # of one kind in a package
 _MAX_YAML = 512 * 1024  # bytes
+_OF_YAML = (".yaml", ".yml", ".py")
+_COMMENT = {False: re.compile(r"<!--.*?-->", re.DOTALL), True: re.compile(r"(?:^|(?<=\s))#[^\n]*")}
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,7 +249,16 @@ class Workspace:
                 data = package.tree.files[path].read(_MAX_YAML)
             except InputError:
                 continue
-            yield Source(package.path(path), data.decode("utf-8", "replace"))
+            text = data.decode("utf-8", "replace")
+            yield Source(package.path(path), _COMMENT[path.endswith(_OF_YAML)].sub(_blank, text))
+
+    @cached_property
+    def robot_files(self) -> frozenset[str] | None:
+        """The files that the robot is made of, by their paths; None where it is not known."""
+        root, urdf = self.robot_root, self.submission.urdf
+        if root is None or not isinstance(urdf, Read):
+            return None
+        return frozenset({urdf.path, *(self.place(element).path for element in root.iter("*"))})
 
     @cached_property
     def xacro_sources(self) -> tuple[Source, ...]:
@@ -259,9 +270,7 @@ class Workspace:
         """The texts of the Python files."""
         return tuple(it.text for package in self.packages for it in self.sources_of(package, (".py",)))
 
-    @cached_property
-    def bridged_topics(self) -> tuple[tuple[str, Location], ...]:
-        """The topics of ROS that rows of a bridge name."""
-        rows = [row for _, tree in self.trees for row in tree.items if row.get("ros_type_name") is not None]
-        named = [row.get("ros_topic_name") or row.get("topic_name") for row in rows]
-        return tuple((it.text, it.location) for it in named if it is not None and it.text)
+
+def _blank(found: re.Match[str]) -> str:
+    """Return blanks in place of a comment, so that places stay the same."""
+    return re.sub(r"\S", " ", found[0])

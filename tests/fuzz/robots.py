@@ -14,7 +14,7 @@ from grader.hints.xacro_edits import ExpandedEdits
 from grader.python.budget import Budget, OutOfBudget
 from grader.python.expressions import evaluate
 from grader.python.values import EvaluationFails, Undetermined
-from grader.report.formats import InspectFormat, render_inspection
+from grader.report.formats import Format, InspectFormat, render_inspection
 from grader.report.inspection import Inspection, main_root
 from grader.report.screen import Screen
 from grader.robot.kinematics import Configuration
@@ -71,7 +71,7 @@ def inspection(data: bytes) -> None:
     robot = Configuration(reading.robot) if reading.robot is not None else None
     shown = Inspection("a.urdf", reading, robot, main_root(robot) if robot is not None else None)
     for kind in InspectFormat:
-        is_harmless(render_inspection(shown, kind, _SCREEN))
+        is_harmless(render_inspection(shown, kind, _SCREEN), Format.GITHUB if kind is InspectFormat.GITHUB else None)
 
 
 def tinyxml2(data: bytes) -> None:

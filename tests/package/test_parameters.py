@@ -134,6 +134,33 @@ def test_precedence_of_known_packages() -> None:
     assert values(given(action.format(FILE)))["speed"] == 1.0
 
 
+@pytest.mark.parametrize(
+    ("attributes", "expected"),
+    [
+        ("value='map_server, amcl' value-sep=', '", ["map_server", "amcl"]),
+        ("value='1;2' value-sep=';'", [1, 2]),
+        ("value='a' value-sep=';'", ["a"]),
+        ("value='1;b' value-sep=';'", None),
+        ("value='$(var a);b' value-sep=';'", None),
+        ("value='1;2' value-sep=';' type='list_of_int'", None),
+    ],
+)
+def test_separated_values(attributes: str, expected: object) -> None:
+    """In XML, value-sep makes a list of a value; lists of several types or with substitutions are unknown."""
+    action = XML.format(f"<param name='names' {attributes}/>")
+    if expected is None:
+        assert launch(action, "xml").unknown
+        assert not launch(action, "xml").faults
+    else:
+        assert values(given(action, "xml")) == {"names": expected}
+
+
+def test_an_empty_separator_stops_the_launch() -> None:
+    """Python splits by no empty text."""
+    found = launch(XML.format("<param name='a' value='b' value-sep=''/>"), "xml")
+    assert [it.message for it in found.faults] == ["value-sep is empty"]
+
+
 def test_names() -> None:
     """The key of a section has wildcards and namespaces; the name is unknown where the launch file gives none."""
     wild = XML.format("<param from='$(find-pkg-share my_robot)/config/wild.yaml'/>")

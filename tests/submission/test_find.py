@@ -185,7 +185,10 @@ def test_a_file_that_another_one_includes_is_a_part() -> None:
     main = XACRO + b"".join(b"<xacro:include filename='%s'/>" % name.encode() for name in includes)
     tree = tree_of("a.xacro", "materials.xacro", "z/robot.xacro", a=b"<robot/>", materials=b"<robot/>", robot=main)
     fragment = "its <robot> has no name"
-    others = (OtherCandidate("a.xacro", fragment), OtherCandidate("materials.xacro", fragment))
+    others = (
+        OtherCandidate("a.xacro", fragment, is_part=True),
+        OtherCandidate("materials.xacro", fragment, is_part=True),
+    )
     assert find_urdf(tree, EXPECTED) == UrdfChoice("z/robot.xacro", others)
 
 
@@ -206,7 +209,7 @@ def test_the_name_of_a_part_does_not_matter(main: str) -> None:
     assert find_urdf(tree, EXPECTED) == UrdfChoice(
         main,
         (
-            OtherCandidate("my_robot_core.xacro", "another candidate includes it"),
+            OtherCandidate("my_robot_core.xacro", "another candidate includes it", is_part=True),
             OtherCandidate("box.urdf", ANOTHER),
         ),
     )
@@ -248,7 +251,7 @@ def test_backups(better: str, backup: str) -> None:
 def test_a_file_without_links_is_no_robot(content: bytes) -> None:
     """Macros, materials and settings of a simulator are not graded if another file has a link, whatever their names."""
     tree = tree_of("urdf/my_robot.urdf.xacro", "urdf/parts.xacro", my_robot=content, parts=LINKS)
-    reason = OtherCandidate("urdf/my_robot.urdf.xacro", ANOTHER)
+    reason = OtherCandidate("urdf/my_robot.urdf.xacro", ANOTHER, is_part=content.startswith(b"<robot>"))
     assert find_urdf(tree, EXPECTED) == UrdfChoice("urdf/parts.xacro", (reason,))
     alone = tree_of("urdf/my_robot.urdf.xacro", "urdf/empty.urdf", my_robot=content, empty=b"")
     assert find_urdf(alone, EXPECTED).path == "urdf/my_robot.urdf.xacro"

@@ -56,7 +56,7 @@ _ACTIONS: Mapping[str, str] = {
 }  # fmt: skip
 _NESTED: Mapping[str, str] = {
     "arg": "name! value!", "choice": "value!", "remap": "from! to!",
-    "param": "name from value:any type:any -allow_substs param[]",
+    "param": "name from value:any value-sep type:any -allow_substs param[]",
 }  # fmt: skip
 _TYPES: Mapping[str, type | None] = {"float": float, "bool": bool, "any": None}
 _VALUE_TYPES = ("str", "bool", "float", "int", "list_of_str", "list_of_bool", "list_of_float", "list_of_int", "yaml")
@@ -247,7 +247,7 @@ def _attributes_of(entity: _Entity, known: str) -> dict[str, Any]:
         if (
             name == "<<"
             or names.get(name, "").startswith("-")
-            or (name.removesuffix("-sep") in names and name not in names)
+            or (name.endswith("-sep") and name[:-4] in names and (name not in names or entity.is_yaml))
         ):
             raise Undetermined(f"{name} of <{entity.kind}> is not evaluated", entity.at)
     for name in inner:
@@ -351,11 +351,24 @@ def _parameter_of(entity: _Entity) -> Value:
         raise EvaluationFails(f"a <param> has the type {kind!r}, which is none of {', '.join(_VALUE_TYPES)}", entity.at)
     if kind not in (None, "str", "yaml"):
         raise Undetermined(f"a <param> of the type {kind} is not evaluated", entity.at)
+    if "value-sep" in given:
+        return {name: _checked_call(Call(TYPED[0], [], {"value": _separated_values(entity, kind)}, entity.at))}
     value = entity.attributes["value"] if not entity.is_yaml and kind == "str" else given["value"]
     kwargs: dict[str, Value] = {"value": _parse_if_text(value, entity.at)}
     if kind == "str":
         kwargs["value_type"] = Call("builtins.str", [], {}, entity.at)
     return {name: _checked_call(Call(TYPED[0], [], kwargs, entity.at))}
+
+
+def _separated_values(entity: _Entity, kind: str | None) -> list[Value]:
+    """Return the list that a value in XML is with the attribute value-sep, as launch_xml's entity.py splits it."""
+    text, separator = str(entity.attributes["value"]), str(entity.attributes["value-sep"])
+    if not separator:
+        raise EvaluationFails("value-sep is empty", entity.at)
+    found: list[Value] = [_typed_text(part, None, entity.at) for part in text.split(separator)]
+    if kind is not None or "$(" in text or len({type(it) for it in found}) > 1:
+        raise Undetermined("this list in a <param> is not evaluated", entity.at)
+    return [_parse_value(it, entity.at)[0] if isinstance(it, str) else it for it in found]
 
 
 def _parse_value(text: str, at: Position) -> list[Value]:

@@ -1,0 +1,1 @@
+"""Tests of the names that files of a workspace define and use."""

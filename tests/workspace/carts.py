@@ -1,0 +1,41 @@
+"""A workspace of three packages, with changes, and what does not agree in it."""
+
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+
+from grader.files.tree import make_tree, overlaid
+from grader.submission.opening import submission_of
+from grader.submission.submission import Lab
+from grader.workspace.names import Agreement, Mismatch
+from grader.workspace.reading import read_agreement
+
+_FOLDER = Path(__file__).parent.parent / "corpus" / "given" / "cartkit" / "src"
+
+
+@cache
+def cart_files() -> Mapping[str, str]:
+    """Return the texts of the workspace by their paths; in it, everything agrees."""
+    paths = [path for path in sorted(_FOLDER.rglob("*")) if path.is_file() and "__pycache__" not in path.parts]
+    return {path.relative_to(_FOLDER).as_posix(): path.read_text(encoding="utf-8") for path in paths}
+
+
+def edited(*edits: tuple[str, str, str]) -> dict[str, str]:
+    """Return the texts with edits: the end of a path, and a text there that occurs once, with a new one."""
+    texts = dict(cart_files())
+    for end, old, new in edits:
+        [path] = [it for it in texts if it.endswith(end)]
+        assert texts[path].count(old) == 1, f"{old!r} occurs {texts[path].count(old)} times in {path}"
+        texts[path] = texts[path].replace(old, new)
+    return texts
+
+
+def agreement_of(texts: Mapping[str, str]) -> Agreement:
+    """Return what does not agree in these files."""
+    tree = overlaid(make_tree("cart", (), ()), {path: text.encode() for path, text in texts.items()})
+    return read_agreement(submission_of(tree, "cart", Lab("urdf/cart.urdf.xacro")))
+
+
+def sure(found: Agreement) -> list[Mismatch]:
+    """Return what certainly fails at run time."""
+    return [it for it in found.mismatches if it.is_sure]

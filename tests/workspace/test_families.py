@@ -1,0 +1,254 @@
+"""What each family compares: a mistake in the workspace of the cart, and other ways to write it that agree."""
+
+import pytest
+
+from grader.workspace.names import Family
+from tests.workspace.carts import agreement_of, edited, sure
+
+_LAUNCH, _ROBOT_LAUNCH = "launch/cart.launch.py", "launch/robot.launch.py"
+_CONTROLLERS, _URDF = "config/controllers.yaml", "cart.urdf.xacro"
+_DETECTOR, _ALARM = "cart_nodes/detector.py", "cart_nodes/alarm.py"
+_Edit = tuple[str, str, str]
+
+WRONG: list[tuple[Family, str, list[_Edit]]] = [
+    ("files", ("share/cart_bringup/config/detectors.yaml is looked for, but the package has no file 'detectors.yaml';"
+     " did you mean 'detector.yaml'?"), [(_LAUNCH, '"detector.yaml"', '"detectors.yaml"')]),
+    ("files", ("share/cart_bringup/config/hall.yaml is looked for, but a build installs it as"
+     " share/cart_bringup/worlds/hall.yaml"), [(_LAUNCH, '"worlds"', '"config"')]),
+    ("files", ("share/cart_bringup/worlds/hall.yaml is looked for, but a build does not install worlds/hall.yaml: no"
+     " install() in CMakeLists.txt names it"), [("cart_bringup/CMakeLists.txt", " worlds", "")]),
+    ("files", "the image of the map, 'hall.png', does not exist; did you mean 'hall.pgm'?",
+     [("worlds/hall.yaml", "hall.pgm", "hall.png")]),
+    ("files", "there is no package 'cart_bringups'; did you mean 'cart_bringup'?",
+     [("navigation.yaml", "controller_plugins", "tree: $(find-pkg-share cart_bringups)/tree.xml\n    controller_plugins")]),
+    ("frames", ("wheel_controller.left_wheel_names: there is no joint 'wheel_left_joint'; did you mean 'left_wheel_joint'"
+     " (cart_description/urdf/wheel.xacro:5)?"), [(_CONTROLLERS, "[left_wheel_joint]", "[wheel_left_joint]")]),
+    ("frames", ("static_transform_publisher: there is no frame 'base'; did you mean 'base_link'"
+     " (cart_description/urdf/cart.urdf.xacro:5)?"), [(_ROBOT_LAUNCH, '"base_link"', '"base"')]),
+    ("frames", "the frame 'left_wheel' has two parents: 'base_link' in the robot, 'camera_link' here",
+     [(_ROBOT_LAUNCH, '"base_link", "--child-frame-id", "laser"', '"camera_link", "--child-frame-id", "left_wheel"')]),
+    ("frames", ("<gazebo reference>: there is no link 'camera'; did you mean 'camera_link'"
+     " (cart_description/urdf/cart.urdf.xacro:8)?"), [(_URDF, 'reference="camera_link"', 'reference="camera"')]),
+    ("frames", ("<gz_frame_id>: there is no frame 'camera'; did you mean 'camera_link'"
+     " (cart_description/urdf/cart.urdf.xacro:8)?"), [(_URDF, "id>camera_link", "id>camera")]),
+    ("frames", ("<ros2_control>: there is no joint 'left_joint'; did you mean 'left_wheel_joint'"
+     " (cart_description/urdf/wheel.xacro:5)?"), [(_URDF, '"left_wheel_joint"', '"left_joint"')]),
+    ("controllers", ("spawner: there is no controller 'cart_controller'; did you mean 'wheel_controller'"
+     " (cart_bringup/config/controllers.yaml:7)?"), [(_ROBOT_LAUNCH, '"wheel_controller"', '"cart_controller"')]),
+    ("controllers", ("wheel_controller.type: there is no controller of the type 'diff_drive_controller/DiffDrive'; did"
+     " you mean 'diff_drive_controller/DiffDriveController'?"), [(_CONTROLLERS, "/DiffDriveController", "/DiffDrive")]),
+    ("controllers", ("the controller 'wheel_controller' has no parameters: there is no key wheel_controller with"
+     " ros__parameters"), [(_CONTROLLERS, "\nwheel_controller:", "\nwheels:")]),
+    ("controllers", ("wheel_controller needs the command interface left_wheel_joint/velocity; <ros2_control> has position"
+     " (cart_description/urdf/cart.urdf.xacro:18)"),
+     [(_URDF, '"left_wheel_joint">\n      <command_interface name="velocity"',
+       '"left_wheel_joint">\n      <command_interface name="position"')]),
+    ("parameters", "there are parameters for detect, but none for the node 'detector', which gets this file",
+     [("config/detector.yaml", "detector:", "detect:")]),
+    ("parameters", "threshold is not below a key ros__parameters, so rcl cannot read the file",
+     [("config/detector.yaml", "  ros__parameters:\n    threshold: 0.5\n    camera_frame: camera_link",
+       "  threshold: 0.5")]),
+    ("parameters", ("the node 'detector': there is no parameter 'treshold'; did you mean 'threshold'"
+     " (cart_nodes/cart_nodes/detector.py:10)?"), [("config/detector.yaml", "threshold", "treshold")]),
+    ("parameters", "get_parameter: there is no parameter 'level'", [(_DETECTOR, 'get_parameter("threshold")', 'get_parameter("level")')]),
+    ("parameters", ("plugins: there is no plugin section 'obstacle'; did you mean 'obstacle_layer'"
+     " (cart_bringup/config/navigation.yaml:13)?"), [("navigation.yaml", "[obstacle_layer]", "[obstacle]")]),
+    ("parameters", ("obstacle_layer.plugin: there is no plugin 'nav2_costmap_2d/ObstacleLayer'; did you mean"
+     " 'nav2_costmap_2d::ObstacleLayer'?"), [("navigation.yaml", "2d::Obs", "2d/Obs")]),
+    ("parameters", "planner.plugin: there is no plugin 'nav2_navfn_planner/NavfnPlanner'; did you mean 'nav2_navfn_planner::NavfnPlanner'?",
+     [("navigation.yaml", "    controller_plugins", """    planner:
+      plugin: nav2_navfn_planner/NavfnPlanner
+    spin:
+      plugin: nav2_behaviors::Spin
+    controller_plugins""")]),
+    ("arguments", ("the include of robot.launch.py: there is no launch argument 'use_sim_time'; did you mean 'sim_time'"
+     " (cart_bringup/launch/robot.launch.py:1)?"), [(_LAUNCH, '"sim_time"', '"use_sim_time"')]),
+    ("arguments", ("Command of xacro: there is no xacro argument 'controller_file'; did you mean 'controllers_file'"
+     " (cart_description/urdf/cart.urdf.xacro:3)?"), [(_ROBOT_LAUNCH, "controllers_file:=", "controller_file:=")]),
+    ("programs", "the package 'cart_nodes' has no program 'detect'; did you mean 'detector'?",
+     [(_LAUNCH, 'executable="detector"', 'executable="detect"')]),
+    ("programs", "the entry point of 'alarm' names no function: there is no module cart_nodes.siren; did you mean 'alarm'?",
+     [("cart_nodes/setup.py", "cart_nodes.alarm", "cart_nodes.siren")]),
+    ("programs", "a build installs 'alarm' in bin, not in lib/cart_nodes: see install_scripts of setup.cfg",
+     [("setup.cfg", "[install]\ninstall_scripts=$base/lib/cart_nodes\n", "")]),
+    ("programs", ("node_names: there is no node 'controller'; did you mean 'controller_server'"
+     " (cart_bringup/launch/cart.launch.py:32)?"), [(_LAUNCH, '"controller_server"]}', '"controller"]}')]),
+    ("topics", ("the topic /obstacle is subscribed to with std_msgs.msg.Int8, but published with std_msgs.msg.Bool"
+     " (cart_nodes/cart_nodes/detector.py:13)"), [(_ALARM, "import Bool", "import Int8"), (_ALARM, "(Bool", "(Int8")]),
+    ("topics", ("the subscription of /obstacle asks for reliable, but its publisher is best_effort"
+     " (cart_nodes/cart_nodes/detector.py:14)"), [(_DETECTOR, '"obstacle", 10', '"obstacle", qos_profile_sensor_data'),
+     (_DETECTOR, "import Node", "import Node\nfrom rclpy.qos import qos_profile_sensor_data")]),
+    ("topics", ("the remapping of detector: there is no topic 'images'; did you mean 'image'"
+     " (cart_nodes/cart_nodes/detector.py:14)?"), [(_LAUNCH, '("image"', '("images"')]),
+    ("topics", ("no sensor publishes 'camera' in Gazebo; did you mean 'front_camera'"
+      " (cart_description/urdf/cart.urdf.xacro:29)?"), [("bridge.yaml", "front_camera", "camera")]),
+    ("topics", "the bridge sends the time of ROS to Gazebo: the clock is Gazebo's, so write GZ_TO_ROS",
+     [("bridge.yaml", "msgs.Clock\n  direction: GZ_TO_ROS", "msgs.Clock\n  direction: ROS_TO_GZ")]),
+    ("topics", "nothing publishes /camera/image_raw; did you mean /camera/image (cart_bringup/config/bridge.yaml:7)?",
+     [(_LAUNCH, '"camera/image"', '"camera/image_raw"')]),
+    ("topics", "nothing publishes /obstacles; did you mean /obstacle (cart_nodes/cart_nodes/detector.py:13)?",
+     [(_ALARM, 'Bool, "obstacle"', 'Bool, "obstacles"')]),
+    ("dependencies", "package.xml of 'cart_bringup' does not declare 'nav2_controller', which is used here",
+     [("cart_bringup/package.xml", "  <exec_depend>nav2_controller</exec_depend>\n", "")]),
+    ("dependencies", "package.xml of 'cart_bringup' does not declare 'diff_drive_controller', which is used here",
+     [("cart_bringup/package.xml", "  <exec_depend>diff_drive_controller</exec_depend>\n", "")]),
+    ("dependencies", "package.xml of 'cart_nodes' does not declare 'std_msgs', which is used here",
+     [("cart_nodes/package.xml", "  <exec_depend>std_msgs</exec_depend>\n", "")]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("family", "message", "edits"), WRONG, ids=[f"{it[0]}: {it[1][:50]}" for it in WRONG])
+def test_a_wrong_name_is_a_sure_problem_of_one_family(family: Family, message: str, edits: list[_Edit]) -> None:
+    """What certainly fails at run time is named with both places, and counts in one family."""
+    found = sure(agreement_of(edited(*edits)))
+    assert message in [it.message for it in found], found
+    assert {it.family for it in found} == {family}
+
+
+CORRECT: list[tuple[str, list[_Edit]]] = [
+    ("parameters of every node", [("config/detector.yaml", "detector:", "/**:")]),
+    ("parameters by the full name of a node", [("config/detector.yaml", "detector:", "/detector:")]),
+    ("parameters of every node are not declared by each", [
+        ("config/detector.yaml", "detector:", "/**:"), ("config/detector.yaml", "threshold", "level")]),
+    ("a node that declares what it is given", [
+        (_DETECTOR, 'super().__init__("detector")',
+         'super().__init__("detector", automatically_declare_parameters_from_overrides=True)'),
+        ("config/detector.yaml", "threshold", "level")]),
+    ("parameters of which some names are computed", [
+        (_DETECTOR, 'self.declare_parameter("threshold", 0.5)', "self.declare_parameter(name_of(self), 0.5)")]),
+    ("block style", [(_CONTROLLERS, "left_wheel_names: [left_wheel_joint]", "left_wheel_names:\n      - left_wheel_joint")]),
+    ("spawners of one node", [(_ROBOT_LAUNCH, '["wheel_controller", "--param-file"',
+                               '["wheel_controller", "joint_state_broadcaster", "--param-file"')]),
+    ("frames of localization", [(_ROBOT_LAUNCH, '"--frame-id", "base_link", "--child-frame-id", "laser"',
+                                 '"--frame-id", "map", "--child-frame-id", "odom"')]),
+    ("a frame of a static transform", [("config/detector.yaml", "camera_frame: camera_link", "camera_frame: laser")]),
+    ("a frame that a node of another package may publish", [
+        (_LAUNCH, 'package="nav2_map_server"', 'package="apriltag_ros"'),
+        ("cart_bringup/package.xml", "nav2_map_server", "apriltag_ros"),
+        ("config/detector.yaml", "camera_frame: camera_link", "camera_frame: tag_7")]),
+    ("a frame that a node of the workspace publishes", [
+        (_DETECTOR, "import rclpy", "import rclpy\nfrom tf2_ros import TransformBroadcaster"),
+        ("cart_nodes/package.xml", "<exec_depend>rclpy", "<exec_depend>tf2_ros</exec_depend><exec_depend>rclpy"),
+        ("config/detector.yaml", "camera_frame: camera_link", "camera_frame: target")]),
+    ("a reference to a joint", [(_URDF, '<gazebo reference="camera_link">', '<gazebo reference="camera_mount">')]),
+    ("a controller that is not known", [
+        (_CONTROLLERS, "diff_drive_controller/DiffDriveController", "cart_control/CartController"),
+        (_CONTROLLERS, "left_wheel_names", "wheels"), (_CONTROLLERS, "right_wheel_names", "others")]),
+    ("an argument that nothing declares and nothing is like", [(_LAUNCH, '"sim_time": "true"', '"sim_time": "true", "colour": "red"')]),
+    ("a file that a program writes", [(_LAUNCH, '"worlds", "hall.yaml"', '"recorded", "mine.bag"')]),
+    ("programs of packages that are not submitted", [(_LAUNCH, 'executable="map_server"', 'executable="map_saver"')]),
+    ("a topic that nobody publishes", [(_ALARM, 'Bool, "obstacle"', 'Bool, "emergency"')]),
+    ("reliable to best effort", [
+        (_ALARM, "on_obstacle, 10", "on_obstacle, qos_profile_sensor_data"),
+        (_ALARM, "import Node", "import Node\nfrom rclpy.qos import qos_profile_sensor_data")]),
+    ("a remapping of a node whose topics are computed", [
+        (_DETECTOR, 'Image, "image"', "Image, topic_of(self)"), (_LAUNCH, '("image"', '("images"')]),
+    ("a dependency for the build too", [("cart_nodes/package.xml", "<exec_depend>std_msgs</exec_depend>", "<depend>std_msgs</depend>")]),
+    ("a comment in xacro", [(_URDF, '<link name="base_link"/>',
+                             '<link name="base_link"/><!-- $(find cart_description)/urdf/old.xacro -->')]),
+    ("a comment in YAML", [("navigation.yaml", "controller_plugins",
+                            "# $(find-pkg-share cart_bringup)/worlds/old.yaml\n    controller_plugins")]),
+    ("a default that the include replaces", [
+        (_LAUNCH, '{"sim_time": "true"}', '{"sim_time": "true", "gui": "false"}'),
+        (_ROBOT_LAUNCH, 'DeclareLaunchArgument("sim_time"', """DeclareLaunchArgument("gui", default_value="true"),
+        Node(package="ros_gz_bridge", executable="parameter_bridge", condition=IfCondition(LaunchConfiguration("gui")),
+             arguments=["-d", PathJoinSubstitution([share, "config", "gui.yaml"])]),
+        DeclareLaunchArgument("sim_time\""""),
+        (_ROBOT_LAUNCH, "launch_ros.actions", "launch.conditions import IfCondition\nfrom launch_ros.actions")]),
+    ("a metapackage", [("cart_bringup/package.xml", "  <exec_depend>nav2_map_server</exec_depend>\n",
+                        "  <exec_depend>navigation2</exec_depend>\n")]),
+    ("what a declared package needs", [
+        ("cart_bringup/package.xml", "  <exec_depend>robot_state_publisher</exec_depend>\n", ""),
+        ("cart_description/package.xml", "<exec_depend>xacro", "<exec_depend>robot_state_publisher</exec_depend><exec_depend>xacro")]),
+    ("what a camera publishes beside its pictures", [("bridge.yaml", "- ros_topic_name: camera/image", """- topic_name: /camera_info
+  ros_type_name: sensor_msgs/msg/CameraInfo
+  gz_type_name: gz.msgs.CameraInfo
+- ros_topic_name: camera/image""")]),
+    ("a topic of Gazebo's own name", [("bridge.yaml", "front_camera", "/world/hall/model/cart/link/camera_link/sensor/front/image")]),
+    ("rows in arguments", [
+        ("bridge.yaml", """- ros_topic_name: camera/image
+  gz_topic_name: front_camera
+  ros_type_name: sensor_msgs/msg/Image
+  gz_type_name: gz.msgs.Image
+  direction: GZ_TO_ROS
+""", ""),
+        (_ROBOT_LAUNCH, 'executable="parameter_bridge"',
+         'executable="parameter_bridge", arguments=["/front_camera@sensor_msgs/msg/Image[gz.msgs.Image"]'),
+        (_LAUNCH, '"camera/image"', '"front_camera"')]),
+    ("pictures of a model that is not submitted", [
+        ("bridge.yaml", "front_camera", "camera"), (_URDF, "<topic>front_camera</topic>", "")]),
+    ("a topic that a node of another package may publish", [
+        (_LAUNCH, '"camera/image"', '"camera/image_raw"'), (_LAUNCH, '"nav2_map_server"', '"usb_cam"'),
+        ("cart_bringup/package.xml", "nav2_map_server", "usb_cam")]),
+    ("a topic that a file of parameters names", [
+        (_LAUNCH, '"camera/image"', '"camera/image_raw"'),
+        ("navigation.yaml", "robot_base_frame", "image_topic: camera/image_raw\n      robot_base_frame")]),
+    ("a topic of a driver that is started by hand", [
+        (_ALARM, 'Bool, "obstacle"', 'Bool, "joy"'), (_DETECTOR, 'Bool, "obstacle"', 'Bool, "joys"')]),
+    ("topics below the names of nodes", [
+        (_DETECTOR, 'Bool, "obstacle"', 'Bool, "~/state"'), (_ALARM, 'Bool, "obstacle"', 'Image, "~/state"'),
+        (_ALARM, "import rclpy\n", "import rclpy\nfrom sensor_msgs.msg import Image\n")]),
+    ("parameters of an older release of Nav2", [("navigation.yaml", "    controller_plugins", """    planner:
+      plugin: nav2_navfn_planner/NavfnPlanner
+    controller_plugins""")]),
+    ("a plugin that is not known", [("navigation.yaml", "nav2_costmap_2d::ObstacleLayer", "cart_layers/Layer")]),
+    ("overrides of the quality of service", [("config/detector.yaml", "threshold: 0.5", "qos_overrides: {/obstacle: {publisher: {depth: 3}}}")]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("edits", [it[1] for it in CORRECT], ids=[it[0] for it in CORRECT])
+def test_what_ros_accepts_is_no_sure_problem(edits: list[_Edit]) -> None:
+    """Other ways to write the same, and names that something which is not submitted may define, are not wrong."""
+    assert sure(agreement_of(edited(*edits))) == []
+
+
+def test_a_module_beside_is_no_package() -> None:
+    """A module of the package itself may be named like messages."""
+    texts = edited((_ALARM, "import rclpy\n", "import rclpy\nimport own_msgs\n"))
+    assert [it.family for it in sure(agreement_of(texts))] == ["dependencies"]
+    assert sure(agreement_of({**texts, "cart_nodes/cart_nodes/own_msgs.py": ""})) == []
+
+
+def test_a_robot_that_is_not_used_is_no_sure_problem() -> None:
+    """What an old file beside the robot names is looked for by nobody: it is a warning."""
+    old = (
+        '<robot name="x"><link name="{}"><visual><geometry><mesh filename="package://cart_description/urdf/wheel.stl"/>'
+    )
+    texts = {**edited(), "cart_description/urdf/old.xacro": f"{old}</geometry></visual></link></robot>"}
+    found = agreement_of(texts)
+    assert [(it.family, it.is_sure) for it in found.mismatches] == [("files", False)]
+
+
+def test_a_launch_file_that_is_not_installed_finds_what_is_beside_it() -> None:
+    """Started by its path, it has the folder of the sources."""
+    include = """from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription
+from launch.substitutions import ThisLaunchFileDir, PathJoinSubstitution
+
+
+def generate_launch_description():
+    return LaunchDescription([IncludeLaunchDescription(PathJoinSubstitution([ThisLaunchFileDir(), "b.launch.py"]))])
+"""
+    texts = {**edited(), "cart_bringup/examples/a.launch.py": include, "cart_bringup/examples/b.launch.py": include}
+    assert sure(agreement_of(texts)) == []
+
+
+def test_what_is_installed_for_tests_leaves_files_undecided() -> None:
+    """BUILD_TESTING is on by default, but not where packages are built for others."""
+    texts = edited(
+        (
+            "cart_bringup/CMakeLists.txt",
+            "install(DIRECTORY launch config worlds",
+            "if(BUILD_TESTING)\n  install(DIRECTORY worlds DESTINATION share/x)\nendif()\ninstall(DIRECTORY launch config",
+        )
+    )
+    assert "files" in agreement_of(texts).undecided
+    assert sure(agreement_of(texts)) == []
+
+
+def test_a_family_is_undecided_where_what_defines_its_names_is_not_evaluated() -> None:
+    """A CMakeLists.txt that calls an own function may install the file."""
+    texts = edited(("cart_bringup/CMakeLists.txt", "install(", "install_all("))
+    found = agreement_of(texts)
+    assert "files" in found.undecided
+    assert [it for it in sure(found) if it.family == "files"] == []
