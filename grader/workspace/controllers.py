@@ -25,7 +25,7 @@ class _Controller(NamedTuple):
 
 def controller_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the controllers that YAML files define, and those that spawners load; types, sections, interfaces."""
-    controllers = list(_controllers(workspace))
+    controllers = list(defined_controllers(workspace))
     if not controllers:
         return
     yield from (Definition("controller", it.name, it.location) for it in controllers)
@@ -45,7 +45,8 @@ def _sections(workspace: Workspace) -> Iterator[tuple[tuple[str, ...], YamlNode]
                 yield from sections_in(node, keys)
 
 
-def _controllers(workspace: Workspace) -> Iterator[_Controller]:
+def defined_controllers(workspace: Workspace) -> Iterator[_Controller]:
+    """Yield the controllers that files of parameters define, with their types."""
     for keys, node in _sections(workspace):
         own = keys[-1].rpartition("/")[2]
         is_manager = own == _MANAGER and isinstance(node.value, dict)
@@ -96,6 +97,8 @@ def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapp
 def _spawner_facts(workspace: Workspace) -> Iterator[Fact]:
     if any(launch.unread or launch.syntax for _, _, launch in workspace.launches):
         yield Open("controller", reason="a launch file cannot be read")
+    if not workspace.has_controller_manager:  # the robot's driver starts one, with controllers of its own
+        yield Open("controller")
     for _, node in workspace.nodes:
         if node.package != _MANAGER or node.executable not in _SPAWNERS or node.arguments is None:
             continue

@@ -10,6 +10,7 @@ from grader.workspace.controllers import controller_facts
 from grader.workspace.dependencies import dependency_facts
 from grader.workspace.files import file_facts
 from grader.workspace.frames import frame_facts
+from grader.workspace.moveit import moveit_facts
 from grader.workspace.names import Agreement, agreement
 from grader.workspace.parameters import parameter_facts
 from grader.workspace.programs import program_facts
@@ -18,7 +19,7 @@ from grader.workspace.workspace import Workspace
 
 _READERS = (
     file_facts, frame_facts, controller_facts, parameter_facts, argument_facts, program_facts, topic_facts,
-    bridge_facts, dependency_facts,
+    bridge_facts, moveit_facts, dependency_facts,
 )  # fmt: skip
 
 

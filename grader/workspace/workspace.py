@@ -97,14 +97,20 @@ class Workspace:
     def robot(self) -> Robot | None:
         """The robot; None without one, or where not all of it is known."""
         urdf = self.submission.urdf
-        if not isinstance(urdf, Read) or urdf.loaded.robot is None or not urdf.loaded.is_certain:
-            return None
-        return urdf.loaded.robot
+        is_known = isinstance(urdf, Read) and not urdf.loaded.undetermined and urdf.loaded.verdict != "rejected"
+        return urdf.loaded.robot if isinstance(urdf, Read) and is_known else None
 
     @property
     def has_other_robots(self) -> bool:
         """Return whether there may be other robots than the one that is read, which names may belong to."""
         return any(not it.is_part for it in self.submission.unused_candidates if not it.path.endswith(MANIFEST))
+
+    @property
+    def has_controller_manager(self) -> bool:
+        """Return whether a launch file starts a controller manager, or the robot has one in Gazebo."""
+        plugins = self.robot_root.iter("plugin") if self.robot_root is not None else ()
+        is_simulated = any("ros2_control" in element.get("filename", "") for element in plugins)
+        return is_simulated or any(node.executable == "ros2_control_node" for _, node in self.nodes)
 
     @cached_property
     def robot_root(self) -> Element | None:
