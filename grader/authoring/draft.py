@@ -210,6 +210,9 @@ def _criterion_lines(name: str, row: _DraftCriterion, part: str) -> Iterator[str
     yield assignment("about", printable(fact.about))
     yield assignment("title", printable(row.title))
     yield f"check = {toml_literal(fact.check)}"
+    if fact.causes:
+        instead = {"from": [*fact.causes], "check": "launch_found", "with": {"name": fact.arguments["name"]}}
+        yield assignment("carried", instead)
     if len(assignment("with", fact.arguments)) <= _WIDTH:
         if fact.arguments:
             yield assignment("with", fact.arguments)

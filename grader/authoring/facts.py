@@ -48,6 +48,7 @@ _NAME_TITLES: Mapping[Family, str] = {
 _WHEEL = re.compile("wheel|axle|tire|tyre")
 _DISTANCE = re.compile("separation|wheel_?base|wheel_?track|track_?width")
 _EXACT = 1e-6
+_STOPPING: tuple[Family, ...] = ("files", "arguments", "programs")  # what keeps a launch file from starting
 _WITH_AXIS = ("continuous", "revolute", "prismatic", "planar")
 _COUNTED = ("revolute", "continuous", "prismatic")
 _SLIDING_TOLERANCE = 0.002  # m: the tolerance of other limits is in degrees
@@ -85,6 +86,7 @@ class Fact(NamedTuple):
     arguments: Mapping[str, Any]
     words: str  # of the id
     package: str | None = None  # what it is about: the name of a package, empty for the main one; None for the robot
+    causes: tuple[str, ...] = ()  # the ids of criteria for whose mistakes it costs nothing, if the launch file is there
     otherwise: "Sequence[Fact]" = ()  # tried in its place if the reference does not pass it
     title: str = ""  # default: what the check says
 
@@ -342,8 +344,10 @@ def package_facts(submission: Submission) -> _Facts:
     packages = sorted(submission.lab_packages.values(), key=lambda it: it is not main)
     found = read_agreement(submission) if packages else None
     named = found.files if found is not None and found.holds("files") else frozenset()
+    families = [it for it in _STOPPING if found is not None and found.holds(it)]
+    causes = tuple(f"{family}-names-agree" for family in families)
     for package in packages:
-        facts = _facts_of(package, path if path is not None and package.holds(path) else "", named)
+        facts = _facts_of(package, path if path is not None and package.holds(path) else "", named, causes)
         if package is main:
             yield from facts
             continue
@@ -352,10 +356,10 @@ def package_facts(submission: Submission) -> _Facts:
             yield fact._replace(about=about, package=package.name, words=f"{package.name} {fact.words}")
 
 
-def _facts_of(package: Package, path: str, named: Collection[str]) -> Iterator[Fact]:
+def _facts_of(package: Package, path: str, named: Collection[str], causes: tuple[str, ...]) -> Iterator[Fact]:
     """Yield what may be true of a package, in which the URDF has this path.
 
-    That the files are installed which are `named` somewhere is a fact about names.
+    That the files are installed which are `named` somewhere is a fact about names; `causes` are these facts.
     """
     yield _package_fact("package_found", name=package.name)
     if package.manifest is not None and package.manifest.build_type:
@@ -363,7 +367,7 @@ def _facts_of(package: Package, path: str, named: Collection[str]) -> Iterator[F
     yield _package_fact("setup_imports")._replace(title="`colcon build` of the package succeeds")
     yield from _installs(package, path, named)
     for launch in (it for it in package.launch_files if not it.startswith("test/")):
-        yield from _launch_facts(posixpath.basename(launch), package.launch(launch), has_names=bool(named))
+        yield from _launch_facts(posixpath.basename(launch), package.launch(launch), causes)
     yield from _rviz_facts(package)
 
 
@@ -439,12 +443,12 @@ def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[F
     yield from (_package_fact("installs_files", pattern, files=[pattern], despite_errors=True) for pattern in patterns)
 
 
-def _launch_facts(name: str, launch: Launch, *, has_names: bool) -> Iterator[Fact]:
+def _launch_facts(name: str, launch: Launch, causes: tuple[str, ...]) -> Iterator[Fact]:
     yield _package_fact("launch_found", name, name=name)
     if nodes := _nodes_that_start(launch):
-        yield _package_fact("launch_starts", name, name=name, nodes=nodes)
-    if launch.named("urdf", "rviz", "include") and not has_names:
-        yield _package_fact("launch_finds_files", name, name=name)
+        yield _package_fact("launch_starts", name, name=name, nodes=nodes)._replace(causes=causes)
+    if launch.named("urdf", "rviz", "include"):
+        yield _package_fact("launch_finds_files", name, name=name)._replace(causes=causes)
 
 
 def _nodes_that_start(launch: Launch) -> list[str]:

@@ -2,7 +2,8 @@
 
 import posixpath
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -28,6 +29,37 @@ _MAX_FILES = 60  # of one kind in a package
 _MAX_YAML = 512 * 1024  # bytes
 _OF_YAML = (".yaml", ".yml", ".py")
 _COMMENT = {False: re.compile(r"<!--.*?-->", re.DOTALL), True: re.compile(r"(?:^|(?<=\s))#[^\n]*")}
+
+
+@dataclass(frozen=True)
+class _WithSources:
+    """What builds install, and in place of a file that they do not install the one that may be meant."""
+
+    package: Package
+
+    def open_installed(self, path: str) -> tuple[bytes, str] | None:
+        """Return an installed file, else the only file of this name in the package whose folder is named."""
+        found = self.package.open_installed(path)
+        parts = path.split("/")
+        owner = self.package.find(parts[1]) if found is None and len(parts) > 2 else None
+        named = [it for it in owner.tree.files if it.rpartition("/")[2] == parts[-1]] if owner is not None else []
+        if owner is None or len(named) != 1:
+            return found
+        with suppress(InputError):
+            found = owner.tree.files[named[0]].read(_MAX_YAML), owner.path(named[0])
+        return found
+
+    def has_package(self, name: str) -> bool:
+        """Return whether a package certainly is on the machine."""
+        return self.package.has_package(name)
+
+    def has_program(self, package: str, name: str) -> bool | None:
+        """Return whether a package has a program; None where this is not known."""
+        return self.package.has_program(package, name)
+
+    def files_in(self, folder: str) -> Sequence[str] | None:
+        """Return the files that are installed in a folder."""
+        return self.package.files_in(folder)
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,12 +244,14 @@ class Workspace:
             for node in launch.nodes:
                 name, own = self.name_of(node), self.python_node(node)
                 if (name is not None and node.package != _MANAGER) or node in managers:
-                    given = parameters_of(node, package, name or "", is_python=own is not None or None)
+                    sources = _WithSources(package)
+                    given = parameters_of(node, sources, name or "", is_python=own is not None or None)
                     found.setdefault(name or "", []).append(given)
                 for controller in (controllers_of(node) or ()) if node.executable in _SPAWNERS else ():
                     before = [it for manager in managers for it in manager.parameters or ()]
                     files = (*before, *self._simulated, *(controller.parameters or ()))
-                    given = parameters_of(replace(controller, parameters=files), package, is_python=False)
+                    started = replace(controller, parameters=files)
+                    given = parameters_of(started, _WithSources(package), is_python=False)
                     found.setdefault(controller.node_name or "", []).append(given)
         return found
 
