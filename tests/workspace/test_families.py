@@ -290,3 +290,10 @@ def test_a_family_is_undecided_where_what_defines_its_names_is_not_evaluated() -
     found = agreement_of(texts)
     assert "files" in found.undecided
     assert [it for it in sure(found) if it.family == "files"] == []
+
+
+def test_a_urdf_alone_has_problems_but_no_families() -> None:
+    """Without a package, no criterion about names can be drafted; what is wrong in the robot is still known."""
+    robot = "<robot name='cart'><link name='base'/><gazebo reference='bas'/></robot>"
+    found = agreement_of({"cart.urdf": robot})
+    assert (found.families, [it.family for it in found.mismatches]) == (frozenset(), ["frames"])
