@@ -3,12 +3,16 @@
 import re
 from collections.abc import Iterator
 
+from grader.package.launch.model import Launch
 from grader.package.launch.places import PREFIX
 from grader.source import Location
 from grader.workspace.known import known
 from grader.workspace.names import Definition, Fact, Open, Use
 from grader.workspace.workspace import Workspace
 
+_CONFIGURATION = re.compile(r"LaunchConfiguration\(\s*[\"'](\w+)[\"']|\$\(var (\w+)")
+_MAX_LAUNCH = 128 * 1024  # bytes, as launch files are read
+_FIND = re.compile(r"\$\(find ([\w-]+)\)")
 _XACRO_ARGUMENT = re.compile(r"<xacro:arg\b[^>]*?\bname\s*=\s*[\"']([^\"']+)[\"']")
 
 
@@ -18,6 +22,10 @@ def argument_facts(workspace: Workspace) -> Iterator[Fact]:
         start = Location(package.path(path), 1, 1)
         for owner in [target for target, source in package.installed.items() if source == path]:
             yield from (Definition("launch argument", name, start, owner) for name in launch.declared)
+            text = package.tree.files[path].read(_MAX_LAUNCH).decode("utf-8", "replace")
+            used = {name for found in _CONFIGURATION.findall(text) for name in found if name}
+            yield from (Definition("launch argument", name, start, owner) for name in used)
+            yield from _of_included(workspace, launch, owner)
             if launch.unknown or launch.syntax or launch.unread:
                 yield Open("launch argument", owner)
     for owner, names in known()["launch_arguments"].items():
@@ -31,10 +39,22 @@ def argument_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _of_xacro(workspace)
 
 
+def _of_included(workspace: Workspace, launch: Launch, owner: str) -> Iterator[Fact]:
+    """Yield the arguments of launch files that are not submitted, which a launch file passes on by including them."""
+    for passed in launch.passed:
+        names = known()["launch_arguments"].get(passed.path)
+        if names is not None:
+            yield from (Definition("launch argument", name, passed.location, owner) for name in names)
+        elif not workspace.has_file(passed.path):
+            yield Open("launch argument", owner)
+
+
 def _of_xacro(workspace: Workspace) -> Iterator[Fact]:
     for source in workspace.xacro_sources:
         for found in _XACRO_ARGUMENT.finditer(source.text):
             yield Definition("xacro argument", found[1], source.at(found.start(1)))
+        if any(workspace.packages[0].find(name) is None for name in _FIND.findall(source.text)):
+            yield Open("xacro argument")  # of files that are included from other packages
     for _, _, launch in workspace.launches:
         for file in launch.named("urdf", "read"):
             path = (file.path or "").removeprefix(f"{PREFIX}/")

@@ -1,10 +1,11 @@
 """Controllers of ros2_control: their YAML, the spawners that start them, and the interfaces of their joints."""
 
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from typing import NamedTuple
 
 from grader.names import closest
-from grader.package.yaml_nodes import YamlNode
+from grader.package.yaml_nodes import YamlFault, YamlNode
 from grader.source import Location
 from grader.workspace.known import known
 from grader.workspace.names import Definition, Fact, Mismatch, Open, Use, place_text
@@ -21,6 +22,7 @@ class _Controller(NamedTuple):
     name: str
     type: YamlNode
     location: Location
+    has_file: bool  # of its own for its parameters
 
 
 def controller_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -53,7 +55,7 @@ def defined_controllers(workspace: Workspace) -> Iterator[_Controller]:
         for name, inner in node.value.items() if is_manager and isinstance(node.value, dict) else [(own, node)]:
             kind = inner.get("type")
             if kind is not None and kind.text is not None and "/" in kind.text:  # or in its own section, for a spawner
-                yield _Controller(name, kind, kind.location)
+                yield _Controller(name, kind, kind.location, inner.get("params_file") is not None)
 
 
 def _type_facts(workspace: Workspace, controller: _Controller) -> Iterator[Fact]:
@@ -75,7 +77,7 @@ def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapp
     needed: Mapping[str, str] = known()["controllers"].get(controller.type.text, {})
     section = sections.get(controller.name)
     if section is None:
-        if needed:
+        if needed and "**" not in sections and not controller.has_file:
             message = f"the controller {controller.name!r} has no parameters: there is no key {controller.name}"
             yield Mismatch("controllers", f"{message} with ros__parameters", controller.location)
         return
@@ -83,7 +85,9 @@ def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapp
     for key, wanted in needed.items():
         joints = section.get(key)
         given = section.get(wanted.removeprefix("=")) if wanted.startswith("=") else None
-        names = [wanted] if given is None else [it.text or "" for it in (given.items or [given])]
+        names = [wanted] if not wanted.startswith("=") else []
+        if given is not None:
+            names = [it.text or "" for it in (given.items or [given])]
         for joint in (joints.items or [joints]) if joints is not None and interfaces is not None else ():
             own = interfaces.get(joint.text or "") if interfaces is not None else None
             for name in [it for it in names if own is not None and it not in own[0]]:
@@ -95,15 +99,24 @@ def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapp
 
 
 def _spawner_facts(workspace: Workspace) -> Iterator[Fact]:
-    if any(launch.unread or launch.syntax for _, _, launch in workspace.launches):
-        yield Open("controller", reason="a launch file cannot be read")
+    if any(isinstance(tree, YamlFault) for tree in workspace.yaml_files.values()):
+        yield Open("controller", reason="a file of parameters cannot be read")
     if not workspace.has_controller_manager:  # the robot's driver starts one, with controllers of its own
         yield Open("controller")
     for _, node in workspace.nodes:
         if node.package != _MANAGER or node.executable not in _SPAWNERS or node.arguments is None:
+            continue
+        if not _is_defined_by_files(workspace, node.arguments):
             continue
         for word in node.arguments:
             if word is None or word.startswith("-"):
                 break
             for name in word.split():
                 yield Use("controller", name, node.location, "spawner")
+
+
+def _is_defined_by_files(workspace: Workspace, words: tuple[str | None, ...]) -> bool:
+    """Return whether the controllers of a spawner are defined by files that are submitted, and not by its arguments."""
+    files = [path for option, path in pairwise(words) if option in ("-p", "--param-file")]
+    is_typed = any(word in ("-t", "--controller-type") for word in words)
+    return not is_typed and all(path is not None and workspace.source_of(path) is not None for path in files)

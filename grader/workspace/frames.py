@@ -37,10 +37,11 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from (Definition("frame", name, start) for name in known()["frames"])
     yield from _openings(workspace)
     yield from _static_transforms(workspace, robot)
+    controllers = workspace.typed_sections
     for _, tree in workspace.trees:
         if is_parameters(tree):
             for value in values_in(tree):
-                yield from _in_yaml(value)
+                yield from _in_yaml(value, is_of_controller=not controllers.isdisjoint(value.keys))
     yield from _in_robot(workspace)
     yield from _in_srdf(workspace)
 
@@ -99,15 +100,16 @@ def _static_transforms(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
             at = _place(children[child].location)
             own = children[child].parent
             message = f"the frame {child!r} has two parents: {own!r} in the robot, {parent!r} here"
-            yield Mismatch("frames", message, node.location, at, is_sure=own != parent)
+            yield Mismatch("frames", message, node.location, at, is_sure=own != parent and node.when is True)
 
 
-def _in_yaml(value: YamlValue) -> Iterator[Fact]:
+def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:
+    """Yield the joints and frames that a parameter names; what a node of another kind calls joints may be others."""
     key = value.keys[-1] if value.keys else ""
     if _JOINTS.search(key):
         for text, node in value.texts():
             if text and "/" not in text and "$" not in text:
-                yield Use("joint", text, node.location, value.said)
+                yield Use("joint", text, node.location, value.said, optional=not is_of_controller)
     elif _FRAMES.search(key) and not _OWN_FRAMES.search(key):
         for text, node in value.texts():
             if text.strip("/") and "$" not in text:
@@ -126,9 +128,11 @@ def _in_robot(workspace: Workspace) -> Iterator[Fact]:
         if reference and reference not in joints:
             yield Use("link", reference, at, "<gazebo reference>")
         for inner in element.iter(*_GAZEBO_FRAMES, *_GAZEBO_JOINTS):
-            text = (inner.text or "").strip()
+            text, parent = (inner.text or "").strip(), inner.getparent()
             if text and inner.tag in _GAZEBO_JOINTS:
                 yield Use("joint", text, workspace.place(inner), f"<{inner.tag}>")
+            elif text and inner.tag == "frame_id" and parent is not None and parent.tag == "plugin":
+                yield Definition("frame", text, workspace.place(inner))  # that the plugin publishes
             elif text:
                 yield Use("frame", text, workspace.place(inner), f"<{inner.tag}>")
     for system in root.iterchildren("ros2_control"):

@@ -44,7 +44,8 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
 def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -> Iterator[Fact]:
     """Yield that a file of parameters has nothing for a node that is given it, but for a node that is not."""
     tree = workspace.yaml_files.get(path)
-    if not isinstance(tree, YamlNode) or any(node.package == "ros_gz_bridge" for node in nodes):
+    # A container gives it to the components that are loaded into it.
+    if not isinstance(tree, YamlNode) or any(node.package in ("ros_gz_bridge", "rclcpp_components") for node in nodes):
         return
     yield from _misplaced(tree)
     names = [(node, workspace.name_of(node)) for node in nodes]
@@ -54,10 +55,20 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
         return
     own = {child for name in read for child in workspace.children_of(name)}
     unread = [key for key in sections if key not in own and not any(fnmatchcase(name, key) for name in read)]
+    is_passed = any(
+        workspace.source_of(value or "") == path
+        for _, _, launch in workspace.launches
+        for passed in launch.passed
+        for _, value in passed.values
+    )
     for node, name in names:
         has_none = not any(fnmatchcase(name or "", key) or key == "**" for key in sections)
         if has_none and unread and "**" not in sections:
-            key = near(name or "", unread) or unread[0]
+            meant = near(name or "", unread)
+            is_known = workspace.package_of(node) is not None or node.package in known()["without_frames"]
+            if meant is None and (is_passed or not is_known):
+                continue  # the others may be of nodes that are not submitted
+            key = meant or unread[0]
             message = f"there are parameters for {key}, but none for the node {name!r}, which gets this file"
             yield Mismatch("parameters", message, sections[key].location, node.location)
 

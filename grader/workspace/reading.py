@@ -27,4 +27,6 @@ _READERS = (
 def read_agreement(submission: Submission) -> Agreement:
     """Return what does not agree in the packages of a submission."""
     workspace = Workspace(submission)
-    return agreement(chain.from_iterable(reader(workspace) for reader in _READERS))
+    found = agreement(chain.from_iterable(reader(workspace) for reader in _READERS))
+    # names_agree needs a package.
+    return found if workspace.packages else found._replace(families=frozenset())

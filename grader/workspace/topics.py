@@ -86,7 +86,9 @@ def _remappings(workspace: Workspace, node: StartedNode) -> Iterator[Fact]:
     for rule in node.remaps:
         name = _bare(rule[0])
         if rule not in shared and not name.startswith("__") and ":" not in name:
-            yield Use("topic", name, node.location, f"the remapping of {node.executable}", owner)
+            # Actions and what rclpy itself opens, such as /tf, are not listed.
+            said = f"the remapping of {node.executable}"
+            yield Use("topic", name, node.location, said, owner, optional=True)
 
 
 def _bare(name: str) -> str:

@@ -209,6 +209,20 @@ class Workspace:
         """The names of sections in files of parameters that may be those of controllers."""
         return frozenset(keys[-1] for _, tree in self.trees for keys, _ in sections_in(tree) if keys)
 
+    @cached_property
+    def typed_sections(self) -> frozenset[str]:
+        """The names of controllers and others that files of parameters give a type."""
+        sections = [(keys, section) for _, tree in self.trees for keys, section in sections_in(tree)]
+        own = {keys[-1].rpartition("/")[2] for keys, section in sections if keys and section.get("type") is not None}
+        named = {
+            name
+            for _, section in sections
+            if isinstance(section.value, dict)
+            for name, inner in section.value.items()
+            if inner.get("type") is not None
+        }
+        return frozenset(own | named)
+
     def has_file(self, path: str) -> bool:
         """Return whether a build of the workspace installs a file at a path below the prefix."""
         return any(path in package.installed for package in self.packages)

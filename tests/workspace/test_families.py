@@ -191,6 +191,44 @@ CORRECT: list[tuple[str, list[_Edit]]] = [
     ("parameters of an older release of Nav2", [("navigation.yaml", "    controller_plugins", """    planner:
       plugin: nav2_navfn_planner/NavfnPlanner
     controller_plugins""")]),
+    ("a remapping of what rclpy opens", [(_LAUNCH, '("image", "camera/image")', '("image", "camera/image"), ("/tf", "tf")')]),
+    ("an argument of an included file that is not submitted", [
+        (_LAUNCH, '{"sim_time": "true"}', '{"sim_time": "true", "slam_params_file": "x"}'),
+        ("cart_bringup/package.xml", "<exec_depend>xacro", "<exec_depend>slam_toolbox</exec_depend><exec_depend>xacro"),
+        (_ROBOT_LAUNCH, 'DeclareLaunchArgument("sim_time"', """DeclareLaunchArgument("params_file", default_value=""),
+        IncludeLaunchDescription(PathJoinSubstitution(
+            [FindPackageShare("slam_toolbox"), "launch", "online_async_launch.py"])),
+        DeclareLaunchArgument("sim_time\""""),
+        (_ROBOT_LAUNCH, "import DeclareLaunchArgument", "import DeclareLaunchArgument, IncludeLaunchDescription")]),
+    ("an argument that is used without being declared", [
+        (_LAUNCH, '{"sim_time": "true"}', '{"sim_time": "true", "sim_time_2": "x"}'),
+        (_ROBOT_LAUNCH, 'executable="parameter_bridge",', 'executable="parameter_bridge", name=LaunchConfiguration("sim_time_2"),')]),
+    ("a controller whose type is an argument", [
+        (_ROBOT_LAUNCH, 'arguments=["joint_state_broadcaster"]', 'arguments=["states", "-t", "joint_state_broadcaster/JointStateBroadcaster"]')]),
+    ("a controller with a file of its own", [
+        (_CONTROLLERS, "DiffDriveController\n", "DiffDriveController\n      params_file: /opt/wheels.yaml\n"),
+        (_CONTROLLERS, "\nwheel_controller:", "\nwheels:")]),
+    ("a controller with parameters of every node", [(_CONTROLLERS, "\nwheel_controller:", "\n/**:")]),
+    ("a controller without interfaces", [
+        (_CONTROLLERS, "diff_drive_controller/DiffDriveController", "joint_trajectory_controller/JointTrajectoryController"),
+        (_CONTROLLERS, "left_wheel_names", "joints"), (_CONTROLLERS, "    right_wheel_names: [right_wheel_joint]\n", ""),
+        ("cart_bringup/package.xml", "diff_drive_controller", "joint_trajectory_controller")]),
+    ("a container that gives parameters to its components", [
+        (_LAUNCH, 'package="cart_nodes",\n            executable="detector",\n            name="detector"',
+         'package="rclcpp_components",\n            executable="component_container",\n            name="container"'),
+        ("cart_bringup/package.xml", "cart_nodes", "rclcpp_components</exec_depend><exec_depend>cart_nodes")]),
+    ("parameters that a node of another package may share", [
+        (_LAUNCH, 'package="cart_nodes",\n            executable="detector",\n            name="detector"',
+         'package="other_nodes",\n            executable="driver",\n            name="driver"'),
+        ("cart_bringup/package.xml", "cart_nodes", "other_nodes</exec_depend><exec_depend>cart_nodes")]),
+    ("a frame that a plugin publishes", [
+        (_URDF, "<parameters>$(arg controllers_file)</parameters>", "<frame_id>cart/odom</frame_id>")]),
+    ("names that an own node calls joints", [("config/detector.yaml", "threshold: 0.5", "threshold: 0.5\n    joints: [none, all]"),
+        (_DETECTOR, 'self.declare_parameter("threshold", 0.5)',
+         'self.declare_parameter("threshold", 0.5)\n        self.declare_parameter("joints", [""])')]),
+    ("a file that is also passed on", [
+        ("config/detector.yaml", "detector:", "driver:"),
+        (_LAUNCH, '{"sim_time": "true"}', '{"sim_time": "true", "driver_params": detector}')]),
     ("a plugin that is not known", [("navigation.yaml", "nav2_costmap_2d::ObstacleLayer", "cart_layers/Layer")]),
     ("overrides of the quality of service", [("config/detector.yaml", "threshold: 0.5", "qos_overrides: {/obstacle: {publisher: {depth: 3}}}")]),
 ]  # fmt: skip
@@ -252,3 +290,10 @@ def test_a_family_is_undecided_where_what_defines_its_names_is_not_evaluated() -
     found = agreement_of(texts)
     assert "files" in found.undecided
     assert [it for it in sure(found) if it.family == "files"] == []
+
+
+def test_a_urdf_alone_has_problems_but_no_families() -> None:
+    """Without a package, no criterion about names can be drafted; what is wrong in the robot is still known."""
+    robot = "<robot name='cart'><link name='base'/><gazebo reference='bas'/></robot>"
+    found = agreement_of({"cart.urdf": robot})
+    assert (found.families, [it.family for it in found.mismatches]) == (frozenset(), ["frames"])
