@@ -30,6 +30,8 @@ def inspect(
     match urdf := submission.urdf:
         case Unreadable(reason=reason):
             raise InputError(reason)
+        case Absent() if submission.packages and (joints or relative_to is not None):
+            raise GraderError(f"{printable_path(path)} has no URDF: there are no joints and no frames")
         case Absent() if submission.packages:
             names = _name_problems(submission)
             return Inspection(submission.id, None, names=names, source_of=submission.source, base=base)
