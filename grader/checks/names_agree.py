@@ -13,7 +13,7 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
     """The names that files of the packages use are defined: files, frames, parameters, programs and so on.
 
     A name fails only where everything that could define it was read. One that a package which is not submitted may
-    define is not wrong.
+    define is not wrong. Names that other packages of the submission use do not count.
 
     Args:
         of: What is named: files, frames, controllers, parameters, arguments, programs, topics or dependencies.
@@ -21,8 +21,9 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
     from grader.workspace.reading import read_agreement  # late: few rubrics ask for it
 
     submission.needed_package()
-    found = read_agreement(submission)
-    wrong = [it for it in found.mismatches if it.family == of and it.is_sure]
+    found, packages = read_agreement(submission), submission.lab_packages.values()
+    own = [it for it in found.mismatches if any(package.holds(it.location.path) for package in packages)]
+    wrong = [it for it in own if it.family == of and it.is_sure]
     if wrong:
         texts = [f"{place_text(it.location)}: {it.message}" for it in wrong[1:]]
         message = "; ".join([wrong[0].message, *first_lines(texts, _MAX_NAMED - 1)])

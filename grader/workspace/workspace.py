@@ -70,9 +70,9 @@ class Workspace:
 
     @property
     def packages(self) -> tuple[Package, ...]:
-        """The packages that are compared: those of the lab; all if it names none."""
-        named = tuple(self.submission.lab_packages.values())
-        return named if len(named) > 1 else self.submission.packages
+        """The packages that a build of the workspace has: the best of each name, without those that colcon ignores."""
+        known = [it for it in self.submission.packages if not it.ignored_by]
+        return tuple(it for it in known if it.name in it.packages and it.packages[it.name].folder == it.folder)
 
     @cached_property
     def launches(self) -> tuple[tuple[Package, str, Launch], ...]:
