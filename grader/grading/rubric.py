@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from decimal import Decimal
 from functools import cache, cached_property, lru_cache
 from pathlib import Path
-from typing import Any
 
 from grader.checks.check import LINK_ARGUMENTS
 from grader.checks.manual import answered
@@ -217,7 +216,7 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         ignored=tuple(Ignored(**row) for row in valid.ignored),
         transforms=rubric.get("transforms", ()),
         solution=_reference_solution(rubric, path, data),
-        links=frozenset(_links_named(arguments for _, arguments in valid.bound)),
+        links=frozenset(_links_named(valid.bound)),
     )
 
 
@@ -230,10 +229,11 @@ def _validate(data: bytes, path: Path) -> Validation:
     return valid
 
 
-def _links_named(arguments: Iterable[Mapping[str, Any]]) -> Iterator[str]:
+def _links_named(bound: Iterable[BoundCheck]) -> Iterator[str]:
     """Yield the names of links in the arguments of checks."""
-    for given in arguments:
-        names = texts_in([value for key, value in given.items() if key in LINK_ARGUMENTS])
+    for check, given in bound:
+        own = LINK_ARGUMENTS if "robot" in check.examined else ("links",)  # names_agree has another `of`
+        names = texts_in([value for key, value in given.items() if key in own])
         yield from (name for name in names if name and not is_selector(name))
 
 
