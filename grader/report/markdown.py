@@ -152,7 +152,7 @@ def escape(text: str) -> str:
 
 def _escape_words(text: str) -> str:
     """Return one line of printable text in which what is between backticks is code."""
-    parts = text.split("`")
+    parts = text.strip().split("`")
     if len(parts) % 2 == 0 or "``" in text:
         return escape(text)
     return "".join(code(part) if number % 2 else _keep_spaces(part) for number, part in enumerate(parts))

@@ -106,6 +106,7 @@ def structures_of(name: str, base: Base) -> dict[Format, Any]:
 )
 @given(words=st.lists(TEXT, min_size=1, max_size=9))
 @example(["`" * 90 + "![x](y)"])
+@example(["    x"])
 @examples(2)
 def test_text_of_a_report_stays_text(name: str, base: Base, words: list[str]) -> None:
     """Also text that no file system and no XML can hold: NUL and lone surrogates, in every message, name and path."""
