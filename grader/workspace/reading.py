@@ -11,10 +11,11 @@ from grader.workspace.dependencies import dependency_facts
 from grader.workspace.files import file_facts
 from grader.workspace.frames import frame_facts
 from grader.workspace.moveit import moveit_facts
-from grader.workspace.names import Agreement, agreement
+from grader.workspace.names import Agreement, Family, agreement
 from grader.workspace.parameters import parameter_facts
 from grader.workspace.programs import program_facts
 from grader.workspace.topics import topic_facts
+from grader.workspace.unused import unused_files
 from grader.workspace.workspace import Workspace
 
 _READERS = (
@@ -29,4 +30,5 @@ def read_agreement(submission: Submission) -> Agreement:
     workspace = Workspace(submission)
     found = agreement(chain.from_iterable(reader(workspace) for reader in _READERS))
     # names_agree needs a package.
-    return found if workspace.packages else found._replace(families=frozenset())
+    families = found.families if workspace.packages else frozenset[Family]()
+    return found._replace(families=families, unused=tuple(unused_files(workspace)))
