@@ -29,6 +29,7 @@ def parameter_is(
     measure: _Measure | None = None,
     links: list[str] | None = None,
     tolerance: NonNegative = _EXACT,
+    where_given: bool = False,
 ) -> Outcome:
     """A node gets this value of a parameter, wherever it is written.
 
@@ -45,8 +46,14 @@ def parameter_is(
             the distance between the frames of two links, or a limit of the joint that moves the first one.
         links: The links that are measured.
         tolerance: How far a number may be off, in the number's own unit.
+        where_given: Whether a node that does not get the parameter passes, for `carried`.
     """
-    found = _value_of(submission, node, parameter)
+    try:
+        found = _value_of(submission, node, parameter)
+    except MissingElement:
+        if where_given:
+            return passed(f"nothing gives {parameter} to {node}")
+        raise
     if isinstance(found.value, Unknown):
         cause = f"the parameter {parameter} of {node} cannot be determined statically"
         raise NotDecided(f"{cause}: {found.value.reason}", cause)
