@@ -137,7 +137,7 @@ def _outcome(subjects: _Subjects, fact: Fact) -> Outcome:
     if fact.package:
         submission = submission.with_package(fact.package)
     known = {**subjects, "submission": submission, "package": submission.package}
-    return check.function(*(known[name] for name in check.examined), **{**usual, **given})
+    return check.outcome((known[name] for name in check.examined), {**usual, **given})
 
 
 def _rubric_text(head: Head, rows: Sequence[_DraftCriterion]) -> str:
@@ -211,7 +211,8 @@ def _criterion_lines(name: str, row: _DraftCriterion, part: str) -> Iterator[str
     yield assignment("title", printable(row.title))
     yield f"check = {toml_literal(fact.check)}"
     if fact.causes:
-        instead = {"from": [*fact.causes], "check": "launch_found", "with": {"name": fact.arguments["name"]}}
+        launch = fact.arguments.get("launch") or fact.arguments["name"]
+        instead = {"from": [*fact.causes], "check": "launch_found", "with": {"name": launch}}
         yield assignment("carried", instead)
     if len(assignment("with", fact.arguments)) <= _WIDTH:
         if fact.arguments:

@@ -446,7 +446,7 @@ def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[F
 def _launch_facts(name: str, launch: Launch, causes: tuple[str, ...]) -> Iterator[Fact]:
     yield _package_fact("launch_found", name, name=name)
     if nodes := _nodes_that_start(launch):
-        yield _package_fact("launch_starts", name, name=name, nodes=nodes)._replace(causes=causes)
+        yield _package_fact("node_runs", name, launch=name, nodes=nodes)._replace(causes=causes)
     if launch.named("urdf", "rviz", "include"):
         yield _package_fact("launch_finds_files", name, name=name)._replace(causes=causes)
 

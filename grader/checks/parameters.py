@@ -8,6 +8,7 @@ from grader.checks.toml_types import Content, NonNegative, Scalar
 from grader.errors import MissingElement, NotDecided, RubricError
 from grader.names import did_you_mean
 from grader.package.launch.model import ParameterValue
+from grader.package.package import Package
 from grader.python.values import Unknown
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Cylinder, Joint, Sphere
@@ -20,6 +21,7 @@ _EXACT = 1e-6
 
 def parameter_is(
     submission: Submission,
+    package: Package,
     *,
     node: str,
     parameter: str,
@@ -31,7 +33,7 @@ def parameter_is(
     tolerance: NonNegative = _EXACT,
     where_given: bool = False,
 ) -> Outcome:
-    """A node gets this value of a parameter, wherever it is written.
+    """A node gets this value of a parameter, wherever it is written, under the criterion's `args` if it has some.
 
     Files of parameters, values in launch files and arguments of the node count as in ROS 2. Controllers get those of
     the controller manager's files, and those that their spawner is given.
@@ -48,6 +50,7 @@ def parameter_is(
         tolerance: How far a number may be off, in the number's own unit.
         where_given: Whether a node that does not get the parameter passes, for `carried`.
     """
+    del package  # without one, there are no parameters
     try:
         found = _value_of(submission, node, parameter)
     except MissingElement:
@@ -78,7 +81,6 @@ def _value_of(submission: Submission, node: str, parameter: str) -> ParameterVal
     """Return the value that a node gets. Raises MissingElement if it gets none, NotDecided where that is not known."""
     from grader.workspace.workspace import Workspace  # late: few rubrics ask for it
 
-    submission.needed_package()
     workspace = Workspace(submission)
     given = workspace.parameter_owners.get(node, [])
     values = [found.values[parameter] for found in given if parameter in found.values]

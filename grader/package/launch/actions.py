@@ -375,7 +375,7 @@ def _include_file(visitor: ActionVisitor, call: Call, context: Context, when: bo
     path = known_text(source, context, call.at)
     values = tuple((name, value if isinstance(value, str) else None) for name, value in given.items())
     at = visitor.findings.locate(call.at)
-    visitor.findings.passed.append(PassedArguments(path.removeprefix(f"{PREFIX}/"), values, at))
+    visitor.findings.passed.append(PassedArguments(path.removeprefix(f"{PREFIX}/"), values, at, when))
     arguments = {**context.arguments, **given}
     inner = replace(context, path=path, arguments=arguments, when=when, reads=[], given=frozenset(given))
     inner.included_by = (*context.included_by, context.path.removeprefix(f"{PREFIX}/"))
