@@ -99,6 +99,7 @@ def node_runs(
     Args:
         launch: The file's name, such as view.launch.py.
         nodes: The nodes, each as "package/executable", or as one name if both are the same; "a or b" leaves a choice.
+            A script may end in .py or not.
         not: Nodes that it does not start.
         remap: Names in the program of each of `nodes`, and what they are remapped to, by a rule or a namespace.
         arguments: Arguments of each of `nodes`: an option is followed by its value, and a path may be the end of one.
@@ -116,11 +117,11 @@ def node_runs(
     if (remap or arguments) and not nodes:
         raise RubricError(("node_runs looks for remap and arguments in nodes: name one",))
     places = _find_places(package, found, "read", "urdf", "include", built=built)
-    choices = [node.split(" or ") for node in nodes or ()]
+    choices = [_names_in(found, node.split(" or ")) for node in nodes or ()]
     missing = _missing_nodes(found, choices)
     if missing and not _may_start(found, missing):
         return _fail_missing(found, missing, nodes or ())
-    wanted = Wanted(not_, remap, arguments, includes, publishes, subscribes)
+    wanted = Wanted(_names_in(found, not_ or ()), remap, arguments, includes, publishes, subscribes)
     faults = find_faults(submission, found, choices, wanted) if any(wanted) else []
     if wrong := next((it for it in faults if it.is_sure), None):
         return failed(wrong.message, wrong.at, detail=wrong.detail)
@@ -134,6 +135,13 @@ def node_runs(
     _check_decided(found, missing, faults, places)
     started = sorted({node.name for node in found.nodes if node.when})
     return judged(True, f"the launch file starts {', '.join(started)}", tuple(started), tuple(nodes or ()))
+
+
+def _names_in(launch: "Launch", names: Iterable[str]) -> list[str]:
+    """Return names of nodes as a launch file has them: a build may install a script with .py, or without."""
+    known = {node.name for node in launch.nodes}
+    others = {name: name.removesuffix(".py") if name.endswith(".py") else f"{name}.py" for name in names}
+    return [other if other in known and name not in known else name for name, other in others.items()]
 
 
 def _missing_nodes(launch: "Launch", choices: Sequence[Sequence[str]]) -> list[Sequence[str]]:

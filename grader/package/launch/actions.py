@@ -232,6 +232,8 @@ def _declare_argument(visitor: ActionVisitor, call: Call, context: Context, when
     if name not in context.arguments:
         _set_argument(name, default, call, context, when)
     value = context.arguments[name]
+    if isinstance(value, str):
+        visitor.findings.values.append((name, value))
     if choices is not None and when:
         if not isinstance(value, str) or not isinstance(choices, list | tuple):
             raise Undetermined(f"whether {name!r} is one of its choices is not evaluated", call.at)

@@ -215,6 +215,7 @@ class Launch:
     unknown: tuple[LaunchFault, ...] = ()  # what may start more
     doubts: tuple[LaunchFault, ...] = ()  # what may stop the launch
     declared: tuple[str, ...] = ()  # the launch arguments that it and the files that it includes declare
+    values: tuple[tuple[str, str], ...] = ()  # of these, as far as they are known
     passed: tuple[PassedArguments, ...] = ()
     forgotten: tuple[StartedNode, ...] = ()  # created in the file, but not part of its LaunchDescription
     unread: str = ""  # why the file was not read at all: too large, damaged
@@ -244,6 +245,7 @@ class Findings:
     unknown: list[LaunchFault] = field(default_factory=list)
     doubts: list[LaunchFault] = field(default_factory=list)
     declared: list[str] = field(default_factory=list)
+    values: list[tuple[str, str]] = field(default_factory=list)
     passed: list[PassedArguments] = field(default_factory=list)
     sets_parameters: bool = False
     is_silent: bool = False  # while what may never be executed is visited
