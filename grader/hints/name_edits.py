@@ -44,23 +44,28 @@ def name_proposals(submission: Submission, family: Family) -> Iterator[Proposal]
 
 def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Iterator[Proposal]:
     """Yield the edits that give a parameter the value that `parameter_is` asks for, where one is written plainly."""
-    name, choices = wanted["parameter"], wanted.get("one_of", [wanted["value"]] if "value" in wanted else [])
+    name, meant = wanted["parameter"], wanted.get("value")
     try:
         value, at = value_of(submission, wanted["node"], name)
         if "measure" in wanted:
-            choices = [measured(submission, wanted["measure"], wanted.get("links", []))]
+            meant = measured(submission, wanted["measure"], wanted.get("links", []))
     except (MissingElement, NotDecided):
         return
     source, key = _source(submission, at.path), re.escape(name.rpartition(".")[2])
     written = re.compile(rf"(?<![\w-]){key}[\"']?\s*:\s*[\"']?(?P<value>(?<=[\"'])[^\"'\n]+|[^\s\"',#\]}}]+)")
     offset = source.offset(at.line, at.column)
     found = next((it for it in written.finditer(source.text) if it.end() > offset), None)
-    if found is None or _scalar(found["value"]) not in (value, str(value)):
-        return
-    for choice in (it for it in choices if not isinstance(it, list)):
-        new = str(float(choice)) if isinstance(value, float) else str(choice)
-        new = new if found["value"].istitle() or not isinstance(choice, bool) else new.lower()
-        yield Proposal((source.edit(*found.span("value"), new),), f"the value of `{name}`")
+    if found is not None and _scalar(found["value"]) == value and isinstance(meant, str | int | float):
+        edit = source.edit(*found.span("value"), _written_like(found["value"], meant))
+        yield Proposal((edit,), f"the value of `{name}`")
+
+
+def _written_like(old: str, value: Any) -> str:
+    """Return a value as the old text is written: True or true, 2.0 or 2."""
+    if isinstance(value, str | bool):
+        return str(value).lower() if isinstance(value, bool) and old.islower() else str(value)
+    text = f"{value:.12g}"
+    return f"{text}.0" if "." in old and text.lstrip("-").isdigit() else text
 
 
 def _scalar(text: str) -> Any:

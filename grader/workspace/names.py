@@ -33,6 +33,11 @@ class Definition(NamedTuple):
     location: Location
     owner: str = ""
 
+    @property
+    def family(self) -> Family:
+        """The family of its kind."""
+        return _FAMILY_OF[self.kind]
+
 
 class Use(NamedTuple):
     """A name that a file uses, and what the file calls it. Where it is `optional`, only a similar name is wrong."""
@@ -43,6 +48,11 @@ class Use(NamedTuple):
     said: str
     owner: str = ""
     optional: bool = False
+
+    @property
+    def family(self) -> Family:
+        """The family of its kind."""
+        return _FAMILY_OF[self.kind]
 
 
 class Open(NamedTuple):

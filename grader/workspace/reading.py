@@ -1,5 +1,6 @@
 """Read a workspace: what its files define and use, and what does not agree."""
 
+from collections.abc import Iterator
 from functools import lru_cache
 from itertools import chain
 
@@ -11,7 +12,7 @@ from grader.workspace.dependencies import dependency_facts
 from grader.workspace.files import file_facts
 from grader.workspace.frames import frame_facts
 from grader.workspace.moveit import moveit_facts
-from grader.workspace.names import Agreement, agreement
+from grader.workspace.names import Agreement, Fact, agreement
 from grader.workspace.parameters import parameter_facts
 from grader.workspace.programs import program_facts
 from grader.workspace.topics import topic_facts
@@ -26,7 +27,12 @@ _READERS = (
 @lru_cache(maxsize=2)
 def read_agreement(submission: Submission) -> Agreement:
     """Return what does not agree in the packages of a submission."""
-    workspace = Workspace(submission)
-    found = agreement(chain.from_iterable(reader(workspace) for reader in _READERS))
+    found = agreement(read_facts(submission))
     # names_agree needs a package.
-    return found if workspace.packages else found._replace(families=frozenset())
+    return found if submission.packages else found._replace(families=frozenset())
+
+
+def read_facts(submission: Submission) -> Iterator[Fact]:
+    """Yield what the files of a submission define and use."""
+    workspace = Workspace(submission)
+    yield from chain.from_iterable(reader(workspace) for reader in _READERS)
