@@ -30,6 +30,7 @@ from grader.text import enumerated
 
 if TYPE_CHECKING:
     from grader.checks.installed_robot import InstalledRobot
+    from grader.package.entry_points import EntryFault
     from grader.package.launch.model import Launch, NamedFile, Purpose
 
 
@@ -255,16 +256,21 @@ def _faulty_program(package: Package, launch: "Launch", choices: Sequence[Sequen
         faults = [_fault_of_program(package.find(node.package), node.executable) for node in started.values()]
         found = [fault for fault in faults if fault is not None]
         if found and len(found) == len(faults):
-            (reason, at), name = found[0], next(iter(started))
+            fault, name = found[0], next(iter(started))
             message = f"the entry point of {name.rpartition('/')[2]!r} names no function"
             return MissingElement(
-                "entry point", name, message=message, detail=f": {reason}", location=at, costs_once=True
+                "entry point",
+                name,
+                message=message,
+                detail=f": {fault.message}",
+                location=fault.location,
+                costs_once=True,
             )
     return None
 
 
-def _fault_of_program(owner: Package | None, name: str) -> tuple[str, Location] | None:
-    """Return why a program of a submitted package does not start, and where setup.py names it."""
+def _fault_of_program(owner: Package | None, name: str) -> "EntryFault | None":
+    """Return why a program of a submitted package does not start."""
     if owner is None:
         return None
     from grader.package.entry_points import entry_fault  # late: most launch files start programs of ROS 2 only

@@ -52,7 +52,7 @@ def parameter_is(
     """
     del package  # without one, there are no parameters
     try:
-        found = _value_of(submission, node, parameter)
+        found = value_of(submission, node, parameter)
     except MissingElement:
         if where_given:
             return passed(f"nothing gives {parameter} to {node}")
@@ -61,7 +61,7 @@ def parameter_is(
         cause = f"the parameter {parameter} of {node} cannot be determined statically"
         raise NotDecided(f"{cause}: {found.value.reason}", cause)
     if measure is not None:
-        value = _measured(submission, measure, links or [])
+        value = measured(submission, measure, links or [])
     actual, wanted, fits = found.value, "", True
     if value is not None:
         wanted, fits = f"should be {_text(value)}", _equal(actual, value, tolerance)
@@ -77,7 +77,7 @@ def parameter_is(
     return passed(message) if fits else failed(f"{message}; it {wanted}", found.location)
 
 
-def _value_of(submission: Submission, node: str, parameter: str) -> ParameterValue:
+def value_of(submission: Submission, node: str, parameter: str) -> ParameterValue:
     """Return the value that a node gets. Raises MissingElement if it gets none, NotDecided where that is not known."""
     from grader.workspace.workspace import Workspace  # late: few rubrics ask for it
 
@@ -126,7 +126,7 @@ def _text(value: Any) -> str:
     return quoted(value) if isinstance(value, str) else f"{value:.12g}"
 
 
-def _measured(submission: Submission, measure: _Measure, links: list[str]) -> float:
+def measured(submission: Submission, measure: _Measure, links: list[str]) -> float:
     """Return a measure of the robot, in metres or radians. Raises MissingElement for a link that is not there."""
     robot = submission.needed_urdf().robot
     if robot is None:

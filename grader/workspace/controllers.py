@@ -11,7 +11,7 @@ from grader.package.nodes import Endpoint
 from grader.package.yaml_nodes import YamlFault, YamlNode
 from grader.source import Location
 from grader.workspace.known import known
-from grader.workspace.names import Definition, Fact, Mismatch, Open, Use, place_text
+from grader.workspace.names import Definition, Fact, Mismatch, Open, Use, corrections, place_text
 from grader.workspace.workspace import Workspace
 from grader.workspace.yaml_values import sections_in
 
@@ -96,7 +96,8 @@ def _type_facts(workspace: Workspace, controller: _Controller) -> Iterator[Fact]
     if is_known or similar is not None:
         guess = f"; did you mean {similar!r}?" if similar is not None else ""
         message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
-        yield Mismatch("controllers", message, controller.location, is_sure=is_known)
+        either = corrections(written, controller.location, similar) if similar is not None else ()
+        yield Mismatch("controllers", message, controller.location, is_sure=is_known, corrections=either)
 
 
 def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapping[str, YamlNode]) -> Iterator[Fact]:
@@ -106,7 +107,9 @@ def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapp
     if section is None:
         if needed and "**" not in sections and not controller.has_file:
             message = f"the controller {controller.name!r} has no parameters: there is no key {controller.name}"
-            yield Mismatch("controllers", f"{message} with ros__parameters", controller.location)
+            meant, at = closest(controller.name, sections), controller.location
+            either = corrections(meant, sections[meant].location, controller.name, at) if meant is not None else ()
+            yield Mismatch("controllers", f"{message} with ros__parameters", at, corrections=either)
         return
     interfaces = workspace.command_interfaces
     for key, wanted in needed.items():

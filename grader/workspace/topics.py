@@ -9,7 +9,7 @@ from grader.package.nodes import Endpoint
 from grader.source import Location
 from grader.workspace.bridges import BRIDGE, bridge_rows
 from grader.workspace.controllers import controller_endpoints
-from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Use, place_text
+from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Use, corrections, place_text
 from grader.workspace.publishers import may_be_published
 from grader.workspace.workspace import Workspace
 
@@ -133,7 +133,8 @@ def _unconnected(workspace: Workspace, opened: list[_Opened]) -> Iterator[Fact]:
             if any(own.node.topic(rule[1]) == meant for rule in own.node.remaps or ()):
                 continue  # a remapping of another name, which is said of it
             message = f"nothing publishes {own.topic}; did you mean {meant} ({place_text(at)})?"
-            yield Mismatch("topics", message, own.endpoint.location, at)
+            either = corrections(own.topic, own.endpoint.location, meant, at)
+            yield Mismatch("topics", message, own.endpoint.location, at, corrections=either)
         else:
             yield Use("topic", own.topic, own.endpoint.location, "create_subscription")
 
