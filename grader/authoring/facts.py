@@ -254,7 +254,7 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
     numbers = {"moving": sum(joint.mimic is None for joint in moving), **{kind: kinds[kind] for kind in _COUNTED}}
     yield _robot_fact("counts", **numbers)
     inner = {joint.parent for joint in joints}
-    chains = {name: robot.chain(name) or () for name in robot.main_tree if name not in inner}
+    chains = {name: robot.chain(name) for name in robot.main_tree if name not in inner}
     tips = [name for name, chain in chains.items() if any(joint.type != "fixed" for joint in chain)]
     if tips:
         names = [repr(tip) for tip in tips[:_MAX_TIPS]]

@@ -165,7 +165,7 @@ def _measures(robot: Configuration, links: list[str]) -> Iterator[tuple[str, Cal
                 yield "length", lambda: length
             case Sphere(radius=radius):
                 yield "radius", lambda: radius
-    joint: Joint | None = next((it for it in reversed(robot.chain(links[0]) or ()) if it.type != "fixed"), None)
+    joint: Joint | None = next((it for it in reversed(robot.chain(links[0])) if it.type != "fixed"), None)
     if joint is not None and joint.limit is not None:
         limit = joint.limit
         yield from (("lower", lambda: limit.lower), ("upper", lambda: limit.upper))
