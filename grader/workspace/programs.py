@@ -1,6 +1,6 @@
 """Programs and nodes: what launch files start, entry points, and the nodes that a lifecycle manager looks after."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from grader.names import closest
 from grader.package.entry_points import entry_fault, entry_points
@@ -28,6 +28,9 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
             yield Compared("programs")
         if owner is not None and owner.has_program(node.package, node.executable) is False:
             yield _no_program(owner, node.executable, node.location)
+        names = known()["programs"].get(node.package, [node.executable]) if owner is None else [node.executable]
+        if node.executable not in names:
+            yield _unknown_program(node.package, node.executable, names, node.location)
     yield from _lifecycle(workspace)
 
 
@@ -44,10 +47,15 @@ def _no_program(package: Package, name: str, at: Location) -> Mismatch:
         message = f"a build installs {name!r} as {elsewhere}, but ros2 run looks in lib/{package.name}"
         return Mismatch("programs", message, at)
     names = sorted({*(path.rpartition("/")[2] for path in files if path.startswith(f"lib/{package.name}/")), *entries})
+    start = [Location(setup.source.path, 1, 1)] if setup is not None else []
+    return _unknown_program(package.name, name, names, at, *start)
+
+
+def _unknown_program(package: str, name: str, names: Sequence[str], at: Location, *start: Location) -> Mismatch:
+    """Return that a package has only programs of other names."""
     guess = closest(name, names)
     there = f"; did you mean {guess!r}?" if guess else f"; it has {', '.join(names) or 'none'}"
-    message = f"the package {package.name!r} has no program {name!r}{there}"
-    start = [Location(setup.source.path, 1, 1)] if setup is not None else []
+    message = f"the package {package!r} has no program {name!r}{there}"
     return Mismatch("programs", message, at, corrections=corrections(name, at, guess, *start) if guess else ())
 
 

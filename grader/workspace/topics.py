@@ -144,14 +144,16 @@ def _unheard(workspace: Workspace, opened: list[_Opened]) -> Iterator[Mismatch]:
     subscriptions = [it for it in opened if it.endpoint.kind == "subscription"]
     publishers = [it for it in opened if it.endpoint.kind == "publisher" and not it.of_controller]
     heard, spoken = {it.topic for it in subscriptions}, {it.topic for it in publishers}
+    unheard = [it for it in publishers if it.topic not in heard]
     for waiting in [it for it in subscriptions if it.of_controller and it.topic not in spoken]:
-        for own in [it for it in publishers if it.launch == waiting.launch and it.topic not in heard]:
-            is_meant = own.topic.rpartition("/")[2] == waiting.topic.rpartition("/")[2]
-            if is_meant and own.endpoint.type == waiting.endpoint.type:
+        own = [it for it in unheard if it.launch == waiting.launch and it.endpoint.type == waiting.endpoint.type]
+        for publisher in own:
+            is_sure = publisher.is_started and waiting.is_started and _is_known(workspace, publisher.launch)
+            is_same = publisher.topic.rpartition("/")[2] == waiting.topic.rpartition("/")[2]
+            if is_same or (is_sure and len(own) == 1):
                 place = place_text(waiting.endpoint.location)
-                message = f"nothing subscribes to {own.topic}; did you mean {waiting.topic} ({place})?"
-                is_sure = own.is_started and waiting.is_started and _is_known(workspace, own.launch)
-                yield Mismatch("topics", message, own.endpoint.location, waiting.endpoint.location, is_sure)
+                message = f"nothing subscribes to {publisher.topic}; did you mean {waiting.topic} ({place})?"
+                yield Mismatch("topics", message, publisher.endpoint.location, waiting.endpoint.location, is_sure)
 
 
 def _is_known(workspace: Workspace, launch: int) -> bool:
