@@ -1,14 +1,20 @@
-"""Grade robotics lab submissions by what the robot does. The Python API is small: all other names are private."""
+"""Grade robotics lab submissions by what the robot does.
+
+The names below are the Python API, which docs/python.md describes; all others are private. Lengths are in metres,
+angles in radians about fixed axes x, y, z (REP 103), and each pose is that of a named frame in another one.
+"""
 
 from importlib import import_module
 
 __version__ = "1.0.0"
 
 _MODULES = {
-    "Configuration": "robot.kinematics", "GraderError": "errors", "MissingElement": "errors",
-    "Reading": "robot.reader", "Report": "grading.report", "Result": "grading.report", "Rubric": "grading.rubric",
-    "RubricError": "errors", "grade": "api", "load_rubric": "grading.rubric", "read_urdf": "robot.reader",
+    "Configuration": "robot.kinematics", "GraderError": "errors", "Joint": "robot.model", "Link": "robot.model",
+    "MissingElement": "errors", "Reading": "robot.reader", "Report": "grading.report", "Result": "grading.report",
+    "Robot": "robot.model", "Rubric": "grading.rubric", "RubricError": "errors", "Transform": "robot.transforms",
+    "grade": "api", "load_rubric": "grading.rubric", "read_urdf": "robot.reader",
 }  # fmt: skip
+__all__ = list(_MODULES)
 
 
 def __getattr__(name: str) -> object:
@@ -19,4 +25,4 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted({"__doc__", "__version__", *_MODULES})
+    return sorted({"__all__", "__doc__", "__version__", *_MODULES})

@@ -5,6 +5,7 @@ import contextlib
 import io
 import json
 import os
+import pydoc
 import re
 import shutil
 import subprocess
@@ -19,6 +20,7 @@ from tests.command_line import ROOT, run
 
 PAGE = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", PAGE, re.DOTALL)
+COURSE_TESTS = [code for code in re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL) if "import pytest" in code]
 SAMPLES = ROOT / "submissions/lab6"
 
 
@@ -29,6 +31,7 @@ def test_the_stub_and_the_page_name_what_there_is() -> None:
     typed = {alias.name for node in stub.body if isinstance(node, ast.ImportFrom) for alias in node.names}
     assert typed == public == {name for name in public if re.search(rf"`{name}\b", PAGE)} | {"Reading", "Rubric"}
     assert public <= set(dir(grader))
+    assert public == set(grader.__all__)
     with pytest.raises(AttributeError, match="has no attribute 'grad'"):
         grader.grad  # type: ignore[attr-defined]  # noqa: B018
 
@@ -68,6 +71,51 @@ def test_what_cannot_be_graded_raises_one_error(tmp_path: Path) -> None:
         grader.grade(tmp_path / "none.urdf")
     with pytest.raises(grader.RubricError):
         grader.grade(SAMPLES / "reference", tmp_path / "lab.toml")
+
+
+@pytest.mark.parametrize(
+    ("number", "variable", "sample", "failed"),
+    [
+        (0, "URDF", "reference", []),
+        (0, "URDF", "lidar-offset-in-visual", ["test_lidar"]),
+        (1, "SUBMISSION", "reference", []),
+        (1, "SUBMISSION", "lidar-offset-in-visual", ["test_criterion[lidar-frame]"]),
+    ],
+)
+def test_the_tests_of_a_course_run(number: int, variable: str, sample: str, failed: list[str], tmp_path: Path) -> None:
+    """The files to copy pass on the reference, and fail where a robot is wrong."""
+    (tmp_path / "test_lab.py").write_text(COURSE_TESTS[number], encoding="utf-8")
+    (urdf,) = (SAMPLES / sample).rglob("my_robot.urdf")
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_lab.py"]
+    environment = {**os.environ, variable: str(urdf)}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, check=False, capture_output=True, text=True)
+    assert re.findall(r"^FAILED test_lab.py::(\S+)", done.stdout, re.MULTILINE) == failed, done.stdout + done.stderr
+    assert done.returncode == (1 if failed else 0)
+
+
+def test_a_urdf_is_read_from_a_path(tmp_path: Path) -> None:
+    """As from its bytes, under its own name in locations; a file that is not there is an error."""
+    path = tmp_path / "my.urdf"
+    path.write_text("<robot", encoding="utf-8")
+    for given in (path, str(path)):
+        read = grader.read_urdf(given)
+        assert (read.verdict, read.problems[0].location.path) == ("rejected", str(path))
+    for absent in (tmp_path / "absent", "absent.urdf"):
+        with pytest.raises(grader.GraderError, match=r"cannot read .*absent"):
+            grader.read_urdf(absent)
+
+
+def test_help_and_star_import_give_the_public_names() -> None:
+    """`python -m pydoc grader` lists the functions and types, and `from grader import *` gives them."""
+    names: dict[str, object] = {}
+    exec("from grader import *", names)
+    assert set(grader.__all__) == names.keys() - {"__builtins__"}
+    shown = pydoc.plain(pydoc.render_doc(grader))
+    documented = {*re.findall(r"^    class (\w+)\(", shown, re.M), *re.findall(r"^    (\w+)\(.*?\) ->", shown, re.M)}
+    assert documented == set(grader.__all__)
+    for name in ("Configuration", "Joint", "Link", "Robot", "Transform"):
+        members = re.findall(r"^ \|  (_\w+)", pydoc.plain(pydoc.render_doc(getattr(grader, name))), re.MULTILINE)
+        assert [it for it in members if not it.startswith("__")] == [], name
 
 
 @pytest.mark.parametrize("text", ["", "<robot", "\ud800", '<robot name="a"><link name="b"/></robot>'])

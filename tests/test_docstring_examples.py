@@ -9,7 +9,8 @@ import pytest
 from tests.test_architecture import MODULES
 
 CENTRAL = {
-    "Configuration", "Outcome", "Package", "Proposal", "Reading", "Report", "Robot", "Rubric", "StudentGrade", "Submission",
+    "Configuration", "Joint", "Link", "Outcome", "Package", "Proposal", "Reading", "Report", "Robot", "Rubric",
+    "StudentGrade", "Submission", "Transform",
 }  # fmt: skip
 TEXTS = {name: path.read_text(encoding="utf-8") for name, path in MODULES.items()}
 

@@ -8,6 +8,7 @@ from grader.checks.toml_types import Content, NonNegative, Scalar
 from grader.errors import MissingElement, NotDecided, RubricError
 from grader.names import did_you_mean
 from grader.package.launch.model import ParameterValue
+from grader.package.package import Package
 from grader.python.values import Unknown
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Cylinder, Joint, Sphere
@@ -20,6 +21,7 @@ _EXACT = 1e-6
 
 def parameter_is(
     submission: Submission,
+    package: Package,
     *,
     node: str,
     parameter: str,
@@ -29,8 +31,9 @@ def parameter_is(
     measure: _Measure | None = None,
     links: list[str] | None = None,
     tolerance: NonNegative = _EXACT,
+    where_given: bool = False,
 ) -> Outcome:
-    """A node gets this value of a parameter, wherever it is written.
+    """A node gets this value of a parameter, wherever it is written, under the criterion's `args` if it has some.
 
     Files of parameters, values in launch files and arguments of the node count as in ROS 2. Controllers get those of
     the controller manager's files, and those that their spawner is given.
@@ -45,8 +48,15 @@ def parameter_is(
             the distance between the frames of two links, or a limit of the joint that moves the first one.
         links: The links that are measured.
         tolerance: How far a number may be off, in the number's own unit.
+        where_given: Whether a node that does not get the parameter passes, for `carried`.
     """
-    found = value_of(submission, node, parameter)
+    del package  # without one, there are no parameters
+    try:
+        found = value_of(submission, node, parameter)
+    except MissingElement:
+        if where_given:
+            return passed(f"nothing gives {parameter} to {node}")
+        raise
     if isinstance(found.value, Unknown):
         cause = f"the parameter {parameter} of {node} cannot be determined statically"
         raise NotDecided(f"{cause}: {found.value.reason}", cause)
@@ -71,7 +81,6 @@ def value_of(submission: Submission, node: str, parameter: str) -> ParameterValu
     """Return the value that a node gets. Raises MissingElement if it gets none, NotDecided where that is not known."""
     from grader.workspace.workspace import Workspace  # late: few rubrics ask for it
 
-    submission.needed_package()
     workspace = Workspace(submission)
     given = workspace.parameter_owners.get(node, [])
     values = [found.values[parameter] for found in given if parameter in found.values]
@@ -156,7 +165,7 @@ def _measures(robot: Configuration, links: list[str]) -> Iterator[tuple[str, Cal
                 yield "length", lambda: length
             case Sphere(radius=radius):
                 yield "radius", lambda: radius
-    joint: Joint | None = next((it for it in reversed(robot.chain(links[0]) or ()) if it.type != "fixed"), None)
+    joint: Joint | None = next((it for it in reversed(robot.chain(links[0])) if it.type != "fixed"), None)
     if joint is not None and joint.limit is not None:
         limit = joint.limit
         yield from (("lower", lambda: limit.lower), ("upper", lambda: limit.upper))

@@ -187,7 +187,7 @@ def _joint_above_root(robot: Configuration, link: str, links: Collection[str] | 
     if own is None or not links:
         return own
     robot.root_of(link)  # raises for a loop of joints
-    wrong = (joint for joint in reversed(robot.chain(link) or ()) if not _is_of_frame(robot, joint, links))
+    wrong = (joint for joint in reversed(robot.chain(link)) if not _is_of_frame(robot, joint, links))
     return next(wrong, None)
 
 

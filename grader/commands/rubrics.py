@@ -2,14 +2,13 @@
 
 import os
 import re
-from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.commands.invocation import ExitCode
 from grader.commands.writing import Warn, make_folder, save_bytes
-from grader.errors import GraderError, MissingElement, NotDecided, RubricError
+from grader.errors import GraderError, RubricError
 from grader.text import counted, format_points, printable, printable_path, shell_quoted
 
 if TYPE_CHECKING:
@@ -97,40 +96,25 @@ def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
 
     Raises RubricError if the reference loses points.
     """
-    from grader.grading.grade import grade
+    from grader.authoring.rubric_check import likely_mistakes, reference_failures
     from grader.grading.model_answers import load_with_answers, missing_answers
 
     rubric = load_with_answers(name)
     if missing_answers(rubric) and not rubric.is_shipped:
         warn(missing_answers(rubric))
+    for message in likely_mistakes(rubric):
+        warn(printable(f"warning: {message}"))
     found = f"{rubric.id}: {_size(rubric)}, no mistakes found"
     if rubric.solution is None:
         return f"{found}\n", ExitCode.PASSED
-    unearned = grade(rubric, rubric.solution.submission).unearned
-    lines = [f"{result.criterion.id} fails on the reference: {result.outcome.message}" for result in unearned]
-    unresolved = [*_unresolved_lines(rubric)]
-    if unresolved or any(result.outcome.status != "pending" for result in unearned):
-        raise RubricError(tuple(map(printable, lines + unresolved)))
-    if not lines:
+    failures = reference_failures(rubric)
+    if failures.is_failed:
+        raise RubricError(tuple(map(printable, failures.lines)))
+    if not failures.lines:
         return f"{found}; its reference gets full marks\n", ExitCode.PASSED
-    criteria = counted(len(lines), "criterion", "criteria")
+    criteria = counted(failures.undecided, "criterion", "criteria")
     found += f"; its reference does not get full marks: {criteria} cannot be decided on it"
-    return "".join(f"{printable(line)}\n" for line in (found, *lines)), ExitCode.FAILED
-
-
-def _unresolved_lines(rubric: "Rubric") -> Iterator[str]:
-    """Yield a line for each criterion that names a link by its place, where the reference has none or several."""
-    from grader.grading.subjects import check_selectors
-
-    assert rubric.solution is not None
-    for criterion in rubric.criteria:
-        if "robot" in criterion.check.examined:
-            try:
-                check_selectors(rubric.solution.robot, criterion)
-            except (MissingElement, NotDecided) as error:
-                yield (
-                    f"{criterion.id} names a link by its place in the tree, and the reference has no such link: {error}"
-                )
+    return "".join(f"{printable(line)}\n" for line in (found, *failures.lines)), ExitCode.FAILED
 
 
 def bundle(platform: str, output: Path, name: str) -> str:

@@ -178,7 +178,7 @@ class _Grading:
             subjects = self._subjects.under(criterion.args)
             examined = subjects.of(check, criterion)
             arguments = subjects.named(check, arguments) if criterion.has_selectors else arguments
-            outcome = check.function(*examined, **arguments)
+            outcome = check.outcome(examined, arguments)
             fault = fault_of(outcome) if check.distribution else ""
             conditions = [f"{name}:={value}" for name, value in criterion.args.items()]
             if criterion.at and not fault:
@@ -189,7 +189,8 @@ class _Grading:
         except (MissingElement, MachineError):
             raise
         except RubricError as error:
-            raise RubricError(tuple(f"the criterion {criterion.id}: {line}" for line in error.complaints)) from None
+            place = self._rubric.place_of(("criterion", criterion.position, "with"))
+            raise RubricError(tuple(f"{place}: {criterion.id}: {line}" for line in error.complaints)) from None
         except (UnknownShape, NotDecided) as reason:
             cause = reason.cause if isinstance(reason, NotDecided) else "mesh files are not opened"
             return Result(criterion, pending(f"{reason}; needs manual grading", cause))

@@ -28,7 +28,8 @@ def load_with_answers(name: str, file: Path | None = None) -> Rubric:
         return rubric
     own = _answers_file(rubric)
     if not own.resolve().is_relative_to(path.parent.resolve()):
-        raise RubricError((f"{printable_path(own)}: the answers file must be in the rubric's folder",))
+        message = f"the answers file {printable_path(own)} must be in the rubric's folder"
+        raise RubricError((f"{rubric.place_of(('answers',))}: {message}",))
     return _read_answers(rubric, own)
 
 

@@ -12,6 +12,7 @@ from grader.grading.rubric import Rubric
 from grader.problems import Problem
 from grader.source import Certainty, Edits, Location
 from grader.submission.submission import Submission
+from grader.text import printable
 
 if TYPE_CHECKING:
     from grader.documents.evidence import EvidenceFile
@@ -59,6 +60,10 @@ class Result(NamedTuple):
     carried: str = ""  # the criterion whose mistake alone makes this one fail, so that its points are given
     hint: Hint | None = None  # criteria that one edit makes pass have the same
     comment: ManualComment | None = None  # of a grader, without points
+
+    def __repr__(self) -> str:
+        """Return the criterion, the status and the points, which is what one wants to see of a list of results."""
+        return f"<Result {self.criterion.id}: {self.outcome.status}, {self.points}/{self.criterion.points}>"
 
     @property
     def points(self) -> Decimal:
@@ -127,8 +132,10 @@ class Report(NamedTuple):
     >>> from grader.grading.rubric import load_rubric
     >>> from grader.submission.opening import read_submission
     >>> report = grade(load_rubric("lab6"), read_submission(b'<robot name="r"/>', identity="ash", path="r.urdf"))
-    >>> report.score, report.max_score
-    (Decimal('0'), Decimal('70'))
+    >>> report
+    <Report ash: lab6, 0/70, 0 points need manual grading>
+    >>> report.score, report.results[0]
+    (Decimal('0'), <Result urdf-loads: failed, 0/3>)
     >>> report.results[0].outcome.message
     'the robot has no <link>; ROS 2 rejects the file'
     """
@@ -148,6 +155,11 @@ class Report(NamedTuple):
     grade: Grade | None = None  # in a class, where a person or the late penalty changes the score
     student: str = ""  # the name, in a class
     class_page: str = ""  # its address as seen from the student's page, if there is one
+
+    def __repr__(self) -> str:
+        """Return the submission, the rubric and the points."""
+        points = f"{self.score}/{self.max_score}, {self.pending} points need manual grading"
+        return f"<Report {printable(self.submission.id)}: {self.rubric.id}, {points}>"
 
     @property
     def all_notes(self) -> tuple[str, ...]:

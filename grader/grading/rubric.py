@@ -13,7 +13,7 @@ from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped, sha256_of, shipped_folder
 from grader.grading.criterion import Adjustment, Carried, Criterion, Evidence, Ignored, Late, Part
 from grader.grading.hint_levels import HintLevel
-from grader.grading.toml_file import TomlRow, complain_of, key_lines, read_toml
+from grader.grading.toml_file import TomlPath, TomlRow, complain_of, key_lines, line_of, read_toml
 from grader.grading.validation import BoundCarried, BoundCheck, Validation
 from grader.names import did_you_mean
 from grader.robot.kinematics import Configuration
@@ -31,15 +31,16 @@ _LIST = "(`grader rubric list` lists the rubrics that come with the grader)"
 class ReferenceSolution:
     """A rubric's own solution; no more is read than is needed. Properties raise InputError where it cannot be read."""
 
-    def __init__(self, path: Path, lab: Lab, missing: Callable[[], str]) -> None:
-        self._path, self._lab, self._missing = path, lab, missing
+    def __init__(self, path: Path, lab: Lab, error: Callable[[str], InputError]) -> None:
+        """`error` makes one of what is wrong with the reference, with the line that names it."""
+        self._path, self._lab, self._error = path, lab, error
         self._others: dict[tuple[tuple[str, str], ...], ReferenceSolution] = {}
 
     @cached_property
     def submission(self) -> Submission:
         """The solution as a submission."""
         if not self._path.exists():
-            raise InputError(self._missing())
+            raise self._error("does not exist")
         return open_submission(str(self._path), self._lab)
 
     @cached_property
@@ -53,20 +54,20 @@ class ReferenceSolution:
         try:
             return self.submission.needed_urdf()
         except LookupError as error:
-            raise InputError(f"the reference {self._path} cannot be compared with: {error}") from None
+            raise self._error(f"cannot be compared with: {error}") from None
 
     @cached_property
     def robot(self) -> Configuration:
         """Its robot, with the joints at 0."""
         if self.reading.robot is None:
-            raise InputError(f"the reference {self._path} cannot be compared with: it has no robot")
+            raise self._error("cannot be compared with: it has no robot")
         return Configuration(self.reading.robot)
 
     def under(self, arguments: Mapping[str, str]) -> "ReferenceSolution":
         """Return the solution under launch arguments, which is read once."""
         key = tuple(sorted(arguments.items()))
         if key not in self._others:
-            self._others[key] = ReferenceSolution(self._path, self._lab, self._missing)
+            self._others[key] = ReferenceSolution(self._path, self._lab, self._error)
             self._others[key].submission = self.submission.under(arguments)
         return self._others[key]
 
@@ -149,6 +150,10 @@ class Rubric:
         """The command that shows its parts and criteria."""
         return f"grader rubric show {self.id if self.is_shipped else shell_quoted(self.path)}"
 
+    def place_of(self, path: TomlPath) -> str:
+        """Return the file and the line of a key, or of the innermost table around it: my_lab.toml:12."""
+        return _place_in(self.data, self.path, path)
+
     def part(self, name: str) -> Part:
         """Return the part with this id; raise InputError, which lists the parts."""
         for part in self.parts:
@@ -157,6 +162,10 @@ class Rubric:
         known = [part.id for part in self.parts]
         guess = did_you_mean(name, known) or f"; it has: {', '.join(known)}"
         raise InputError(f"the rubric {self.id} has no part {name!r}{guess} (see `{self.shown_by}`)")
+
+
+def _place_in(data: bytes, file: Path, path: TomlPath) -> str:
+    return f"{printable_path(file)}:{line_of(key_lines(read_toml(data, file)[0]), path)}"
 
 
 @cache
@@ -243,14 +252,16 @@ def _reference_solution(rubric: TomlRow, path: Path, data: bytes) -> ReferenceSo
     place, package = path.parent / rubric["reference"], rubric.get("package", "")
     lab = Lab(rubric.get("urdf", _URDF), package, rubric.get("folders", ()), packages=rubric.get("packages", ()))
 
-    def missing() -> str:
-        line, name = key_lines(data.decode())["reference",], rubric["id"]
-        text = f"{printable_path(path)}:{line}: the reference {printable_path(place)} does not exist"
-        if name in shipped_rubrics():
+    def error(what: str) -> InputError:
+        text, name = (
+            f"{_place_in(data, path, ('reference',))}: the reference {printable_path(place)} {what}",
+            rubric["id"],
+        )
+        if name in shipped_rubrics() and not place.exists():
             text += f" (`grader rubric copy {name} FOLDER` copies a rubric with its reference)"
-        return text
+        return InputError(text)
 
-    return ReferenceSolution(place, lab, missing)
+    return ReferenceSolution(place, lab, error)
 
 
 def _make_criterion(

@@ -81,9 +81,8 @@ class Subjects:
     def pose_text(self, at: Mapping[str, float]) -> str:
         """Return the positions of joints that are there: 'joint_2' at 40 degrees and 'slide' at 0.1 m."""
         assert self.robot is not None
-        joints = ((_find_joint(self.robot, name), value) for name, value in at.items())
-        units = ((joint, value, "m" if joint.type in _SLIDING else "degrees") for joint, value in joints)
-        return enumerated([f"{quoted(joint.name)} at {point((value,))} {unit}" for joint, value, unit in units])
+        found = joints_at(self.robot, at)
+        return enumerated([f"{quoted(joint.name)} at {point((value,))} {unit}" for joint, value, unit in found])
 
     def named(self, check: Check, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
         """Return the arguments of a check, which have selectors, with the names of the links that they mean.
@@ -118,6 +117,15 @@ def check_selectors(robot: Configuration, criterion: Criterion) -> None:
     """Raise MissingElement or NotDecided if a criterion names a link by a place that no link has, or several have."""
     carried = [dict(one.arguments) for one in criterion.carried]
     _named_links([dict(criterion.arguments), *carried, [*criterion.at]], robot)
+
+
+def joints_at(robot: Configuration, at: Mapping[str, float]) -> list[tuple[Joint, float, str]]:
+    """Return the joints that a criterion puts at positions, each with the position and its unit, m or degrees.
+
+    Raises MissingElement or NotDecided for one that is not there.
+    """
+    joints = [(_find_joint(robot, name), value) for name, value in at.items()]
+    return [(joint, value, "m" if joint.type in _SLIDING else "degrees") for joint, value in joints]
 
 
 def _find_joint(robot: Configuration, name: str) -> Joint:

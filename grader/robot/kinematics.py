@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import takewhile
 from math import isfinite, nan
-from typing import NamedTuple
+from typing import NamedTuple, overload
 
 from grader.errors import MissingElement
 from grader.robot.joint_reader import MOVING_TYPES
@@ -217,16 +217,14 @@ class Configuration:
     positions: Mapping[str, float] = field(default_factory=dict)  # radians or metres; the other joints are at 0
     is_guarded: bool = field(default=False, kw_only=True)  # reading what is open in `robot` raises NotDecided
     _relative: dict[tuple[str, str | None], Transform] = field(default_factory=dict, init=False)
-    _shared: _Views | None = field(default=None, kw_only=True)  # of a configuration that differs in positions only
 
     def __post_init__(self) -> None:
-        if self._shared is None:
-            for name, position in self.positions.items():
-                _check_position(self.known.joint(name), position)
+        for name, position in self.positions.items():
+            _check_position(self.known.joint(name), position)
 
     @cached_property
     def _views(self) -> _Views:
-        return self._shared or _views_of(self.known, is_guarded=self.is_guarded)
+        return _views_of(self.known, is_guarded=self.is_guarded)
 
     @cached_property
     def _frames(self) -> _Frames:
@@ -322,6 +320,12 @@ class Configuration:
             raise _undefined_pose(found, self.robot)
         return direction
 
+    @overload
+    def chain(self, link: str) -> tuple[Joint, ...]: ...
+
+    @overload
+    def chain(self, link: str, *, above: str | None) -> tuple[Joint, ...] | None: ...
+
     def chain(self, link: str, *, above: str | None = None) -> tuple[Joint, ...] | None:
         """Return the joints that lead to a link, top down, from its root or from `above`; None if that is not above it.
 
@@ -347,7 +351,7 @@ class Configuration:
         below = self.chain(other, above=one)
         if below is not None:
             return below
-        up, down = self.chain(one) or (), self.chain(other) or ()
+        up, down = self.chain(one), self.chain(other)
         if self.root_of(one) != self.root_of(other):
             self.pose(other, relative_to=one)
         shared = sum(1 for _ in takewhile(lambda pair: pair[0] is pair[1], zip(up, down, strict=False)))
@@ -358,7 +362,7 @@ class Configuration:
 
         Raises MissingElement where nothing above it moves, NotDecided where the type of a joint above it is not known.
         """
-        path = self.chain(link) or ()
+        path = self.chain(link)
         types = {joint.type for joint in path} - {"fixed"}
         if not types:
             self.known.check_complete()
@@ -377,7 +381,10 @@ class Configuration:
 
     def at(self, positions: Mapping[str, float]) -> "Configuration":
         """Return the same robot with its joints at other positions, which are not validated."""
-        return Configuration(self.known, positions, is_guarded=self.is_guarded, _shared=self._views)
+        posed = Configuration(self.known, is_guarded=self.is_guarded)
+        object.__setattr__(posed, "positions", positions)
+        object.__setattr__(posed, "_views", self._views)  # which positions do not change
+        return posed
 
     def displacement(self, link: str, joint: Joint, angle: float, *, relative_to: str) -> Transform:
         """Return the motion of points on a link when a turning or sliding joint moves by `angle` (rad, m) from here.

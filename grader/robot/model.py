@@ -127,7 +127,11 @@ class Inertial:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A rigid body and its frame."""
+    """A rigid body, whose frame all of its shapes and its centre of mass are placed in.
+
+    >>> Link("lidar", visuals=(Visual(Cylinder(0.1, 0.05), Origin((0.0, 0.0, 0.025))),)).visuals[0].geometry
+    Cylinder(radius=0.1, length=0.05)
+    """
 
     name: str
     visuals: tuple[Visual, ...] = ()
@@ -199,8 +203,13 @@ class Calibration:
 class Joint:
     """A joint between two links; its frame is the child link's frame.
 
+    `origin` places that frame in the parent's, with the joint at 0; `axis` is a direction in the child's frame.
     `type` is the file's text, so a misspelt one can be quoted. `origin` and `axis` are None if they are given but
     cannot be read. `parent` and `child` are empty if the file does not name them.
+
+    >>> wheel = Joint("wheel_joint", "continuous", "base_link", "wheel", Origin((0.0, 0.2, 0.0)), axis=(0.0, 1.0, 0.0))
+    >>> wheel.origin.xyz, wheel.axis
+    ((0.0, 0.2, 0.0), (0.0, 1.0, 0.0))
     """
 
     name: str

@@ -1,11 +1,14 @@
 """Read a URDF as ROS 2 (Jazzy) does, and report everything that is wrong with it, also names that look misspelt."""
 
+import os
 import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
+from grader.files.limits import ROBOT_ENDINGS
+from grader.files.reading import read_capped
 from grader.problems import Effect, Problem, causes, in_order
 from grader.robot import urdf_problems
 from grader.robot.diagnostics import Problems
@@ -79,13 +82,23 @@ class Reading(NamedTuple):
         return next((problem.message for problem in self.problems if problem.kind.effect == "undetermined"), "")
 
 
-def read_urdf(data: bytes | str, path: str = "robot.urdf") -> Reading:
-    """Read the bytes or the text of a URDF; `path` only appears in locations.
+def read_urdf(source: bytes | str | os.PathLike[str], path: str = "robot.urdf") -> Reading:
+    """Read a URDF as ROS 2 Jazzy does (urdfdom on TinyXML2).
 
-    The verdict is ROS 2 Jazzy's (urdfdom on TinyXML2): `clean`; `degraded`, if content is dropped or links are omitted
-    of the tree; `rejected`. Every problem is reported, sorted by location. Never raises for any input.
+    The verdict is `clean`; `degraded`, if content is dropped or links are omitted of the tree; or `rejected`. Every
+    problem is reported, sorted by location.
+
+    Args:
+        source: The path of a file, or the text or bytes of one. A str that ends in `.urdf` is a path.
+        path: The name of the file in locations; default: that of `source`.
+
+    Raises:
+        GraderError: There is no file at the path, or it cannot be read. No text raises.
     """
-    given = data.encode("utf-8", "surrogatepass") if isinstance(data, str) else data
+    if isinstance(source, os.PathLike) or (isinstance(source, str) and source.endswith(ROBOT_ENDINGS)):
+        path = os.fspath(source)
+        source = read_capped(path)
+    given = source.encode("utf-8", "surrogatepass") if isinstance(source, str) else source
     return read_robot(read_document(given, path))
 
 

@@ -4,8 +4,10 @@ At 4 x 4 a product of Python floats costs no more than a numpy call, and saves t
 gives the homogeneous matrix.
 """
 
+from collections.abc import Iterable
+from dataclasses import dataclass
 from math import atan2, cos, degrees, hypot, inf, nan, sin
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,14 +20,27 @@ Rotation = tuple[float, float, float, float, float, float, float, float, float] 
 IDENTITY_ROTATION: Rotation = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
 
-class Transform(NamedTuple):
-    """T_a_b: maps points given in frame b to frame a. `translation` is b's origin in a, metres."""
+@dataclass(frozen=True, slots=True)
+class Transform:
+    """The pose T_a_b of a frame b in a frame a: it maps points given in b to a.
+
+    `translation` is b's origin in a, in metres; `rotation` has b's axes as columns, row by row. With a numpy array on
+    either side, `@` is the product with the 4 x 4 matrix.
+
+    >>> T_base_lidar = Transform(translation=(0.15, 0.0, 0.225))
+    >>> T_base_lidar.apply((1, 0, 0))
+    (1.15, 0.0, 0.225)
+    >>> (T_base_lidar @ T_base_lidar.inverse()).translation
+    (0.0, 0.0, 0.0)
+    """
 
     rotation: Rotation = IDENTITY_ROTATION
     translation: Vector = (0.0, 0.0, 0.0)
 
     def __matmul__(self, other: "Transform") -> "Transform":
         """Return T_a_c = T_a_b @ T_b_c."""
+        if not isinstance(other, Transform):
+            return NotImplemented
         a, b, c, d, e, f, g, h, i = self.rotation
         j, k, l, m, n, o, p, q, r = other.rotation  # noqa: E741  rows, letter by letter
         x, y, z = other.translation
@@ -45,10 +60,10 @@ class Transform(NamedTuple):
             (a * x + b * y + c * z + u, d * x + e * y + f * z + v, g * x + h * y + i * z + w),
         )
 
-    def apply(self, point: Vector) -> Vector:
-        """Return a point given in b in frame a."""
+    def apply(self, point: Iterable[float]) -> Vector:
+        """Return a point given in b, as any three numbers, in frame a."""
         a, b, c, d, e, f, g, h, i = self.rotation
-        x, y, z = point
+        x, y, z = point if isinstance(point, tuple) else map(float, point)  # also those of an array
         u, v, w = self.translation
         return (a * x + b * y + c * z + u, d * x + e * y + f * z + v, g * x + h * y + i * z + w)
 
@@ -85,6 +100,20 @@ class Transform(NamedTuple):
         if flat < 1e-9:
             return (0.0, atan2(-g, flat), atan2(-b, e))
         return (atan2(h, i), atan2(-g, flat), atan2(d, a))
+
+    @property
+    def quaternion(self) -> tuple[float, float, float, float]:
+        """The rotation as a unit quaternion x, y, z, w, as in ROS 2's messages; w is not negative."""
+        a, b, c, d, e, f, g, h, i = self.rotation
+        products = (  # four times the product of each two components: the row of the largest one is most exact
+            (1.0 + a - e - i, b + d, c + g, h - f),
+            (b + d, 1.0 - a + e - i, f + h, c - g),
+            (c + g, f + h, 1.0 - a - e + i, d - b),
+            (h - f, c - g, d - b, 1.0 + a + e + i),
+        )
+        x, y, z, w = products[max(range(4), key=lambda number: products[number][number])]
+        norm = hypot(x, y, z, w) if w >= 0.0 else -hypot(x, y, z, w)
+        return (x / norm, y / norm, z / norm, w / norm)
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> "np.ndarray[Any, Any]":
         """Return the 4 x 4 homogeneous matrix for numpy, shape (4, 4)."""

@@ -96,6 +96,7 @@ class Agreement(NamedTuple):
     undecided: Mapping[Family, str]
     families: frozenset[Family]  # of which something is there
     files: frozenset[str]  # the paths below the prefix at which files are looked for
+    unused: tuple[Location, ...] = ()  # the files that no other one names
 
     def holds(self, family: Family) -> bool:
         """Return whether something of a family is there, and all of it certainly agrees."""

@@ -16,6 +16,7 @@ from grader.workspace.names import Agreement, Fact, Family, Mismatch, agreement
 from grader.workspace.parameters import parameter_facts
 from grader.workspace.programs import program_facts
 from grader.workspace.topics import topic_facts
+from grader.workspace.unused import unused_files
 from grader.workspace.workspace import Workspace
 
 _READERS = (
@@ -27,9 +28,11 @@ _READERS = (
 @lru_cache(maxsize=2)
 def read_agreement(submission: Submission) -> Agreement:
     """Return what does not agree in the packages of a submission."""
-    found = agreement(read_facts(submission))
+    workspace = Workspace(submission)
+    found = agreement(_facts(workspace))
     # names_agree needs a package.
-    return found if Workspace(submission).packages else found._replace(families=frozenset())
+    families = found.families if workspace.packages else frozenset[Family]()
+    return found._replace(families=families, unused=tuple(unused_files(workspace)))
 
 
 def wrong_names(submission: Submission, family: Family) -> list[Mismatch]:
@@ -41,5 +44,8 @@ def wrong_names(submission: Submission, family: Family) -> list[Mismatch]:
 
 def read_facts(submission: Submission) -> Iterator[Fact]:
     """Yield what the files of a submission define and use."""
-    workspace = Workspace(submission)
-    yield from chain.from_iterable(reader(workspace) for reader in _READERS)
+    return _facts(Workspace(submission))
+
+
+def _facts(workspace: Workspace) -> Iterator[Fact]:
+    return chain.from_iterable(reader(workspace) for reader in _READERS)

@@ -221,3 +221,38 @@ def test_zero_angles_are_exactly_the_identity() -> None:
     """Zero angles give an exact identity, so that poses of robots without rotations are exact."""
     assert rotation_from_rpy((0.0, 0.0, 0.0)) == IDENTITY_ROTATION
     assert rotation_from_rpy((-0.0, 0.0, -0.0)) == IDENTITY_ROTATION
+
+
+@given(rpy=rpys)
+@example(rpy=(0.0, 0.0, 0.0))
+@example(rpy=(pi, 0.0, 0.0))
+@example(rpy=(0.0, pi, 0.0))
+@example(rpy=(0.0, 0.0, -pi))
+def test_quaternions_are_the_rotation(rpy: Vector) -> None:
+    """The vector part and the scalar of a unit quaternion turn a point as the matrix does; w is not negative."""
+    pose = Transform(rotation_from_rpy(rpy))
+    x, y, z, w = pose.quaternion
+    assert w >= 0.0
+    assert hypot(x, y, z, w) == pytest.approx(1.0, abs=1e-12)
+    point = (0.3, -0.7, 0.2)
+    double = cross((2 * x, 2 * y, 2 * z), point)
+    bent = cross((x, y, z), double)
+    turned = tuple(point[axis] + w * double[axis] + bent[axis] for axis in range(3))
+    assert pose.rotate(point) == pytest.approx(turned, abs=1e-12)
+
+
+@given(pose=transforms, point=vectors)
+def test_products_with_arrays_are_those_of_the_matrix(pose: Transform, point: Vector) -> None:
+    """A point and a matrix of numpy on either side; any three numbers are a point."""
+    column = np.array([*point, 1.0])
+    assert (pose @ column)[:3] == pytest.approx(pose.apply(point), abs=1e-12)
+    assert np.array_equal(pose @ np.eye(4), np.array(pose))
+    assert np.array_equal(np.eye(4) @ pose, np.array(pose))
+    assert pose.apply([*point]) == pose.apply(np.array(point)) == pose.apply(point)
+
+
+@pytest.mark.parametrize("mistake", ["pose @ 3", "pose @ [1, 2, 3]", "3 @ pose", "pose + pose", "len(pose)", "[*pose]"])
+def test_a_pose_is_no_sequence(mistake: str) -> None:
+    """What is no product of motions is a TypeError."""
+    with pytest.raises(TypeError):
+        eval(mistake, {"pose": IDENTITY})

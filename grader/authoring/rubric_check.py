@@ -1,0 +1,188 @@
+"""What is wrong with a rubric that is valid: what its reference does not pass, and what an edit likely forgot."""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from math import degrees, pi, radians
+from typing import Any, NamedTuple
+
+from grader.checks.outcome import Outcome, point
+from grader.errors import MissingElement, NotDecided
+from grader.grading.criterion import Criterion
+from grader.grading.deciding import decide
+from grader.grading.grade import grade
+from grader.grading.rubric import Rubric, shipped_rubrics
+from grader.grading.subjects import check_selectors, joints_at
+from grader.grading.toml_file import TomlPath
+from grader.text import enumerated
+
+_SIZES = ("size", "box", "cylinder", "sphere", "radius", "length", "mass")
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+# Of a sentence: with a decimal point, or before a unit. Others count something, or are names: ROS 2.
+_MEASURE = re.compile(r"(?<![\w.])(-?\d+(?:\.\d+)?)(?!\.?\d)(?: ?(degrees?|mm|cm|kg|percent|m|N)\b)?")
+_UNITS = {
+    "mm": 1000.0,
+    "cm": 100.0,
+    "degrees": degrees(1.0),
+    "degree": degrees(1.0),
+}  # where `with` has metres, radians
+_DERIVED = (1.0, 2.0, 0.5)  # feedback may explain a diameter, or half of a height
+_RIGHT_ANGLE = 90
+_ROUNDED = {"m": 1e-4, "degrees": 0.1}  # how far positions may be beyond a limit: 90 degrees are above 1.57
+
+
+class ReferenceFailures(NamedTuple):
+    """What the reference does not pass: lines that say it, whether it fails one, and how many are only undecided."""
+
+    lines: tuple[str, ...]
+    is_failed: bool
+    undecided: int
+
+
+def reference_failures(rubric: Rubric) -> ReferenceFailures:
+    """Return what the reference does not pass of the automatic criteria, and of the checks in `carried` tables.
+
+    Criteria with one message share a line.
+    """
+    assert rubric.solution is not None
+    failed: dict[Outcome, list[tuple[TomlPath, str]]] = {}
+    unearned = grade(rubric, rubric.solution.submission).unearned
+    own = [(("criterion", it.criterion.position, "with"), it.criterion.id, it.outcome) for it in unearned]
+    for place, name, outcome in sorted([*own, *_carried_failures(rubric)], key=lambda it: it[0][1]):
+        failed.setdefault(Outcome(outcome.status, outcome.message), []).append((place, name))
+    lines = []
+    for outcome, places in failed.items():
+        names, verb = enumerated([name for _, name in places]), "fails" if len(places) == 1 else "fail"
+        lines.append(f"{rubric.place_of(places[0][0])}: {names} {verb} on the reference: {outcome.message}")
+    unresolved = [*_unresolved_selectors(rubric, {found.criterion.id for found in unearned})]
+    undecided = sum(len(places) for outcome, places in failed.items() if outcome.status == "pending")
+    return ReferenceFailures(
+        (*lines, *unresolved), bool(unresolved) or undecided < sum(map(len, failed.values())), undecided
+    )
+
+
+def _carried_failures(rubric: Rubric) -> Iterator[tuple[TomlPath, str, Outcome]]:
+    """Yield what counts instead of a criterion where an error is carried forward, if the reference does not pass it."""
+    assert rubric.solution is not None
+    for criterion in (it for it in rubric.criteria if not (it.adjustment or it.bonus)):
+        for index, one in enumerate(criterion.carried):
+            row = criterion._replace(check=one.check, arguments=one.arguments, carried=(), requires=())
+            alone = replace(rubric, criteria=(row,))
+            for found in decide(alone, rubric.solution.submission, {row.id}):
+                if found.outcome.status != "passed":
+                    # Of a single table the place has no index; `place_of` then finds the criterion's.
+                    several = (index,) if len(criterion.carried) > 1 else ()
+                    path = ("criterion", criterion.position, "carried", *several, "with")
+                    yield path, f"carried of {criterion.id}", found.outcome
+
+
+def _unresolved_selectors(rubric: Rubric, listed: set[str]) -> Iterator[str]:
+    """Yield a line for each other criterion that names a link by a place that not exactly one link has."""
+    assert rubric.solution is not None
+    for criterion in rubric.criteria:
+        if "robot" in criterion.check.examined and criterion.id not in listed:
+            try:
+                check_selectors(rubric.solution.robot, criterion)
+            except (MissingElement, NotDecided) as error:
+                what = f"{criterion.id} names a link by its place in the tree, and the reference has no such link"
+                yield f"{rubric.place_of(('criterion', criterion.position, 'with'))}: {what}: {error}"
+
+
+def likely_mistakes(rubric: Rubric) -> Iterator[str]:
+    """Yield warnings: what is valid, and hardly meant."""
+    if rubric.id in shipped_rubrics() and not (rubric.is_shipped or rubric.is_copy_of_shipped):
+        yield f"{rubric.place_of(('id',))}: the id is still that of the grader's own rubric: give this one another"
+    everywhere = [number for criterion in rubric.criteria for number in _numbers_given(criterion)]
+    for criterion in rubric.criteria:
+        for key, message in _of_criterion(rubric, criterion, everywhere):
+            yield f"{rubric.place_of(('criterion', criterion.position, key))}: {message}"
+
+
+def _of_criterion(rubric: Rubric, criterion: Criterion, everywhere: list[float]) -> Iterator[tuple[str, str]]:
+    """Yield warnings about a criterion, each with the key that it is about."""
+    own = [*_numbers_given(criterion)]
+    if stale := _unknown_measures(criterion.title, own):
+        yield "title", f"the title says {enumerated(stale)}, which `with` does not"
+    known = [number * factor for number in (*everywhere, _RIGHT_ANGLE) for factor in _DERIVED]
+    if stale := _unknown_measures(criterion.feedback, known):
+        yield "feedback", f"the feedback says {enumerated(stale)}, which no criterion does"
+    arguments, tolerance = criterion.arguments, criterion.arguments.get("tolerance", 0)
+    sizes = [it for key in _SIZES for it in _numbers(arguments.get(key)) if it > 0]
+    if "lower" in arguments and "upper" in arguments:
+        sizes.append(arguments["upper"] - arguments["lower"])
+    if sizes and tolerance >= min(sizes):
+        yield "with", f"the tolerance {tolerance:g} is not below what is measured, {min(sizes):g}: anything passes"
+    for key, value in arguments.items():
+        unit = criterion.check.documentation.arguments.get(key, "")
+        yield from (("with", message) for message in _other_angles(key, unit, [*_numbers(value)]))
+    if rubric.solution is not None and criterion.at and rubric.solution.reading.robot is not None:
+        yield from (("at", message) for message in _beyond_limits(rubric, criterion))
+
+
+def _numbers_given(criterion: Criterion) -> Iterator[float]:
+    """Yield every number that a rubric gives for a criterion, except in its texts."""
+    carried = [one.arguments for one in criterion.carried]
+    yield from _numbers([criterion.arguments, criterion.at, criterion.args, carried, criterion.choices])
+
+
+def _numbers(value: Any) -> Iterator[float]:
+    match value:
+        case bool():
+            return
+        case str():
+            yield from map(float, _NUMBER.findall(value))
+        case Mapping():
+            yield from _numbers([*value, *value.values()])
+        case Iterable():
+            for item in value:
+                yield from _numbers(item)
+        case None:
+            return
+        case number:
+            yield float(number)
+
+
+def _unknown_measures(sentence: str, numbers: Sequence[float]) -> list[str]:
+    """Return the measures in a sentence that are none of these numbers, as exact as they are written."""
+    found = []
+    for text, unit in _MEASURE.findall(sentence):
+        digits, scales = len(text.partition(".")[2]), (1.0, _UNITS.get(unit, radians(1.0)))
+        fitting = {round(abs(number) * scale, digits) for number in numbers for scale in scales}
+        if (digits or unit) and abs(float(text)) not in fitting:
+            found.append(text)
+    return found
+
+
+def _other_angles(key: str, unit: str, values: list[float]) -> Iterator[str]:
+    """Yield that angles seem to be radians where degrees are asked, or degrees where radians are."""
+    for value in values:
+        if "in degrees" in unit and _is_like_radians(value):
+            yield f"{key} is in degrees, and {value:g} looks like radians: {degrees(value):.0f} degrees?"
+        elif "in radians" in unit and abs(value) > 2 * pi + 1e-3:
+            yield f"{key} is in radians, and {value:g} looks like degrees: {radians(value):.4f}?"
+
+
+def _is_like_radians(value: float) -> bool:
+    """Return whether a number is a multiple of 45 degrees in radians, or with three decimals or more of 15 degrees."""
+    digits = len(f"{value:.10g}".partition(".")[2])
+    step = pi / (4 if digits == 2 else 12)
+    return digits >= 2 and value != 0 and round(round(value / step) * step, digits) == value
+
+
+def _beyond_limits(rubric: Rubric, criterion: Criterion) -> Iterator[str]:
+    """Yield positions of joints that the reference's limits exclude, or that seem to be radians."""
+    assert rubric.solution is not None
+    try:
+        found = joints_at(rubric.solution.robot, criterion.at)
+    except (MissingElement, NotDecided):
+        return  # the criterion fails on the reference
+    for joint, value, unit in found:
+        if unit == "degrees":
+            yield from _other_angles(f"at of {joint.name}", "in degrees", [value])
+        if joint.limit is None or joint.type == "continuous":
+            continue
+        ends = (joint.limit.lower, joint.limit.upper)
+        lower, upper = ends if unit == "m" else map(degrees, ends)
+        if not lower - _ROUNDED[unit] <= value <= upper + _ROUNDED[unit]:
+            limits = f"{point((lower,))} to {point((upper,))} {unit}"
+            yield f"at puts {joint.name} at {value:g} {unit}, outside of its limits in the reference: {limits}"
