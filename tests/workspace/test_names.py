@@ -2,7 +2,16 @@
 
 from grader.source import Location
 from grader.workspace.names import (
-    Agreement, Compared, Correction, Definition, Fact, Mismatch, Open, Undecided, Use, agreement,
+    Agreement,
+    Compared,
+    Correction,
+    Definition,
+    Fact,
+    Mismatch,
+    Open,
+    Undecided,
+    Use,
+    agreement,
 )  # fmt: skip
 
 _HERE, _THERE, _LATER = Location("a.yaml", 3, 5), Location("robot.urdf", 7, 2), Location("a.yaml", 9, 1)
