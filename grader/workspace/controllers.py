@@ -101,8 +101,8 @@ def _type_facts(workspace: Workspace, controller: _Controller) -> Iterator[Fact]
     if is_known or similar is not None:
         guess = f"; did you mean {similar!r}?" if similar is not None else ""
         message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
-        either = corrections(written, controller.location, similar) if similar is not None else ()
         is_sure = is_known or near(written, same) is not None
+        either = corrections(written, controller.location, similar)
         yield Mismatch("controllers", message, controller.location, is_sure=is_sure, corrections=either)
 
 

@@ -72,7 +72,7 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
                 continue  # the others may be of nodes that are not submitted
             key = meant or unread[0]
             message = f"there are parameters for {key}, but none for the node {name!r}, which gets this file"
-            either = corrections(key, sections[key].location, name or "", node.location) if meant is not None else ()
+            either = corrections(key, sections[key].location, name if meant is not None else None, node.location)
             yield Mismatch("parameters", message, sections[key].location, node.location, True, either)
 
 
@@ -164,5 +164,5 @@ def _plugin_names(tree: YamlNode) -> Iterator[Fact]:
         if meant is not None and meant != text:
             message = f"{value.said}: there is no plugin {text!r}; did you mean {meant!r}?"
             is_sure = is_of_jazzy or not text.startswith(older)
-            either = corrections(text, value.node.location, meant)
-            yield Mismatch("parameters", message, value.node.location, is_sure=is_sure, corrections=either)
+            at = value.node.location
+            yield Mismatch("parameters", message, at, None, is_sure, corrections(text, at, meant))

@@ -43,8 +43,8 @@ WRONG: list[tuple[Family, str, list[_Edit]]] = [
      " (cart_description/urdf/cart.urdf.xacro:18)"),
      [(_URDF, '"left_wheel_joint">\n      <command_interface name="velocity"',
        '"left_wheel_joint">\n      <command_interface name="position"')]),
-    ("controllers", "wheel_controller needs the command interface right_wheel_joint/velocity; <ros2_control> has no joint"
-     " 'right_wheel_joint'", [(_URDF, """
+    ("controllers", ("wheel_controller needs the command interface right_wheel_joint/velocity; <ros2_control> has no joint"
+     " 'right_wheel_joint'"), [(_URDF, """
     <joint name="right_wheel_joint">
       <command_interface name="velocity"/>
       <state_interface name="velocity"/>
