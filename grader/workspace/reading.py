@@ -11,6 +11,7 @@ from grader.workspace.controllers import controller_facts
 from grader.workspace.dependencies import dependency_facts
 from grader.workspace.files import file_facts
 from grader.workspace.frames import frame_facts
+from grader.workspace.gazebo import gazebo_facts
 from grader.workspace.moveit import moveit_facts
 from grader.workspace.names import Agreement, Fact, Family, Mismatch, agreement
 from grader.workspace.parameters import parameter_facts
@@ -21,7 +22,7 @@ from grader.workspace.workspace import Workspace
 
 _READERS = (
     file_facts, frame_facts, controller_facts, parameter_facts, argument_facts, program_facts, topic_facts,
-    bridge_facts, moveit_facts, dependency_facts,
+    gazebo_facts, bridge_facts, moveit_facts, dependency_facts,
 )  # fmt: skip
 
 

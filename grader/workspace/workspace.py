@@ -21,7 +21,7 @@ from grader.submission.urdf import Read
 from grader.workspace.known import known
 from grader.workspace.yaml_values import sections_in, values_in
 from grader.xml.elements import readable
-from grader.xml.parsing import Element
+from grader.xml.parsing import Element, XmlFault, XmlFile
 
 _SYSTEM = re.compile(r"<ros2_control\b")
 _MANAGER, _SPAWNERS = "controller_manager", ("spawner", "spawner.py")
@@ -125,6 +125,17 @@ class Workspace:
     def trees(self) -> Iterator[tuple[str, YamlNode]]:
         """The YAML files that are read, with their paths."""
         yield from ((path, node) for path, node in self.yaml_files.items() if isinstance(node, YamlNode))
+
+    @cached_property
+    def sdf_files(self) -> tuple[XmlFile, ...]:
+        """The models and worlds of Gazebo that can be read."""
+        found = []
+        for package in self.packages:
+            for path in [it for it in package.tree.files if it.endswith((".sdf", ".world"))][:_MAX_FILES]:
+                with suppress(InputError, XmlFault):
+                    data = package.tree.files[path].read(_MAX_YAML)
+                    found.append(XmlFile(data, Source(package.path(path), data.decode("utf-8", "replace"))))
+        return tuple(found)
 
     @cached_property
     def robot(self) -> Robot | None:
