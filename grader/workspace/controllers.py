@@ -39,6 +39,7 @@ def controller_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from _type_facts(workspace, controller)
         yield from _section_facts(workspace, controller, sections)
     yield from _spawner_facts(workspace)
+    yield from _action_facts(workspace)
     managers = [node for _, node in workspace.nodes if node.executable == "ros2_control_node"]
     if managers and workspace.command_interfaces is None and workspace.has_all_interfaces:
         message = "the controller manager is started, but the robot has no <ros2_control>"
@@ -163,6 +164,17 @@ def _spawner_facts(workspace: Workspace) -> Iterator[Fact]:
                 break
             for name in word.split():
                 yield Use("controller", name, node.location, "spawner")
+
+
+def _action_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the controllers whose actions own nodes ask for."""
+    for _, node in workspace.nodes:
+        own = workspace.python_node(node)
+        for endpoint in own.endpoints if own is not None else ():
+            topic = node.topic(endpoint.name or "") if endpoint.kind == "action client" else None
+            controller, _, action = (topic or "").rpartition("/")
+            if action in known()["controller_actions"]:
+                yield Use("controller", controller.strip("/"), endpoint.location, "ActionClient")
 
 
 def _is_defined_by_files(workspace: Workspace, words: tuple[str | None, ...]) -> bool:

@@ -16,6 +16,7 @@ from grader.workspace.workspace import WithSources, Workspace
 from grader.workspace.yaml_values import PARAMETERS, is_parameters, sections_in, values_in
 
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
+_INPUT = re.compile(r"(odom|imu|pose|twist)\d+_config")  # of robot_localization
 _SEPARATORS = re.compile(r"[:/]+")
 # Keys of lists whose entries name sections beside them, in the files of Nav2, MoveIt and others.
 _LISTS = ("plugins", "navigators", "observation_sources", "filters", "controller_names")
@@ -35,6 +36,8 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
         own = workspace.python_node(node)
         if own is not None:
             yield from _declared(workspace, package, node, own)
+    for path in workspace.parameter_files:
+        yield from _filters(workspace.yaml_files[path])
     for package, node in workspace.nodes:
         yield from _required(workspace, package, node)
     for _, tree in workspace.trees:
@@ -114,6 +117,18 @@ def _declared(workspace: Workspace, package: Package, node: StartedNode, own: Py
     for name, value in found.values.items():
         if value.location not in wide and not name.startswith("qos_overrides."):
             yield Use("parameter", name, value.location, f"the node {workspace.name_of(node)!r}", owner)
+
+
+def _filters(tree: YamlNode | YamlFault) -> Iterator[Fact]:
+    """Yield which values of an input a filter of robot_localization takes, where there are not 15 of them."""
+    for _, section in sections_in(tree) if isinstance(tree, YamlNode) else ():
+        for value in values_in(section):
+            count = len(value.node.items)
+            if value.keys and _INPUT.fullmatch(value.keys[-1]) and count not in (0, 15):
+                message = (
+                    f"{value.keys[-1]} has {count} values; it needs 15: x y z, angles, their rates and accelerations"
+                )
+                yield Mismatch("parameters", message, value.node.location)
 
 
 def _required(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:

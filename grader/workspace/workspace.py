@@ -129,13 +129,19 @@ class Workspace:
     @cached_property
     def sdf_files(self) -> tuple[XmlFile, ...]:
         """The models and worlds of Gazebo that can be read."""
-        found = []
+        return tuple(self._xml_files((".sdf", ".world")))
+
+    @cached_property
+    def srdf_files(self) -> tuple[XmlFile, ...]:
+        """The descriptions of robots for MoveIt that can be read."""
+        return tuple(self._xml_files((".srdf",)))
+
+    def _xml_files(self, endings: tuple[str, ...]) -> Iterator[XmlFile]:
         for package in self.packages:
-            for path in [it for it in package.tree.files if it.endswith((".sdf", ".world"))][:_MAX_FILES]:
+            for path in [it for it in package.tree.files if it.endswith(endings)][:_MAX_FILES]:
                 with suppress(InputError, XmlFault):
                     data = package.tree.files[path].read(_MAX_YAML)
-                    found.append(XmlFile(data, Source(package.path(path), data.decode("utf-8", "replace"))))
-        return tuple(found)
+                    yield XmlFile(data, Source(package.path(path), data.decode("utf-8", "replace")))
 
     @cached_property
     def robot(self) -> Robot | None:
