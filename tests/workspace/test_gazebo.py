@@ -137,8 +137,8 @@ def problems(*edits: tuple[str, str, str]) -> list[str]:
         ([("bridge.yaml", _BRIDGE.splitlines(keepends=True)[0], "")],
          "drive.py waits for the time of the simulation, but no bridge takes clock from Gazebo"),
         ([("arena.sdf", '    <plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>\n', "")],
-         "the world has no plugin gz::sim::systems::Sensors, so the sensor 'lidar' (scout/scout.urdf:4) publishes"
-         " nothing"),
+         ("the world has no plugin gz::sim::systems::Sensors, so the sensor 'lidar' (scout/scout.urdf:4) publishes"
+         " nothing")),
         ([("scout.launch.py", '"-world", "arena"', '"-world", "empty"')],
          "the robot is created in the world 'empty', but the world of scout/arena.sdf is 'arena'"),
         ([("scout.launch.py", '"-topic", "robot_description"', '"-topic", "robot"')],
@@ -147,11 +147,11 @@ def problems(*edits: tuple[str, str, str]) -> list[str]:
           ("drive.py", '        self.create_subscription(LaserScan, "scan", print, 10)\n', "")],
          "the bridge has no topics: neither arguments, nor the parameter config_file"),
         ([("drive.py", "LaserScan", "PointCloud2")],
-         "the topic /scan has sensor_msgs.msg.PointCloud2 here, but is published by the bridge with"
-         f" sensor_msgs.msg.LaserScan ({_AT_BRIDGE})"),
+         ("the topic /scan has sensor_msgs.msg.PointCloud2 here, but is published by the bridge with"
+         f" sensor_msgs.msg.LaserScan ({_AT_BRIDGE})")),
         ([("drive.py", "import Twist", "import TwistStamped as Twist")],
-         "the topic /cmd_vel has geometry_msgs.msg.TwistStamped here, but is subscribed to by the bridge with"
-         " geometry_msgs.msg.Twist (scout/bridge.yaml:5)"),
+         ("the topic /cmd_vel has geometry_msgs.msg.TwistStamped here, but is subscribed to by the bridge with"
+         " geometry_msgs.msg.Twist (scout/bridge.yaml:5)")),
         ([("CMakeLists.txt", "install(PROGRAMS drive.py", "install(FILES drive.py")],
          "a build installs 'drive.py' without the right to execute it: write install(PROGRAMS ...)"),
     ],
