@@ -114,9 +114,9 @@ def _not_there(owner: Package, target: str, at: Location) -> Mismatch:
         return Mismatch("files", message, at, setup.location(setup.called_at), corrections=either)
     meant = closest(name, map(posixpath.basename, owner.tree.files))
     guess = f"; did you mean {meant!r}?" if meant else ""
-    # A file that a program writes is in a folder of its own, and like no other.
+    # What a program writes is in a folder of its own, and like no other, or a folder itself.
     folders = {posixpath.dirname(it) for it in owner.installed}
-    is_sure = meant is not None or posixpath.dirname(target) in folders
+    is_sure = meant is not None or (posixpath.dirname(target) in folders and "." in name)
     message = f"{looked} the package has no file {name!r}{guess}"
     return Mismatch("files", message, at, None, is_sure, corrections(name, at, meant))
 

@@ -37,7 +37,7 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
         if own is not None:
             yield from _declared(workspace, package, node, own)
     for path in workspace.parameter_files:
-        yield from _filters(workspace.yaml_files[path])
+        yield from _filters(workspace.yaml_files.get(path))
     for package, node in workspace.nodes:
         yield from _required(workspace, package, node)
     for _, tree in workspace.trees:
@@ -119,7 +119,7 @@ def _declared(workspace: Workspace, package: Package, node: StartedNode, own: Py
             yield Use("parameter", name, value.location, f"the node {workspace.name_of(node)!r}", owner)
 
 
-def _filters(tree: YamlNode | YamlFault) -> Iterator[Fact]:
+def _filters(tree: YamlNode | YamlFault | None) -> Iterator[Fact]:
     """Yield which values of an input a filter of robot_localization takes, where there are not 15 of them."""
     for _, section in sections_in(tree) if isinstance(tree, YamlNode) else ():
         for value in values_in(section):
