@@ -11,7 +11,7 @@ from grader.errors import MissingElement, NotDecided
 from grader.grading.criterion import Criterion
 from grader.grading.deciding import decide
 from grader.grading.grade import grade
-from grader.grading.rubric import Rubric, shipped_rubrics
+from grader.grading.rubric import Rubric, load_rubric, shipped_rubrics
 from grader.grading.subjects import check_selectors, joints_at
 from grader.grading.toml_file import TomlPath
 from grader.text import enumerated
@@ -20,18 +20,14 @@ _SIZES = ("size", "box", "cylinder", "sphere", "radius", "length", "mass")
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 # Of a sentence: with a decimal point, or before a unit. Others count something, or are names: ROS 2.
 _MEASURE = re.compile(r"(?<![\w.])(-?\d+(?:\.\d+)?)(?!\.?\d)(?: ?(degrees?|mm|cm|kg|percent|m|N)\b)?")
-_UNITS = {
-    "mm": 1000.0,
-    "cm": 100.0,
-    "degrees": degrees(1.0),
-    "degree": degrees(1.0),
-}  # where `with` has metres, radians
+_ANGLES = (radians(1.0), degrees(1.0))
+_UNITS = {"mm": (1000.0,), "cm": (100.0,), "degrees": _ANGLES, "degree": _ANGLES}  # of metres and radians in `with`
 _DERIVED = (1.0, 2.0, 0.5)  # feedback may explain a diameter, or half of a height
 _RIGHT_ANGLE = 90
 _ROUNDED = {"m": 1e-4, "degrees": 0.1}  # how far positions may be beyond a limit: 90 degrees are above 1.57
 
 
-class ReferenceFailures(NamedTuple):
+class _Failures(NamedTuple):
     """What the reference does not pass: lines that say it, whether it fails one, and how many are only undecided."""
 
     lines: tuple[str, ...]
@@ -39,7 +35,7 @@ class ReferenceFailures(NamedTuple):
     undecided: int
 
 
-def reference_failures(rubric: Rubric) -> ReferenceFailures:
+def reference_failures(rubric: Rubric) -> _Failures:
     """Return what the reference does not pass of the automatic criteria, and of the checks in `carried` tables.
 
     Criteria with one message share a line.
@@ -47,18 +43,22 @@ def reference_failures(rubric: Rubric) -> ReferenceFailures:
     assert rubric.solution is not None
     failed: dict[Outcome, list[tuple[TomlPath, str]]] = {}
     unearned = grade(rubric, rubric.solution.submission).unearned
-    own = [(("criterion", it.criterion.position, "with"), it.criterion.id, it.outcome) for it in unearned]
-    for place, name, outcome in sorted([*own, *_carried_failures(rubric)], key=lambda it: it[0][1]):
-        failed.setdefault(Outcome(outcome.status, outcome.message), []).append((place, name))
+    own = [(_path_of(it.criterion), it.criterion.id, it.outcome) for it in unearned]
+    unresolved = dict(_unresolved_selectors(rubric))
+    for path, name, outcome in sorted([*own, *_carried_failures(rubric)], key=lambda it: it[0][1]):
+        if path not in unresolved:
+            failed.setdefault(Outcome(outcome.status, outcome.message), []).append((path, name))
     lines = []
     for outcome, places in failed.items():
         names, verb = enumerated([name for _, name in places]), "fails" if len(places) == 1 else "fail"
         lines.append(f"{rubric.place_of(places[0][0])}: {names} {verb} on the reference: {outcome.message}")
-    unresolved = [*_unresolved_selectors(rubric, {found.criterion.id for found in unearned})]
     undecided = sum(len(places) for outcome, places in failed.items() if outcome.status == "pending")
-    return ReferenceFailures(
-        (*lines, *unresolved), bool(unresolved) or undecided < sum(map(len, failed.values())), undecided
-    )
+    is_failed = bool(unresolved) or undecided < sum(map(len, failed.values()))
+    return _Failures((*lines, *unresolved.values()), is_failed, undecided)
+
+
+def _path_of(criterion: Criterion) -> TomlPath:
+    return ("criterion", criterion.position, "with")
 
 
 def _carried_failures(rubric: Rubric) -> Iterator[tuple[TomlPath, str, Outcome]]:
@@ -76,26 +76,35 @@ def _carried_failures(rubric: Rubric) -> Iterator[tuple[TomlPath, str, Outcome]]
                     yield path, f"carried of {criterion.id}", found.outcome
 
 
-def _unresolved_selectors(rubric: Rubric, listed: set[str]) -> Iterator[str]:
-    """Yield a line for each other criterion that names a link by a place that not exactly one link has."""
+def _unresolved_selectors(rubric: Rubric) -> Iterator[tuple[TomlPath, str]]:
+    """Yield the place of each criterion that names a link by a place that not exactly one has, and why."""
     assert rubric.solution is not None
     for criterion in rubric.criteria:
-        if "robot" in criterion.check.examined and criterion.id not in listed:
+        if "robot" in criterion.check.examined:
             try:
                 check_selectors(rubric.solution.robot, criterion)
             except (MissingElement, NotDecided) as error:
+                path = _path_of(criterion)
                 what = f"{criterion.id} names a link by its place in the tree, and the reference has no such link"
-                yield f"{rubric.place_of(('criterion', criterion.position, 'with'))}: {what}: {error}"
+                yield path, f"{rubric.place_of(path)}: {what}: {error}"
 
 
 def likely_mistakes(rubric: Rubric) -> Iterator[str]:
     """Yield warnings: what is valid, and hardly meant."""
-    if rubric.id in shipped_rubrics() and not (rubric.is_shipped or rubric.is_copy_of_shipped):
+    if _is_changed_copy(rubric):
         yield f"{rubric.place_of(('id',))}: the id is still that of the grader's own rubric: give this one another"
     everywhere = [number for criterion in rubric.criteria for number in _numbers_given(criterion)]
     for criterion in rubric.criteria:
         for key, message in _of_criterion(rubric, criterion, everywhere):
             yield f"{rubric.place_of(('criterion', criterion.position, key))}: {message}"
+
+
+def _is_changed_copy(rubric: Rubric) -> bool:
+    """Return whether a rubric has the id of one of the grader's, and most of its criteria, but is another one."""
+    if rubric.id not in shipped_rubrics() or rubric.is_shipped or rubric.is_copy_of_shipped:
+        return False
+    own, copied = ({it.id for it in one.criteria} for one in (rubric, load_rubric(rubric.id)))
+    return 2 * len(own & copied) > len(own)
 
 
 def _of_criterion(rubric: Rubric, criterion: Criterion, everywhere: list[float]) -> Iterator[tuple[str, str]]:
@@ -146,7 +155,7 @@ def _unknown_measures(sentence: str, numbers: Sequence[float]) -> list[str]:
     """Return the measures in a sentence that are none of these numbers, as exact as they are written."""
     found = []
     for text, unit in _MEASURE.findall(sentence):
-        digits, scales = len(text.partition(".")[2]), (1.0, _UNITS.get(unit, radians(1.0)))
+        digits, scales = len(text.partition(".")[2]), (1.0, *_UNITS.get(unit, _ANGLES))
         fitting = {round(abs(number) * scale, digits) for number in numbers for scale in scales}
         if (digits or unit) and abs(float(text)) not in fitting:
             found.append(text)
