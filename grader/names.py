@@ -72,6 +72,14 @@ def near(name: str, known: Iterable[str], suffix: str = "") -> str | None:
     return found[0] if len(found) == 1 else None
 
 
+def are_of_one_side(name: str, other: str) -> bool:
+    """Return whether two names have the same numbers and words of side, place and measure, in any order."""
+    words = _words(name), _words(other)
+    first, second = (sorted(it for it in each if it.isdigit() or it in _DISTINCT) for each in words)
+    pairs = zip(*words, strict=True) if len(words[0]) == len(words[1]) and sorted(words[0]) != sorted(words[1]) else ()
+    return first == second and not any(one != known and _are_distinct(one, known) for one, known in pairs)
+
+
 def _words(name: str) -> list[str]:
     return _WORD.findall(_CAMEL.sub(" ", name[: MAX_LENGTH + 1]).casefold())
 

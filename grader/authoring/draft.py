@@ -104,7 +104,7 @@ def draft(submission: Submission, solution: Solution | None, head: Head, path: P
         subjects |= {"urdf": solution.reading, "robot": solution.robot, "reference": solution.robot}
     tried = [it if isinstance(it, Omission) else _tried(subjects, it) for it in found]
     facts = ((it.fact, it) for it in tried if isinstance(it, _DraftCriterion))
-    rows = {(fact.check, fact.package, toml_literal(fact.arguments)): row for fact, row in facts}
+    rows = {(fact.check, fact.package, toml_literal([fact.args, fact.arguments])): row for fact, row in facts}
     data = _rubric_text(head, [*rows.values()]).encode()
     return RubricDraft(data, read_rubric(data, path), tuple(it for it in tried if isinstance(it, Omission)))
 
@@ -134,11 +134,12 @@ def _outcome(subjects: _Subjects, fact: Fact) -> Outcome:
     _, read = read_toml(f"it = {toml_literal(fact.arguments)}".encode(), Path())
     given = {name: check.parameters[name].type.parse(value) for name, value in read["it"].items()}
     usual, _ = _USUAL.get(fact.check, ({}, ""))
-    submission = subjects["submission"]
+    arguments = {name: str(it).lower() if isinstance(it, bool) else it for name, it in fact.args.items()}
+    submission = subjects["submission"].under(arguments) if arguments else subjects["submission"]
     if fact.package:
         submission = submission.with_package(fact.package)
     known = {**subjects, "submission": submission, "package": submission.package}
-    return check.function(*(known[name] for name in check.examined), **{**usual, **given})
+    return check.outcome((known[name] for name in check.examined), {**usual, **given})
 
 
 def _rubric_text(head: Head, rows: Sequence[_DraftCriterion]) -> str:
@@ -213,6 +214,8 @@ def _criterion_lines(name: str, row: _DraftCriterion, part: str, causes: list[st
     yield assignment("about", printable(fact.about))
     yield assignment("title", printable(row.title))
     yield f"check = {toml_literal(fact.check)}"
+    if fact.args:
+        yield assignment("args", fact.args)
     check, given = fact.instead
     carried = {"from": causes, "check": check, "with": given}
     is_line = len(assignment("carried", carried)) <= _WIDTH

@@ -58,6 +58,7 @@ _MASS_SHARE = 0.01
 _MAX_VALUES = 500  # in one element of <robot>: a check compares each with each
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _TRUTH = {"true": True, "false": False}
+_TURNED: Mapping[str, str | bool] = {"true": False, "false": True, "True": "False", "False": "True"}
 _NAMED_BY = ("reference", "name", "filename", "type")
 _OWN_KINDS = (".urdf", ".xacro", ".rviz", ".py", ".xml", ".msg", ".srv", ".action")
 _LOOSE_INERTIA = 5.0  # percent, for a solution with rounded numbers
@@ -91,6 +92,7 @@ class Fact(NamedTuple):
     instead: "tuple[str, Mapping[str, Any]]" = ("", {})  # a check with its arguments
     otherwise: "Sequence[Fact]" = ()  # tried in its place if the reference does not pass it
     title: str = ""  # default: what the check says
+    args: Mapping[str, str | bool] = {}  # launch arguments
 
 
 class Omission(NamedTuple):
@@ -382,7 +384,7 @@ def _facts_of(package: Package, path: str, named: Collection[str], causes: tuple
     yield _package_fact("setup_imports")._replace(title="`colcon build` of the package succeeds")
     yield from _installs(package, path, named)
     for launch in (it for it in package.launch_files if not it.startswith("test/")):
-        yield from _launch_facts(posixpath.basename(launch), package.launch(launch), causes)
+        yield from _launch_facts(package, launch, causes)
     yield from _rviz_facts(package)
 
 
@@ -458,13 +460,38 @@ def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[F
     yield from (_package_fact("installs_files", pattern, files=[pattern], despite_errors=True) for pattern in patterns)
 
 
-def _launch_facts(name: str, launch: Launch, causes: tuple[str, ...]) -> Iterator[Fact]:
+def _launch_facts(package: Package, path: str, causes: tuple[str, ...]) -> Iterator[Fact]:
+    name, launch = posixpath.basename(path), package.launch(path)
     yield _package_fact("launch_found", name, name=name)
     instead = ("launch_found", {"name": name})
     if nodes := _nodes_that_start(launch):
-        yield _package_fact("launch_starts", name, name=name, nodes=nodes)._replace(causes=causes, instead=instead)
+        yield _package_fact("node_runs", name, launch=name, nodes=nodes)._replace(causes=causes, instead=instead)
+    yield from (fact._replace(causes=causes, instead=instead) for fact in _turned_facts(package, path))
     if launch.named("urdf", "rviz", "include"):
         yield _package_fact("launch_finds_files", name, name=name)._replace(causes=causes, instead=instead)
+
+
+def _turned_facts(package: Package, path: str) -> Iterator[Fact]:
+    """Yield what a launch file starts in addition, and no more, if one of its boolean arguments is turned round."""
+    launch, name = package.launch(path), posixpath.basename(path)
+    before = _started(launch)
+    for argument, value in dict(launch.values).items():
+        turned = _TURNED.get(value)
+        if turned is None:
+            continue
+        text = str(turned).lower() if isinstance(turned, bool) else turned
+        after = _started(package.under({argument: text}).launch(path))
+        nodes, absent = ([it for it in one if it not in other] for one, other in ((after, before), (before, after)))
+        given = {key: names for key, names in (("nodes", nodes), ("not", absent)) if names}
+        if given:
+            starts = f"starts {enumerated(nodes)}" if nodes else f"does not start {enumerated(absent)}"
+            fact = _package_fact("node_runs", f"{name} {argument}", launch=name, **given)
+            title = f"with {argument}:={text}, the launch file {starts}"
+            yield fact._replace(args={argument: turned}, title=title)
+
+
+def _started(launch: Launch) -> list[str]:
+    return list(dict.fromkeys(it.name for it in launch.nodes if it.when))
 
 
 def _nodes_that_start(launch: Launch) -> list[str]:

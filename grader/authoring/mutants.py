@@ -8,6 +8,7 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 from math import degrees
 from typing import NamedTuple
 
@@ -43,7 +44,7 @@ class Mutant(NamedTuple):
         return text[: self.start] + self.new + text[self.end :]
 
 
-class _MutantEdit(NamedTuple):
+class MutantEdit(NamedTuple):
     """A change of a text between two offsets: its family, and its place by names, with what tells it from others."""
 
     family: str
@@ -58,7 +59,7 @@ def mutants(text: str, path: str = "", hidden: Collection[str] = ()) -> Iterator
     return _as_mutants(text, path, _changes(text, {f"link {name}" for name in hidden}))
 
 
-def _as_mutants(text: str, path: str, changes: Iterable[_MutantEdit]) -> Iterator[Mutant]:
+def _as_mutants(text: str, path: str, changes: Iterable[MutantEdit]) -> Iterator[Mutant]:
     """Yield the mutants that changes of a file make, each once and with an id of its own."""
     seen: set[tuple[int, int, str]] = set()
     ids: Counter[str] = Counter()
@@ -72,7 +73,7 @@ def _as_mutants(text: str, path: str, changes: Iterable[_MutantEdit]) -> Iterato
         yield Mutant(name, family, path, text.count("\n", 0, start) + 1, start, end, new)
 
 
-def _changes(text: str, hidden: Collection[str]) -> Iterator[_MutantEdit]:
+def _changes(text: str, hidden: Collection[str]) -> Iterator[MutantEdit]:
     places = list(_places(text))
     names = {tag: [it.get("name", "") for it, *_ in places if it.tag == tag] for tag in ("link", "joint", "material")}
     for element, label, start in places:
@@ -83,12 +84,12 @@ def _changes(text: str, hidden: Collection[str]) -> Iterator[_MutantEdit]:
         (head, is_empty), end = head_end(text, start), element_end(text, start)
         if not len(element) and (element.text or "").strip():
             yield from _value_changes(text, label, (head, text.rindex("</", head, end)), "")
-        yield _MutantEdit("element deleted", label, start, end, "")
+        yield MutantEdit("element deleted", label, start, end, "")
         if label in hidden:
             if is_empty:  # <link name="x"/>
-                yield _MutantEdit("visual added", label, head - len("/>"), head, f">{_BOX}</link>")
+                yield MutantEdit("visual added", label, head - len("/>"), head, f">{_BOX}</link>")
             else:
-                yield _MutantEdit("visual added", label, head, head, _BOX)
+                yield MutantEdit("visual added", label, head, head, _BOX)
 
 
 def _places(text: str) -> Iterator[tuple[Element, str, int]]:
@@ -115,25 +116,25 @@ def _places(text: str) -> Iterator[tuple[Element, str, int]]:
 
 def _attribute_changes(
     text: str, element: Element, label: str, attribute: Attribute, names: Mapping[str, Sequence[str]]
-) -> Iterator[_MutantEdit]:
+) -> Iterator[MutantEdit]:
     name, span = attribute.name, attribute.value
     place = f"{label} {name}"
-    yield _MutantEdit("attribute deleted", place, attribute.start - 1, attribute.end, "")
+    yield MutantEdit("attribute deleted", place, attribute.start - 1, attribute.end, "")
     if name in _NAMES:
         value = text[slice(*span)]
         known = names.get(str(element.tag), names.get(name, names["link"]))
-        yield _MutantEdit("name misspelt", place, *span, _misspelt(value))
+        yield MutantEdit("name misspelt", place, *span, misspelt(value))
         at = known.index(value) + 1 if value in known else 0
         other = next((it for it in (*known[at:], *known[:at]) if it != value), "")
         if other:
-            yield _MutantEdit("name exchanged", f"{place} -> {other}", *span, other)
+            yield MutantEdit("name exchanged", f"{place} -> {other}", *span, other)
     elif name == "type" and element.tag == "joint":
-        yield from (_MutantEdit("type", f"{place} -> {other}", *span, other) for other in JOINT_TYPES)
+        yield from (MutantEdit("type", f"{place} -> {other}", *span, other) for other in JOINT_TYPES)
     elif name not in _UNTOUCHED and not name.startswith("xmlns"):
         yield from _value_changes(text, label, span, name)
 
 
-def _value_changes(text: str, label: str, span: tuple[int, int], name: str) -> Iterator[_MutantEdit]:
+def _value_changes(text: str, label: str, span: tuple[int, int], name: str) -> Iterator[MutantEdit]:
     """Yield changes of a value: of each number in it, else of the text."""
     start, end = span
     label = f"{label} {name}".rstrip()
@@ -141,11 +142,11 @@ def _value_changes(text: str, label: str, span: tuple[int, int], name: str) -> I
     for part, found in zip(_parts(name, len(pieces)), pieces, strict=True):
         for family, number in _alternatives(float(found[0])):
             if number != float(found[0]):
-                yield _MutantEdit(family, f"{label}{part}", *found.span(), f"{number:.6g}")
+                yield MutantEdit(family, f"{label}{part}", *found.span(), f"{number:.6g}")
     value = text[start:end].strip()
     if not pieces and value:
         start = text.index(value, start)
-        yield _MutantEdit("text misspelt", label, start, start + len(value), _misspelt(value))
+        yield MutantEdit("text misspelt", label, start, start + len(value), misspelt(value))
 
 
 def _parts(name: str, count: int) -> list[str]:
@@ -167,7 +168,7 @@ def _alternatives(value: float) -> Iterable[tuple[str, float]]:
     )
 
 
-def _misspelt(name: str) -> str:
+def misspelt(name: str) -> str:
     """Return a text without the letter in its middle."""
     middle = len(name) // 2
     return name[:middle] + name[middle + 1 :] if len(name) > 3 else f"{name}x"
@@ -187,38 +188,47 @@ _FOR_PEOPLE = re.compile(
 _XML_FAMILIES = ("element deleted", "text misspelt", "name misspelt")
 _READ_OF_MANIFEST = re.compile(r"(name|export/build_type)\b")
 _DISPLAY_TEXTS = (("Class",), ("Description Topic", "Value"), ("Topic", "Value"))
-_MAX_LABEL = 70
+MAX_LABEL = 70
 
 _Text = Callable[[str], str]  # returns the text of a file by its path in the submission
+_Changes = Callable[[Source, str], Iterable[MutantEdit]]  # of a file with a label
 
 
-def package_mutants(package: Package, links: Iterable[str], text: _Text) -> Iterator[Mutant]:
-    """Yield the mutants of a package; `links` are those of its robot, `text` returns that of a file."""
+def package_mutants(
+    package: Package, links: Iterable[str], text: _Text, further: _Changes = lambda _, __: (), *, prefix: str = ""
+) -> Iterator[Mutant]:
+    """Yield the mutants of a package; `links` are those of its robot, `text` returns that of a file.
+
+    `further` returns more changes of a file; `prefix` is what ids have before the paths in the package.
+    """
     for own in package.tree.files:
-        path = package.path(own)
+        path, label = package.path(own), prefix + own
         if not _UNUSED.search(own):
             name = path.rpartition("/")[2]
-            renamed = f"{path.removesuffix(name)}{_misspelt(name)}"
-            yield Mutant(f"file deleted: {own}", "file deleted", path, 1, is_deleted=True)
-            yield Mutant(f"file renamed: {own}", "file renamed", path, 1, is_deleted=True, renamed=renamed)
+            renamed = f"{path.removesuffix(name)}{misspelt(name)}"
+            yield Mutant(f"file deleted: {label}", "file deleted", path, 1, is_deleted=True)
+            yield Mutant(f"file renamed: {label}", "file renamed", path, 1, is_deleted=True, renamed=renamed)
+        source = Source(path, text(path))
+        changes: Iterable[MutantEdit] = ()
         if own in package.rviz_files:
-            yield from _as_mutants(text(path), path, _rviz(Source(path, text(path)), own, links))
+            changes = _rviz(source, label, links)
         elif own in (MANIFEST, SETUP) or own in package.launch_files:
-            yield from _as_mutants(text(path), path, _file_changes(Source(path, text(path)), own))
+            changes = _file_changes(source, label, own)
+        yield from _as_mutants(source.text, path, chain(changes, further(source, label)))
 
 
-def _file_changes(source: Source, label: str) -> Iterator[_MutantEdit]:
+def _file_changes(source: Source, label: str, own: str) -> Iterator[MutantEdit]:
     """Yield the changes of a file that builds or starts something, by its format."""
     if source.path.endswith(".py"):
-        yield from _python_changes(PythonFile(source), label)
+        yield from _python_changes(PythonFile(source), label, is_setup=own == SETUP)
         return
     for mutant in mutants(source.text):
         place = mutant.id.partition(": ")[2]
-        if mutant.family in _XML_FAMILIES and (label != MANIFEST or _READ_OF_MANIFEST.match(place)):
-            yield _MutantEdit(mutant.family, f"{label} {place}", mutant.start, mutant.end, mutant.new)
+        if mutant.family in _XML_FAMILIES and (own != MANIFEST or _READ_OF_MANIFEST.match(place)):
+            yield MutantEdit(mutant.family, f"{label} {place}", mutant.start, mutant.end, mutant.new)
 
 
-def _rviz(source: Source, label: str, links: Iterable[str]) -> Iterator[_MutantEdit]:
+def _rviz(source: Source, label: str, links: Iterable[str]) -> Iterator[MutantEdit]:
     """Yield changes of the fixed frame, and of each display: disabled, its class or topic misspelt."""
     try:
         root = read_yaml(source.text.encode("utf-8", "surrogateescape"), source.path)
@@ -226,41 +236,40 @@ def _rviz(source: Source, label: str, links: Iterable[str]) -> Iterator[_MutantE
         return
     frame = root.get("Visualization Manager", "Global Options", "Fixed Frame") if root else None
     if frame is not None and frame.text:
-        for other in (_misspelt(frame.text), *links):
-            yield _MutantEdit("fixed frame", f"{label} -> {other}", *frame.span, other)
+        for other in (misspelt(frame.text), *links):
+            yield MutantEdit("fixed frame", f"{label} -> {other}", *frame.span, other)
     displays = root.get("Visualization Manager", "Displays") if root else None
     for display in displays.items if displays else ():
         yield from _display_changes(display, label)
 
 
-def _display_changes(display: YamlNode, label: str) -> Iterator[_MutantEdit]:
+def _display_changes(display: YamlNode, label: str) -> Iterator[MutantEdit]:
     title, enabled = display.get("Name") or display.get("Class"), display.get("Enabled")
     place = f"{label} {title.text if title else ''}".rstrip()
     if enabled is not None and enabled.text == "true":
-        yield _MutantEdit("display disabled", place, *enabled.span, "false")
+        yield MutantEdit("display disabled", place, *enabled.span, "false")
     for keys in _DISPLAY_TEXTS:
         node = display.get(*keys)
         if node is not None and node.text:
-            yield _MutantEdit("text misspelt", f"{place} {'/'.join(keys)}", *node.span, _misspelt(node.text))
+            yield MutantEdit("text misspelt", f"{place} {'/'.join(keys)}", *node.span, misspelt(node.text))
 
 
-def _python_changes(file: PythonFile, label: str) -> Iterator[_MutantEdit]:
+def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> Iterator[MutantEdit]:
     """Yield the changes of a file: an entry of data_files, an action or an import deleted, a string misspelt."""
-    is_setup = label == SETUP
     family = "data_files entry deleted" if is_setup else "action removed"
     for item in _entries(file):
         start, end = file.span(item)
         comma = re.compile(r"\s*,").match(file.text, end)
-        yield _MutantEdit(family, f"{label} {_short(file, item)}", start, comma.end() if comma else end, "")
+        yield MutantEdit(family, f"{label} {_short(file, item)}", start, comma.end() if comma else end, "")
     for call in file.calls("add_action"):
         action = call.args[0] if call.args else call
-        yield _MutantEdit(family, f"{label} {_short(file, action)}", *file.span(call), "None")
+        yield MutantEdit(family, f"{label} {_short(file, action)}", *file.span(call), "None")
     for node in file.imports if is_setup else ():
-        yield _MutantEdit("import deleted", f"{label} {file.segment(node)}", *file.span(node), "pass")
+        yield MutantEdit("import deleted", f"{label} {file.segment(node)}", *file.span(node), "pass")
     ignored = [*_for_people(file)]
     for text, start, end in file.literals:
         if text.strip() and not any(first <= start < last for first, last in ignored):
-            yield _MutantEdit("string misspelt", f"{label} {text[:_MAX_LABEL]}", start, end, _misspelt(text))
+            yield MutantEdit("string misspelt", f"{label} {text[:MAX_LABEL]}", start, end, misspelt(text))
 
 
 def _entries(file: PythonFile) -> Iterator[ast.expr]:
@@ -277,7 +286,7 @@ def _short(file: PythonFile, node: ast.expr) -> str:
     """Return what tells an item of a list from others: the executable of a node, else its text."""
     executable = argument(node, "executable") if isinstance(node, ast.Call) else None
     text = " ".join(file.segment(executable.value if executable is not None else node).split())
-    return text.strip("'\"") if len(text) <= _MAX_LABEL else text[:_MAX_LABEL]
+    return text.strip("'\"") if len(text) <= MAX_LABEL else text[:MAX_LABEL]
 
 
 def _for_people(file: PythonFile) -> Iterator[tuple[int, int]]:

@@ -15,7 +15,8 @@ from random import Random
 from typing import Any, NamedTuple
 
 from grader.authoring.equivalents import Equivalent, RewritingRules, equivalents, is_same_robot
-from grader.authoring.mutants import Mutant, mutants, package_mutants
+from grader.authoring.mutants import Mutant, MutantEdit, mutants, package_mutants
+from grader.authoring.name_mutants import compared_names, name_changes
 from grader.authoring.samples import Loss, Sample, SampleResults, tested_samples
 from grader.checks.manual import MANUAL_CHECKS
 from grader.errors import InputError
@@ -28,9 +29,11 @@ from grader.grading.rubric import Rubric, read_rubric
 from grader.hints.edits import content, with_files, with_urdf
 from grader.hints.search import is_worse
 from grader.package.package import MANIFEST
+from grader.source import Edit, Source
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
+from grader.workspace.names import Fact, Family
 
 _WORD = re.compile(r"[\w@:.-]+")
 _TEXTS = (".py", ".xml", ".yaml", ".yml", ".rviz", ".launch", ".cfg", ".json", ".txt", ".world", ".sdf")
@@ -107,6 +110,8 @@ class Trial:
         return [path for path in tried if not self._is_examined(path)], len(tried)
 
     def _is_examined(self, path: str) -> bool:
+        if any(edit.path == path for _, edit in self._names):
+            return True
         try:
             emptied = with_files(self.reference, {path: b""})
         except InputError:
@@ -123,7 +128,25 @@ class Trial:
         if package is not None:
             robot = urdf.reading.robot if isinstance(urdf, Read) else None
             links = [link.name for link in robot.links] if robot is not None else []
-            yield from filter(self._is_looked_at, package_mutants(package, links, self.text))
+            packages = [it for it in self.reference.lab_packages.values() if it.folder != package.folder]
+            for one in (package, *packages):
+                prefix = "" if one is package else f"{one.name}/"
+                made = package_mutants(one, links, self.text, self._name_changes, prefix=prefix)
+                yield from filter(self._is_looked_at, made)
+
+    def _name_changes(self, source: Source, label: str) -> Iterable[MutantEdit]:
+        """Return the changes of names and values in a file, if a criterion compares them."""
+        is_compared = any(it.check.name in ("names_agree", "parameter_is") for it in self.tested)
+        return name_changes(source, label, self._names, self._families) if is_compared else ()
+
+    @cached_property
+    def _families(self) -> tuple[Family, ...]:
+        """The families of names that have to agree."""
+        return tuple(it.arguments["of"] for it in self.tested if it.check.name == "names_agree")
+
+    @cached_property
+    def _names(self) -> list[tuple[Fact, Edit]]:
+        return [*compared_names(self.reference, self._families)]
 
     def _is_looked_at(self, mutant: Mutant) -> bool:
         """Return whether a criterion may look at a mutant of a package: some look at its name or at meshes only."""

@@ -3,8 +3,9 @@
 import inspect
 import re
 import sys
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from itertools import takewhile
+from keyword import iskeyword
 from typing import Any, Literal, NamedTuple, get_args, get_type_hints
 
 from grader.checks.outcome import Outcome
@@ -94,6 +95,11 @@ class Check(NamedTuple):
             return self
         return self._replace(function=function, examined=describe(function).examined)
 
+    def outcome(self, examined: Iterable[object], arguments: Mapping[str, Any]) -> Outcome:
+        """Return what it finds in the objects that it examines, with the arguments of a rubric."""
+        given = {f"{key}_" if iskeyword(key) else key: value for key, value in arguments.items()}
+        return self.function(*examined, **given)
+
     @property
     def subject(self) -> Subject:
         """The main object that it examines."""
@@ -108,6 +114,7 @@ class Check(NamedTuple):
 def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
     """Return the check that a function is: its signature is the schema of the rubric's `with` table.
 
+    An argument whose key is a keyword of Python, such as `not`, has an underscore behind it in the function: `not_`.
     Raises InputError for a signature that is no schema.
     """
     hints = get_type_hints(function, include_extras=True)
@@ -120,8 +127,8 @@ def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
     also = list(takewhile(_is_subject, rest))
     parameters = {}
     for name, default in ((parameter.name, parameter.default) for parameter in rest[len(also) :]):
-        is_required = default is inspect.Parameter.empty
-        parameters[name] = _CheckParameter(name, hints[name], is_required, None if is_required else default)
+        is_required, key = default is inspect.Parameter.empty, _key(name)
+        parameters[key] = _CheckParameter(key, hints[name], is_required, None if is_required else default)
     main = subject.name if subject.name in _SUBJECTS else "robot"
     examined = tuple(
         name for given in (main, *(parameter.name for parameter in also)) for name in _SUBJECTS if name == given
@@ -131,6 +138,11 @@ def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
     if not isinstance(about, About):
         raise InputError(f"ABOUT says of {name} what is no About(...)")
     return Check(name, function, examined, parameters, distribution, about)
+
+
+def _key(name: str) -> str:
+    """Return the key of an argument in a rubric."""
+    return name.removesuffix("_") if iskeyword(name.removesuffix("_")) else name
 
 
 def _is_subject(parameter: inspect.Parameter) -> bool:
@@ -161,7 +173,7 @@ def documentation(function: Callable[..., Any]) -> Documentation:
 def _arguments(section: str) -> dict[str, str]:
     """Return the entries of an `Args:` section by name; an entry continues on lines that are indented further."""
     entries = (re.split(_ARGUMENT, entry) for entry in re.split(r"\n(?=\S)", section))
-    return {found[1]: _one_line(found[2]) for found in entries if len(found) == 3}
+    return {_key(found[1]): _one_line(found[2]) for found in entries if len(found) == 3}
 
 
 def _one_line(text: str) -> str:

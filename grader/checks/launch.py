@@ -1,12 +1,13 @@
 """Checks of a launch file: its name, the nodes that it starts, and whether a build installs the files that it names."""
 
 import posixpath
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from grader.checks.check import About
 from grader.checks.outcome import Outcome, failed, judged, passed
-from grader.errors import InputError, MissingElement, NotDecided
+from grader.checks.started_nodes import Fault, Wanted, find_faults
+from grader.errors import InputError, MissingElement, NotDecided, RubricError
 from grader.files.reading import URDF_LIMIT
 from grader.names import closest
 from grader.package.launch.places import (
@@ -24,17 +25,19 @@ from grader.package.launch.places import (
 from grader.package.package import CMAKE, SETUP, Package
 from grader.python.values import OBJECT
 from grader.source import Location
+from grader.submission.submission import Submission
 from grader.text import enumerated
 
 if TYPE_CHECKING:
     from grader.checks.installed_robot import InstalledRobot
+    from grader.package.entry_points import EntryFault
     from grader.package.launch.model import Launch, NamedFile, Purpose
 
 
 # What the edits for hints may change.
 ABOUT = {
     "launch_found": About(("launch",)),
-    "launch_starts": About(("launch",)),
+    "node_runs": About(("launch",)),
     "launch_finds_files": About(("launch",)),
 }
 _WORDS = {"urdf": "URDF", "rviz": "RViz file", "include": "launch file", "launch": "launch file", "read": "file"}
@@ -74,50 +77,117 @@ def launch_found(package: Package, *, name: str) -> Outcome:
     return failed(f"there is no launch file {name!r}", Location(package.path(path), 1, 1), detail=detail)
 
 
-def launch_starts(package: Package, *, name: str, nodes: list[str], built: bool = True) -> Outcome:
-    """The launch file starts these nodes, with the defaults of its arguments.
+def node_runs(
+    package: Package,
+    submission: Submission,
+    *,
+    launch: str,
+    nodes: list[str] | None = None,
+    not_: list[str] | None = None,
+    remap: Mapping[str, str] | None = None,
+    arguments: list[str] | None = None,
+    includes: list[str] | None = None,
+    publishes: list[str] | Mapping[str, str] | None = None,
+    subscribes: list[str] | Mapping[str, str] | None = None,
+    built: bool = True,
+) -> Outcome:
+    """The launch file starts these nodes, with the defaults of its arguments or those of the criterion's `args`.
 
     Launch files that it includes count, if they are part of the submission or of a well-known package. What ros2 launch
     stops at fails: an error in the file, a wrong argument of an action, a file that it reads and that is not installed.
     So does an entry point in setup.py of one of these nodes whose module or function does not exist.
 
     Args:
-        name: The file's name, such as view.launch.py.
+        launch: The file's name, such as view.launch.py.
         nodes: The nodes, each as "package/executable", or as one name if both are the same; "a or b" leaves a choice.
+            A script may end in .py or not.
+        not: Nodes that it does not start.
+        remap: Names in the program of each of `nodes`, and what they are remapped to, by a rule or a namespace.
+        arguments: Arguments of each of `nodes`: an option is followed by its value, and a path may be the end of one.
+        includes: Launch files that it or another file of the submission includes, by the ends of their paths.
+        publishes: Topics that nodes of the submission in Python publish, after remapping; a table gives their types.
+        subscribes: Topics that they subscribe to.
         built: Whether it must find the files that it reads; if not, only what else stops it counts.
     """
-    launch = _launch_of(package, name)
-    if launch.faults:
-        raise _fault_that_stops(package, name, launch)
+    found = _launch_of(package, launch)
+    if found.faults:
+        raise _fault_that_stops(package, launch, found)
     if shadow := package.shadows_ros:
         message = f"the folder {shadow} is installed as a Python package, in place of that of ROS 2: rename it"
         return failed(message, Location(package.path(CMAKE if package.is_cmake else SETUP), 1, 1))
-    places = _find_places(package, launch, "read", "urdf", "include", built=built)
-    started = {node.name for node in launch.nodes if node.when}
-    missing = [choice for choice in (node.split(" or ") for node in nodes) if started.isdisjoint(choice)]
-    listed = ", ".join(" or ".join(choice) for choice in missing)
-    if missing and not _may_start(launch, missing):
-        message = f"starts {', '.join(sorted(started)) or 'nothing'}"
-        reason, at = _why_missing(launch, {node for choice in missing for node in choice})
-        what, detail = f"the launch file does not start {listed}", f"; it {message}{reason}"
-        return judged(False, what, tuple(sorted(started)), tuple(nodes), at=at, detail=detail)
-    if fault := _faulty_program(package, launch, nodes):
+    if (remap or arguments) and not nodes:
+        raise RubricError(("node_runs looks for remap and arguments in nodes: name one",))
+    places = _find_places(package, found, "read", "urdf", "include", built=built)
+    choices = [_names_in(found, node.split(" or ")) for node in nodes or ()]
+    missing = _missing_nodes(found, choices)
+    if missing and not _may_start(found, missing):
+        return _fail_missing(found, missing, nodes or ())
+    wanted = Wanted(_names_in(found, not_ or ()), remap, arguments, includes, publishes, subscribes)
+    faults = find_faults(submission, found, choices, wanted) if any(wanted) else []
+    if wrong := next((it for it in faults if it.is_sure), None):
+        return failed(wrong.message, wrong.at, detail=wrong.detail)
+    if fault := _faulty_program(package, found, choices):
         raise fault
+    stopped = _stop_at_files(package, places, built=built)
+    if stopped is not None:
+        return stopped
+    if built or not any(_is_in_misnamed(package, it) for it in places):
+        _check_starts(found)
+    _check_decided(found, missing, faults, places)
+    started = sorted({node.name for node in found.nodes if node.when})
+    return judged(True, f"the launch file starts {', '.join(started)}", tuple(started), tuple(nodes or ()))
+
+
+def _names_in(launch: "Launch", names: Iterable[str]) -> list[str]:
+    """Return names of nodes as a launch file has them: a build may install a script with .py, or without."""
+    known = {node.name for node in launch.nodes}
+    others = {name: name.removesuffix(".py") if name.endswith(".py") else f"{name}.py" for name in names}
+    return [other if other in known and name not in known else name for name, other in others.items()]
+
+
+def _missing_nodes(launch: "Launch", choices: Sequence[Sequence[str]]) -> list[Sequence[str]]:
+    """Return the nodes that are not certainly started."""
+    started = {node.name for node in launch.nodes if node.when}
+    return [choice for choice in choices if started.isdisjoint(choice)]
+
+
+def _listed(missing: Sequence[Sequence[str]]) -> str:
+    return ", ".join(" or ".join(choice) for choice in missing)
+
+
+def _fail_missing(launch: "Launch", missing: Sequence[Sequence[str]], nodes: Sequence[str]) -> Outcome:
+    """Return the failure of a launch file that certainly does not start some nodes."""
+    started = sorted({node.name for node in launch.nodes if node.when})
+    reason, at = _why_missing(launch, {node for choice in missing for node in choice})
+    what, detail = (
+        f"the launch file does not start {_listed(missing)}",
+        f"; it starts {', '.join(started) or 'nothing'}",
+    )
+    return judged(False, what, tuple(started), tuple(nodes), at=at, detail=f"{detail}{reason}")
+
+
+def _stop_at_files(package: Package, places: Sequence[_FilePlace], *, built: bool) -> Outcome | None:
+    """Return the failure of a launch file that stops at a file that it reads; None if it does not."""
     if built and (wrong := [it for it in places if it.state == "wrong" and _stops_launch(it.file)]):
         return _fail_places(package, wrong)
-    if stopping := next(filter(None, (_warning_that_stops(package, it) for it in places)), None):
-        return stopping
-    if built or not any(_is_in_misnamed(package, it) for it in places):
-        _check_starts(launch)
+    return next(filter(None, (_warning_that_stops(package, it) for it in places)), None)
+
+
+def _check_decided(
+    launch: "Launch", missing: Sequence[Sequence[str]], faults: Sequence[Fault], places: Sequence[_FilePlace]
+) -> None:
+    """Raise NotDecided if it is not known whether the launch file starts the nodes as they are wanted."""
+    reason = f": {launch.unknown[0].message}" if launch.unknown else ""
     if missing:
-        reason = f": {launch.unknown[0].message}" if launch.unknown else ""
-        message = f"cannot determine statically whether {listed} is started{reason}"
+        message = f"cannot determine statically whether {_listed(missing)} is started{reason}"
         raise NotDecided(message, "cannot determine statically which nodes the launch file starts")
+    if faults:
+        message = f"cannot determine statically whether {faults[0].message}{reason}"
+        raise NotDecided(message, "cannot determine statically what the launch file gives its nodes")
     unknown = next((it.text for it in places if it.state == "unknown" and _stops_launch(it.file) and it.file.path), "")
     if unknown:
         cause = "cannot determine statically whether the files that it reads are installed"
         raise NotDecided(f"{unknown}, and the launch file reads it", cause)
-    return judged(True, f"the launch file starts {', '.join(sorted(started))}", tuple(sorted(started)), tuple(nodes))
 
 
 def launch_finds_files(package: Package, *, name: str, built: bool = True, started: bool = True) -> Outcome:
@@ -179,23 +249,28 @@ def _stops_launch(file: "NamedFile") -> bool:
     return file.purpose in ("read", "include") or file.by != ""
 
 
-def _faulty_program(package: Package, launch: "Launch", nodes: Sequence[str]) -> MissingElement | None:
+def _faulty_program(package: Package, launch: "Launch", choices: Sequence[Sequence[str]]) -> MissingElement | None:
     """Return the fault of a wanted node that certainly ends at once: setup.py names no function for its program."""
-    for choice in (node.split(" or ") for node in nodes):
+    for choice in choices:
         started = {node.name: node for node in launch.nodes if node.when is not False and node.name in choice}
         faults = [_fault_of_program(package.find(node.package), node.executable) for node in started.values()]
         found = [fault for fault in faults if fault is not None]
         if found and len(found) == len(faults):
-            (reason, at), name = found[0], next(iter(started))
+            fault, name = found[0], next(iter(started))
             message = f"the entry point of {name.rpartition('/')[2]!r} names no function"
             return MissingElement(
-                "entry point", name, message=message, detail=f": {reason}", location=at, costs_once=True
+                "entry point",
+                name,
+                message=message,
+                detail=f": {fault.message}",
+                location=fault.location,
+                costs_once=True,
             )
     return None
 
 
-def _fault_of_program(owner: Package | None, name: str) -> tuple[str, Location] | None:
-    """Return why a program of a submitted package does not start, and where setup.py names it."""
+def _fault_of_program(owner: Package | None, name: str) -> "EntryFault | None":
+    """Return why a program of a submitted package does not start."""
     if owner is None:
         return None
     from grader.package.entry_points import entry_fault  # late: most launch files start programs of ROS 2 only

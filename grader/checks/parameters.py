@@ -8,6 +8,7 @@ from grader.checks.toml_types import Content, NonNegative, Scalar
 from grader.errors import MissingElement, NotDecided, RubricError
 from grader.names import did_you_mean
 from grader.package.launch.model import ParameterValue
+from grader.package.package import Package
 from grader.python.values import Unknown
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Cylinder, Joint, Sphere
@@ -20,6 +21,7 @@ _EXACT = 1e-6
 
 def parameter_is(
     submission: Submission,
+    package: Package,
     *,
     node: str,
     parameter: str,
@@ -29,8 +31,9 @@ def parameter_is(
     measure: _Measure | None = None,
     links: list[str] | None = None,
     tolerance: NonNegative = _EXACT,
+    where_given: bool = False,
 ) -> Outcome:
-    """A node gets this value of a parameter, wherever it is written.
+    """A node gets this value of a parameter, wherever it is written, under the criterion's `args` if it has some.
 
     Files of parameters, values in launch files and arguments of the node count as in ROS 2. Controllers get those of
     the controller manager's files, and those that their spawner is given.
@@ -45,13 +48,20 @@ def parameter_is(
             the distance between the frames of two links, or a limit of the joint that moves the first one.
         links: The links that are measured.
         tolerance: How far a number may be off, in the number's own unit.
+        where_given: Whether a node that does not get the parameter passes, for `carried`.
     """
-    found = _value_of(submission, node, parameter)
+    del package  # without one, there are no parameters
+    try:
+        found = value_of(submission, node, parameter)
+    except MissingElement:
+        if where_given:
+            return passed(f"nothing gives {parameter} to {node}")
+        raise
     if isinstance(found.value, Unknown):
         cause = f"the parameter {parameter} of {node} cannot be determined statically"
         raise NotDecided(f"{cause}: {found.value.reason}", cause)
     if measure is not None:
-        value = _measured(submission, measure, links or [])
+        value = measured(submission, measure, links or [])
     actual, wanted, fits = found.value, "", True
     if value is not None:
         wanted, fits = f"should be {_text(value)}", _equal(actual, value, tolerance)
@@ -67,11 +77,10 @@ def parameter_is(
     return passed(message) if fits else failed(f"{message}; it {wanted}", found.location)
 
 
-def _value_of(submission: Submission, node: str, parameter: str) -> ParameterValue:
+def value_of(submission: Submission, node: str, parameter: str) -> ParameterValue:
     """Return the value that a node gets. Raises MissingElement if it gets none, NotDecided where that is not known."""
     from grader.workspace.workspace import Workspace  # late: few rubrics ask for it
 
-    submission.needed_package()
     workspace = Workspace(submission)
     given = workspace.parameter_owners.get(node, [])
     values = [found.values[parameter] for found in given if parameter in found.values]
@@ -117,7 +126,7 @@ def _text(value: Any) -> str:
     return quoted(value) if isinstance(value, str) else f"{value:.12g}"
 
 
-def _measured(submission: Submission, measure: _Measure, links: list[str]) -> float:
+def measured(submission: Submission, measure: _Measure, links: list[str]) -> float:
     """Return a measure of the robot, in metres or radians. Raises MissingElement for a link that is not there."""
     robot = submission.needed_urdf().robot
     if robot is None:

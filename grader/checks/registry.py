@@ -55,7 +55,7 @@ CHECKS = (
     "package_build.installs_files",
     "package_build.setup_imports",
     "launch.launch_found",
-    "launch.launch_starts",
+    "launch.node_runs",
     "launch.launch_finds_files",
     "rviz.rviz_found",
     "rviz.rviz_fixed_frame",

@@ -178,7 +178,7 @@ class _Grading:
             subjects = self._subjects.under(criterion.args)
             examined = subjects.of(check, criterion)
             arguments = subjects.named(check, arguments) if criterion.has_selectors else arguments
-            outcome = check.function(*examined, **arguments)
+            outcome = check.outcome(examined, arguments)
             fault = fault_of(outcome) if check.distribution else ""
             conditions = [f"{name}:={value}" for name, value in criterion.args.items()]
             if criterion.at and not fault:

@@ -26,6 +26,15 @@ class _EntryPoint(NamedTuple):
     location: Location
 
 
+class EntryFault(NamedTuple):
+    """Why a program certainly does not start, where setup.py names it, and the word in it that may mean another one."""
+
+    message: str
+    location: Location
+    written: str
+    meant: str | None
+
+
 def entry_points(package: Package) -> list[_EntryPoint]:
     """Return the entry points that are known: those of console_scripts in setup.py that are written as texts."""
     setup = package.installation
@@ -47,8 +56,8 @@ def _place_of(package: Package, name: str) -> Location:
     return setup.source.at(written.start()) if written else setup.location(setup.called_at)
 
 
-def entry_fault(package: Package, name: str) -> tuple[str, Location] | None:
-    """Return why a program certainly does not start, and where setup.py names it; None where that is not known.
+def entry_fault(package: Package, name: str) -> EntryFault | None:
+    """Return why a program certainly does not start; None where that is not known.
 
     Its module or the function in it is not there. Modules of other packages are not known, nor is what a module does to
     its own names: a star import, `exec`, `globals()`.
@@ -59,14 +68,13 @@ def entry_fault(package: Package, name: str) -> tuple[str, Location] | None:
     [entry] = named
     path = _module_path(package, entry.module)
     if path is None:
-        return (_missing_module(package, entry), entry.location) if _lacks_module(package, entry.module) else None
+        return _missing_module(package, entry) if _lacks_module(package, entry.module) else None
     code = read_module(package, path)
     names = _certain_names(code) if code is not None else None
     if not entry.function or names is None or entry.function in names:
         return None
     others = [node.name for node in code.tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)] if code else []
-    guess = _guess(entry.function, others)
-    return f"{path} has no {entry.function!r}{guess}", entry.location
+    return _fault(entry, f"{path} has no {entry.function!r}", entry.function, others)
 
 
 def read_module(package: Package, path: str) -> Code | None:
@@ -99,7 +107,7 @@ def _lacks_module(package: Package, module: str) -> bool:
     return all(code is not None and _certain_names(code) is not None for code in codes)
 
 
-def _missing_module(package: Package, entry: _EntryPoint) -> str:
+def _missing_module(package: Package, entry: _EntryPoint) -> EntryFault:
     folder = entry.module.rpartition(".")[0].replace(".", "/")
     others = [
         path.removeprefix(f"{folder}/").removesuffix(".py")
@@ -107,15 +115,17 @@ def _missing_module(package: Package, entry: _EntryPoint) -> str:
         if path.rpartition("/")[0] == folder and path.endswith(".py") and not path.endswith("__init__.py")
     ]
     own = entry.name if entry.name in others else ""
-    return f"there is no module {entry.module}{_guess(entry.module.rpartition('.')[2], others, own)}"
+    return _fault(entry, f"there is no module {entry.module}", entry.module.rpartition(".")[2], others, own)
 
 
-def _guess(name: str, known: list[str], own: str = "") -> str:
-    """Return the end of a message: the name that may be meant, else the names that there are."""
-    meant = closest(name, known) or own
-    if meant:
-        return f"; did you mean {meant!r}?"
-    return f"; there is {enumerated([repr(it) for it in known[:_MAX_NAMED]])}" if known else ""
+def _fault(entry: _EntryPoint, message: str, written: str, known: list[str], own: str = "") -> EntryFault:
+    """Return the fault of an entry point, with the name that may be meant, else the names that there are."""
+    meant = closest(written, known) or own or None
+    if meant is not None:
+        message += f"; did you mean {meant!r}?"
+    elif known:
+        message += f"; there is {enumerated([repr(it) for it in known[:_MAX_NAMED]])}"
+    return EntryFault(message, entry.location, written, meant)
 
 
 def _certain_names(code: Code) -> frozenset[str] | None:

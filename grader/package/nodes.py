@@ -70,8 +70,8 @@ class Endpoint(NamedTuple):
     kind: _Kind
     type: str | None
     name: str | None  # of the topic or service, as it is written
-    qos: _Qos
     location: Location
+    qos: _Qos = _Qos()
 
 
 class NodeParameter(NamedTuple):
@@ -376,7 +376,7 @@ class _Module:
             made = argument(0, "msg_type" if is_topic else "srv_type")
             name = _text(argument(1, "topic" if is_topic else "srv_name"))
             qos = argument(2 if kind == "publisher" else 3, "qos_profile") if is_topic else None
-            yield Endpoint(kind, made.name if isinstance(made, QualifiedName) else None, name, _qos(qos), at)
+            yield Endpoint(kind, made.name if isinstance(made, QualifiedName) else None, name, at, _qos(qos))
         elif method == "create_timer":
             period = argument(0, "timer_period_sec")
             yield Timer(float(period) if isinstance(period, int | float) else None, at)

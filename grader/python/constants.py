@@ -105,7 +105,7 @@ def dotted(node: ast.AST) -> str:
 
 def offset_of(node: ast.AST) -> tuple[int, int]:
     """Return line and column of a node, by which nodes are in the order of the file."""
-    return getattr(node, "lineno", 0), getattr(node, "coloffset_of", 0)
+    return getattr(node, "lineno", 0), getattr(node, "col_offset", 0)
 
 
 def _replaces_names(node: ast.ImportFrom) -> bool:

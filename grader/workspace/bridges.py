@@ -10,7 +10,7 @@ from grader.names import closest
 from grader.package.yaml_nodes import YamlNode
 from grader.source import Location, Source
 from grader.text import quoted
-from grader.workspace.names import Compared, Fact, Mismatch, place_text
+from grader.workspace.names import Compared, Fact, Mismatch, corrections, place_text
 from grader.workspace.workspace import Workspace
 from grader.xml.parsing import Element, XmlFault, XmlFile
 
@@ -106,7 +106,8 @@ def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
             message = (
                 f"no sensor publishes {quoted(row.gz)} in Gazebo; did you mean {quoted(meant)} ({place_text(at)})?"
             )
-            yield Mismatch("topics", message, row.location, at, row.is_used and is_known and len(unused) == 1)
+            is_sure = row.is_used and is_known and len(unused) == 1
+            yield Mismatch("topics", message, row.location, at, is_sure, corrections(row.gz, row.location, meant, at))
 
 
 def _gazebo_topics(workspace: Workspace) -> tuple[list[_Sensor], set[str]]:

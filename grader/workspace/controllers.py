@@ -1,14 +1,17 @@
 """Controllers of ros2_control: their YAML, the spawners that start them, and the interfaces of their joints."""
 
+import posixpath
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import NamedTuple
 
 from grader.names import closest
+from grader.package.launch.model import StartedNode
+from grader.package.nodes import Endpoint
 from grader.package.yaml_nodes import YamlFault, YamlNode
 from grader.source import Location
 from grader.workspace.known import known
-from grader.workspace.names import Definition, Fact, Mismatch, Open, Use, place_text
+from grader.workspace.names import Definition, Fact, Mismatch, Open, Use, corrections, place_text
 from grader.workspace.workspace import Workspace
 from grader.workspace.yaml_values import sections_in
 
@@ -58,6 +61,30 @@ def defined_controllers(workspace: Workspace) -> Iterator[_Controller]:
                 yield _Controller(name, kind, kind.location, inner.get("params_file") is not None)
 
 
+def controller_endpoints(workspace: Workspace, launch: int, node: StartedNode) -> Iterator[tuple[str, Endpoint]]:
+    """Yield the topics of the controllers in the process of a node, those that its launch file spawns."""
+    if node.executable != "ros2_control_node" or node.namespace is None or node.remaps is None:
+        return
+    spawners = [it for number, it in workspace.launched if number == launch and it.executable in _SPAWNERS and it.when]
+    spawned = {name for it in spawners for word in it.arguments or () for name in (word or "").split()}
+    unstamped = {keys[-1] for keys, section in _sections(workspace) if section.get("use_stamped_vel") is not None}
+    for controller in defined_controllers(workspace):
+        if controller.name not in spawned or controller.name in unstamped:
+            continue
+        for kind, topics in known()["controller_topics"].get(controller.type.text, {}).items():
+            for name, message in topics.items():
+                topic = _topic(node, controller.name, name)
+                yield topic, Endpoint(kind, message, topic, controller.location)
+
+
+def _topic(node: StartedNode, controller: str, name: str) -> str:
+    """Return the full name of a topic of a controller, after the remappings of its process."""
+    above = f"/{(node.namespace or '').strip('/')}/".replace("//", "/")
+    full = f"{above}{controller}/{name}"
+    targets = (new for old, new in node.remaps or () if old in (full, f"~/{name}"))
+    return posixpath.join(above, next(targets, full))
+
+
 def _type_facts(workspace: Workspace, controller: _Controller) -> Iterator[Fact]:
     """Yield that no package has a class of the controller's type, where all classes of its package are known."""
     types, written = known()["controllers"], controller.type.text or ""
@@ -69,7 +96,8 @@ def _type_facts(workspace: Workspace, controller: _Controller) -> Iterator[Fact]
     if is_known or similar is not None:
         guess = f"; did you mean {similar!r}?" if similar is not None else ""
         message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
-        yield Mismatch("controllers", message, controller.location, is_sure=is_known)
+        either = corrections(written, controller.location, similar) if similar is not None else ()
+        yield Mismatch("controllers", message, controller.location, is_sure=is_known, corrections=either)
 
 
 def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapping[str, YamlNode]) -> Iterator[Fact]:
@@ -79,7 +107,9 @@ def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapp
     if section is None:
         if needed and "**" not in sections and not controller.has_file:
             message = f"the controller {controller.name!r} has no parameters: there is no key {controller.name}"
-            yield Mismatch("controllers", f"{message} with ros__parameters", controller.location)
+            meant, at = closest(controller.name, sections), controller.location
+            either = corrections(meant, sections[meant].location, controller.name, at) if meant is not None else ()
+            yield Mismatch("controllers", f"{message} with ros__parameters", at, corrections=either)
         return
     interfaces = workspace.command_interfaces
     for key, wanted in needed.items():

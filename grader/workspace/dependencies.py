@@ -3,11 +3,12 @@
 import re
 from collections.abc import Iterator
 
+from grader.names import near
 from grader.package.package import Package
 from grader.package.yaml_nodes import YamlNode
 from grader.source import Location
 from grader.workspace.known import known
-from grader.workspace.names import Compared, Fact, Mismatch
+from grader.workspace.names import Compared, Fact, Mismatch, corrections
 from grader.workspace.workspace import Workspace
 from grader.workspace.yaml_values import sections_in
 
@@ -33,8 +34,10 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
             if name not in declared:
                 message = f"package.xml of {package.name!r} does not declare {name!r}, which is used here"
                 # rosdep installs what packages need that are declared.
-                is_sure = name not in brought
-                yield Mismatch("dependencies", message, at, package.manifest.name_location, is_sure)
+                is_sure, start = name not in brought, package.manifest.name_location
+                meant = near(name, declared - used.keys())
+                either = corrections(meant, start, name, at) if meant is not None else ()
+                yield Mismatch("dependencies", message, at, start, is_sure, either)
 
 
 def _used(workspace: Workspace, package: Package) -> Iterator[tuple[str, Location]]:

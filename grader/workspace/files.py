@@ -6,11 +6,12 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from grader.names import closest, near
+from grader.package.installation import Installation
 from grader.package.launch.model import Launch
 from grader.package.launch.places import PREFIX, SHARE
 from grader.package.package import CMAKE, Package
 from grader.source import Location
-from grader.workspace.names import Compared, Fact, Mismatch, Undecided
+from grader.workspace.names import Compared, Correction, Fact, Mismatch, Undecided, corrections
 from grader.workspace.workspace import Workspace
 
 _FIND = re.compile(r"\$\(find(?:-pkg-share)? ([\w-]+)\)/?([^\"'<>\s$]*)(?=[\"'<\s])")
@@ -78,7 +79,8 @@ def _fault_of(workspace: Workspace, package: Package, path: str, at: Location) -
     if owner is None:
         meant = near(name, [it.name for it in workspace.packages])
         if meant is not None and not package.depends_on(name):
-            yield Mismatch("files", f"there is no package {name!r}; did you mean {meant!r}?", at)
+            message = f"there is no package {name!r}; did you mean {meant!r}?"
+            yield Mismatch("files", message, at, corrections=corrections(name, at, meant))
         return
     target, setup = f"share/{name}/{rest}", owner.installation
     if not rest or target in owner.installed or any(it.startswith(f"{target}/") for it in owner.installed):
@@ -99,20 +101,40 @@ def _not_there(owner: Package, target: str, at: Location) -> Mismatch:
     """Return where else a build installs a file, or what the package has instead of it."""
     setup, name = owner.installation, posixpath.basename(target)
     assert setup is not None
+    start = Location(setup.source.path, 1, 1)
     elsewhere = next((it for it in owner.installed if posixpath.basename(it) == name), None)
     own = next((it for it in owner.tree.files if posixpath.basename(it) == name), None)
     looked = f"{target} is looked for, but"
     if elsewhere is not None:
-        return Mismatch("files", f"{looked} a build installs it as {elsewhere}", at)
+        either = _of_folders(target, elsewhere, at, start)
+        return Mismatch("files", f"{looked} a build installs it as {elsewhere}", at, corrections=either)
     if own is not None:
         message = f"{looked} a build does not install {own}: no {setup.entry} names it"
-        return Mismatch("files", message, at, setup.location(setup.called_at))
+        either = _of_install(setup, own, start)
+        return Mismatch("files", message, at, setup.location(setup.called_at), corrections=either)
     meant = closest(name, map(posixpath.basename, owner.tree.files))
     guess = f"; did you mean {meant!r}?" if meant else ""
     # A file that a program writes is in a folder of its own, and like no other.
     folders = {posixpath.dirname(it) for it in owner.installed}
     is_sure = meant is not None or posixpath.dirname(target) in folders
-    return Mismatch("files", f"{looked} the package has no file {name!r}{guess}", at, is_sure=is_sure)
+    either = corrections(name, at, meant) if meant is not None else ()
+    message = f"{looked} the package has no file {name!r}{guess}"
+    return Mismatch("files", message, at, is_sure=is_sure, corrections=either)
+
+
+def _of_folders(target: str, elsewhere: str, at: Location, start: Location) -> tuple[Correction, ...]:
+    """Return the correction of the one folder in which a path differs from that at which the file is installed."""
+    if target.count("/") != elsewhere.count("/"):
+        return ()
+    pairs = [it for it in zip(target.split("/"), elsewhere.split("/"), strict=True) if it[0] != it[1]]
+    return corrections(pairs[0][0], at, pairs[0][1], start) if len(pairs) == 1 else ()
+
+
+def _of_install(setup: Installation, own: str, start: Location) -> tuple[Correction, ...]:
+    """Return the correction of a path in setup.py or CMakeLists.txt that does not exist, into one that has the file."""
+    wrong = [it.path for it in setup.stops] + [posixpath.dirname(it.pattern) for it in setup.empty]
+    pairs = ((path.rstrip("/"), closest(path, [own, posixpath.dirname(own)])) for path in wrong)
+    return next((corrections(path, start, meant) for path, meant in pairs if meant), ())
 
 
 def _map_images(workspace: Workspace) -> Iterator[Fact]:
@@ -129,4 +151,6 @@ def _map_images(workspace: Workspace) -> Iterator[Fact]:
                 posixpath.basename(wanted), [posixpath.basename(it) for it in files if posixpath.dirname(it) == folder]
             )
             guess = f"; did you mean {meant!r}?" if meant else ""
-            yield Mismatch("files", f"the image of the map, {image.text!r}, does not exist{guess}", image.location)
+            message = f"the image of the map, {image.text!r}, does not exist{guess}"
+            either = corrections(posixpath.basename(wanted), image.location, meant) if meant is not None else ()
+            yield Mismatch("files", message, image.location, corrections=either)

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from grader.package.yaml_nodes import YamlNode
 from grader.workspace.controllers import defined_controllers
-from grader.workspace.names import Fact, Mismatch, Use
+from grader.workspace.names import Fact, Mismatch, Use, corrections
 from grader.workspace.workspace import Workspace
 
 _MANAGER = "moveit_simple_controller_manager"
@@ -46,4 +46,5 @@ def _controllers(workspace: Workspace, manager: YamlNode) -> Iterator[Fact]:
         wanted = _ACTIONS.get(kind.text or "") if kind is not None else None
         if wanted is not None and action is not None and action.text not in ("", wanted):
             message = f"{name}.action_ns is {action.text!r}; the action of its controller is {wanted!r}"
-            yield Mismatch("controllers", message, action.location, kind.location if kind is not None else None)
+            either = corrections(action.text or "", action.location, wanted)
+            yield Mismatch("controllers", message, action.location, kind.location if kind else None, True, either)

@@ -1,4 +1,7 @@
-"""The kinds of problems of names: one for each family, one for similar names. docs/examples/ref.toml explains each."""
+"""The kinds of problems of names: one for each family, for similar names and for unused files.
+
+docs/examples/ref.toml explains each.
+"""
 
 from collections.abc import Mapping
 from functools import partial
@@ -18,6 +21,7 @@ _NO_PROGRAM = _error("REF006", "Program, entry point or node that does not exist
 _NO_TOPIC = _error("REF007", "Topic with another name, type or quality of service")
 _NO_DEPENDENCY = _warning("REF008", "Package that package.xml does not declare")
 _SIMILAR = _warning("REF009", "Name that is similar to one that is defined")
+_UNUSED = _warning("REF010", "File that no other file names")
 
 _OF_FAMILY: Mapping[Family, Kind] = {
     "files": _NO_FILE, "frames": _NO_FRAME, "controllers": _NO_CONTROLLER, "parameters": _NO_PARAMETER,
@@ -28,7 +32,9 @@ NAME_CATALOGUE = kinds_in(globals().values())
 
 def name_problems(found: Agreement) -> tuple[Problem, ...]:
     """Return what does not agree as problems, in the order of files and lines."""
-    return tuple(
+    problems = [
         Problem(_OF_FAMILY[it.family] if it.is_sure else _SIMILAR, it.message, it.location, it.family)
         for it in found.mismatches
-    )
+    ]
+    unused = [Problem(_UNUSED, "no other file of the workspace names this file", at, "files") for at in found.unused]
+    return (*problems, *unused)

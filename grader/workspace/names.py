@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import Literal, NamedTuple, get_args
 
-from grader.names import closest, near
+from grader.names import are_of_one_side, closest, near
 from grader.source import Location
 from grader.text import quoted
 
@@ -33,6 +33,11 @@ class Definition(NamedTuple):
     location: Location
     owner: str = ""
 
+    @property
+    def family(self) -> Family:
+        """The family of its kind."""
+        return _FAMILY_OF[self.kind]
+
 
 class Use(NamedTuple):
     """A name that a file uses, and what the file calls it. Where it is `optional`, only a similar name is wrong."""
@@ -44,6 +49,11 @@ class Use(NamedTuple):
     owner: str = ""
     optional: bool = False
 
+    @property
+    def family(self) -> Family:
+        """The family of its kind."""
+        return _FAMILY_OF[self.kind]
+
 
 class Open(NamedTuple):
     """That names of a kind may be defined by what is not submitted, or, for a reason, by what is not evaluated."""
@@ -51,6 +61,14 @@ class Open(NamedTuple):
     kind: _Kind
     owner: str = ""
     reason: str = ""
+
+
+class Correction(NamedTuple):
+    """Another name in a file: the old one is at a place, behind it in the same element, or the key before it."""
+
+    location: Location
+    old: str
+    new: str
 
 
 class Mismatch(NamedTuple):
@@ -61,6 +79,7 @@ class Mismatch(NamedTuple):
     location: Location
     related: Location | None = None  # of what was meant
     is_sure: bool = True
+    corrections: tuple[Correction, ...] = ()  # with each of which it agrees: first of the use, then of the definition
 
 
 class Compared(NamedTuple):
@@ -87,6 +106,7 @@ class Agreement(NamedTuple):
     undecided: Mapping[Family, str]
     families: frozenset[Family]  # of which something is there
     files: frozenset[str]  # the paths below the prefix at which files are looked for
+    unused: tuple[Location, ...] = ()  # the files that no other one names
 
     def holds(self, family: Family) -> bool:
         """Return whether something of a family is there, and all of it certainly agrees."""
@@ -135,8 +155,18 @@ def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mism
         return None
     guess = f"; did you mean {quoted(meant)} ({place_text(known[meant])})?" if meant is not None else ""
     message = f"{use.said}: there is no {use.kind} {quoted(use.name)}{guess}"
-    related = known[meant] if meant is not None else None
-    return Mismatch(_FAMILY_OF[use.kind], message, use.location, related, is_sure)
+    if meant is None:
+        return Mismatch(_FAMILY_OF[use.kind], message, use.location, None, is_sure)
+    related = known[meant]
+    either = corrections(use.name, use.location, meant, related)
+    return Mismatch(_FAMILY_OF[use.kind], message, use.location, related, is_sure, either)
+
+
+def corrections(name: str, at: Location, meant: str, *definitions: Location) -> tuple[Correction, ...]:
+    """Return that a name becomes the one that is meant, or the reverse; none for names of two sides or numbers."""
+    if not are_of_one_side(name, meant):
+        return ()
+    return (Correction(at, name, meant), *(Correction(it, meant, name) for it in definitions))
 
 
 def place_text(location: Location) -> str:

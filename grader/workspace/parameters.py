@@ -11,7 +11,7 @@ from grader.package.nodes import PythonNode
 from grader.package.package import Package
 from grader.package.yaml_nodes import YamlFault, YamlNode
 from grader.workspace.known import known
-from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use
+from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use, corrections
 from grader.workspace.workspace import Workspace
 from grader.workspace.yaml_values import PARAMETERS, is_parameters, sections_in, values_in
 
@@ -70,7 +70,8 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
                 continue  # the others may be of nodes that are not submitted
             key = meant or unread[0]
             message = f"there are parameters for {key}, but none for the node {name!r}, which gets this file"
-            yield Mismatch("parameters", message, sections[key].location, node.location)
+            either = corrections(key, sections[key].location, name or "", node.location) if meant is not None else ()
+            yield Mismatch("parameters", message, sections[key].location, node.location, True, either)
 
 
 def _misplaced(tree: YamlNode) -> Iterator[Fact]:
@@ -148,4 +149,5 @@ def _plugin_names(tree: YamlNode) -> Iterator[Fact]:
         if meant is not None and meant != text:
             message = f"{value.said}: there is no plugin {text!r}; did you mean {meant!r}?"
             is_sure = is_of_jazzy or not text.startswith(older)
-            yield Mismatch("parameters", message, value.node.location, is_sure=is_sure)
+            either = corrections(text, value.node.location, meant)
+            yield Mismatch("parameters", message, value.node.location, is_sure=is_sure, corrections=either)

@@ -6,8 +6,9 @@ from grader.names import closest
 from grader.package.entry_points import entry_fault, entry_points
 from grader.package.launch.parameters import parameters_of
 from grader.package.package import Package
+from grader.source import Location
 from grader.workspace.known import known
-from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use
+from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use, corrections
 from grader.workspace.workspace import Workspace
 
 
@@ -18,30 +19,36 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
             yield Compared("programs")
             fault = entry_fault(package, entry.name)
             if fault is not None:
-                yield Mismatch("programs", f"the entry point of {entry.name!r} names no function: {fault[0]}", fault[1])
+                message = f"the entry point of {entry.name!r} names no function: {fault.message}"
+                either = corrections(fault.written, fault.location, fault.meant) if fault.meant else ()
+                yield Mismatch("programs", message, fault.location, corrections=either)
     for package, node in workspace.nodes:
         owner = package.find(node.package)
         if owner is not None:
             yield Compared("programs")
         if owner is not None and owner.has_program(node.package, node.executable) is False:
-            yield Mismatch("programs", _why_no_program(owner, node.executable), node.location)
+            yield _no_program(owner, node.executable, node.location)
     yield from _lifecycle(workspace)
 
 
-def _why_no_program(package: Package, name: str) -> str:
+def _no_program(package: Package, name: str, at: Location) -> Mismatch:
     """Return that ros2 run does not find a program, and where it is installed, or which there are."""
     setup, entries = package.installation, [entry.name for entry in entry_points(package)]
     folder = setup.scripts_folder if setup is not None else ""
     if name in entries:
-        return f"a build installs {name!r} in {folder}, not in lib/{package.name}: see install_scripts of setup.cfg"
+        message = f"a build installs {name!r} in {folder}, not in lib/{package.name}: see install_scripts of setup.cfg"
+        return Mismatch("programs", message, at)
     files = [*setup.programs, *(copy.target for copy in setup.copies)] if setup is not None else []
     elsewhere = next((path for path in files if path.rpartition("/")[2] == name), None)
     if elsewhere is not None:
-        return f"a build installs {name!r} as {elsewhere}, but ros2 run looks in lib/{package.name}"
+        message = f"a build installs {name!r} as {elsewhere}, but ros2 run looks in lib/{package.name}"
+        return Mismatch("programs", message, at)
     names = sorted({*(path.rpartition("/")[2] for path in files if path.startswith(f"lib/{package.name}/")), *entries})
     guess = closest(name, names)
     there = f"; did you mean {guess!r}?" if guess else f"; it has {', '.join(names) or 'none'}"
-    return f"the package {package.name!r} has no program {name!r}{there}"
+    message = f"the package {package.name!r} has no program {name!r}{there}"
+    start = [Location(setup.source.path, 1, 1)] if setup is not None else []
+    return Mismatch("programs", message, at, corrections=corrections(name, at, guess, *start) if guess else ())
 
 
 def _lifecycle(workspace: Workspace) -> Iterator[Fact]:

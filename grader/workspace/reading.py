@@ -1,5 +1,6 @@
 """Read a workspace: what its files define and use, and what does not agree."""
 
+from collections.abc import Iterator
 from functools import lru_cache
 from itertools import chain
 
@@ -11,10 +12,11 @@ from grader.workspace.dependencies import dependency_facts
 from grader.workspace.files import file_facts
 from grader.workspace.frames import frame_facts
 from grader.workspace.moveit import moveit_facts
-from grader.workspace.names import Agreement, agreement
+from grader.workspace.names import Agreement, Fact, Family, agreement
 from grader.workspace.parameters import parameter_facts
 from grader.workspace.programs import program_facts
 from grader.workspace.topics import topic_facts
+from grader.workspace.unused import unused_files
 from grader.workspace.workspace import Workspace
 
 _READERS = (
@@ -27,6 +29,16 @@ _READERS = (
 def read_agreement(submission: Submission) -> Agreement:
     """Return what does not agree in the packages of a submission."""
     workspace = Workspace(submission)
-    found = agreement(chain.from_iterable(reader(workspace) for reader in _READERS))
+    found = agreement(_facts(workspace))
     # names_agree needs a package.
-    return found if workspace.packages else found._replace(families=frozenset())
+    families = found.families if workspace.packages else frozenset[Family]()
+    return found._replace(families=families, unused=tuple(unused_files(workspace)))
+
+
+def read_facts(submission: Submission) -> Iterator[Fact]:
+    """Yield what the files of a submission define and use."""
+    return _facts(Workspace(submission))
+
+
+def _facts(workspace: Workspace) -> Iterator[Fact]:
+    return chain.from_iterable(reader(workspace) for reader in _READERS)

@@ -8,9 +8,15 @@ from grader.package.launch.model import StartedNode
 from grader.package.nodes import Endpoint
 from grader.source import Location
 from grader.workspace.bridges import BRIDGE, bridge_rows
-from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Use, place_text
+from grader.workspace.controllers import controller_endpoints
+from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Use, corrections, place_text
 from grader.workspace.publishers import may_be_published
 from grader.workspace.workspace import Workspace
+
+# Packages whose programs subscribe to no commands.
+_WITHOUT_COMMANDS = (
+    "controller_manager", "robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui", "rviz2",
+)  # fmt: skip
 
 
 class _Opened(NamedTuple):
@@ -22,6 +28,11 @@ class _Opened(NamedTuple):
     node: StartedNode
 
     @property
+    def of_controller(self) -> bool:
+        """Return whether it is opened by a controller of ros2_control."""
+        return self.node.executable == "ros2_control_node"
+
+    @property
     def is_started(self) -> bool:
         """Return whether the node is started under the default arguments."""
         return self.node.when is True
@@ -31,6 +42,9 @@ def topic_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield topics of own nodes that differ in type or quality of service, and remappings of names that no node has."""
     opened: list[_Opened] = []
     for launch, node in workspace.launched:
+        if node.when is not False:
+            of_controllers = controller_endpoints(workspace, launch, node)
+            opened += (_Opened(topic, endpoint, launch, node) for topic, endpoint in of_controllers)
         own = workspace.python_node(node)
         if own is None or node.when is False:
             continue
@@ -49,12 +63,19 @@ def topic_facts(workspace: Workspace) -> Iterator[Fact]:
                 is_sure = it.launch == other.launch and it.is_started and other.is_started
                 yield from (found._replace(is_sure=is_sure) for found in _differences(it, other))
     yield from _unconnected(workspace, opened)
+    yield from _unheard(workspace, opened)
 
 
 def _differences(subscription: _Opened, publisher: _Opened) -> Iterator[Mismatch]:
     """Yield why a subscription does not get what a publisher of its topic sends."""
     own, other = subscription.endpoint, publisher.endpoint
     at = place_text(other.location)
+    if subscription.of_controller:
+        if own.type != other.type and other.type is not None:
+            there = f"the controller subscribes to it with {own.type} ({place_text(own.location)})"
+            message = f"the topic {publisher.topic} is published with {other.type}, but {there}"
+            yield Mismatch("topics", message, other.location, own.location)
+        return
     if own.type is not None and other.type is not None and own.type != other.type:
         message = (
             f"the topic {subscription.topic} is subscribed to with {own.type}, but published with {other.type} ({at})"
@@ -104,7 +125,7 @@ def _unconnected(workspace: Workspace, opened: list[_Opened]) -> Iterator[Fact]:
     unused = [it for it in offers if it.topic not in subscribed]
     yield Open("topic")
     yield from (Definition("topic", it.topic, it.location) for it in unused)
-    for own in [it for it in subscriptions if it.topic not in topics]:
+    for own in [it for it in subscriptions if it.topic not in topics and not it.of_controller]:
         alike = [it for it in unused if it.type == own.endpoint.type and own.launch in it.launches]
         names = {it.topic for it in alike}
         if len(names) == 1 and closest(own.topic, names) and not may_be_published(workspace, own.topic):
@@ -112,9 +133,32 @@ def _unconnected(workspace: Workspace, opened: list[_Opened]) -> Iterator[Fact]:
             if any(own.node.topic(rule[1]) == meant for rule in own.node.remaps or ()):
                 continue  # a remapping of another name, which is said of it
             message = f"nothing publishes {own.topic}; did you mean {meant} ({place_text(at)})?"
-            yield Mismatch("topics", message, own.endpoint.location, at)
+            either = corrections(own.topic, own.endpoint.location, meant, at)
+            yield Mismatch("topics", message, own.endpoint.location, at, corrections=either)
         else:
             yield Use("topic", own.topic, own.endpoint.location, "create_subscription")
+
+
+def _unheard(workspace: Workspace, opened: list[_Opened]) -> Iterator[Mismatch]:
+    """Yield publishers that nothing subscribes to, where a controller waits for such messages on another topic."""
+    subscriptions = [it for it in opened if it.endpoint.kind == "subscription"]
+    publishers = [it for it in opened if it.endpoint.kind == "publisher" and not it.of_controller]
+    heard, spoken = {it.topic for it in subscriptions}, {it.topic for it in publishers}
+    for waiting in [it for it in subscriptions if it.of_controller and it.topic not in spoken]:
+        for own in [it for it in publishers if it.launch == waiting.launch and it.topic not in heard]:
+            is_meant = own.topic.rpartition("/")[2] == waiting.topic.rpartition("/")[2]
+            if is_meant and own.endpoint.type == waiting.endpoint.type:
+                place = place_text(waiting.endpoint.location)
+                message = f"nothing subscribes to {own.topic}; did you mean {waiting.topic} ({place})?"
+                is_sure = own.is_started and waiting.is_started and _is_known(workspace, own.launch)
+                yield Mismatch("topics", message, own.endpoint.location, waiting.endpoint.location, is_sure)
+
+
+def _is_known(workspace: Workspace, launch: int) -> bool:
+    """Return whether all topics are known that the nodes of a launch file open."""
+    nodes = [node for number, node in workspace.launched if number == launch]
+    own = [workspace.python_node(node) for node in nodes if node.package not in _WITHOUT_COMMANDS]
+    return not workspace.roots[launch][1].unknown and all(it is not None and not it.doubts for it in own)
 
 
 class _Offer(NamedTuple):

@@ -23,9 +23,9 @@ def new(folder: Path, reference: Path) -> Done:
     return run(("rubric", "new", folder / "lab.toml", "--from", reference))
 
 
-# A node that starts with other arguments only; Python modules; entries of the template; folders that ros2 launch searches.
+# Python modules; entries of the template; folders that ros2 launch searches.
 UNTESTED = re.compile(
-    r".*launch.py joint_state_publisher(_gui)?.*|file (deleted|renamed): (my_robot/__init__.py|setup.cfg)"
+    r"file (deleted|renamed): (my_robot/__init__.py|setup.cfg)"
     r"|.* setup.py .*(ament_index|package.xml).*|string misspelt: setup.py (share|launch).*"
 )
 

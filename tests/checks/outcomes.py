@@ -29,7 +29,8 @@ _EXPLANATION = re.compile(r" \(URDF\d{3}: .*\)\Z", re.DOTALL)
 
 def ask(check: AnyCheck, of: Scene | Submitted, reference: Scene = ARM, /, **arguments: Any) -> Outcome:
     """Return the outcome of a check."""
-    return check(*(_subject(name, of, reference) for name in describe(check).examined), **arguments)
+    described = describe(check)
+    return described.outcome((_subject(name, of, reference) for name in described.examined), arguments)
 
 
 def missing(check: AnyCheck, of: Scene | Submitted, /, **arguments: Any) -> MissingElement:

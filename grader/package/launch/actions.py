@@ -232,6 +232,8 @@ def _declare_argument(visitor: ActionVisitor, call: Call, context: Context, when
     if name not in context.arguments:
         _set_argument(name, default, call, context, when)
     value = context.arguments[name]
+    if isinstance(value, str):
+        visitor.findings.values.append((name, value))
     if choices is not None and when:
         if not isinstance(value, str) or not isinstance(choices, list | tuple):
             raise Undetermined(f"whether {name!r} is one of its choices is not evaluated", call.at)
@@ -375,7 +377,7 @@ def _include_file(visitor: ActionVisitor, call: Call, context: Context, when: bo
     path = known_text(source, context, call.at)
     values = tuple((name, value if isinstance(value, str) else None) for name, value in given.items())
     at = visitor.findings.locate(call.at)
-    visitor.findings.passed.append(PassedArguments(path.removeprefix(f"{PREFIX}/"), values, at))
+    visitor.findings.passed.append(PassedArguments(path.removeprefix(f"{PREFIX}/"), values, at, when))
     arguments = {**context.arguments, **given}
     inner = replace(context, path=path, arguments=arguments, when=when, reads=[], given=frozenset(given))
     inner.included_by = (*context.included_by, context.path.removeprefix(f"{PREFIX}/"))

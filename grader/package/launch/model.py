@@ -149,13 +149,17 @@ class StartedNode:
 
     def topic(self, name: str) -> str | None:
         """Return the topic that the node has for a name in its program; None where it is known at run time."""
-        if self.namespace is None or self.remaps is None:
+        # A rule for one node of the process, node:name:=other, is not resolved.
+        if self.namespace is None or self.remaps is None or any(":" in rule[0] for rule in self.remaps):
             return None
-        full = self._full_name(name)
-        rules = (rule[1] for rule in self.remaps if self._full_name(rule[0]) == full)
-        return self._full_name(next(rules, full))
+        full = self.full_name(name)
+        rules = (rule[1] for rule in self.remaps if self.full_name(rule[0]) == full)
+        return self.full_name(next(rules, full))
 
-    def _full_name(self, name: str) -> str:
+    def full_name(self, name: str) -> str:
+        """Return a name with the namespace; ~ is the name that the node is given, and stays if it is given none."""
+        if name.startswith("~/") and self.node_name:
+            name = f"{self.node_name}{name[1:]}"
         return name if name.startswith("/") else f"/{(self.namespace or '').strip('/')}/{name}".replace("//", "/")
 
     @property
@@ -182,12 +186,13 @@ class NamedFile:
 class PassedArguments(NamedTuple):
     """The launch arguments that an include passes to a launch file, by its path below the prefix.
 
-    The value of one is None where it is not known.
+    The value of one is None where it is not known. `when` is None where it is not known whether the file is included.
     """
 
     path: str
     values: tuple[tuple[str, str | None], ...]
     location: Location
+    when: bool | None = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,6 +215,7 @@ class Launch:
     unknown: tuple[LaunchFault, ...] = ()  # what may start more
     doubts: tuple[LaunchFault, ...] = ()  # what may stop the launch
     declared: tuple[str, ...] = ()  # the launch arguments that it and the files that it includes declare
+    values: tuple[tuple[str, str], ...] = ()  # of these, as far as they are known
     passed: tuple[PassedArguments, ...] = ()
     forgotten: tuple[StartedNode, ...] = ()  # created in the file, but not part of its LaunchDescription
     unread: str = ""  # why the file was not read at all: too large, damaged
@@ -239,6 +245,7 @@ class Findings:
     unknown: list[LaunchFault] = field(default_factory=list)
     doubts: list[LaunchFault] = field(default_factory=list)
     declared: list[str] = field(default_factory=list)
+    values: list[tuple[str, str]] = field(default_factory=list)
     passed: list[PassedArguments] = field(default_factory=list)
     sets_parameters: bool = False
     is_silent: bool = False  # while what may never be executed is visited

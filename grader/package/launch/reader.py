@@ -53,7 +53,7 @@ _NODE = "launch_ros.actions.node.Node"
 _MOVEIT = "moveit_configs_utils"
 _MAX_INCLUDES = 10
 # What a launch file shares with those that it includes.
-_JOINED = ("nodes", "references", "faults", "unknown", "doubts", "declared", "passed")
+_JOINED = ("nodes", "references", "faults", "unknown", "doubts", "declared", "values", "passed")
 _MAX_KEPT = 4  # launch files
 
 
@@ -267,6 +267,7 @@ def _launch_of_findings(source: Source, findings: Findings, forgotten: tuple[Sta
         unknown=tuple(dict.fromkeys(findings.unknown)),
         doubts=tuple(dict.fromkeys(findings.doubts)),
         declared=tuple(dict.fromkeys(findings.declared)),
+        values=tuple(findings.values),
         passed=tuple(dict.fromkeys(findings.passed)),
         forgotten=forgotten,
     )
