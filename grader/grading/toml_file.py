@@ -41,17 +41,20 @@ _MAX_COMPLAINTS, _MAX_PLACES = 1000, 6  # lines about one file; places of one mi
 _MAX_WIDTH = 100  # characters of a line that are shown on each side of a mistake
 _PLACE = r" \(at (?:line (\d+), column (\d+)|end of document)\)$"
 _CLOSING = {"Unterminated string": '"""', 'Expected "\'"': "'", "Expected \"'''\"": "'''"}  # what an error misses
+_TWICE = "this table is already given above"
+_SAID = {"Cannot overwrite a value": "this key is given twice", "Cannot declare": _TWICE, "Cannot mutate": _TWICE}
 # What usually is wrong where TOML cannot be read: a pattern of the line, in which \0 is the place of the error.
 _SLIPS = (
-    ("\0[“”„‟‘’«]", "typographic quotes: write straight ones"),
+    ("\0[“”„‟‘’«]|[“”„‟]\\s*\0$", "typographic quotes: write straight ones"),
     (r"""^[^"']*("[^"\\]*|'[^']*)\0$""", "a text in quotes does not end on its line"),
+    (r'"""\0\S', 'these quotes end a text that begins above: one before does not end in """'),
     (r'"\0\w', r"quotes in a text: write \" for them, or single quotes around it"),
     (r"\{[^}]*\0$", "a table in braces is one line: write [criterion.with] above, and each key on a line below"),
     ("\0(True|False)", "true and false have small letters"),
     (r"\d\0,\d", "a number has a decimal point, no comma"),
     (r"\\.\0", r"in double quotes, \ begins an escape: write / in a path"),
-    (r"^\s*\[(part|criterion|evidence)\0?\]", "parts, criteria and evidence begin in double brackets: [[criterion]]"),
-    (r"^\s*\[\[(part|criterion|evidence)", "an earlier one is in single brackets: write [[criterion]]"),
+    (r"^\s*\[(part|criterion|evidence)\0?\]", "write double brackets: [[{0}]]"),
+    (r"^\s*\[\[(part|criterion|evidence)\0\]\]", "an earlier [{0}] has single brackets: write [[{0}]]"),
 )
 _MAX_GUESSES = 50  # searches for a similar name in one rubric: each takes its time
 _MAX_SHOWN = 40  # characters of a value
@@ -81,14 +84,19 @@ def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
 def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Path) -> None:
     """Raise RubricError with a line for each complaint, in the order of the file, if there are any."""
     if complaints:
-        lines, places = key_lines(text), dict[str, list[int]]()
-        for line, _, what in sorted((line_of(lines, at), order, what) for order, (at, what) in enumerate(complaints)):
-            places.setdefault(what, []).append(line)
-        shown, more = printable_path(path), len(places) - _MAX_COMPLAINTS
-        listed = tuple(
-            f"{shown}:{line}: {what}{_also(other)}" for what, (line, *other) in [*places.items()][:_MAX_COMPLAINTS]
-        )
-        raise RubricError((*listed, f"{shown}: {more} more mistakes are not listed") if more > 0 else listed)
+        lines, shown = key_lines(text), printable_path(path)
+        found = one_line_each(path, [(line_of(lines, at), what) for at, what in complaints])
+        more = len(found) - _MAX_COMPLAINTS
+        rest = (f"{shown}: {more} more mistakes are not listed",) if more > 0 else ()
+        raise RubricError((*found[:_MAX_COMPLAINTS], *rest))
+
+
+def one_line_each(path: Path, found: Iterable[tuple[int, str]]) -> list[str]:
+    """Return what was found in a file by its lines; what several lines share once, with all of them."""
+    places: dict[str, list[int]] = {}
+    for line, what in sorted(found, key=lambda it: it[0]):
+        places.setdefault(what, []).append(line)
+    return [f"{printable_path(path)}:{line}: {what}{_also(other)}" for what, (line, *other) in places.items()]
 
 
 def _also(lines: Sequence[int]) -> str:
@@ -106,9 +114,10 @@ def _syntax_mistake(error: str, text: str) -> str:
     if (opened := text.rfind(_CLOSING.get(said, "\0"))) >= 0:  # else the place is the end of the file
         row, at = text.count("\n", 0, opened) + 1, opened - text.rfind("\n", 0, opened)
         said = "a text in quotes begins here and does not end"
+    said = next((words for start, words in _SAID.items() if said.startswith(start)), said)
     before, after = lines[row - 1][max(0, at - _MAX_WIDTH) : at - 1], lines[row - 1][at - 1 : at + _MAX_WIDTH]
     marked = "\0".join(part.replace("\0", " ") for part in (before, after))
-    meant = (words for pattern, words in _SLIPS if re.search(pattern, marked))
+    meant = (words.format(*slip.groups()) for pattern, words in _SLIPS if (slip := re.search(pattern, marked)))
     around = (before + after).strip() or "an empty line"
     return f"{row}:{at}: {next(meant, said[0].lower() + said[1:])}: {printable(around)}"
 
