@@ -201,6 +201,9 @@ def load_rubric(name: str | Path) -> Rubric:
     """Load a rubric by its id or path, without model answers (see `grader.grading.model_answers`).
 
     Raises RubricError with one line for each mistake in it, InputError if it cannot be read.
+
+    >>> load_rubric("arm").points
+    Decimal('100')
     """
     path = find_rubric(str(name))
     return read_rubric(read_capped(path, advice=""), path)
