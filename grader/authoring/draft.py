@@ -37,12 +37,13 @@ _METRES, _DEGREES = ({"tolerance": 0.002}, "metres"), ({"tolerance": 1.0}, "degr
 _USUAL: Mapping[str, tuple[Mapping[str, float], str]] = {
     **dict.fromkeys(("shows_box", "shows_cylinder", "shows_sphere"), _METRES),
     "shows_colour": ({"tolerance": 0.01}, "of a channel from 0 to 1"),
-    "frame_at": ({"tolerance": 0.002, "angle": 1.0}, "metres, degrees"),
+    "frame_at": ({"tolerance": 0.002, "angle": 1.0}, "metres, degrees; rpy is in radians"),
     "centre_at": _METRES,
     **dict.fromkeys(("joint_limits", "joint_axis"), _DEGREES),
     "mass_is": ({"tolerance": 0.001}, "kilograms"),
     "inertia_plausible": ({"tolerance": 2.0}, "percent"),
-    **dict.fromkeys(("collision_matches_visual", "collides_as"), _METRES),
+    "collision_matches_visual": _METRES,
+    "collides_as": ({"tolerance": 0.002}, "metres; rpy is in radians"),
     "kinematics_match_reference": ({"samples": 20}, "random positions, besides the ends of each range"),
 }
 _ROBOT, _PACKAGE = "robot", "package"
@@ -151,12 +152,14 @@ def _rubric_text(head: Head, rows: Sequence[_DraftCriterion]) -> str:
     if of_package:
         title = "The package" if len(head.packages) == 1 else "The packages"
         lines += _part_lines(_PACKAGE, title, "package", of_package)
-    about = ""
-    for name, row in _with_ids(rows).items():
+    about, named = "", _with_ids(rows)
+    names = {row.fact.words: name for name, row in named.items()}
+    for name, row in named.items():
         if row.fact.about != about:
             about = row.fact.about
             lines += ["", f"# --- {printable(about)} ".ljust(_WIDTH, "-")]
-        lines += _criterion_lines(name, row, part)
+        causes = [names[words] for words in row.fact.causes if words in names]
+        lines += _criterion_lines(name, row, part, causes)
     return "\n".join(lines) + "\n"
 
 
@@ -201,7 +204,7 @@ def _part_lines(name: str, title: str, needs: str, points: int) -> Iterator[str]
     yield from (assignment("needs", needs), assignment("points", points))
 
 
-def _criterion_lines(name: str, row: _DraftCriterion, part: str) -> Iterator[str]:
+def _criterion_lines(name: str, row: _DraftCriterion, part: str, causes: list[str]) -> Iterator[str]:
     fact = row.fact
     yield from ("", "[[criterion]]", assignment("id", name))
     if row.is_of_package and part == _ROBOT:
@@ -213,20 +216,28 @@ def _criterion_lines(name: str, row: _DraftCriterion, part: str) -> Iterator[str
     yield f"check = {toml_literal(fact.check)}"
     if fact.args:
         yield assignment("args", fact.args)
-    if fact.causes:
-        launch = fact.arguments.get("launch") or fact.arguments["name"]
-        instead = {"from": [*fact.causes], "check": "launch_found", "with": {"name": launch}}
-        yield assignment("carried", instead)
-    if len(assignment("with", fact.arguments)) <= _WIDTH:
-        if fact.arguments:
-            yield assignment("with", fact.arguments)
-        return
-    yield from ("", "[criterion.with]")
-    for key, value in sorted(fact.arguments.items(), key=lambda item: isinstance(item[1], Mapping)):
+    check, given = fact.instead
+    carried = {"from": causes, "check": check, "with": given}
+    is_line = len(assignment("carried", carried)) <= _WIDTH
+    if causes and is_line:
+        yield assignment("carried", carried)
+    is_short = len(assignment("with", fact.arguments)) <= _WIDTH
+    if is_short and fact.arguments:
+        yield assignment("with", fact.arguments)
+    elif fact.arguments:
+        yield from ("", "[criterion.with]")
+        yield from _table_lines("criterion.with", fact.arguments)
+    if causes and not is_line:
+        yield from ("", "[criterion.carried]", *_toml_lines("from", causes))
+        yield from (assignment("check", check), assignment("with", given))
+
+
+def _table_lines(table: str, values: Mapping[str, Any]) -> Iterator[str]:
+    for key, value in sorted(values.items(), key=lambda item: isinstance(item[1], Mapping)):
         if not isinstance(value, Mapping) or len(assignment(key, value)) <= _WIDTH:
             yield from _toml_lines(key, value)
             continue
-        yield from ("", f"[criterion.with.{key}]")
+        yield from ("", f"[{table}.{key}]")
         for inner, item in value.items():
             yield from _toml_lines(inner, item)
 

@@ -13,6 +13,7 @@ from math import degrees, isfinite
 from typing import Any, NamedTuple
 
 from grader.checks.meshes import mesh_file
+from grader.checks.outcome import point
 from grader.checks.parameters import measures
 from grader.checks.visuals import MAX_SHAPES
 from grader.errors import MissingElement, NotDecided
@@ -87,7 +88,8 @@ class Fact(NamedTuple):
     arguments: Mapping[str, Any]
     words: str  # of the id
     package: str | None = None  # what it is about: the name of a package, empty for the main one; None for the robot
-    causes: tuple[str, ...] = ()  # the ids of criteria for whose mistakes it costs nothing, if the launch file is there
+    causes: tuple[str, ...] = ()  # the words of facts for whose mistakes it costs nothing, if `instead` is true
+    instead: "tuple[str, Mapping[str, Any]]" = ("", {})  # a check with its arguments
     otherwise: "Sequence[Fact]" = ()  # tried in its place if the reference does not pass it
     title: str = ""  # default: what the check says
     args: Mapping[str, str | bool] = {}  # launch arguments
@@ -217,8 +219,12 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
     title = f"a {joint.type} joint connects {link!r} to {parent!r}"  # its name is free
     yield _link_fact(link, "held_by", parent=parent, joint_type=joint.type)._replace(title=title)
     pose = robot.pose(link, relative_to=parent)
-    rpy = {"rpy": _rounded(pose.rpy, 4)} if any(_rounded(pose.rpy, 4)) else {}
-    yield _link_fact(link, "frame_at", relative_to=parent, xyz=_rounded(pose.translation), **rpy)
+    xyz, rpy = _rounded(pose.translation), _rounded(pose.rpy, 4)
+    title = f"the frame {link!r} is at {point((*xyz,))} m in {parent!r}"
+    if any(rpy):
+        title += f", with rpy {point((*_rounded([*map(degrees, rpy)], 1),))} degrees"
+    turned = {"rpy": rpy} if any(rpy) else {}
+    yield _link_fact(link, "frame_at", relative_to=parent, xyz=xyz, **turned)._replace(title=title)
     if joint.limit is not None and joint.type in ("revolute", "prismatic"):
         ends = (joint.limit.lower, joint.limit.upper)
         turns = joint.type == "revolute"
@@ -226,7 +232,9 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
         given = {"effort": joint.limit.effort, "velocity": joint.limit.velocity}
         others = {name: value for name, value in given.items() if isfinite(value)}
         others |= {} if turns else {"tolerance": _SLIDING_TOLERANCE}
-        yield _link_fact(link, "joint_limits", lower=lower, upper=upper, **others)
+        unit = "degrees" if turns else "m"
+        title = f"the range of the joint that moves {link!r} is {lower:g} to {upper:g} {unit}"
+        yield _link_fact(link, "joint_limits", lower=lower, upper=upper, **others)._replace(title=title)
     if joint.dynamics is not None and joint.type != "fixed":
         friction, damping = joint.dynamics.friction, joint.dynamics.damping
         title = f"the joint that moves {link!r} has friction {friction:g} and damping {damping:g}"
@@ -236,7 +244,12 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
         leader = robot.joint(mimic.joint).child
         yield _link_fact(link, "mimics", leader=leader, multiplier=mimic.multiplier, offset=mimic.offset)
     if joint.type in _WITH_AXIS:
-        yield _link_fact(link, "joint_axis", relative_to=parent, direction=_rounded(pose.rotate(robot.axis(joint)), 2))
+        own = robot.axis(joint)
+        direction = _rounded(pose.rotate(own), 2)
+        title = f"the axis of the joint that moves {link!r} points along {point((*direction,))} in {parent!r}"
+        axis = _link_fact(link, "joint_axis", relative_to=parent, direction=direction)._replace(title=title)
+        in_own_frame = {"link": link, "relative_to": link, "direction": _rounded(own, 2)}
+        yield axis._replace(causes=(f"{link} frame_at",), instead=("joint_axis", in_own_frame))
 
 
 def _tree_facts(solution: Solution) -> Iterator[Fact]:
@@ -259,7 +272,9 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
     if tips:
         names = [repr(tip) for tip in tips[:_MAX_TIPS]]
         title = f"{enumerated(names)} {'moves' if len(names) == 1 else 'move'} as in the reference solution"
-        yield _robot_fact("kinematics_match_reference", links=tips[:_MAX_TIPS], match="order")._replace(title=title)
+        known = [f"{joint.child} {check}" for joint in joints for check in ("frame_at", "joint_axis", "mimics")]
+        motion = _robot_fact("kinematics_match_reference", links=tips[:_MAX_TIPS], match="order")
+        yield motion._replace(title=title, causes=tuple(known), instead=("counts", numbers))
 
 
 def element_facts(solution: Solution) -> _Facts:
@@ -347,7 +362,7 @@ def package_facts(submission: Submission) -> _Facts:
     found = read_agreement(submission) if packages else None
     named = found.files if found is not None and found.holds("files") else frozenset()
     families = [it for it in _STOPPING if found is not None and found.holds(it)]
-    causes = tuple(f"{family}-names-agree" for family in families)
+    causes = tuple(f"{family} names_agree" for family in families)
     for package in packages:
         facts = _facts_of(package, path if path is not None and package.holds(path) else "", named, causes)
         if package is main:
@@ -448,11 +463,12 @@ def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[F
 def _launch_facts(package: Package, path: str, causes: tuple[str, ...]) -> Iterator[Fact]:
     name, launch = posixpath.basename(path), package.launch(path)
     yield _package_fact("launch_found", name, name=name)
+    instead = ("launch_found", {"name": name})
     if nodes := _nodes_that_start(launch):
-        yield _package_fact("node_runs", name, launch=name, nodes=nodes)._replace(causes=causes)
-    yield from (fact._replace(causes=causes) for fact in _turned_facts(package, path))
+        yield _package_fact("node_runs", name, launch=name, nodes=nodes)._replace(causes=causes, instead=instead)
+    yield from (fact._replace(causes=causes, instead=instead) for fact in _turned_facts(package, path))
     if launch.named("urdf", "rviz", "include"):
-        yield _package_fact("launch_finds_files", name, name=name)._replace(causes=causes)
+        yield _package_fact("launch_finds_files", name, name=name)._replace(causes=causes, instead=instead)
 
 
 def _turned_facts(package: Package, path: str) -> Iterator[Fact]:
