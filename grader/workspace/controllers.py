@@ -34,6 +34,9 @@ def controller_facts(workspace: Workspace) -> Iterator[Fact]:
     if not controllers:
         return
     yield from (Definition("controller", it.name, it.location) for it in controllers)
+    # In other parameters, a section replaces the type before it: that it is there is a mistake of parameters.
+    nested = ((keys[-1], node) for keys, node in _sections(workspace) if _MANAGER in keys[:-1])
+    yield from (Definition("controller", name, node.location) for name, node in nested)
     sections = {keys[-1].rpartition("/")[2]: node for keys, node in _sections(workspace)}
     for controller in controllers:
         yield from _type_facts(workspace, controller)
@@ -111,21 +114,35 @@ def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapp
             either = corrections(meant, sections[meant].location, controller.name, at) if meant is not None else ()
             yield Mismatch("controllers", f"{message} with ros__parameters", at, corrections=either)
         return
-    interfaces = workspace.command_interfaces
+    interfaces = workspace.command_interfaces or {}
+    for joint, name in _needed_in(section, needed):
+        own, at = interfaces.get(joint.text or "", (frozenset({name}), joint.location))
+        if name not in own:
+            message = f"{controller.name} needs the command interface {joint.text}/{name}"
+            text = f"{message}; <ros2_control> has {', '.join(sorted(own)) or 'none'} ({place_text(at)})"
+            yield Mismatch("controllers", text, joint.location, at)
+
+
+def _needed_in(section: YamlNode, needed: Mapping[str, str]) -> Iterator[tuple[YamlNode, str]]:
+    """Yield the joints in the parameters of a controller, each with a command interface that it needs."""
     for key, wanted in needed.items():
         joints = section.get(key)
         given = section.get(wanted.removeprefix("=")) if wanted.startswith("=") else None
         names = [wanted] if not wanted.startswith("=") else []
         if given is not None:
             names = [it.text or "" for it in (given.items or [given])]
-        for joint in (joints.items or [joints]) if joints is not None and interfaces is not None else ():
-            own = interfaces.get(joint.text or "") if interfaces is not None else None
-            for name in [it for it in names if own is not None and it not in own[0]]:
-                message = f"{controller.name} needs the command interface {joint.text}/{name}"
-                there = ", ".join(sorted(own[0])) if own is not None and own[0] else "none"
-                at = own[1] if own is not None else joint.location
-                text = f"{message}; <ros2_control> has {there} ({place_text(at)})"
-                yield Mismatch("controllers", text, joint.location, at)
+        for joint in (joints.items or [joints]) if joints is not None else ():
+            yield from ((joint, name) for name in names)
+
+
+def needed_interfaces(workspace: Workspace) -> frozenset[str]:
+    """Return the command interfaces that controllers need, each as joint/interface."""
+    sections = {keys[-1].rpartition("/")[2]: node for keys, node in _sections(workspace)}
+    found = (
+        (sections.get(it.name), known()["controllers"].get(it.type.text, {})) for it in defined_controllers(workspace)
+    )
+    needed = [_needed_in(section, kinds) for section, kinds in found if section is not None]
+    return frozenset(f"{joint.text}/{name}" for each in needed for joint, name in each)
 
 
 def _spawner_facts(workspace: Workspace) -> Iterator[Fact]:

@@ -6,7 +6,6 @@ from fnmatch import fnmatchcase
 
 from grader.names import near
 from grader.package.launch.model import StartedNode
-from grader.package.launch.parameters import parameters_of
 from grader.package.nodes import PythonNode
 from grader.package.package import Package
 from grader.package.yaml_nodes import YamlFault, YamlNode
@@ -31,6 +30,11 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     for path, nodes in workspace.parameter_files.items():
         yield Compared("parameters")
         yield from _file_given(workspace, path, nodes)
+    for path in sorted(workspace.controller_files.difference(workspace.parameter_files)):
+        given = workspace.yaml_files.get(path)
+        if isinstance(given, YamlNode):
+            yield Compared("parameters")
+            yield from _misplaced(given)
     for package, node in workspace.nodes:
         own = workspace.python_node(node)
         if own is not None:
@@ -105,7 +109,7 @@ def _declared(workspace: Workspace, package: Package, node: StartedNode, own: Py
     for it in own.parameters:
         if it.name is not None and not it.is_declared:
             yield Use("parameter", it.name, it.location, "get_parameter", owner)
-    found = parameters_of(node, package, own.name or "", is_python=True)
+    found = workspace.parameters_of(package, node, own.name or "", is_python=True)
     if found.unknown:
         yield Undecided("parameters", found.unknown)
     wide = workspace.wildcard_places(node)
