@@ -54,7 +54,7 @@ def _carried_from_names(fact: Fact, joints: Collection[str], links: Collection[s
     without_links = _weakened(fact.arguments, links)
     weaker = _weakened(without_links, joints)
     if weaker != fact.arguments:
-        of_joints = ["joints_named"] if weaker != without_links else []
+        of_joints = ("joints_named", "controllers names_agree") if weaker != without_links else ()
         yield Carried((*of_joints, "frames names_agree"), fact.check, weaker)
 
 

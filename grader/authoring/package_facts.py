@@ -17,8 +17,8 @@ from grader.python.values import Unknown
 from grader.robot.kinematics import Configuration
 from grader.submission.submission import Submission
 from grader.text import counted, enumerated
-from grader.workspace.names import FAMILIES, Agreement, Family, place_text
-from grader.workspace.reading import read_agreement
+from grader.workspace.names import FAMILIES, Family, Mismatch, place_text
+from grader.workspace.reading import read_agreement, wrong_names
 from grader.workspace.workspace import workspace_of
 
 _THE_PACKAGE, _THE_NAMES, _THE_VALUES = "The package", "The names", "The values"  # headings
@@ -174,19 +174,19 @@ def name_facts(submission: Submission) -> Facts:
     for family in (it for it in FAMILIES if it in found.families):
         fact = _package_fact("names_agree", family, of=family)
         carried = (unbuilt,) if family in _OF_BUILDS else ()
-        odd = _odd(found, family)
+        odd = _odd(wrong_names(submission, family))
         yield odd or fact._replace(about=_THE_NAMES, title=_NAME_TITLES[family], carried=carried)
 
 
-def _odd(found: Agreement, family: Family) -> Omission | None:
+def _odd(mismatches: Sequence[Mismatch]) -> Omission | None:
     """Return what certainly does not agree in a family, in one line; None if nothing does not."""
-    wrong = {it.message: it for it in found.mismatches if it.family == family and it.is_sure}
+    wrong = {it.message: it for it in mismatches}
     if not wrong:
         return None
-    text, noun = _ODD[family]
-    message, first = next(iter(wrong.items()))
-    more = f"{text.format(counted(len(wrong), noun))}: {place_text(first.location)}: {message}"
-    return Omission(f"{family} names_agree", more)
+    first = mismatches[0]
+    text, noun = _ODD[first.family]
+    more = f"{text.format(counted(len(wrong), noun))}: {place_text(first.location)}: {first.message}"
+    return Omission(f"{first.family} names_agree", more)
 
 
 def _package_fact(check: str, label: str = "", **arguments: Any) -> Fact:
@@ -229,7 +229,8 @@ def _launch_facts(submission: Submission, package: Package, path: str, prefix: s
         yield _package_fact("node_runs", name, launch=name, nodes=nodes)._replace(carried=(found,))
     yield from (it._replace(carried=(after,)) for it in _turned_facts(package, path))
     if launch.named("urdf", "rviz", "include"):
-        yield _package_fact("launch_finds_files", name, name=name)._replace(carried=(after,))
+        unread = after._replace(causes=(*after.causes, "parameters names_agree"))
+        yield _package_fact("launch_finds_files", name, name=name)._replace(carried=(unread,))
 
 
 def _turned_facts(package: Package, path: str) -> Iterator[Fact]:

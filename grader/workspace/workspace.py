@@ -22,8 +22,9 @@ from grader.submission.urdf import Read
 from grader.workspace.known import known
 from grader.workspace.yaml_values import sections_in, values_in
 from grader.xml.elements import readable
-from grader.xml.parsing import Element
+from grader.xml.parsing import Element, XmlFault, XmlFile
 
+_SYSTEM = re.compile(r"<ros2_control\b")
 _MANAGER, _SPAWNERS = "controller_manager", ("spawner", "spawner.py")
 _FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
 _FOR_TESTS = re.compile(r"if\s*\(\s*BUILD_TESTING.*?endif", re.DOTALL)
@@ -35,10 +36,11 @@ _COMMENT = {False: re.compile(r"<!--.*?-->", re.DOTALL), True: re.compile(r"(?:^
 
 
 @dataclass(frozen=True)
-class _WithSources:
+class WithSources:
     """What builds install, and in place of a file that they do not install the one that may be meant."""
 
     package: Package
+    absent_are_empty: bool = False  # whether files that surely are not there count as empty
 
     def open_installed(self, path: str) -> tuple[bytes, str] | None:
         """Return an installed file, else the only file of this name in the package whose folder is named."""
@@ -46,9 +48,11 @@ class _WithSources:
         parts = path.split("/")
         owner = self.package.find(parts[1]) if found is None and len(parts) > 2 else None
         named = [it for it in owner.tree.files if it.rpartition("/")[2] == parts[-1]] if owner is not None else []
-        if owner is None or len(named) != 1:
-            is_absent = owner is not None and not named and are_installs_known(owner) and is_surely_absent(owner, path)
-            return (b"", path) if is_absent else found
+        if owner is None or len(named) > 1:
+            return found
+        if not named:
+            is_absent = self.absent_are_empty and are_installs_known(owner) and is_surely_absent(owner, path)
+            return (b"", path) if is_absent else None
         with suppress(InputError):
             found = owner.tree.files[named[0]].read(_MAX_YAML), owner.path(named[0])
         return found
@@ -130,6 +134,17 @@ class Workspace:
         yield from ((path, node) for path, node in self.yaml_files.items() if isinstance(node, YamlNode))
 
     @cached_property
+    def sdf_files(self) -> tuple[XmlFile, ...]:
+        """The models and worlds of Gazebo that can be read."""
+        found = []
+        for package in self.packages:
+            for path in [it for it in package.tree.files if it.endswith((".sdf", ".world"))][:_MAX_FILES]:
+                with suppress(InputError, XmlFault):
+                    data = package.tree.files[path].read(_MAX_YAML)
+                    found.append(XmlFile(data, Source(package.path(path), data.decode("utf-8", "replace"))))
+        return tuple(found)
+
+    @cached_property
     def robot(self) -> Robot | None:
         """The robot; None without one, or where not all of it is known."""
         urdf = self.submission.urdf
@@ -184,6 +199,13 @@ class Workspace:
             found[joint.get("name", "")] = (before | names, at)
         return found if systems else None
 
+    @property
+    def has_all_interfaces(self) -> bool:
+        """Return whether `command_interfaces` are those of every robot, also under other arguments of xacro."""
+        written = sum(len(_SYSTEM.findall(it.text)) for it in self.xacro_sources)
+        systems = len(list(self.robot_root.iterchildren("ros2_control"))) if self.robot_root is not None else -1
+        return written <= systems and not self.has_other_robots
+
     def python_node(self, node: StartedNode) -> PythonNode | None:
         """Return the Python node of the workspace that a program starts, if it starts one that is known."""
         owner = self.package_of(node)
@@ -204,9 +226,7 @@ class Workspace:
 
     def children_of(self, name: str) -> frozenset[str]:
         """Return the nodes that a node of another package makes in its process, and that read its parameters."""
-        return frozenset(known()["children"].get(name, ())) | (
-            self.controllers if name == "controller_manager" else frozenset()
-        )
+        return frozenset(known()["children"].get(name, ())) | (self.typed_sections if name == _MANAGER else frozenset())
 
     @cached_property
     def controllers(self) -> frozenset[str]:
@@ -259,24 +279,19 @@ class Workspace:
         found: dict[str, list[NodeParameters]] = {}
         for package, launch in self.roots:
             managers = [it for it in launch.nodes if self.name_of(it) == _MANAGER]
+            sources = WithSources(package, absent_are_empty=True)
             for node in launch.nodes:
                 name, own = self.name_of(node), self.python_node(node)
                 if (name is not None and node.package != _MANAGER) or node in managers:
-                    given = self.parameters_of(package, node, name or "", is_python=own is not None or None)
+                    given = parameters_of(node, sources, name or "", is_python=own is not None or None)
                     found.setdefault(name or "", []).append(given)
                 for controller in (controllers_of(node) or ()) if node.executable in _SPAWNERS else ():
                     before = [it for manager in managers for it in manager.parameters or ()]
                     files = (*before, *self._simulated, *(controller.parameters or ()))
                     started = replace(controller, parameters=files)
-                    given = self.parameters_of(package, started, is_python=False)
+                    given = parameters_of(started, sources, is_python=False)
                     found.setdefault(controller.node_name or "", []).append(given)
         return found
-
-    def parameters_of(
-        self, package: Package, node: StartedNode, name: str = "", *, is_python: bool | None
-    ) -> NodeParameters:
-        """Return the parameters that a node is given, also of a file of the submission that builds do not install."""
-        return parameters_of(node, _WithSources(package), name, is_python=is_python)
 
     @property
     def _simulated(self) -> Iterator[GivenParameters]:
