@@ -34,6 +34,9 @@ def controller_facts(workspace: Workspace) -> Iterator[Fact]:
     if not controllers:
         return
     yield from (Definition("controller", it.name, it.location) for it in controllers)
+    # In other parameters, a section replaces the type before it: that it is there is a mistake of parameters.
+    nested = ((keys[-1], node) for keys, node in _sections(workspace) if _MANAGER in keys[:-1])
+    yield from (Definition("controller", name, node.location) for name, node in nested)
     sections = {keys[-1].rpartition("/")[2]: node for keys, node in _sections(workspace)}
     for controller in controllers:
         yield from _type_facts(workspace, controller)
@@ -118,6 +121,12 @@ def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapp
             either = corrections(meant, sections[meant].location, controller.name, at) if meant is not None else ()
             yield Mismatch("controllers", f"{message} with ros__parameters", at, corrections=either)
         return
+    for joint, names in _needed_in(section, needed):
+        yield from _interface_facts(workspace, controller, joint, names)
+
+
+def _needed_in(section: YamlNode, needed: Mapping[str, str]) -> Iterator[tuple[YamlNode, list[str]]]:
+    """Yield the joints in the parameters of a controller, each with the command interfaces that it needs."""
     for key, wanted in needed.items():
         joints = section.get(key)
         given = section.get(wanted.removeprefix("=")) if wanted.startswith("=") else None
@@ -125,7 +134,16 @@ def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapp
         if given is not None:
             names = [it.text or "" for it in (given.items or [given])]
         for joint in (joints.items or [joints]) if joints is not None else ():
-            yield from _interface_facts(workspace, controller, joint, names)
+            yield joint, names
+
+
+def needed_interfaces(workspace: Workspace) -> frozenset[str]:
+    """Return the command interfaces that controllers need, each as joint/interface."""
+    sections = {keys[-1].rpartition("/")[2]: node for keys, node in _sections(workspace)}
+    types = known()["controllers"]
+    found = ((sections.get(it.name), types.get(it.type.text, {})) for it in defined_controllers(workspace))
+    needed = [_needed_in(section, kinds) for section, kinds in found if section is not None]
+    return frozenset(f"{joint.text}/{name}" for each in needed for joint, names in each for name in names)
 
 
 def _interface_facts(

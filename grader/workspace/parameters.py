@@ -32,6 +32,7 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     for path, nodes in workspace.parameter_files.items():
         yield Compared("parameters")
         yield from _file_given(workspace, path, nodes)
+    yield from _controllers_given(workspace)
     for package, node in workspace.nodes:
         own = workspace.python_node(node)
         if own is not None:
@@ -79,6 +80,15 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
             yield Mismatch("parameters", message, sections[key].location, node.location, True, either)
 
 
+def _controllers_given(workspace: Workspace) -> Iterator[Fact]:
+    """Yield what is misplaced in files that only controllers are given."""
+    for path in sorted(workspace.controller_files.difference(workspace.parameter_files)):
+        tree = workspace.yaml_files.get(path)
+        if isinstance(tree, YamlNode):
+            yield Compared("parameters")
+            yield from _misplaced(tree)
+
+
 def _misplaced(tree: YamlNode) -> Iterator[Fact]:
     """Yield values that are not below ros__parameters, and ros__parameters inside of ros__parameters."""
     waiting: list[tuple[str, YamlNode, bool]] = [("", tree, False)]
@@ -110,7 +120,7 @@ def _declared(workspace: Workspace, package: Package, node: StartedNode, own: Py
     for it in own.parameters:
         if it.name is not None and not it.is_declared:
             yield Use("parameter", it.name, it.location, "get_parameter", owner)
-    found = parameters_of(node, WithSources(package), own.name or "", is_python=True)
+    found = parameters_of(node, WithSources(package, absent_are_empty=True), own.name or "", is_python=True)
     if found.unknown:
         yield Undecided("parameters", found.unknown)
     wide = workspace.wildcard_places(node)

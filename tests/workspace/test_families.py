@@ -3,14 +3,13 @@
 import pytest
 
 from grader.workspace.names import Family
-from tests.workspace.carts import agreement_of, edited, sure
+from tests.workspace.carts import Edit, agreement_of, edited, sure
 
 _LAUNCH, _ROBOT_LAUNCH = "launch/cart.launch.py", "launch/robot.launch.py"
 _CONTROLLERS, _URDF = "config/controllers.yaml", "cart.urdf.xacro"
 _DETECTOR, _ALARM = "cart_nodes/detector.py", "cart_nodes/alarm.py"
-_Edit = tuple[str, str, str]
 
-WRONG: list[tuple[Family, str, list[_Edit]]] = [
+WRONG: list[tuple[Family, str, list[Edit]]] = [
     ("files", ("share/cart_bringup/config/detectors.yaml is looked for, but the package has no file 'detectors.yaml';"
      " did you mean 'detector.yaml'?"), [(_LAUNCH, '"detector.yaml"', '"detectors.yaml"')]),
     ("files", ("share/cart_bringup/config/hall.yaml is looked for, but a build installs it as"
@@ -72,6 +71,9 @@ WRONG: list[tuple[Family, str, list[_Edit]]] = [
     ("parameters", "threshold is not below a key ros__parameters, so rcl cannot read the file",
      [("config/detector.yaml", "  ros__parameters:\n    threshold: 0.5\n    camera_frame: camera_link",
        "  threshold: 0.5")]),
+    ("parameters", "wheel_controller: ros__parameters is inside of other ros__parameters",
+     [(_CONTROLLERS, "\nwheel_controller:\n  ros__parameters:\n    left", "    wheel_controller:\n      ros__parameters:\n        left"),
+      (_CONTROLLERS, "    right_wheel_names", "        right_wheel_names")]),
     ("parameters", ("the node 'detector': there is no parameter 'treshold'; did you mean 'threshold'"
      " (cart_nodes/cart_nodes/detector.py:10)?"), [("config/detector.yaml", "threshold", "treshold")]),
     ("parameters", "get_parameter: there is no parameter 'level'", [(_DETECTOR, 'get_parameter("threshold")', 'get_parameter("level")')]),
@@ -124,14 +126,14 @@ WRONG: list[tuple[Family, str, list[_Edit]]] = [
 
 
 @pytest.mark.parametrize(("family", "message", "edits"), WRONG, ids=[f"{it[0]}: {it[1][:50]}" for it in WRONG])
-def test_a_wrong_name_is_a_sure_problem_of_one_family(family: Family, message: str, edits: list[_Edit]) -> None:
+def test_a_wrong_name_is_a_sure_problem_of_one_family(family: Family, message: str, edits: list[Edit]) -> None:
     """What certainly fails at run time is named with both places, and counts in one family."""
     found = sure(agreement_of(edited(*edits)))
     assert message in [it.message for it in found], found
     assert {it.family for it in found} == {family}
 
 
-CORRECT: list[tuple[str, list[_Edit]]] = [
+CORRECT: list[tuple[str, list[Edit]]] = [
     ("parameters of every node", [("config/detector.yaml", "detector:", "/**:")]),
     ("parameters by the full name of a node", [("config/detector.yaml", "detector:", "/detector:")]),
     ("parameters of every node are not declared by each", [
@@ -267,7 +269,7 @@ CORRECT: list[tuple[str, list[_Edit]]] = [
 
 
 @pytest.mark.parametrize("edits", [it[1] for it in CORRECT], ids=[it[0] for it in CORRECT])
-def test_what_ros_accepts_is_no_sure_problem(edits: list[_Edit]) -> None:
+def test_what_ros_accepts_is_no_sure_problem(edits: list[Edit]) -> None:
     """Other ways to write the same, and names that something which is not submitted may define, are not wrong."""
     assert sure(agreement_of(edited(*edits))) == []
 
