@@ -28,7 +28,12 @@ from grader.submission import packages
 from tests.command_line import ROOT, run
 
 MIB = 1024 * 1024
-BESIDE = [*(ROOT / "rubrics").glob("*/README.md"), *(ROOT / "tests").glob("*.md"), ROOT / "benchmarks/README.md"]
+BESIDE = [
+    ROOT / "docs/schemas/README.md",
+    *(ROOT / "rubrics").glob("*/README.md"),
+    *(ROOT / "tests").glob("*.md"),
+    ROOT / "benchmarks/README.md",
+]
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *BESIDE])
 GENERATED = runpy.run_path(str(ROOT / "docs" / "make.py"))["pages"]()
 
@@ -65,13 +70,15 @@ def test_anchors_are_headings(page: Path) -> None:
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_codes_and_criteria_exist(page: Path) -> None:
     """Every problem code on a page is in the catalogue."""
-    codes = set(re.findall(r"(?:URDF|XACRO|PKG|LCH|RVZ)\d{3}", page.read_text(encoding="utf-8")))
-    assert all(f"- `{code}` (" in GENERATED["problems.md"] for code in codes)
+    codes = set(re.findall(r"(?:URDF|XACRO|PKG|LCH|RVZ|REF)\d{3}", page.read_text(encoding="utf-8")))
+    assert all(f"\n## {code}\n" in GENERATED["problems.md"] for code in codes)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_code_blocks_can_be_parsed(page: Path) -> None:
-    """Every block of YAML or TOML is valid, so it was not wrapped like prose."""
+    """Every block of YAML or TOML is valid, so it was not wrapped like prose; some generated ones are wrong on purpose."""
+    if page.name == "problems.md":
+        return
     for kind, block in re.findall(r"^ *```(yaml|toml)\n(.*?)^ *```", page.read_text(encoding="utf-8"), re.S | re.M):
         (yaml.safe_load if kind == "yaml" else tomllib.loads)(block)
 
@@ -100,8 +107,8 @@ def test_every_command_and_option_is_in_the_reference() -> None:
 
 @pytest.mark.parametrize("name", ["report", "inspect", "class", "diff", "rubric-test"])
 def test_every_key_of_json_is_in_the_reference(name: str) -> None:
-    """Each key of each schema is on the page."""
-    page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
+    """Each key of each schema is on the page beside the schemas."""
+    page = (ROOT / "docs" / "schemas" / "README.md").read_text(encoding="utf-8")
     shown = set(re.findall(r"\w+", " ".join(re.findall(r"`[^`\n]+`", page))))
     assert set(keys(json.loads(run(("schema", name)).stdout))) <= shown
 
