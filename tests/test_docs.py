@@ -188,7 +188,8 @@ def test_points_are_those_of_the_rubrics() -> None:
             assert re.search(rf"^\| `{part.id}` \|.*\| {points}(, manual)? \|$", page, re.MULTILINE), part
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     assert "all 90 automatic points; 10 more need manual grading" in readme
-    assert "the score, 64/70." in readme
+    assert "62 of 70 points" in readme
+    assert "the score, 64/70." in (ROOT / "docs/index.md").read_text(encoding="utf-8")
     assert "\n64/70  " in GENERATED["grade-one-submission.md"]
 
 
