@@ -83,6 +83,18 @@ def test_code_blocks_can_be_parsed(page: Path) -> None:
         (yaml.safe_load if kind == "yaml" else tomllib.loads)(block)
 
 
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_programs_of_the_project_exist(page: Path) -> None:
+    """Each module and file that `python` or `pytest` is to run is one of the project."""
+    text = page.read_text(encoding="utf-8")
+    found = re.findall(
+        r"-m ((?:tests|benchmarks)[\w.]*)|(?:python|pytest)[^`\n]* ((?:tests|benchmarks|docs)/[\w/.]+)", text
+    )
+    for module, file in found:
+        path = file.removesuffix("/") or module.rstrip(".").replace(".", "/")
+        assert (ROOT / path).exists() or (ROOT / f"{path}.py").exists(), path
+
+
 def commands(command: Any, name: str) -> Iterator[tuple[str, set[str]]]:
     """Yield each command below this one with its options."""
     below = getattr(command, "commands", {})
