@@ -238,3 +238,13 @@ def test_every_test_that_the_table_of_attacks_names_exists() -> None:
     for file, function in named:
         tests = (ROOT / "tests" / file).read_text(encoding="utf-8") if file else tests
         assert f"def {function or 'test_'}" in tests, (file, function)
+
+
+def test_the_pages_stay_short() -> None:
+    """The README has at most 650 words, and all pages that are not generated have at most 24,000."""
+    words = {
+        page: len(page.read_text(encoding="utf-8").split())
+        for page in [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
+    }
+    assert words[ROOT / "README.md"] <= 650
+    assert sum(words[page] for page in words if page.name not in ("problems.md", "checks.md")) <= 24_000
