@@ -9,13 +9,12 @@ from grader.package.package import CMAKE, MANIFEST
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.source import Edit, Source
 from grader.submission.submission import Submission
-from grader.workspace.names import Correction, Definition, Fact, Family, Use
+from grader.workspace.names import FAMILY_OF, Correction, Definition, Fact, Family, Use
 from grader.workspace.reading import read_facts
 
 _YAML = (".yaml", ".yml")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _INSTALL = re.compile(r"(?im)^[ \t]*install[ \t]*\([^()]*\)")
-_INSTALLED = re.compile(r"(?<=[\s\"(])(?![A-Z_]+[\s\")])[^\s\"()]+")  # not a keyword, such as DESTINATION
 _DEPENDENCY = re.compile(r"<((?:build_|build_export_|exec_)?depend)\b[^>]*>\s*([\w-]+)\s*</\1>")
 _TO_VALUE = re.compile(r"[\"']?\s*:(?:\s|#[^\n]*\n)*(?:[&!]\S+\s+)?")  # from a key
 _REVERSED = {"true": "false", "false": "true", "True": "False", "False": "True"}
@@ -25,7 +24,7 @@ def compared_names(submission: Submission, families: Iterable[Family]) -> Iterat
     """Yield the names of these families that files use or define, each with the edit that misspells it there."""
     known = frozenset(families)
     for fact in read_facts(submission) if known else ():
-        if isinstance(fact, Use | Definition) and fact.family in known:
+        if isinstance(fact, Use | Definition) and FAMILY_OF[fact.kind] in known:
             for edit in correction_edits(submission, Correction(fact.location, fact.name, misspelt(fact.name)))[:1]:
                 yield fact, edit
 
@@ -36,7 +35,9 @@ def name_changes(
     """Yield the changes of a file of a package: those of its format, then the names in it that are compared."""
     name = source.path.rpartition("/")[2]
     if name == CMAKE:
-        yield from _of_installs(source.text, label)
+        for found in _INSTALL.finditer(source.text):
+            place = f"{label} {' '.join(found[0].split())[:MAX_LABEL]}"
+            yield MutantEdit("install removed", place, *found.span(), "")
     elif name == MANIFEST and "dependencies" in families:
         for found in _DEPENDENCY.finditer(source.text):
             yield MutantEdit("dependency removed", f"{label} {found[1]} {found[2]}", *found.span(), "")
@@ -47,15 +48,6 @@ def name_changes(
             start = source.offset(edit.line, edit.column)
             family = "name misspelt" if isinstance(fact, Use) else "definition renamed"
             yield MutantEdit(family, f"{label} {edit.old}", start, start + len(edit.old), edit.new)
-
-
-def _of_installs(text: str, label: str) -> Iterator[MutantEdit]:
-    """Yield that each install() is removed, and that each word in it is misspelt."""
-    for found in _INSTALL.finditer(text):
-        place = f"{label} {' '.join(found[0].split())[:MAX_LABEL]}"
-        yield MutantEdit("install removed", place, *found.span(), "")
-        for word in _INSTALLED.finditer(text, found.start() + found[0].index("("), found.end()):
-            yield MutantEdit("text misspelt", f"{label} {word[0]}", *word.span(), misspelt(word[0]))
 
 
 def _of_yaml(source: Source, label: str) -> Iterator[MutantEdit]:

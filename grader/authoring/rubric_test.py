@@ -15,6 +15,7 @@ from random import Random
 from typing import Any, NamedTuple
 
 from grader.authoring.equivalents import Equivalent, RewritingRules, equivalents, is_same_robot
+from grader.authoring.file_equivalents import EVERY_NODE, file_equivalents
 from grader.authoring.mutants import Mutant, MutantEdit, mutants, package_mutants
 from grader.authoring.name_mutants import compared_names, name_changes
 from grader.authoring.samples import Loss, Sample, SampleResults, tested_samples
@@ -201,16 +202,26 @@ class Trial:
         failed = tuple(found.criterion.id for found in results if found.outcome.status == "failed")
         return MutantOutcome(mutant, fate, failed, faults)
 
-    def equivalents(self) -> Iterator[tuple[Equivalent, Mapping[str, str]]]:
-        """Yield the rewritings of the reference, each with the criteria that lose points, and their messages."""
+    def equivalents(self) -> Iterator[Loss]:
+        """Yield what each rewriting of the reference loses: most lose nothing."""
         urdf = self.reference.urdf
-        if not isinstance(urdf, Read) or urdf.loaded.verdict != "clean" or urdf.reading.root is None:
-            return
-        has_places = any(name.startswith("@") for name in _names_in(self.rubric))
-        for found in equivalents(urdf.reading.root, RewritingRules(self.kept, has_places)):
-            submission = _rewritten(self.reference, urdf, found)
-            results = decide(self.rubric, submission, self._must_pass(submission, found.family))
-            yield found, {it.criterion.id: it.outcome.message for it in results if self.is_lost(it)}
+        if isinstance(urdf, Read) and urdf.loaded.verdict == "clean" and urdf.reading.root is not None:
+            has_places = any(name.startswith("@") for name in _names_in(self.rubric))
+            for found in equivalents(urdf.reading.root, RewritingRules(self.kept, has_places)):
+                submission = _rewritten(self.reference, urdf, found)
+                lost = self._lost(submission, self._must_pass(submission, found.family))
+                diff = _text_diff(self.robot_files[0], found.before, found.text) if lost else ""
+                yield Loss(found.family, lost, diff)
+        for family, texts in file_equivalents(self.reference):
+            names = [it.id for it in self.tested if family != EVERY_NODE or it.check.name != "entry_is"]
+            lost = self._lost(with_files(self.reference, {path: it.encode() for path, it in texts.items()}), names)
+            diffs = (_text_diff(path, self.text(path), text) for path, text in texts.items())
+            yield Loss(family, lost, "\n".join(diffs))
+
+    def _lost(self, submission: Submission, names: Collection[str]) -> Mapping[str, str]:
+        """Return the criteria that lose points, with their messages."""
+        results = decide(self.rubric, submission, names)
+        return {it.criterion.id: it.outcome.message for it in results if self.is_lost(it)}
 
     def _must_pass(self, submission: Submission, family: str) -> Collection[str]:
         """Return the criteria on the robot that must still pass; for a URDF on its own, those that need no package."""
@@ -351,10 +362,8 @@ def _counted(
         faults=tuple(
             Loss(it.mutant.id, it.faults, _mutant_diff(trial, it.mutant)) for it in graded if it.fate == "faulty"
         ),
-        equivalents=tuple(it.family for it, _ in tried),
-        losses=tuple(
-            Loss(it.family, lost, _text_diff(trial.robot_files[0], it.before, it.text)) for it, lost in tried if lost
-        ),
+        equivalents=tuple(it.name for it in tried),
+        losses=tuple(it for it in tried if it.criteria),
         samples=samples,
     )
 

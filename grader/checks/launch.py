@@ -258,14 +258,8 @@ def _faulty_program(package: Package, launch: "Launch", choices: Sequence[Sequen
         if found and len(found) == len(faults):
             fault, name = found[0], next(iter(started))
             message = f"the entry point of {name.rpartition('/')[2]!r} names no function"
-            return MissingElement(
-                "entry point",
-                name,
-                message=message,
-                detail=f": {fault.message}",
-                location=fault.location,
-                costs_once=True,
-            )
+            why, at = f": {fault.message}", fault.location
+            return MissingElement("entry point", name, message=message, detail=why, location=at, costs_once=True)
     return None
 
 

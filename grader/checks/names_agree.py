@@ -4,7 +4,7 @@ from grader.checks.outcome import Outcome, failed, passed
 from grader.errors import NotDecided
 from grader.submission.submission import Submission
 from grader.text import first_lines
-from grader.workspace.names import Agreement, Family, Mismatch, place_text
+from grader.workspace.names import Family, place_text
 
 _MAX_NAMED = 3  # mistakes in a message
 
@@ -18,8 +18,10 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
     Args:
         of: What is named: files, frames, controllers, parameters, arguments, programs, topics or dependencies.
     """
+    from grader.workspace.reading import read_agreement, wrong_names  # late: few rubrics ask for it
+
     submission.needed_package()
-    wrong, undecided = wrong_names(submission, of), _agreement(submission).undecided
+    wrong, undecided = wrong_names(submission, of), read_agreement(submission).undecided
     if wrong:
         texts = [f"{place_text(it.location)}: {it.message}" for it in wrong[1:]]
         message = "; ".join([wrong[0].message, *first_lines(texts, _MAX_NAMED - 1)])
@@ -29,16 +31,3 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
         cause = f"cannot determine statically whether the names of {of} agree"
         raise NotDecided(f"{cause}: {reason}", cause)
     return passed(f"the names of {of} agree")
-
-
-def wrong_names(submission: Submission, family: Family) -> list[Mismatch]:
-    """Return what certainly does not agree in the packages that are graded."""
-    packages = submission.lab_packages.values()
-    own = [it for it in _agreement(submission).mismatches if it.family == family and it.is_sure]
-    return [it for it in own if any(package.holds(it.location.path) for package in packages)]
-
-
-def _agreement(submission: Submission) -> Agreement:
-    from grader.workspace.reading import read_agreement  # late: few rubrics ask for it
-
-    return read_agreement(submission)

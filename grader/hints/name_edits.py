@@ -3,21 +3,18 @@
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
 from os.path import commonprefix
 from typing import Any
 
-from grader.checks.names_agree import wrong_names
 from grader.checks.parameters import measured, value_of
 from grader.errors import MissingElement, NotDecided
-from grader.hints.edits import Proposal, content
+from grader.hints.edits import Proposal
 from grader.package.package import CMAKE, MANIFEST
-from grader.package.yaml_nodes import yaml_value
-from grader.source import Edits, Source
+from grader.source import Edits
 from grader.submission.submission import Submission
 from grader.workspace.names import Correction, Family
+from grader.workspace.reading import wrong_names
 
-_MAX_WRONG = 12
 _MAX_KEY = 400  # characters from a key to its value
 _SEPARATED = re.compile(r".*[./:]")
 _WITH_ALL = (f"/{CMAKE}", f"/{MANIFEST}")  # files in which a name stands several times for one thing
@@ -28,7 +25,7 @@ def name_proposals(submission: Submission, family: Family) -> Iterator[Proposal]
 
     A name that a file puts together from pieces has none.
     """
-    wrong = wrong_names(submission, family)[:_MAX_WRONG]
+    wrong = wrong_names(submission, family)
     ways = [[edits for it in one.corrections if (edits := correction_edits(submission, it))] for one in wrong]
     if not all(ways):
         return
@@ -43,41 +40,30 @@ def name_proposals(submission: Submission, family: Family) -> Iterator[Proposal]
 
 
 def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Iterator[Proposal]:
-    """Yield the edits that give a parameter the value that `parameter_is` asks for, where one is written plainly."""
+    """Yield the edit that gives a parameter the value that `parameter_is` asks for, where one is written plainly."""
     name, meant = wanted["parameter"], wanted.get("value")
     try:
         value, at = value_of(submission, wanted["node"], name)
         if "measure" in wanted:
-            meant = measured(submission, wanted["measure"], wanted.get("links", []))
+            meant = round(measured(submission, wanted["measure"], wanted.get("links", [])), 9)
     except (MissingElement, NotDecided):
         return
-    source, key = _source(submission, at.path), re.escape(name.rpartition(".")[2])
-    written = re.compile(rf"(?<![\w-]){key}[\"']?\s*:\s*[\"']?(?P<value>(?<=[\"'])[^\"'\n]+|[^\s\"',#\]}}]+)")
+    source, key = submission.source(at.path), re.escape(name.rpartition(".")[2])
+    if source is None:
+        return
+    plain = re.compile(rf"(?<![\w-]){key}[\"']?\s*:\s*[\"']?({re.escape(str(value))})(?!\w)", re.IGNORECASE)
     offset = source.offset(at.line, at.column)
-    found = next((it for it in written.finditer(source.text) if it.end() > offset), None)
-    if found is not None and _scalar(found["value"]) == value and isinstance(meant, str | int | float):
-        edit = source.edit(*found.span("value"), _written_like(found["value"], meant))
-        yield Proposal((edit,), f"the value of `{name}`")
-
-
-def _written_like(old: str, value: Any) -> str:
-    """Return a value as the old text is written: True or true, 2.0 or 2."""
-    if isinstance(value, str | bool):
-        return str(value).lower() if isinstance(value, bool) and old.islower() else str(value)
-    text = f"{value:.12g}"
-    return f"{text}.0" if "." in old and text.lstrip("-").isdigit() else text
-
-
-def _scalar(text: str) -> Any:
-    """Return what a scalar means in YAML and in Python."""
-    with suppress(ValueError):
-        return yaml_value(text)
-    return text
+    found = next((it for it in plain.finditer(source.text) if it.end() > offset), None)
+    if found is not None and isinstance(meant, str | int | float):
+        new = str(float(meant)) if isinstance(value, float) and type(meant) is int else str(meant)
+        yield Proposal((source.edit(*found.span(1), new),), f"the value of `{name}`")
 
 
 def correction_edits(submission: Submission, correction: Correction) -> Edits:
     """Return the edits that make a correction in the text; none where the name is not written there as a whole."""
-    at, source = correction.location, _source(submission, correction.location.path)
+    at, source = correction.location, submission.source(correction.location.path)
+    if source is None:
+        return ()
     for old, new in _as_written(correction.old, correction.new):
         spans = [it.span() for it in re.finditer(rf"(?<![\w-]){re.escape(old)}(?![\w-]|\.\w)", source.text)]
         if not f"/{at.path}".endswith(_WITH_ALL):
@@ -85,10 +71,6 @@ def correction_edits(submission: Submission, correction: Correction) -> Edits:
         if spans:
             return tuple(source.edit(*span, new) for span in spans)
     return ()
-
-
-def _source(submission: Submission, path: str) -> Source:
-    return Source(path, (content(submission, path) or b"").decode("utf-8", "surrogateescape"))
 
 
 def _as_written(old: str, new: str) -> Iterator[tuple[str, str]]:

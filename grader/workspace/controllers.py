@@ -1,11 +1,11 @@
 """Controllers of ros2_control: their YAML, the spawners that start them, and the interfaces of their joints."""
 
 import posixpath
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from grader.names import closest
+from grader.names import closest, near
 from grader.package.launch.model import StartedNode
 from grader.package.nodes import Endpoint
 from grader.package.yaml_nodes import YamlFault, YamlNode
@@ -39,6 +39,10 @@ def controller_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from _type_facts(workspace, controller)
         yield from _section_facts(workspace, controller, sections)
     yield from _spawner_facts(workspace)
+    managers = [node for _, node in workspace.nodes if node.executable == "ros2_control_node"]
+    if managers and workspace.command_interfaces is None and workspace.has_all_interfaces:
+        message = "the controller manager is started, but the robot has no <ros2_control>"
+        yield Mismatch("controllers", message, managers[0].location)
 
 
 def _sections(workspace: Workspace) -> Iterator[tuple[tuple[str, ...], YamlNode]]:
@@ -91,13 +95,15 @@ def _type_facts(workspace: Workspace, controller: _Controller) -> Iterator[Fact]
     package = written.partition("/")[0]
     if written in types or any(it.name == package for it in workspace.packages):
         return
-    similar = closest(written, types)
+    same = [it for it in types if it.partition("/")[2] == written.partition("/")[2]]
+    similar = closest(written, same) or (same[0] if len(same) == 1 else closest(written, types))
     is_known = any(name.startswith(f"{package}/") for name in types)
     if is_known or similar is not None:
         guess = f"; did you mean {similar!r}?" if similar is not None else ""
         message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
-        either = corrections(written, controller.location, similar) if similar is not None else ()
-        yield Mismatch("controllers", message, controller.location, is_sure=is_known, corrections=either)
+        is_sure = is_known or near(written, same) is not None
+        either = corrections(written, controller.location, similar)
+        yield Mismatch("controllers", message, controller.location, is_sure=is_sure, corrections=either)
 
 
 def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapping[str, YamlNode]) -> Iterator[Fact]:
@@ -111,21 +117,35 @@ def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapp
             either = corrections(meant, sections[meant].location, controller.name, at) if meant is not None else ()
             yield Mismatch("controllers", f"{message} with ros__parameters", at, corrections=either)
         return
-    interfaces = workspace.command_interfaces
     for key, wanted in needed.items():
         joints = section.get(key)
         given = section.get(wanted.removeprefix("=")) if wanted.startswith("=") else None
         names = [wanted] if not wanted.startswith("=") else []
         if given is not None:
             names = [it.text or "" for it in (given.items or [given])]
-        for joint in (joints.items or [joints]) if joints is not None and interfaces is not None else ():
-            own = interfaces.get(joint.text or "") if interfaces is not None else None
-            for name in [it for it in names if own is not None and it not in own[0]]:
-                message = f"{controller.name} needs the command interface {joint.text}/{name}"
-                there = ", ".join(sorted(own[0])) if own is not None and own[0] else "none"
-                at = own[1] if own is not None else joint.location
-                text = f"{message}; <ros2_control> has {there} ({place_text(at)})"
-                yield Mismatch("controllers", text, joint.location, at)
+        for joint in (joints.items or [joints]) if joints is not None else ():
+            yield from _interface_facts(workspace, controller, joint, names)
+
+
+def _interface_facts(
+    workspace: Workspace, controller: _Controller, joint: YamlNode, needed: Sequence[str]
+) -> Iterator[Mismatch]:
+    """Yield the command interfaces that a controller needs of a joint, and <ros2_control> does not have."""
+    interfaces, name = workspace.command_interfaces or {}, joint.text or ""
+    message = f"{controller.name} needs the command interface {name}"
+    if name in interfaces:
+        own, at = interfaces[name]
+        there = f"<ros2_control> has {', '.join(sorted(own)) or 'none'} ({place_text(at)})"
+        for missing in [it for it in needed if it not in own]:
+            yield Mismatch("controllers", f"{message}/{missing}; {there}", joint.location, at)
+    elif workspace.has_all_interfaces and interfaces and all(_is_joint(workspace, it) for it in [name, *interfaces]):
+        for missing in needed[:1]:
+            text = f"{message}/{missing}; <ros2_control> has no joint {name!r}"
+            yield Mismatch("controllers", text, joint.location)
+
+
+def _is_joint(workspace: Workspace, name: str) -> bool:
+    return workspace.robot is not None and workspace.robot.has_joint(name)
 
 
 def _spawner_facts(workspace: Workspace) -> Iterator[Fact]:

@@ -35,8 +35,7 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
                 message = f"package.xml of {package.name!r} does not declare {name!r}, which is used here"
                 # rosdep installs what packages need that are declared.
                 is_sure, start = name not in brought, package.manifest.name_location
-                meant = near(name, declared - used.keys())
-                either = corrections(meant, start, name, at) if meant is not None else ()
+                either = corrections(name, at, near(name, declared - used.keys()), start)
                 yield Mismatch("dependencies", message, at, start, is_sure, either)
 
 

@@ -117,9 +117,8 @@ def _not_there(owner: Package, target: str, at: Location) -> Mismatch:
     # A file that a program writes is in a folder of its own, and like no other.
     folders = {posixpath.dirname(it) for it in owner.installed}
     is_sure = meant is not None or posixpath.dirname(target) in folders
-    either = corrections(name, at, meant) if meant is not None else ()
     message = f"{looked} the package has no file {name!r}{guess}"
-    return Mismatch("files", message, at, is_sure=is_sure, corrections=either)
+    return Mismatch("files", message, at, None, is_sure, corrections(name, at, meant))
 
 
 def _of_folders(target: str, elsewhere: str, at: Location, start: Location) -> tuple[Correction, ...]:
@@ -134,7 +133,7 @@ def _of_install(setup: Installation, own: str, start: Location) -> tuple[Correct
     """Return the correction of a path in setup.py or CMakeLists.txt that does not exist, into one that has the file."""
     wrong = [it.path for it in setup.stops] + [posixpath.dirname(it.pattern) for it in setup.empty]
     pairs = ((path.rstrip("/"), closest(path, [own, posixpath.dirname(own)])) for path in wrong)
-    return next((corrections(path, start, meant) for path, meant in pairs if meant), ())
+    return next((corrections(path, start, meant) for path, meant in pairs if meant is not None), ())
 
 
 def _map_images(workspace: Workspace) -> Iterator[Fact]:
@@ -152,5 +151,5 @@ def _map_images(workspace: Workspace) -> Iterator[Fact]:
             )
             guess = f"; did you mean {meant!r}?" if meant else ""
             message = f"the image of the map, {image.text!r}, does not exist{guess}"
-            either = corrections(posixpath.basename(wanted), image.location, meant) if meant is not None else ()
+            either = corrections(posixpath.basename(wanted), image.location, meant)
             yield Mismatch("files", message, image.location, corrections=either)

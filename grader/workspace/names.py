@@ -15,7 +15,7 @@ _Kind = Literal[
     "frame", "link", "joint", "group", "controller", "interface", "plugin section", "parameter", "launch argument",
     "xacro argument", "node", "topic", "Gazebo topic",
 ]  # fmt: skip
-_FAMILY_OF: Mapping[_Kind, Family] = {
+FAMILY_OF: Mapping[_Kind, Family] = {
     **dict.fromkeys(("frame", "link", "joint", "group"), "frames"),
     **dict.fromkeys(("controller", "interface"), "controllers"),
     **dict.fromkeys(("plugin section", "parameter"), "parameters"),
@@ -33,11 +33,6 @@ class Definition(NamedTuple):
     location: Location
     owner: str = ""
 
-    @property
-    def family(self) -> Family:
-        """The family of its kind."""
-        return _FAMILY_OF[self.kind]
-
 
 class Use(NamedTuple):
     """A name that a file uses, and what the file calls it. Where it is `optional`, only a similar name is wrong."""
@@ -48,11 +43,6 @@ class Use(NamedTuple):
     said: str
     owner: str = ""
     optional: bool = False
-
-    @property
-    def family(self) -> Family:
-        """The family of its kind."""
-        return _FAMILY_OF[self.kind]
 
 
 class Open(NamedTuple):
@@ -136,9 +126,9 @@ def agreement(facts: Iterable[Fact]) -> Agreement:
         if mismatch is not None:
             found.append(mismatch)
         if opened.get(key):
-            undecided.setdefault(_FAMILY_OF[use.kind], opened[key])
+            undecided.setdefault(FAMILY_OF[use.kind], opened[key])
     order = sorted(dict.fromkeys(found), key=lambda it: (it.location.path, it.location.line, it.location.column))
-    families = {_FAMILY_OF[it.kind] for it in uses}
+    families = {FAMILY_OF[it.kind] for it in uses}
     families |= {fact.family for fact in every if isinstance(fact, Compared | Mismatch)}
     files = frozenset(fact.name for fact in every if isinstance(fact, Compared) and fact.name)
     return Agreement(tuple(order), undecided, frozenset(families), files)
@@ -155,18 +145,16 @@ def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mism
         return None
     guess = f"; did you mean {quoted(meant)} ({place_text(known[meant])})?" if meant is not None else ""
     message = f"{use.said}: there is no {use.kind} {quoted(use.name)}{guess}"
-    if meant is None:
-        return Mismatch(_FAMILY_OF[use.kind], message, use.location, None, is_sure)
-    related = known[meant]
+    related = known[meant] if meant is not None else None
     either = corrections(use.name, use.location, meant, related)
-    return Mismatch(_FAMILY_OF[use.kind], message, use.location, related, is_sure, either)
+    return Mismatch(FAMILY_OF[use.kind], message, use.location, related, is_sure, either)
 
 
-def corrections(name: str, at: Location, meant: str, *definitions: Location) -> tuple[Correction, ...]:
+def corrections(name: str, at: Location, meant: str | None, defined: Location | None = None) -> tuple[Correction, ...]:
     """Return that a name becomes the one that is meant, or the reverse; none for names of two sides or numbers."""
-    if not are_of_one_side(name, meant):
+    if meant is None or not are_of_one_side(name, meant):
         return ()
-    return (Correction(at, name, meant), *(Correction(it, meant, name) for it in definitions))
+    return (Correction(at, name, meant), *([Correction(defined, meant, name)] if defined is not None else []))
 
 
 def place_text(location: Location) -> str:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator, Sequence
 from fnmatch import fnmatchcase
 
-from grader.names import near
+from grader.names import closest, near
 from grader.package.launch.model import StartedNode
 from grader.package.launch.parameters import parameters_of
 from grader.package.nodes import PythonNode
@@ -12,7 +12,7 @@ from grader.package.package import Package
 from grader.package.yaml_nodes import YamlFault, YamlNode
 from grader.workspace.known import known
 from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use, corrections
-from grader.workspace.workspace import Workspace
+from grader.workspace.workspace import WithSources, Workspace
 from grader.workspace.yaml_values import PARAMETERS, is_parameters, sections_in, values_in
 
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
@@ -35,6 +35,8 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
         own = workspace.python_node(node)
         if own is not None:
             yield from _declared(workspace, package, node, own)
+    for package, node in workspace.nodes:
+        yield from _required(workspace, package, node)
     for _, tree in workspace.trees:
         if is_parameters(tree) or "controller_names" in tree.source.text:
             yield from _plugin_lists(tree)
@@ -70,7 +72,7 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
                 continue  # the others may be of nodes that are not submitted
             key = meant or unread[0]
             message = f"there are parameters for {key}, but none for the node {name!r}, which gets this file"
-            either = corrections(key, sections[key].location, name or "", node.location) if meant is not None else ()
+            either = corrections(key, sections[key].location, name if meant is not None else None, node.location)
             yield Mismatch("parameters", message, sections[key].location, node.location, True, either)
 
 
@@ -105,13 +107,26 @@ def _declared(workspace: Workspace, package: Package, node: StartedNode, own: Py
     for it in own.parameters:
         if it.name is not None and not it.is_declared:
             yield Use("parameter", it.name, it.location, "get_parameter", owner)
-    found = parameters_of(node, package, own.name or "", is_python=True)
+    found = parameters_of(node, WithSources(package), own.name or "", is_python=True)
     if found.unknown:
         yield Undecided("parameters", found.unknown)
     wide = workspace.wildcard_places(node)
     for name, value in found.values.items():
         if value.location not in wide and not name.startswith("qos_overrides."):
             yield Use("parameter", name, value.location, f"the node {workspace.name_of(node)!r}", owner)
+
+
+def _required(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:
+    """Yield the parameters that a program of another package needs, and does not get."""
+    needed = known()["required_parameters"].get(f"{node.package}/{node.executable}", ())
+    if needed and node.arguments == ():
+        found = parameters_of(node, WithSources(package), workspace.name_of(node) or "", is_python=False)
+        for name in [it for it in needed if it not in found.values and not found.unknown]:
+            guess = closest(name, found.values)
+            either = corrections(guess, found.values[guess].location, name) if guess is not None else ()
+            there = f"; did you mean it by {guess!r}?" if guess is not None else ""
+            message = f"{node.executable} stops without the parameter {name}, which it does not get{there}"
+            yield Mismatch("parameters", message, node.location, corrections=either)
 
 
 def _plugin_lists(tree: YamlNode) -> Iterator[Fact]:
@@ -149,5 +164,5 @@ def _plugin_names(tree: YamlNode) -> Iterator[Fact]:
         if meant is not None and meant != text:
             message = f"{value.said}: there is no plugin {text!r}; did you mean {meant!r}?"
             is_sure = is_of_jazzy or not text.startswith(older)
-            either = corrections(text, value.node.location, meant)
-            yield Mismatch("parameters", message, value.node.location, is_sure=is_sure, corrections=either)
+            at = value.node.location
+            yield Mismatch("parameters", message, at, None, is_sure, corrections(text, at, meant))

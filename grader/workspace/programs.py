@@ -1,11 +1,11 @@
 """Programs and nodes: what launch files start, entry points, and the nodes that a lifecycle manager looks after."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from grader.names import closest
 from grader.package.entry_points import entry_fault, entry_points
 from grader.package.launch.parameters import parameters_of
-from grader.package.package import Package
+from grader.package.package import CMAKE, SETUP, Package
 from grader.source import Location
 from grader.workspace.known import known
 from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use, corrections
@@ -20,35 +20,45 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
             fault = entry_fault(package, entry.name)
             if fault is not None:
                 message = f"the entry point of {entry.name!r} names no function: {fault.message}"
-                either = corrections(fault.written, fault.location, fault.meant) if fault.meant else ()
+                either = corrections(fault.written, fault.location, fault.meant)
                 yield Mismatch("programs", message, fault.location, corrections=either)
     for package, node in workspace.nodes:
         owner = package.find(node.package)
         if owner is not None:
             yield Compared("programs")
         if owner is not None and owner.has_program(node.package, node.executable) is False:
-            yield _no_program(owner, node.executable, node.location)
+            reason, meant = _why_no_program(owner, node.executable)
+            start = Location(owner.path(CMAKE if owner.is_cmake else SETUP), 1, 1)
+            either = corrections(node.executable, node.location, meant, start)
+            yield Mismatch("programs", reason, node.location, corrections=either)
+        names = known()["programs"].get(node.package, [node.executable]) if owner is None else [node.executable]
+        if node.executable not in names:
+            reason, meant = _unknown_program(node.package, node.executable, names)
+            either = corrections(node.executable, node.location, meant)
+            yield Mismatch("programs", reason, node.location, corrections=either)
     yield from _lifecycle(workspace)
 
 
-def _no_program(package: Package, name: str, at: Location) -> Mismatch:
-    """Return that ros2 run does not find a program, and where it is installed, or which there are."""
+def _why_no_program(package: Package, name: str) -> tuple[str, str | None]:
+    """Return that ros2 run does not find a program, and where it is installed, or which there are; what is meant."""
     setup, entries = package.installation, [entry.name for entry in entry_points(package)]
     folder = setup.scripts_folder if setup is not None else ""
     if name in entries:
-        message = f"a build installs {name!r} in {folder}, not in lib/{package.name}: see install_scripts of setup.cfg"
-        return Mismatch("programs", message, at)
+        home = f"lib/{package.name}: see install_scripts of setup.cfg"
+        return f"a build installs {name!r} in {folder}, not in {home}", None
     files = [*setup.programs, *(copy.target for copy in setup.copies)] if setup is not None else []
     elsewhere = next((path for path in files if path.rpartition("/")[2] == name), None)
     if elsewhere is not None:
-        message = f"a build installs {name!r} as {elsewhere}, but ros2 run looks in lib/{package.name}"
-        return Mismatch("programs", message, at)
+        return f"a build installs {name!r} as {elsewhere}, but ros2 run looks in lib/{package.name}", None
     names = sorted({*(path.rpartition("/")[2] for path in files if path.startswith(f"lib/{package.name}/")), *entries})
+    return _unknown_program(package.name, name, names)
+
+
+def _unknown_program(package: str, name: str, names: Sequence[str]) -> tuple[str, str | None]:
+    """Return that a package has only programs of other names, and the one that may be meant."""
     guess = closest(name, names)
     there = f"; did you mean {guess!r}?" if guess else f"; it has {', '.join(names) or 'none'}"
-    message = f"the package {package.name!r} has no program {name!r}{there}"
-    start = [Location(setup.source.path, 1, 1)] if setup is not None else []
-    return Mismatch("programs", message, at, corrections=corrections(name, at, guess, *start) if guess else ())
+    return f"the package {package!r} has no program {name!r}{there}", guess
 
 
 def _lifecycle(workspace: Workspace) -> Iterator[Fact]:

@@ -11,8 +11,9 @@ from grader.workspace.controllers import controller_facts
 from grader.workspace.dependencies import dependency_facts
 from grader.workspace.files import file_facts
 from grader.workspace.frames import frame_facts
+from grader.workspace.gazebo import gazebo_facts
 from grader.workspace.moveit import moveit_facts
-from grader.workspace.names import Agreement, Fact, Family, agreement
+from grader.workspace.names import Agreement, Fact, Family, Mismatch, agreement
 from grader.workspace.parameters import parameter_facts
 from grader.workspace.programs import program_facts
 from grader.workspace.topics import topic_facts
@@ -21,7 +22,7 @@ from grader.workspace.workspace import Workspace
 
 _READERS = (
     file_facts, frame_facts, controller_facts, parameter_facts, argument_facts, program_facts, topic_facts,
-    bridge_facts, moveit_facts, dependency_facts,
+    gazebo_facts, bridge_facts, moveit_facts, dependency_facts,
 )  # fmt: skip
 
 
@@ -33,6 +34,13 @@ def read_agreement(submission: Submission) -> Agreement:
     # names_agree needs a package.
     families = found.families if workspace.packages else frozenset[Family]()
     return found._replace(families=families, unused=tuple(unused_files(workspace)))
+
+
+def wrong_names(submission: Submission, family: Family) -> list[Mismatch]:
+    """Return what certainly does not agree in the packages that are graded."""
+    packages = submission.lab_packages.values()
+    own = [it for it in read_agreement(submission).mismatches if it.family == family and it.is_sure]
+    return [it for it in own if any(package.holds(it.location.path) for package in packages)]
 
 
 def read_facts(submission: Submission) -> Iterator[Fact]:

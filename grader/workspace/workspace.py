@@ -21,8 +21,9 @@ from grader.submission.urdf import Read
 from grader.workspace.known import known
 from grader.workspace.yaml_values import sections_in, values_in
 from grader.xml.elements import readable
-from grader.xml.parsing import Element
+from grader.xml.parsing import Element, XmlFault, XmlFile
 
+_SYSTEM = re.compile(r"<ros2_control\b")
 _MANAGER, _SPAWNERS = "controller_manager", ("spawner", "spawner.py")
 _FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
 _MAX_FILES = 60  # of one kind in a package
@@ -32,7 +33,7 @@ _COMMENT = {False: re.compile(r"<!--.*?-->", re.DOTALL), True: re.compile(r"(?:^
 
 
 @dataclass(frozen=True)
-class _WithSources:
+class WithSources:
     """What builds install, and in place of a file that they do not install the one that may be meant."""
 
     package: Package
@@ -126,6 +127,17 @@ class Workspace:
         yield from ((path, node) for path, node in self.yaml_files.items() if isinstance(node, YamlNode))
 
     @cached_property
+    def sdf_files(self) -> tuple[XmlFile, ...]:
+        """The models and worlds of Gazebo that can be read."""
+        found = []
+        for package in self.packages:
+            for path in [it for it in package.tree.files if it.endswith((".sdf", ".world"))][:_MAX_FILES]:
+                with suppress(InputError, XmlFault):
+                    data = package.tree.files[path].read(_MAX_YAML)
+                    found.append(XmlFile(data, Source(package.path(path), data.decode("utf-8", "replace"))))
+        return tuple(found)
+
+    @cached_property
     def robot(self) -> Robot | None:
         """The robot; None without one, or where not all of it is known."""
         urdf = self.submission.urdf
@@ -180,6 +192,13 @@ class Workspace:
             found[joint.get("name", "")] = (before | names, at)
         return found if systems else None
 
+    @property
+    def has_all_interfaces(self) -> bool:
+        """Return whether `command_interfaces` are those of every robot, also under other arguments of xacro."""
+        written = sum(len(_SYSTEM.findall(it.text)) for it in self.xacro_sources)
+        systems = len(list(self.robot_root.iterchildren("ros2_control"))) if self.robot_root is not None else -1
+        return written <= systems and not self.has_other_robots
+
     def python_node(self, node: StartedNode) -> PythonNode | None:
         """Return the Python node of the workspace that a program starts, if it starts one that is known."""
         owner = self.package_of(node)
@@ -200,9 +219,7 @@ class Workspace:
 
     def children_of(self, name: str) -> frozenset[str]:
         """Return the nodes that a node of another package makes in its process, and that read its parameters."""
-        return frozenset(known()["children"].get(name, ())) | (
-            self.controllers if name == "controller_manager" else frozenset()
-        )
+        return frozenset(known()["children"].get(name, ())) | (self.typed_sections if name == _MANAGER else frozenset())
 
     @cached_property
     def controllers(self) -> frozenset[str]:
@@ -258,14 +275,14 @@ class Workspace:
             for node in launch.nodes:
                 name, own = self.name_of(node), self.python_node(node)
                 if (name is not None and node.package != _MANAGER) or node in managers:
-                    sources = _WithSources(package)
+                    sources = WithSources(package)
                     given = parameters_of(node, sources, name or "", is_python=own is not None or None)
                     found.setdefault(name or "", []).append(given)
                 for controller in (controllers_of(node) or ()) if node.executable in _SPAWNERS else ():
                     before = [it for manager in managers for it in manager.parameters or ()]
                     files = (*before, *self._simulated, *(controller.parameters or ()))
                     started = replace(controller, parameters=files)
-                    given = parameters_of(started, _WithSources(package), is_python=False)
+                    given = parameters_of(started, WithSources(package), is_python=False)
                     found.setdefault(controller.node_name or "", []).append(given)
         return found
 

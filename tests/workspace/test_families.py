@@ -43,6 +43,22 @@ WRONG: list[tuple[Family, str, list[_Edit]]] = [
      " (cart_description/urdf/cart.urdf.xacro:18)"),
      [(_URDF, '"left_wheel_joint">\n      <command_interface name="velocity"',
        '"left_wheel_joint">\n      <command_interface name="position"')]),
+    ("controllers", ("wheel_controller needs the command interface right_wheel_joint/velocity; <ros2_control> has no joint"
+     " 'right_wheel_joint'"), [(_URDF, """
+    <joint name="right_wheel_joint">
+      <command_interface name="velocity"/>
+      <state_interface name="velocity"/>
+    </joint>""", "")]),
+    ("controllers", "the controller manager is started, but the robot has no <ros2_control>",
+     [(_URDF, '<ros2_control name="CartSystem" type="system">', "<control>"), (_URDF, "</ros2_control>", "</control>"),
+      (_ROBOT_LAUNCH, 'executable="robot_state_publisher",', 'executable="robot_state_publisher", arguments=[],'),
+      (_ROBOT_LAUNCH, "    return LaunchDescription([",
+       '    return LaunchDescription([Node(package="controller_manager", executable="ros2_control_node"),')]),
+    ("controllers", ("joint_state_broadcaster.type: there is no controller of the type"
+     " 'joint_state_broadcaste/JointStateBroadcaster'; did you mean 'joint_state_broadcaster/JointStateBroadcaster'?"),
+     [(_CONTROLLERS, "joint_state_broadcaster/Joint", "joint_state_broadcaste/Joint")]),
+    ("parameters", ("robot_state_publisher stops without the parameter robot_description, which it does not get; did you"
+     " mean it by 'robot_descripton'?"), [(_ROBOT_LAUNCH, '"robot_description"', '"robot_descripton"')]),
     ("parameters", "there are parameters for detect, but none for the node 'detector', which gets this file",
      [("config/detector.yaml", "detector:", "detect:")]),
     ("parameters", "threshold is not below a key ros__parameters, so rcl cannot read the file",
@@ -67,6 +83,8 @@ WRONG: list[tuple[Family, str, list[_Edit]]] = [
      " (cart_description/urdf/cart.urdf.xacro:3)?"), [(_ROBOT_LAUNCH, "controllers_file:=", "controller_file:=")]),
     ("programs", "the package 'cart_nodes' has no program 'detect'; did you mean 'detector'?",
      [(_LAUNCH, 'executable="detector"', 'executable="detect"')]),
+    ("programs", "the package 'controller_manager' has no program 'spawn'; did you mean 'spawner'?",
+     [(_ROBOT_LAUNCH, 'executable="spawner", arguments=["joint', 'executable="spawn", arguments=["joint')]),
     ("programs", "the entry point of 'alarm' names no function: there is no module cart_nodes.siren; did you mean 'alarm'?",
      [("cart_nodes/setup.py", "cart_nodes.alarm", "cart_nodes.siren")]),
     ("programs", "a build installs 'alarm' in bin, not in lib/cart_nodes: see install_scripts of setup.cfg",
@@ -134,6 +152,12 @@ CORRECT: list[tuple[str, list[_Edit]]] = [
     ("a controller that is not known", [
         (_CONTROLLERS, "diff_drive_controller/DiffDriveController", "cart_control/CartController"),
         (_CONTROLLERS, "left_wheel_names", "wheels"), (_CONTROLLERS, "right_wheel_names", "others")]),
+    ("a robot whose joints depend on an argument of xacro", [
+        (_URDF, "<ros2_control name", '<xacro:if value="0"><ros2_control name="Other"/></xacro:if><ros2_control name'),
+        (_URDF, '<joint name="right_wheel_joint">', '<joint name="camera_mount">')]),
+    ("a robot that its publisher reads from a file", [
+        (_ROBOT_LAUNCH, '"robot_description"', '"other"'),
+        (_ROBOT_LAUNCH, 'executable="robot_state_publisher"', 'executable="robot_state_publisher", arguments=["a.urdf"]')]),
     ("an argument that nothing declares and nothing is like", [(_LAUNCH, '"sim_time": "true"', '"sim_time": "true", "colour": "red"')]),
     ("a file that a program writes", [(_LAUNCH, '"worlds", "hall.yaml"', '"recorded", "mine.bag"')]),
     ("programs of packages that are not submitted", [(_LAUNCH, 'executable="map_server"', 'executable="map_saver"')]),

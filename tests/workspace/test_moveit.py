@@ -32,6 +32,10 @@ _ROBOT = """\
   <joint name="shoulder" type="revolute">
     <parent link="base"/><child link="hand"/><limit lower="-1" upper="1" effort="1" velocity="1"/>
   </joint>
+  <ros2_control name="arm" type="system">
+    <hardware><plugin>mock_components/GenericSystem</plugin></hardware>
+    <joint name="shoulder"><command_interface name="position"/><state_interface name="position"/></joint>
+  </ros2_control>
 </robot>
 """
 _SRDF = '<robot name="arm"><group name="arm"><chain base_link="base" tip_link="hand"/></group></robot>'

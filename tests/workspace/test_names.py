@@ -1,7 +1,18 @@
 """A name that is used has to be defined: definitions and uses made by hand."""
 
 from grader.source import Location
-from grader.workspace.names import Agreement, Compared, Definition, Fact, Mismatch, Open, Undecided, Use, agreement
+from grader.workspace.names import (
+    Agreement,
+    Compared,
+    Correction,
+    Definition,
+    Fact,
+    Mismatch,
+    Open,
+    Undecided,
+    Use,
+    agreement,
+)  # fmt: skip
 
 _HERE, _THERE, _LATER = Location("a.yaml", 3, 5), Location("robot.urdf", 7, 2), Location("a.yaml", 9, 1)
 _WHEEL = Definition("joint", "left_wheel_joint", _THERE)
@@ -17,10 +28,11 @@ def test_a_name_that_is_defined_agrees() -> None:
 
 
 def test_a_name_that_is_not_defined_is_wrong_and_the_similar_one_is_named() -> None:
-    """The message says where it is used and where the similar name is defined."""
+    """The message says where it is used and where the similar name is defined; either is corrected."""
     [found] = agreement([_WHEEL, _use("wheel_left_joint")]).mismatches
     said = "wheels: there is no joint 'wheel_left_joint'; did you mean 'left_wheel_joint' (robot.urdf:7)?"
-    assert found == Mismatch("frames", said, _HERE, _THERE)
+    use = Correction(_HERE, "wheel_left_joint", "left_wheel_joint")
+    assert found == Mismatch("frames", said, _HERE, _THERE, corrections=(use, Correction(_THERE, use.new, use.old)))
 
 
 def test_a_name_like_no_other_is_wrong_where_everything_was_read() -> None:

@@ -1,0 +1,68 @@
+"""Equivalents of YAML files give every node the parameters that it had, and nothing in the workspace disagrees."""
+
+import pytest
+
+from grader.authoring.file_equivalents import file_equivalents
+from grader.files.tree import make_tree, overlaid
+from grader.package.yaml_nodes import yaml_value
+from grader.submission.opening import submission_of
+from grader.submission.submission import Lab, Submission
+from grader.workspace.reading import read_agreement
+from grader.workspace.workspace import Workspace
+from tests.workspace.carts import cart_files
+
+DETECTOR = "cart_bringup/config/detector.yaml"
+
+
+def workspace_with(detector: str) -> Submission:
+    """Return the workspace with another file of parameters of the detector."""
+    files = {**cart_files(), DETECTOR: detector}
+    tree = overlaid(make_tree("cart", (), ()), {path: text.encode() for path, text in files.items()})
+    return submission_of(tree, "cart", Lab("urdf/cart.urdf.xacro"))
+
+
+def parameters(submission: Submission) -> dict[str, list[object]]:
+    """Return the values that nodes and controllers get, by their names."""
+    owners = Workspace(submission).parameter_owners
+    return {
+        name: [{key: it.value for key, it in one.values.items()} for one in given] for name, given in owners.items()
+    }
+
+
+def test_nodes_get_the_same_parameters_from_equivalents() -> None:
+    """Under /** in place of their name, and in braces; the files of controllers and of bridges stay what they are, too."""
+    submission = workspace_with(cart_files()[DETECTOR])
+    assert submission.reopen is not None
+    found = dict(file_equivalents(submission))
+    assert list(found["parameters of /**"]) == [DETECTOR]
+    assert {path.rpartition("/")[2] for path in found["flow style of YAML"]} == {
+        "bridge.yaml", "controllers.yaml", "detector.yaml", "hall.yaml", "navigation.yaml",
+    }  # fmt: skip
+    for texts in found.values():
+        changed = overlaid(submission.whole_tree, {path: text.encode() for path, text in texts.items()})
+        same = submission.reopen(changed)
+        assert parameters(same) == parameters(submission)
+        assert read_agreement(same).mismatches == ()
+
+
+@pytest.mark.parametrize(
+    ("detector", "families"),
+    [
+        ("'detector':\n  ros__parameters: {threshold: 0.5, names: ['a, b', c]}\n", {"/**", "flow"}),
+        ("/**:\n  ros__parameters:\n    threshold: 0.5\n", {"flow"}),
+        ("other:\n  ros__parameters:\n    threshold: 0.5\n", {"flow"}),
+        ("{detector: {ros__parameters: {threshold: 0.5}}}\n", {"flow"}),
+        ("detector:\n  ros__parameters:\n    threshold: 0.5\nalarm:\n  ros__parameters:\n    volume: 3\n", {"flow"}),
+        ("detector:\n  ros__parameters:\n    text: |\n      a\n", {"/**"}),  # no block of text is in braces
+        ("detector:\n  ros__parameters:\n    text: a, b\n", {"/**"}),
+        ("detector:\n  ros__parameters:\n    text: ]\n    other: {\n", set()),
+    ],
+)
+def test_a_file_that_would_mean_something_else_has_no_equivalent(detector: str, families: set[str]) -> None:
+    """What an equivalent changes is the text only: the parameters in it are those of the file."""
+    found = {
+        family: texts[DETECTOR] for family, texts in file_equivalents(workspace_with(detector)) if DETECTOR in texts
+    }
+    assert {"/**" if "/**" in family else "flow" for family in found} == families
+    for text in found.values():
+        assert [*yaml_value(text).values()] == [*yaml_value(detector).values()]
