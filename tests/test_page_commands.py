@@ -64,14 +64,14 @@ NOT_RUN = {  # beginnings of command lines that no test runs, and why
 CODES = {  # the robot has a mistake
     "grader grade ": 1,
     "grader grade submissions/lab6/reference": 0,
-    "grader inspect submissions/sensors/urdf-not-installed": 1,
+    "grader inspect submissions/diffdrive/spawner-misspelt": 1,
 }
 FOLDERS = dict.fromkeys(
     ("grader grade . ", "grader grade  ", "grader grade`"), "src/my_robot"
 )  # a student's repository
 PLACEHOLDERS = {
     "COMMAND": "grade", "EXPORTED": "canvas.csv", "FOLDER": "copied", "LEVEL": "place", "LMS": "canvas", "NEWPATH": "submissions", "PATH": "my_robot.urdf", "STUDENT": "alice", "TIME": "2026-11-20T23:59+01:00", "<id>": "lab6",
-    "arm/NAME": "arm/axis-sign", "lab6/NAME": "lab6/reference", "sensors/NAME": "sensors/no-xacro", "schema NAME": "schema report",
+    "arm/NAME": "arm/axis-sign", "lab6/NAME": "lab6/reference", "sensors/NAME": "sensors/no-xacro", "diffdrive/NAME": "diffdrive/gui-always", "schema NAME": "schema report",
 }  # fmt: skip
 IN_TEXT = {  # commands in the text that are not run here: a test that does, or the reason
     "grader grade src/my_robot --watch": "cli/test_watch.py",
