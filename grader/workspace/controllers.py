@@ -5,15 +5,15 @@ from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import NamedTuple
 
-from grader.names import closest
+from grader.names import closest, near
 from grader.package.launch.model import StartedNode
 from grader.package.nodes import Endpoint
 from grader.package.yaml_nodes import YamlFault, YamlNode
 from grader.source import Location
 from grader.workspace.known import known
-from grader.workspace.names import Definition, Fact, Mismatch, Open, Use, corrections, place_text
+from grader.workspace.names import Correction, Definition, Fact, Mismatch, Open, Use, corrections, place_text
 from grader.workspace.workspace import Workspace
-from grader.workspace.yaml_values import sections_in
+from grader.workspace.yaml_values import PARAMETERS, is_misspelt_key, sections_in
 
 _MANAGER = "controller_manager"
 _SPAWNERS = ("spawner", "spawner.py")
@@ -91,7 +91,8 @@ def _type_facts(workspace: Workspace, controller: _Controller) -> Iterator[Fact]
     package = written.partition("/")[0]
     if written in types or any(it.name == package for it in workspace.packages):
         return
-    similar = closest(written, types)
+    alike = [it for it in types if it.partition("/")[2] == written.partition("/")[2]]
+    similar = alike[0] if len(alike) == 1 else closest(written, types)
     is_known = any(name.startswith(f"{package}/") for name in types)
     if is_known or similar is not None:
         guess = f"; did you mean {similar!r}?" if similar is not None else ""
@@ -107,25 +108,39 @@ def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapp
     if section is None:
         if needed and "**" not in sections and not controller.has_file:
             message = f"the controller {controller.name!r} has no parameters: there is no key {controller.name}"
-            meant, at = closest(controller.name, sections), controller.location
-            either = corrections(meant, sections[meant].location, controller.name, at) if meant is not None else ()
+            either = _of_sections(workspace, controller, sections)
+            at = controller.location
             yield Mismatch("controllers", f"{message} with ros__parameters", at, corrections=either)
         return
     interfaces = workspace.command_interfaces
     for key, wanted in needed.items():
         joints = section.get(key)
         given = section.get(wanted.removeprefix("=")) if wanted.startswith("=") else None
-        names = [wanted] if not wanted.startswith("=") else []
+        names = {wanted: joints} if not wanted.startswith("=") else {}
         if given is not None:
-            names = [it.text or "" for it in (given.items or [given])]
+            names = {it.text or "": it for it in (given.items or [given])}
         for joint in (joints.items or [joints]) if joints is not None and interfaces is not None else ():
             own = interfaces.get(joint.text or "") if interfaces is not None else None
-            for name in [it for it in names if own is not None and it not in own[0]]:
+            for name, node in names.items():
+                if own is None or node is None or name in own[0]:
+                    continue
                 message = f"{controller.name} needs the command interface {joint.text}/{name}"
-                there = ", ".join(sorted(own[0])) if own is not None and own[0] else "none"
-                at = own[1] if own is not None else joint.location
-                text = f"{message}; <ros2_control> has {there} ({place_text(at)})"
-                yield Mismatch("controllers", text, joint.location, at)
+                text = f"{message}; <ros2_control> has {', '.join(sorted(own[0])) or 'none'} ({place_text(own[1])})"
+                either = corrections(name, node.location, near(name, own[0]), own[1])
+                either = either if given is not None else either[1:]
+                yield Mismatch("controllers", text, joint.location, own[1], corrections=either)
+
+
+def _of_sections(
+    workspace: Workspace, controller: _Controller, sections: Mapping[str, YamlNode]
+) -> tuple[Correction, ...]:
+    """Return the correction of the name of a controller above its parameters, or of the key ros__parameters there."""
+    meant = closest(controller.name, sections)
+    if meant is not None:
+        return corrections(meant, sections[meant].location, controller.name, controller.location)
+    own = [node for _, tree in workspace.trees if (node := tree.get(controller.name)) is not None]
+    keys = [it for node in own if isinstance(node.value, dict) for it in node.value.items()]
+    return next((corrections(key, node.location, PARAMETERS) for key, node in keys if is_misspelt_key(key, node)), ())
 
 
 def _spawner_facts(workspace: Workspace) -> Iterator[Fact]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from grader.names import closest
+from grader.names import closest, near
 from grader.package.entry_points import entry_fault, entry_points
 from grader.package.launch.parameters import parameters_of
 from grader.package.package import CMAKE, SETUP, Package
@@ -46,7 +46,7 @@ def _why_no_program(package: Package, name: str) -> tuple[str, str | None]:
     if elsewhere is not None:
         return f"a build installs {name!r} as {elsewhere}, but ros2 run looks in lib/{package.name}", None
     names = sorted({*(path.rpartition("/")[2] for path in files if path.startswith(f"lib/{package.name}/")), *entries})
-    guess = closest(name, names)
+    guess = closest(name, names) or near(name, names, "node")
     there = f"; did you mean {guess!r}?" if guess else f"; it has {', '.join(names) or 'none'}"
     return f"the package {package.name!r} has no program {name!r}{there}", guess
 
