@@ -19,6 +19,7 @@ OWN_PACKAGES = {
     *(f"equivalent-{name}" for name in ("f-strings-and-pathlib", "launch-file-in-xml", "literal-lists")),
     *(f"equivalent-{name}" for name in ("nested-install-paths", "urdf-launch")),
     *(f"equivalent-xacro-{name}" for name in ("command", "inertials", "macros", "numbers")),
+    "diffdrive/equivalent-other-names",
     *(f"sensors/equivalent-{name}" for name in ("find-in-include", "flat-install", "macro-included")),
     "xacro-from-another-package",
 }

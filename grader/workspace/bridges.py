@@ -1,30 +1,23 @@
-"""Bridges between Gazebo and ROS: the rows of ros_gz_bridge, and the topics of sensors in the robot and in worlds."""
+"""Bridges between Gazebo and ROS: the rows of ros_gz_bridge, compared with the topics that Gazebo has."""
 
 import posixpath
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import NamedTuple
 
-from grader.errors import InputError
 from grader.names import closest
+from grader.package.launch.parameters import parameters_of
 from grader.package.yaml_nodes import YamlNode
-from grader.source import Location, Source
+from grader.source import Location
 from grader.text import quoted
+from grader.workspace.gazebo import BRIDGE, LAUNCHES, GazeboTopic, gazebo_topics, roots
+from grader.workspace.known import known
 from grader.workspace.names import Compared, Fact, Mismatch, corrections, place_text
-from grader.workspace.workspace import Workspace
-from grader.xml.parsing import Element, XmlFault, XmlFile
+from grader.workspace.workspace import WithSources, Workspace
 
-BRIDGE = "ros_gz_bridge"
 _TO_ROS, _TO_GAZEBO, _BOTH = "GZ_TO_ROS", "ROS_TO_GZ", "BIDIRECTIONAL"
 _DIRECTIONS = {"[": _TO_ROS, "]": _TO_GAZEBO, "@": _BOTH}
 _ARGUMENT = re.compile(r"(?P<topic>[^@\s]+)@(?P<ros>[\w/]+)(?P<direction>[@\[\]])(?P<gz>[\w.]+)")
-_LAUNCHES = (".launch.py", "_launch.py", ".launch.xml", ".launch.yaml", ".launch")
-_MAX_SDF = 512 * 1024  # bytes
-# The last word of a message's type, by the type of the sensor that publishes it on its <topic>: gz-sensors.
-_SENSORS = {
-    "camera": "Image", "depth_camera": "Image", "depth": "Image", "gpu_lidar": "LaserScan", "lidar": "LaserScan",
-    "gpu_ray": "LaserScan", "ray": "LaserScan", "imu": "IMU",
-}  # fmt: skip
 _DERIVED = ("points", "image", "depth_image", "camera_info")  # below the topic, or beside it
 # Models in worlds that have no sensors.
 _WITHOUT_SENSORS = ("sun", "ground_plane", "ground plane")
@@ -46,16 +39,15 @@ class _BridgeRow(NamedTuple):
         """Return whether the bridge publishes in ROS."""
         return self.direction != _TO_GAZEBO
 
-
-class _Sensor(NamedTuple):
-    topic: str
-    type: str
-    location: Location
+    @property
+    def is_read(self) -> bool:
+        """Return whether the bridge subscribes in ROS."""
+        return self.direction != _TO_ROS
 
 
 def bridge_rows(workspace: Workspace) -> Iterator[_BridgeRow]:
     """Yield the rows of bridges in YAML files, and those in the arguments of bridges."""
-    launches = [source.text for package in workspace.packages for source in workspace.sources_of(package, _LAUNCHES)]
+    launches = [source.text for package in workspace.packages for source in workspace.sources_of(package, LAUNCHES)]
     for path, tree in workspace.trees:
         is_used = any(posixpath.basename(path) in text for text in launches)
         for row in tree.items:
@@ -83,64 +75,98 @@ def _row_in_yaml(row: YamlNode, *, is_used: bool) -> Iterator[_BridgeRow]:
 
 
 def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield rows of sensors that no sensor publishes, while nothing bridges the one that there is; clocks."""
+    """Yield rows with types or directions that no bridge has, those of topics that Gazebo does not have, and clocks."""
     rows = list(bridge_rows(workspace))
     if not rows:
         return
-    sensors, defined = _gazebo_topics(workspace)
+    topics = list(gazebo_topics(workspace))
     of_images = [node for _, node in workspace.nodes if node.package == "ros_gz_image"]
     images = {(word or "").strip("/") for node in of_images for word in node.arguments or ()}
-    bridged = {row.gz for row in rows} | images
+    bridged, defined = {row.gz for row in rows} | images, _defined(workspace)
+    unused = [it for it in topics if it.name not in bridged]
     is_known = not _is_open(workspace)
     for row in rows:
         yield Compared("topics")
-        if row.gz_type == "Clock" and row.direction == _TO_GAZEBO:
-            message = f"the bridge sends the time of ROS to Gazebo: the clock is Gazebo's, so write {_TO_ROS}"
-            yield Mismatch("topics", message, row.location, is_sure=row.is_used)
-        if not row.is_published or row.gz in defined or row.gz.startswith(("world/", "model/")) or "$" in row.gz:
-            continue
-        unused = {it.topic: it for it in sensors if it.type == row.gz_type and it.topic not in bridged}
-        if unused:
-            meant = closest(row.gz, unused) or min(unused)
-            at = unused[meant].location
-            message = (
-                f"no sensor publishes {quoted(row.gz)} in Gazebo; did you mean {quoted(meant)} ({place_text(at)})?"
-            )
-            is_sure = row.is_used and is_known and len(unused) == 1
-            yield Mismatch("topics", message, row.location, at, is_sure, corrections(row.gz, row.location, meant, at))
+        yield from _conversions(row)
+        same = [it for it in topics if it.name == row.gz]
+        if row.gz in defined:
+            yield from _contradictions(row, same)
+        elif not row.gz.startswith(("world/", "model/")) and "$" not in row.gz:
+            yield from _not_there(row, unused, is_known=is_known)
+    yield from _clocks(workspace, rows)
 
 
-def _gazebo_topics(workspace: Workspace) -> tuple[list[_Sensor], set[str]]:
-    """Return the sensors that have a topic, and every topic that the robot, models and worlds define."""
-    sensors: list[_Sensor] = []
+def _conversions(row: _BridgeRow) -> Iterator[Mismatch]:
+    """Yield that no bridge converts a type into the other one, and that the time of ROS is sent to Gazebo."""
+    kinds = known()["bridge_types"].get(row.ros_type)
+    if kinds is not None and row.gz_type not in kinds:
+        pair = f"{row.ros_type.replace('.', '/')} and gz.msgs.{row.gz_type}"
+        message = f"the bridge does not convert {pair}; write gz.msgs.{kinds[0]}"
+        either = corrections(row.gz_type, row.location, kinds[0])
+        yield Mismatch("topics", message, row.location, is_sure=row.is_used, corrections=either)
+    if row.gz_type == "Clock" and row.direction == _TO_GAZEBO:
+        message = f"the bridge sends the time of ROS to Gazebo: the clock is Gazebo's, so write {_TO_ROS}"
+        yield Mismatch("topics", message, row.location, is_sure=row.is_used)
+
+
+def _contradictions(row: _BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mismatch]:
+    """Yield that a topic of Gazebo is bridged in the other direction, or has messages of another type."""
+    inputs = {it.is_input for it in topics}
+    wrong, right = (_TO_ROS, _TO_GAZEBO) if inputs == {True} else (_TO_GAZEBO, _TO_ROS)
+    if topics and len(inputs) == 1 and row.direction == wrong:
+        done = "reads it" if inputs == {True} else "publishes it"
+        at = topics[0].location
+        message = f"the topic {row.gz} is bridged {wrong}, but Gazebo {done} ({place_text(at)}): write {right}"
+        yield Mismatch("topics", message, row.location, at, row.is_used)
+    kinds = known()["bridge_types"].get(row.ros_type, ())
+    if topics and row.gz_type in kinds and all(it.type != row.gz_type for it in topics):
+        at = topics[0].location
+        message = (
+            f"the topic {row.gz} of Gazebo has gz.msgs.{topics[0].type} ({place_text(at)}), not gz.msgs.{row.gz_type}"
+        )
+        yield Mismatch("topics", message, row.location, at, row.is_used)
+
+
+def _not_there(row: _BridgeRow, unused: list[GazeboTopic], *, is_known: bool) -> Iterator[Mismatch]:
+    """Yield that Gazebo does not have the topic of a row, while no row has one of the same type that it has."""
+    fitting = {it.name: it for it in unused if it.type == row.gz_type and it.is_input != row.is_published}
+    if fitting:
+        meant = closest(row.gz, fitting) or min(fitting)
+        at = fitting[meant].location
+        what = "no sensor publishes" if row.is_published else "nothing reads"
+        message = f"{what} {quoted(row.gz)} in Gazebo; did you mean {quoted(meant)} ({place_text(at)})?"
+        is_sure = row.is_used and is_known and len(fitting) == 1
+        yield Mismatch("topics", message, row.location, at, is_sure, corrections(row.gz, row.location, meant, at))
+
+
+def _clocks(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Mismatch]:
+    """Yield that nodes wait for the time of the simulation, and no bridge takes it from Gazebo."""
+    bridges = [node for _, node in workspace.nodes if node.package == BRIDGE]
+    own = [row for row in rows if row.is_used]
+    if not bridges or not own or any(row.ros == "clock" for row in rows) or _is_open(workspace):
+        return
+    included = [passed.path for _, launch in workspace.roots for passed in launch.passed]
+    if any(not workspace.source_of(path) and "/ros_gz_sim/" not in path for path in included):
+        return
+    for package, node in workspace.nodes:
+        given = parameters_of(node, WithSources(package), workspace.name_of(node) or "", is_python=None).values
+        found = given.get("use_sim_time")
+        if found is not None and str(found.value).lower() == "true" and node.when:
+            message = f"{node.executable} waits for the time of the simulation, but no bridge takes clock from Gazebo"
+            yield Mismatch("topics", message, found.location, own[0].location)
+            return
+
+
+def _defined(workspace: Workspace) -> set[str]:
+    """Return every topic that the robot, models and worlds name, and those that Gazebo derives from them."""
     defined: set[str] = set()
-    for root, place in _roots(workspace):
+    for root, _ in roots(workspace):
         for element in root.iter("*"):
             text = (element.text or "").strip().strip("/")
             if str(element.tag).endswith("topic") and text:
                 beside = [posixpath.join(posixpath.dirname(text), name) for name in _DERIVED]
                 defined |= {text, *beside, *(f"{text}/{name}" for name in _DERIVED)}
-                parent = element.getparent()
-                kind = _SENSORS.get(parent.get("type", "")) if parent is not None and parent.tag == "sensor" else None
-                if kind is not None and element.tag == "topic":
-                    sensors.append(_Sensor(text, kind, place(element)))
-    return sensors, defined
-
-
-def _roots(workspace: Workspace) -> Iterator[tuple[Element, Callable[[Element], Location]]]:
-    if workspace.robot_root is not None:
-        yield workspace.robot_root, workspace.place
-    yield from ((file.root, file.location) for file in _sdf_files(workspace))
-
-
-def _sdf_files(workspace: Workspace) -> Iterator[XmlFile]:
-    for package in workspace.packages:
-        for path in [it for it in package.tree.files if it.endswith((".sdf", ".world"))]:
-            try:
-                data = package.tree.files[path].read(_MAX_SDF)
-                yield XmlFile(data, Source(package.path(path), data.decode("utf-8", "replace")))
-            except (InputError, XmlFault):
-                continue
+    return defined
 
 
 def _is_open(workspace: Workspace) -> bool:
@@ -151,5 +177,5 @@ def _is_open(workspace: Workspace) -> bool:
     arguments = [node.arguments for _, node in workspace.nodes if node.package in (BRIDGE, "ros_gz_image")]
     if any(launch.unknown for launch in launches) or any(words is None or None in words for words in arguments):
         return True
-    models = [it.findtext("uri") or "" for file in _sdf_files(workspace) for it in file.root.iter("include")]
+    models = [it.findtext("uri") or "" for file in workspace.sdf_files for it in file.root.iter("include")]
     return any(uri.rpartition("/")[2].lower() not in _WITHOUT_SENSORS for uri in models)

@@ -1,7 +1,7 @@
 """Controllers of ros2_control: their YAML, the spawners that start them, and the interfaces of their joints."""
 
 import posixpath
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -34,11 +34,19 @@ def controller_facts(workspace: Workspace) -> Iterator[Fact]:
     if not controllers:
         return
     yield from (Definition("controller", it.name, it.location) for it in controllers)
+    # In other parameters, a section replaces the type before it: that it is there is a mistake of parameters.
+    nested = ((keys[-1], node) for keys, node in _sections(workspace) if _MANAGER in keys[:-1])
+    yield from (Definition("controller", name, node.location) for name, node in nested)
     sections = {keys[-1].rpartition("/")[2]: node for keys, node in _sections(workspace)}
     for controller in controllers:
         yield from _type_facts(workspace, controller)
         yield from _section_facts(workspace, controller, sections)
     yield from _spawner_facts(workspace)
+    yield from _action_facts(workspace)
+    managers = [node for _, node in workspace.nodes if node.executable == "ros2_control_node"]
+    if managers and workspace.command_interfaces is None and workspace.has_all_interfaces:
+        message = "the controller manager is started, but the robot has no <ros2_control>"
+        yield Mismatch("controllers", message, managers[0].location)
 
 
 def _sections(workspace: Workspace) -> Iterator[tuple[tuple[str, ...], YamlNode]]:
@@ -91,14 +99,15 @@ def _type_facts(workspace: Workspace, controller: _Controller) -> Iterator[Fact]
     package = written.partition("/")[0]
     if written in types or any(it.name == package for it in workspace.packages):
         return
-    alike = [it for it in types if it.partition("/")[2] == written.partition("/")[2]]
-    similar = alike[0] if len(alike) == 1 else closest(written, types)
+    same = [it for it in types if it.partition("/")[2] == written.partition("/")[2]]
+    similar = closest(written, same) or (same[0] if len(same) == 1 else closest(written, types))
     is_known = any(name.startswith(f"{package}/") for name in types)
     if is_known or similar is not None:
         guess = f"; did you mean {similar!r}?" if similar is not None else ""
         message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
+        is_sure = is_known or near(written, same) is not None
         either = corrections(written, controller.location, similar)
-        yield Mismatch("controllers", message, controller.location, is_sure=is_known, corrections=either)
+        yield Mismatch("controllers", message, controller.location, is_sure=is_sure, corrections=either)
 
 
 def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapping[str, YamlNode]) -> Iterator[Fact]:
@@ -109,26 +118,10 @@ def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapp
         if needed and "**" not in sections and not controller.has_file:
             message = f"the controller {controller.name!r} has no parameters: there is no key {controller.name}"
             either = _of_sections(workspace, controller, sections)
-            at = controller.location
-            yield Mismatch("controllers", f"{message} with ros__parameters", at, corrections=either)
+            yield Mismatch("controllers", f"{message} with ros__parameters", controller.location, corrections=either)
         return
-    interfaces = workspace.command_interfaces
-    for key, wanted in needed.items():
-        joints = section.get(key)
-        given = section.get(wanted.removeprefix("=")) if wanted.startswith("=") else None
-        names = {wanted: joints} if not wanted.startswith("=") else {}
-        if given is not None:
-            names = {it.text or "": it for it in (given.items or [given])}
-        for joint in (joints.items or [joints]) if joints is not None and interfaces is not None else ():
-            own = interfaces.get(joint.text or "") if interfaces is not None else None
-            for name, node in names.items():
-                if own is None or node is None or name in own[0]:
-                    continue
-                message = f"{controller.name} needs the command interface {joint.text}/{name}"
-                text = f"{message}; <ros2_control> has {', '.join(sorted(own[0])) or 'none'} ({place_text(own[1])})"
-                either = corrections(name, node.location, near(name, own[0]), own[1])
-                either = either if given is not None else either[1:]
-                yield Mismatch("controllers", text, joint.location, own[1], corrections=either)
+    for joint, names in _needed_in(section, needed):
+        yield from _interface_facts(workspace, controller, joint, names)
 
 
 def _of_sections(
@@ -141,6 +134,49 @@ def _of_sections(
     own = [node for _, tree in workspace.trees if (node := tree.get(controller.name)) is not None]
     keys = [it for node in own if isinstance(node.value, dict) for it in node.value.items()]
     return next((corrections(key, node.location, PARAMETERS) for key, node in keys if is_misspelt_key(key, node)), ())
+
+
+def _needed_in(section: YamlNode, needed: Mapping[str, str]) -> Iterator[tuple[YamlNode, list[str]]]:
+    """Yield the joints in the parameters of a controller, each with the command interfaces that it needs."""
+    for key, wanted in needed.items():
+        joints = section.get(key)
+        given = section.get(wanted.removeprefix("=")) if wanted.startswith("=") else None
+        names = [wanted] if not wanted.startswith("=") else []
+        if given is not None:
+            names = [it.text or "" for it in (given.items or [given])]
+        for joint in (joints.items or [joints]) if joints is not None else ():
+            yield joint, names
+
+
+def needed_interfaces(workspace: Workspace) -> frozenset[str]:
+    """Return the command interfaces that controllers need, each as joint/interface."""
+    sections = {keys[-1].rpartition("/")[2]: node for keys, node in _sections(workspace)}
+    types = known()["controllers"]
+    found = ((sections.get(it.name), types.get(it.type.text, {})) for it in defined_controllers(workspace))
+    needed = [_needed_in(section, kinds) for section, kinds in found if section is not None]
+    return frozenset(f"{joint.text}/{name}" for each in needed for joint, names in each for name in names)
+
+
+def _interface_facts(
+    workspace: Workspace, controller: _Controller, joint: YamlNode, needed: Sequence[str]
+) -> Iterator[Mismatch]:
+    """Yield the command interfaces that a controller needs of a joint, and <ros2_control> does not have."""
+    interfaces, name = workspace.command_interfaces or {}, joint.text or ""
+    message = f"{controller.name} needs the command interface {name}"
+    if name in interfaces:
+        own, at = interfaces[name]
+        there = f"<ros2_control> has {', '.join(sorted(own)) or 'none'} ({place_text(at)})"
+        for missing in [it for it in needed if it not in own]:
+            either = corrections(missing, joint.location, near(missing, own), at)
+            yield Mismatch("controllers", f"{message}/{missing}; {there}", joint.location, at, corrections=either)
+    elif workspace.has_all_interfaces and interfaces and all(_is_joint(workspace, it) for it in [name, *interfaces]):
+        for missing in needed[:1]:
+            text = f"{message}/{missing}; <ros2_control> has no joint {name!r}"
+            yield Mismatch("controllers", text, joint.location)
+
+
+def _is_joint(workspace: Workspace, name: str) -> bool:
+    return workspace.robot is not None and workspace.robot.has_joint(name)
 
 
 def _spawner_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -158,6 +194,17 @@ def _spawner_facts(workspace: Workspace) -> Iterator[Fact]:
                 break
             for name in word.split():
                 yield Use("controller", name, node.location, "spawner")
+
+
+def _action_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the controllers whose actions own nodes ask for."""
+    for _, node in workspace.nodes:
+        own = workspace.python_node(node)
+        for endpoint in own.endpoints if own is not None else ():
+            topic = node.topic(endpoint.name or "") if endpoint.kind == "action client" else None
+            controller, _, action = (topic or "").rpartition("/")
+            if action in known()["controller_actions"]:
+                yield Use("controller", controller.strip("/"), endpoint.location, "ActionClient")
 
 
 def _is_defined_by_files(workspace: Workspace, words: tuple[str | None, ...]) -> bool:

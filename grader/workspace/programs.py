@@ -1,6 +1,6 @@
 """Programs and nodes: what launch files start, entry points, and the nodes that a lifecycle manager looks after."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from grader.names import closest, near
 from grader.package.entry_points import entry_fault, entry_points
@@ -31,6 +31,11 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
             start = Location(owner.path(CMAKE if owner.is_cmake else SETUP), 1, 1)
             either = corrections(node.executable, node.location, meant, start)
             yield Mismatch("programs", reason, node.location, corrections=either)
+        names = known()["programs"].get(node.package, [node.executable]) if owner is None else [node.executable]
+        if node.executable not in names:
+            reason, meant = _unknown_program(node.package, node.executable, names)
+            either = corrections(node.executable, node.location, meant)
+            yield Mismatch("programs", reason, node.location, corrections=either)
     yield from _lifecycle(workspace)
 
 
@@ -43,12 +48,19 @@ def _why_no_program(package: Package, name: str) -> tuple[str, str | None]:
         return f"a build installs {name!r} in {folder}, not in {home}", None
     files = [*setup.programs, *(copy.target for copy in setup.copies)] if setup is not None else []
     elsewhere = next((path for path in files if path.rpartition("/")[2] == name), None)
+    if elsewhere == f"lib/{package.name}/{name}":
+        return f"a build installs {name!r} without the right to execute it: write install(PROGRAMS ...)", None
     if elsewhere is not None:
         return f"a build installs {name!r} as {elsewhere}, but ros2 run looks in lib/{package.name}", None
     names = sorted({*(path.rpartition("/")[2] for path in files if path.startswith(f"lib/{package.name}/")), *entries})
+    return _unknown_program(package.name, name, names)
+
+
+def _unknown_program(package: str, name: str, names: Sequence[str]) -> tuple[str, str | None]:
+    """Return that a package has only programs of other names, and the one that may be meant."""
     guess = closest(name, names) or near(name, names, "node")
     there = f"; did you mean {guess!r}?" if guess else f"; it has {', '.join(names) or 'none'}"
-    return f"the package {package.name!r} has no program {name!r}{there}", guess
+    return f"the package {package!r} has no program {name!r}{there}", guess
 
 
 def _lifecycle(workspace: Workspace) -> Iterator[Fact]:

@@ -3,7 +3,7 @@
 from itertools import chain
 
 from grader.package.launch.model import StartedNode
-from grader.workspace.bridges import BRIDGE
+from grader.workspace.gazebo import BRIDGE
 from grader.workspace.known import known
 from grader.workspace.workspace import Workspace
 

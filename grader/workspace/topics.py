@@ -7,8 +7,9 @@ from grader.names import closest
 from grader.package.launch.model import StartedNode
 from grader.package.nodes import Endpoint
 from grader.source import Location
-from grader.workspace.bridges import BRIDGE, bridge_rows
+from grader.workspace.bridges import bridge_rows
 from grader.workspace.controllers import controller_endpoints
+from grader.workspace.gazebo import BRIDGE
 from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Use, corrections, place_text
 from grader.workspace.publishers import may_be_published
 from grader.workspace.workspace import Workspace
@@ -62,6 +63,7 @@ def topic_facts(workspace: Workspace) -> Iterator[Fact]:
             for other in [other for other in publishers if other.topic == it.topic]:
                 is_sure = it.launch == other.launch and it.is_started and other.is_started
                 yield from (found._replace(is_sure=is_sure) for found in _differences(it, other))
+    yield from _bridged_types(workspace, opened)
     yield from _unconnected(workspace, opened)
     yield from _unheard(workspace, opened)
 
@@ -90,6 +92,20 @@ def _differences(subscription: _Opened, publisher: _Opened) -> Iterator[Mismatch
                 f"the subscription of {subscription.topic} asks for {words[0]}, but its publisher is {words[1]} ({at})"
             )
             yield Mismatch("topics", message, own.location, other.location)
+
+
+def _bridged_types(workspace: Workspace, opened: list[_Opened]) -> Iterator[Mismatch]:
+    """Yield topics that a node and a bridge open with different types."""
+    bridges = [node for _, node in workspace.nodes if node.package == BRIDGE]
+    is_plain = all(node.remaps == () and node.namespace in ("", "/") for node in bridges)
+    for row in bridge_rows(workspace) if bridges and is_plain else ():
+        for own in [it for it in opened if it.topic == f"/{row.ros}" and not it.of_controller]:
+            is_met = row.is_published if own.endpoint.kind == "subscription" else row.is_read
+            if is_met and own.endpoint.type is not None and own.endpoint.type != row.ros_type:
+                done = "published" if row.is_published else "subscribed to"
+                there = f"{done} by the bridge with {row.ros_type} ({place_text(row.location)})"
+                message = f"the topic {own.topic} has {own.endpoint.type} here, but is {there}"
+                yield Mismatch("topics", message, own.endpoint.location, row.location, row.is_used and own.is_started)
 
 
 def _remappings(workspace: Workspace, node: StartedNode) -> Iterator[Fact]:
@@ -144,14 +160,16 @@ def _unheard(workspace: Workspace, opened: list[_Opened]) -> Iterator[Mismatch]:
     subscriptions = [it for it in opened if it.endpoint.kind == "subscription"]
     publishers = [it for it in opened if it.endpoint.kind == "publisher" and not it.of_controller]
     heard, spoken = {it.topic for it in subscriptions}, {it.topic for it in publishers}
+    unheard = [it for it in publishers if it.topic not in heard]
     for waiting in [it for it in subscriptions if it.of_controller and it.topic not in spoken]:
-        for own in [it for it in publishers if it.launch == waiting.launch and it.topic not in heard]:
-            is_meant = own.topic.rpartition("/")[2] == waiting.topic.rpartition("/")[2]
-            if is_meant and own.endpoint.type == waiting.endpoint.type:
+        own = [it for it in unheard if it.launch == waiting.launch and it.endpoint.type == waiting.endpoint.type]
+        for publisher in own:
+            is_sure = publisher.is_started and waiting.is_started and _is_known(workspace, publisher.launch)
+            is_same = publisher.topic.rpartition("/")[2] == waiting.topic.rpartition("/")[2]
+            if is_same or (is_sure and len(own) == 1):
                 place = place_text(waiting.endpoint.location)
-                message = f"nothing subscribes to {own.topic}; did you mean {waiting.topic} ({place})?"
-                is_sure = own.is_started and waiting.is_started and _is_known(workspace, own.launch)
-                yield Mismatch("topics", message, own.endpoint.location, waiting.endpoint.location, is_sure)
+                message = f"nothing subscribes to {publisher.topic}; did you mean {waiting.topic} ({place})?"
+                yield Mismatch("topics", message, publisher.endpoint.location, waiting.endpoint.location, is_sure)
 
 
 def _is_known(workspace: Workspace, launch: int) -> bool:

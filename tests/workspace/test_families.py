@@ -3,14 +3,13 @@
 import pytest
 
 from grader.workspace.names import Family
-from tests.workspace.carts import agreement_of, edited, sure
+from tests.workspace.carts import Edit, agreement_of, edited, sure
 
 _LAUNCH, _ROBOT_LAUNCH = "launch/cart.launch.py", "launch/robot.launch.py"
 _CONTROLLERS, _URDF = "config/controllers.yaml", "cart.urdf.xacro"
 _DETECTOR, _ALARM = "cart_nodes/detector.py", "cart_nodes/alarm.py"
-_Edit = tuple[str, str, str]
 
-WRONG: list[tuple[Family, str, list[_Edit]]] = [
+WRONG: list[tuple[Family, str, list[Edit]]] = [
     ("files", ("share/cart_bringup/config/detectors.yaml is looked for, but the package has no file 'detectors.yaml';"
      " did you mean 'detector.yaml'?"), [(_LAUNCH, '"detector.yaml"', '"detectors.yaml"')]),
     ("files", ("share/cart_bringup/config/hall.yaml is looked for, but a build installs it as"
@@ -43,11 +42,38 @@ WRONG: list[tuple[Family, str, list[_Edit]]] = [
      " (cart_description/urdf/cart.urdf.xacro:18)"),
      [(_URDF, '"left_wheel_joint">\n      <command_interface name="velocity"',
        '"left_wheel_joint">\n      <command_interface name="position"')]),
+    ("controllers", ("wheel_controller needs the command interface right_wheel_joint/velocity; <ros2_control> has no joint"
+     " 'right_wheel_joint'"), [(_URDF, """
+    <joint name="right_wheel_joint">
+      <command_interface name="velocity"/>
+      <state_interface name="velocity"/>
+    </joint>""", "")]),
+    ("controllers", "the controller manager is started, but the robot has no <ros2_control>",
+     [(_URDF, '<ros2_control name="CartSystem" type="system">', "<control>"), (_URDF, "</ros2_control>", "</control>"),
+      (_ROBOT_LAUNCH, 'executable="robot_state_publisher",', 'executable="robot_state_publisher", arguments=[],'),
+      (_ROBOT_LAUNCH, "    return LaunchDescription([",
+       '    return LaunchDescription([Node(package="controller_manager", executable="ros2_control_node"),')]),
+    ("controllers", ("joint_state_broadcaster.type: there is no controller of the type"
+     " 'joint_state_broadcaste/JointStateBroadcaster'; did you mean 'joint_state_broadcaster/JointStateBroadcaster'?"),
+     [(_CONTROLLERS, "joint_state_broadcaster/Joint", "joint_state_broadcaste/Joint")]),
+    ("controllers", "ActionClient: there is no controller 'limb'", [
+        (_ALARM, "import rclpy\n", "import rclpy\nfrom control_msgs.action import FollowJointTrajectory\nfrom rclpy.action import ActionClient\n"),
+        ("cart_nodes/package.xml", "<exec_depend>rclpy", "<exec_depend>control_msgs</exec_depend><exec_depend>rclpy"),
+        (_ALARM, 'self.declare_parameter("volume", 5)', ('self.declare_parameter("volume", 5)\n'
+         '        ActionClient(self, FollowJointTrajectory, "/limb/follow_joint_trajectory")'))]),
+    ("parameters", "imu0_config has 3 values; it needs 15: x y z, angles, their rates and accelerations",
+     [("config/detector.yaml", "  ros__parameters:\n", "  ros__parameters:\n    imu0_config: [true, true, false]\n"),
+      (_DETECTOR, 'self.declare_parameter("threshold", 0.5)', 'self.declare_parameter("threshold", 0.5); self.declare_parameter("imu0_config", [])')]),
+    ("parameters", ("robot_state_publisher stops without the parameter robot_description, which it does not get; did you"
+     " mean it by 'robot_descripton'?"), [(_ROBOT_LAUNCH, '"robot_description"', '"robot_descripton"')]),
     ("parameters", "there are parameters for detect, but none for the node 'detector', which gets this file",
      [("config/detector.yaml", "detector:", "detect:")]),
     ("parameters", "threshold is not below a key ros__parameters, so rcl cannot read the file",
      [("config/detector.yaml", "  ros__parameters:\n    threshold: 0.5\n    camera_frame: camera_link",
        "  threshold: 0.5")]),
+    ("parameters", "wheel_controller: ros__parameters is inside of other ros__parameters",
+     [(_CONTROLLERS, "\nwheel_controller:\n  ros__parameters:\n    left", "    wheel_controller:\n      ros__parameters:\n        left"),
+      (_CONTROLLERS, "    right_wheel_names", "        right_wheel_names")]),
     ("parameters", ("the node 'detector': there is no parameter 'treshold'; did you mean 'threshold'"
      " (cart_nodes/cart_nodes/detector.py:10)?"), [("config/detector.yaml", "threshold", "treshold")]),
     ("parameters", "get_parameter: there is no parameter 'level'", [(_DETECTOR, 'get_parameter("threshold")', 'get_parameter("level")')]),
@@ -67,6 +93,8 @@ WRONG: list[tuple[Family, str, list[_Edit]]] = [
      " (cart_description/urdf/cart.urdf.xacro:3)?"), [(_ROBOT_LAUNCH, "controllers_file:=", "controller_file:=")]),
     ("programs", "the package 'cart_nodes' has no program 'detect'; did you mean 'detector'?",
      [(_LAUNCH, 'executable="detector"', 'executable="detect"')]),
+    ("programs", "the package 'controller_manager' has no program 'spawn'; did you mean 'spawner'?",
+     [(_ROBOT_LAUNCH, 'executable="spawner", arguments=["joint', 'executable="spawn", arguments=["joint')]),
     ("programs", "the entry point of 'alarm' names no function: there is no module cart_nodes.siren; did you mean 'alarm'?",
      [("cart_nodes/setup.py", "cart_nodes.alarm", "cart_nodes.siren")]),
     ("programs", "a build installs 'alarm' in bin, not in lib/cart_nodes: see install_scripts of setup.cfg",
@@ -98,14 +126,14 @@ WRONG: list[tuple[Family, str, list[_Edit]]] = [
 
 
 @pytest.mark.parametrize(("family", "message", "edits"), WRONG, ids=[f"{it[0]}: {it[1][:50]}" for it in WRONG])
-def test_a_wrong_name_is_a_sure_problem_of_one_family(family: Family, message: str, edits: list[_Edit]) -> None:
+def test_a_wrong_name_is_a_sure_problem_of_one_family(family: Family, message: str, edits: list[Edit]) -> None:
     """What certainly fails at run time is named with both places, and counts in one family."""
     found = sure(agreement_of(edited(*edits)))
     assert message in [it.message for it in found], found
     assert {it.family for it in found} == {family}
 
 
-CORRECT: list[tuple[str, list[_Edit]]] = [
+CORRECT: list[tuple[str, list[Edit]]] = [
     ("parameters of every node", [("config/detector.yaml", "detector:", "/**:")]),
     ("parameters by the full name of a node", [("config/detector.yaml", "detector:", "/detector:")]),
     ("parameters of every node are not declared by each", [
@@ -134,6 +162,12 @@ CORRECT: list[tuple[str, list[_Edit]]] = [
     ("a controller that is not known", [
         (_CONTROLLERS, "diff_drive_controller/DiffDriveController", "cart_control/CartController"),
         (_CONTROLLERS, "left_wheel_names", "wheels"), (_CONTROLLERS, "right_wheel_names", "others")]),
+    ("a robot whose joints depend on an argument of xacro", [
+        (_URDF, "<ros2_control name", '<xacro:if value="0"><ros2_control name="Other"/></xacro:if><ros2_control name'),
+        (_URDF, '<joint name="right_wheel_joint">', '<joint name="camera_mount">')]),
+    ("a robot that its publisher reads from a file", [
+        (_ROBOT_LAUNCH, '"robot_description"', '"other"'),
+        (_ROBOT_LAUNCH, 'executable="robot_state_publisher"', 'executable="robot_state_publisher", arguments=["a.urdf"]')]),
     ("an argument that nothing declares and nothing is like", [(_LAUNCH, '"sim_time": "true"', '"sim_time": "true", "colour": "red"')]),
     ("a file that a program writes", [(_LAUNCH, '"worlds", "hall.yaml"', '"recorded", "mine.bag"')]),
     ("programs of packages that are not submitted", [(_LAUNCH, 'executable="map_server"', 'executable="map_saver"')]),
@@ -235,7 +269,7 @@ CORRECT: list[tuple[str, list[_Edit]]] = [
 
 
 @pytest.mark.parametrize("edits", [it[1] for it in CORRECT], ids=[it[0] for it in CORRECT])
-def test_what_ros_accepts_is_no_sure_problem(edits: list[_Edit]) -> None:
+def test_what_ros_accepts_is_no_sure_problem(edits: list[Edit]) -> None:
     """Other ways to write the same, and names that something which is not submitted may define, are not wrong."""
     assert sure(agreement_of(edited(*edits))) == []
 
