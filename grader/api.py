@@ -25,6 +25,10 @@ def grade(path: str | Path, rubric: str | Path | Rubric = DEFAULT_RUBRIC, *, par
 
     Raises:
         GraderError: The submission cannot be read, or the rubric is broken.
+
+    >>> report = grade("rubrics/arm/arm.urdf", "arm")
+    >>> report.score, report.max_score, report.pending
+    (Decimal('100'), Decimal('100'), Decimal('0'))
     """
     loaded = rubric if isinstance(rubric, Rubric) else load_rubric(rubric)
     chosen = tuple(loaded.part(name).id for name in ((parts,) if isinstance(parts, str) else parts))

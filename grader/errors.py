@@ -11,7 +11,13 @@ _ADVICE = "a fault of this machine's disk or network: try again"
 
 
 class GraderError(Exception):
-    """An error that stops a command before it has graded: exit code 2."""
+    """An error that stops a command before it has graded: exit code 2. The message is for people.
+
+    >>> import grader
+    >>> grader.grade("absent.urdf")
+    Traceback (most recent call last):
+    grader.errors.InputError: absent.urdf does not exist (relative to the current folder)
+    """
 
 
 class InputError(GraderError):
@@ -48,7 +54,13 @@ class MachineError(GraderError):
 
 
 class RubricError(GraderError):
-    """A rubric that cannot be used. `complaints` has one line for each mistake in it."""
+    """A rubric that cannot be used. `complaints` has one line for each mistake in it.
+
+    >>> import grader
+    >>> grader.load_rubric("lab7")
+    Traceback (most recent call last):
+    grader.errors.RubricError: there is no rubric 'lab7'; did you mean 'lab6'? ...
+    """
 
     def __init__(self, complaints: tuple[str, ...]) -> None:
         super().__init__("\n".join(complaints))
@@ -78,6 +90,9 @@ class MissingElement(LookupError):
     is a Location or LazyLocation in the file, or None. The text is the message and the detail, which is what differs
     between students who made the same mistake; `mistake` is the message alone. `problem` and `absent` are those of an
     Outcome. What fails for the same reason later is skipped, or with `costs_once` not deducted.
+
+    >>> MissingElement("link", "lidra", ("base_link", "lidar"))
+    MissingElement("there is no link 'lidra'; the file has: 'base_link', 'lidar'")
     """
 
     def __init__(

@@ -4,21 +4,15 @@ Each criterion has the usual tolerances of its check; those about one link follo
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import chain, islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from grader.authoring.facts import (
-    Fact,
-    Omission,
-    Solution,
-    element_facts,
-    measure_facts,
-    name_facts,
-    package_facts,
-    robot_facts,
-)
+from grader.authoring.element_facts import element_facts
+from grader.authoring.facts import Carried, Fact, Omission, Solution, robot_facts
+from grader.authoring.package_facts import measure_facts, name_facts, package_facts, value_facts, words_of_launches
 from grader.checks.outcome import Outcome
 from grader.checks.registry import find_check
 from grader.checks.toml_types import WrongValue
@@ -37,15 +31,22 @@ _METRES, _DEGREES = ({"tolerance": 0.002}, "metres"), ({"tolerance": 1.0}, "degr
 _USUAL: Mapping[str, tuple[Mapping[str, float], str]] = {
     **dict.fromkeys(("shows_box", "shows_cylinder", "shows_sphere"), _METRES),
     "shows_colour": ({"tolerance": 0.01}, "of a channel from 0 to 1"),
-    "frame_at": ({"tolerance": 0.002, "angle": 1.0}, "metres, degrees"),
+    "frame_at": ({"tolerance": 0.002, "angle": 1.0}, "metres, degrees; rpy is in radians"),
     "centre_at": _METRES,
     **dict.fromkeys(("joint_limits", "joint_axis"), _DEGREES),
     "mass_is": ({"tolerance": 0.001}, "kilograms"),
     "inertia_plausible": ({"tolerance": 2.0}, "percent"),
-    **dict.fromkeys(("collision_matches_visual", "collides_as"), _METRES),
+    "collision_matches_visual": _METRES,
+    "collides_as": ({"tolerance": 0.002}, "metres; rpy is in radians"),
     "kinematics_match_reference": ({"samples": 20}, "random positions, besides the ends of each range"),
 }
 _ROBOT, _PACKAGE = "robot", "package"
+_OF_ROBOT, _OF_PACKAGE = 70, 30  # points
+# Checks of what matters most, and of what matters less, or others are about as well.
+_HEAVY = ("frame_at", "joint_axis", "mimics", "names_agree", "node_runs", "parameter_is")
+_LIGHT = ("shows_colour", "kinematics_match_reference", "package_found", "package_type", "rviz_display_on")
+_MAX_COMMENT = 10_000  # columns
+_MAX_VALUES = 40  # of a node, that are written as comments
 _MAX_ID = 60
 
 
@@ -88,9 +89,10 @@ class RubricDraft(NamedTuple):
 def draft(submission: Submission, solution: Solution | None, head: Head, path: Path) -> RubricDraft:
     """Return a rubric for a file at `path` with a criterion for each fact that a check can test.
 
-    Without a robot it has no `solution`. Raises InputError.
+    Other values of parameters are in it as comments. Without a robot it has no `solution`. Raises InputError.
     """
-    of_robot = chain(robot_facts(solution), element_facts(solution)) if solution is not None else ()
+    started = [*words_of_launches(submission)]
+    of_robot = chain(robot_facts(solution), element_facts(solution, started)) if solution is not None else ()
     measured = measure_facts(solution) if solution is not None else ()
     of_packages = chain(package_facts(submission), name_facts(submission), measured)
     found = list(islice(chain(of_robot, of_packages), _MAX_FACTS + 1))
@@ -103,9 +105,22 @@ def draft(submission: Submission, solution: Solution | None, head: Head, path: P
         subjects |= {"urdf": solution.reading, "robot": solution.robot, "reference": solution.robot}
     tried = [it if isinstance(it, Omission) else _tried(subjects, it) for it in found]
     facts = ((it.fact, it) for it in tried if isinstance(it, _DraftCriterion))
-    rows = {(fact.check, fact.package, toml_literal([fact.args, fact.arguments])): row for fact, row in facts}
-    data = _rubric_text(head, [*rows.values()]).encode()
+    rows = [
+        *{(fact.check, fact.package, toml_literal([fact.args, fact.arguments])): row for fact, row in facts}.values()
+    ]
+    values = _values(subjects, submission, {row.fact.words for row in rows}) if submission.packages else {}
+    data = _rubric_text(head, rows, values).encode()
     return RubricDraft(data, read_rubric(data, path), tuple(it for it in tried if isinstance(it, Omission)))
+
+
+def _values(subjects: _Subjects, submission: Submission, known: Collection[str]) -> Mapping[str, list[_DraftCriterion]]:
+    """Return the values of parameters that the reference certainly gets, by the names of the nodes."""
+    found: dict[str, list[_DraftCriterion]] = {}
+    facts = (it for it in value_facts(submission) if it.words not in known)
+    for row in (_tried(subjects, it) for it in islice(facts, _MAX_FACTS)):
+        if isinstance(row, _DraftCriterion):
+            found.setdefault(row.fact.about, []).append(row)
+    return found
 
 
 def _tried(subjects: _Subjects, fact: Fact) -> _DraftCriterion | Omission:
@@ -121,9 +136,19 @@ def _tried(subjects: _Subjects, fact: Fact) -> _DraftCriterion | Omission:
             reasons.append(f"an argument must be {error}")
             continue
         if outcome.status == "passed":
-            return _DraftCriterion(one, capitalised(one.title or outcome.message))
+            carried = tuple(it for it in one.carried if _holds(subjects, one, it))
+            return _DraftCriterion(one._replace(carried=carried), capitalised(one.title or outcome.message))
         reasons.append(outcome.mistake if outcome.status == "pending" else outcome.message)
     return Omission(fact.words, reasons[0])
+
+
+def _holds(subjects: _Subjects, fact: Fact, carried: Carried) -> bool:
+    """Return whether the reference passes what counts instead of a fact."""
+    try:
+        instead = fact._replace(check=carried.check, arguments=carried.arguments)
+        return _outcome(subjects, instead).status == "passed"
+    except (MissingElement, NotDecided, UnknownShape):
+        return False
 
 
 def _outcome(subjects: _Subjects, fact: Fact) -> Outcome:
@@ -141,23 +166,60 @@ def _outcome(subjects: _Subjects, fact: Fact) -> Outcome:
     return check.outcome((known[name] for name in check.examined), {**usual, **given})
 
 
-def _rubric_text(head: Head, rows: Sequence[_DraftCriterion]) -> str:
+def _rubric_text(head: Head, rows: Sequence[_DraftCriterion], values: Mapping[str, Sequence[_DraftCriterion]]) -> str:
     """Return a rubric with a criterion for each row; those with one heading follow each other."""
-    of_package = sum(row.is_of_package for row in rows)
-    part = _ROBOT if of_package < len(rows) else _PACKAGE
-    lines = [*_head_lines(head, len(rows)), *_default_lines(part, {row.fact.check for row in rows})]
-    if part == _ROBOT:
-        lines += _part_lines(_ROBOT, "The robot", "urdf", len(rows) - of_package)
+    of_robot = [row for row in rows if not row.is_of_package]
+    of_package = [row for row in rows if row.is_of_package]
+    points = _points(of_robot, of_package)
+    part, usual = (_ROBOT if of_robot else _PACKAGE), Counter(points).most_common(1)[0][0]
+    lines = [*_head_lines(head, sum(points)), *_default_lines(part, usual, {row.fact.check for row in rows})]
+    if of_robot:
+        lines += _part_lines(_ROBOT, "The robot", "urdf", sum(points[: len(of_robot)]))
     if of_package:
         title = "The package" if len(head.packages) == 1 else "The packages"
-        lines += _part_lines(_PACKAGE, title, "package", of_package)
-    about = ""
-    for name, row in _with_ids(rows).items():
+        lines += _part_lines(_PACKAGE, title, "package", sum(points[len(of_robot) :]))
+    shown = {node: found[:_MAX_VALUES] for node, found in values.items()}
+    named = _with_ids([*of_robot, *of_package, *chain.from_iterable(shown.values())])
+    ids = {row.fact.words: name for name, row in named.items()}
+    layout, about = _Layout(part, usual, ids), ""
+    for (name, row), worth in zip(named.items(), points, strict=False):
         if row.fact.about != about:
             about = row.fact.about
             lines += ["", f"# --- {printable(about)} ".ljust(_WIDTH, "-")]
-        lines += _criterion_lines(name, row, part)
+        lines += layout.criterion(name, row, worth)
+    if shown:
+        lines += _value_lines(layout, values)
     return "\n".join(lines) + "\n"
+
+
+def _points(of_robot: Sequence[_DraftCriterion], of_package: Sequence[_DraftCriterion]) -> list[int]:
+    """Return the points of criteria, whole numbers: those of the robot share 70 of 100, or of a multiple of it."""
+    if not (of_robot and of_package):
+        return [1] * (len(of_robot) + len(of_package))
+    multiple = max(-(-len(of_robot) // _OF_ROBOT), -(-len(of_package) // _OF_PACKAGE))
+    return [*_shared(_OF_ROBOT * multiple, of_robot), *_shared(_OF_PACKAGE * multiple, of_package)]
+
+
+def _shared(points: int, rows: Sequence[_DraftCriterion]) -> list[int]:
+    """Return points in equal shares; where these are no whole numbers, what matters most gets more."""
+    share, more = divmod(points, len(rows))
+    checks = [row.fact.check for row in rows]
+    order = sorted(range(len(rows)), key=lambda it: (checks[it] not in _HEAVY, checks[it] in _LIGHT))
+    return [share + (index in order[:more]) for index in range(len(rows))]
+
+
+def _value_lines(layout: "_Layout", values: Mapping[str, Sequence[_DraftCriterion]]) -> Iterator[str]:
+    """Yield comments with criteria for values of parameters, and how many more there are."""
+    yield from (
+        "",
+        "# --- Other values: remove the first # of all lines of one, and give it points ".ljust(_WIDTH, "-"),
+    )
+    for node, rows in values.items():
+        for row in rows[:_MAX_VALUES]:
+            lines = layout.criterion(layout.ids[row.fact.words], row, 0, _MAX_COMMENT)
+            yield from (f"# {line}" if line else "" for line in lines)
+        if len(rows) > _MAX_VALUES:
+            yield from ("", f"# # {len(rows) - _MAX_VALUES} more of {printable(node)}")
 
 
 def _with_ids(rows: Sequence[_DraftCriterion]) -> dict[str, _DraftCriterion]:
@@ -188,8 +250,8 @@ def _head_lines(head: Head, points: int) -> Iterator[str]:
     yield assignment("points", points)
 
 
-def _default_lines(part: str, checks: set[str]) -> Iterator[str]:
-    yield from ("", "[defaults]", assignment("part", part), assignment("points", 1))
+def _default_lines(part: str, points: int, checks: set[str]) -> Iterator[str]:
+    yield from ("", "[defaults]", assignment("part", part), assignment("points", points))
     usual = {name: given for name, given in _USUAL.items() if name in checks}
     if usual:
         yield from ("", "[defaults.with]")
@@ -201,32 +263,57 @@ def _part_lines(name: str, title: str, needs: str, points: int) -> Iterator[str]
     yield from (assignment("needs", needs), assignment("points", points))
 
 
-def _criterion_lines(name: str, row: _DraftCriterion, part: str) -> Iterator[str]:
-    fact = row.fact
-    yield from ("", "[[criterion]]", assignment("id", name))
-    if row.is_of_package and part == _ROBOT:
-        yield assignment("part", _PACKAGE)
-    if fact.package:
-        yield assignment("package", fact.package)
-    yield assignment("about", printable(fact.about))
-    yield assignment("title", printable(row.title))
-    yield f"check = {toml_literal(fact.check)}"
-    if fact.args:
-        yield assignment("args", fact.args)
-    if fact.causes:
-        launch = fact.arguments.get("launch") or fact.arguments["name"]
-        instead = {"from": [*fact.causes], "check": "launch_found", "with": {"name": launch}}
-        yield assignment("carried", instead)
-    if len(assignment("with", fact.arguments)) <= _WIDTH:
-        if fact.arguments:
-            yield assignment("with", fact.arguments)
+class _Layout(NamedTuple):
+    """How criteria are written: what they need not say, and the ids of others by their words."""
+
+    part: str
+    points: int
+    ids: Mapping[str, str]
+
+    def criterion(self, name: str, row: _DraftCriterion, points: int, width: int = _WIDTH) -> Iterator[str]:
+        """Yield the lines of a criterion."""
+        fact = row.fact
+        yield from ("", "[[criterion]]", assignment("id", name))
+        if row.is_of_package and self.part == _ROBOT:
+            yield assignment("part", _PACKAGE)
+        if fact.package:
+            yield assignment("package", fact.package)
+        yield assignment("about", printable(fact.about))
+        if points != self.points:
+            yield assignment("points", points)
+        yield assignment("title", printable(row.title))
+        yield f"check = {toml_literal(fact.check)}"
+        if fact.args:
+            yield assignment("args", fact.args)
+        tables = [*self._carried(fact)]
+        is_line = len(tables) == 1 and len(assignment("carried", tables[0])) <= width
+        if is_line:
+            yield assignment("carried", tables[0])
+        yield from _with_lines("criterion", fact.arguments, width)
+        for table in () if is_line else tables:
+            yield from ("", "[[criterion.carried]]", *_toml_lines("from", table["from"]))
+            yield from (assignment("check", table["check"]), *_with_lines("criterion.carried", table["with"]))
+
+    def _carried(self, fact: Fact) -> Iterator[Mapping[str, Any]]:
+        """Yield what counts instead of a fact, and after which mistakes, if criteria are about these."""
+        for it in fact.carried:
+            causes = [self.ids[words] for words in dict.fromkeys(it.causes) if words in self.ids]
+            if causes:
+                yield {"from": causes, "check": it.check, "with": it.arguments}
+
+
+def _with_lines(table: str, arguments: Mapping[str, Any], width: int = _WIDTH) -> Iterator[str]:
+    """Yield the arguments of a check in one line, or in a table below the others."""
+    if len(assignment("with", arguments)) <= width:
+        if arguments:
+            yield assignment("with", arguments)
         return
-    yield from ("", "[criterion.with]")
-    for key, value in sorted(fact.arguments.items(), key=lambda item: isinstance(item[1], Mapping)):
+    yield from ("", f"[{table}.with]")
+    for key, value in sorted(arguments.items(), key=lambda item: isinstance(item[1], Mapping)):
         if not isinstance(value, Mapping) or len(assignment(key, value)) <= _WIDTH:
             yield from _toml_lines(key, value)
             continue
-        yield from ("", f"[criterion.with.{key}]")
+        yield from ("", f"[{table}.with.{key}]")
         for inner, item in value.items():
             yield from _toml_lines(inner, item)
 

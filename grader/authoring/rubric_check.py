@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from math import degrees, pi, radians
+from math import degrees, inf, pi, radians
 from typing import Any, NamedTuple
 
 from grader.checks.outcome import Outcome, point
@@ -11,27 +11,24 @@ from grader.errors import MissingElement, NotDecided
 from grader.grading.criterion import Criterion
 from grader.grading.deciding import decide
 from grader.grading.grade import grade
-from grader.grading.rubric import Rubric, shipped_rubrics
+from grader.grading.rubric import Rubric, load_rubric, shipped_rubrics
 from grader.grading.subjects import check_selectors, joints_at
-from grader.grading.toml_file import TomlPath
-from grader.text import enumerated
+from grader.grading.toml_file import TomlPath, one_line_each
+from grader.text import counted, enumerated
 
 _SIZES = ("size", "box", "cylinder", "sphere", "radius", "length", "mass")
+_PLACES, _NEAR = ("xyz", "height"), 0.05  # metres: the origin can be meant, with any usual tolerance
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 # Of a sentence: with a decimal point, or before a unit. Others count something, or are names: ROS 2.
 _MEASURE = re.compile(r"(?<![\w.])(-?\d+(?:\.\d+)?)(?!\.?\d)(?: ?(degrees?|mm|cm|kg|percent|m|N)\b)?")
-_UNITS = {
-    "mm": 1000.0,
-    "cm": 100.0,
-    "degrees": degrees(1.0),
-    "degree": degrees(1.0),
-}  # where `with` has metres, radians
+_ANGLES = (radians(1.0), degrees(1.0))
+_UNITS = {"mm": (1000.0,), "cm": (100.0,), "degrees": _ANGLES, "degree": _ANGLES}  # of metres and radians in `with`
 _DERIVED = (1.0, 2.0, 0.5)  # feedback may explain a diameter, or half of a height
-_RIGHT_ANGLE = 90
+_RIGHT_ANGLE, _LEAST_ANGLE = 90, 0.1  # degrees
 _ROUNDED = {"m": 1e-4, "degrees": 0.1}  # how far positions may be beyond a limit: 90 degrees are above 1.57
 
 
-class ReferenceFailures(NamedTuple):
+class _Failures(NamedTuple):
     """What the reference does not pass: lines that say it, whether it fails one, and how many are only undecided."""
 
     lines: tuple[str, ...]
@@ -39,7 +36,7 @@ class ReferenceFailures(NamedTuple):
     undecided: int
 
 
-def reference_failures(rubric: Rubric) -> ReferenceFailures:
+def reference_failures(rubric: Rubric) -> _Failures:
     """Return what the reference does not pass of the automatic criteria, and of the checks in `carried` tables.
 
     Criteria with one message share a line.
@@ -47,18 +44,26 @@ def reference_failures(rubric: Rubric) -> ReferenceFailures:
     assert rubric.solution is not None
     failed: dict[Outcome, list[tuple[TomlPath, str]]] = {}
     unearned = grade(rubric, rubric.solution.submission).unearned
-    own = [(("criterion", it.criterion.position, "with"), it.criterion.id, it.outcome) for it in unearned]
-    for place, name, outcome in sorted([*own, *_carried_failures(rubric)], key=lambda it: it[0][1]):
-        failed.setdefault(Outcome(outcome.status, outcome.message), []).append((place, name))
-    lines = []
+    own = [(_path_of(it.criterion), it.criterion.id, it.outcome) for it in unearned]
+    unresolved = {path[1]: (path, line) for path, line in _unresolved_selectors(rubric)}
+    for path, name, outcome in sorted([*own, *_carried_failures(rubric)], key=lambda it: it[0][1]):
+        if path[1] not in unresolved:
+            failed.setdefault(Outcome(outcome.status, outcome.message), []).append((path, name))
+    found = [*unresolved.values()]
     for outcome, places in failed.items():
         names, verb = enumerated([name for _, name in places]), "fails" if len(places) == 1 else "fail"
-        lines.append(f"{rubric.place_of(places[0][0])}: {names} {verb} on the reference: {outcome.message}")
-    unresolved = [*_unresolved_selectors(rubric, {found.criterion.id for found in unearned})]
+        found.append((places[0][0], f"{names} {verb} on the reference: {outcome.message}"))
     undecided = sum(len(places) for outcome, places in failed.items() if outcome.status == "pending")
-    return ReferenceFailures(
-        (*lines, *unresolved), bool(unresolved) or undecided < sum(map(len, failed.values())), undecided
-    )
+    is_failed = bool(unresolved) or undecided < sum(map(len, failed.values()))
+    return _Failures(_lines(rubric, found), is_failed, undecided)
+
+
+def _lines(rubric: Rubric, found: Iterable[tuple[TomlPath, str]]) -> tuple[str, ...]:
+    return tuple(one_line_each(rubric.path, [(rubric.line_of(path), what) for path, what in found]))
+
+
+def _path_of(criterion: Criterion) -> TomlPath:
+    return ("criterion", criterion.position, "with")
 
 
 def _carried_failures(rubric: Rubric) -> Iterator[tuple[TomlPath, str, Outcome]]:
@@ -76,26 +81,36 @@ def _carried_failures(rubric: Rubric) -> Iterator[tuple[TomlPath, str, Outcome]]
                     yield path, f"carried of {criterion.id}", found.outcome
 
 
-def _unresolved_selectors(rubric: Rubric, listed: set[str]) -> Iterator[str]:
-    """Yield a line for each other criterion that names a link by a place that not exactly one link has."""
+def _unresolved_selectors(rubric: Rubric) -> Iterator[tuple[TomlPath, str]]:
+    """Yield the place of each criterion that names a link by a place that not exactly one has, and why."""
     assert rubric.solution is not None
     for criterion in rubric.criteria:
-        if "robot" in criterion.check.examined and criterion.id not in listed:
+        if "robot" in criterion.check.examined:
             try:
                 check_selectors(rubric.solution.robot, criterion)
             except (MissingElement, NotDecided) as error:
                 what = f"{criterion.id} names a link by its place in the tree, and the reference has no such link"
-                yield f"{rubric.place_of(('criterion', criterion.position, 'with'))}: {what}: {error}"
+                yield _path_of(criterion), f"{what}: {error}"
 
 
-def likely_mistakes(rubric: Rubric) -> Iterator[str]:
-    """Yield warnings: what is valid, and hardly meant."""
-    if rubric.id in shipped_rubrics() and not (rubric.is_shipped or rubric.is_copy_of_shipped):
-        yield f"{rubric.place_of(('id',))}: the id is still that of the grader's own rubric: give this one another"
+def likely_mistakes(rubric: Rubric) -> Sequence[str]:
+    """Return warnings: what is valid, and hardly meant."""
+    found: list[tuple[TomlPath, str]] = []
+    if _is_changed_copy(rubric):
+        found.append((("id",), "the id is still that of the grader's own rubric: give this one another"))
     everywhere = [number for criterion in rubric.criteria for number in _numbers_given(criterion)]
     for criterion in rubric.criteria:
         for key, message in _of_criterion(rubric, criterion, everywhere):
-            yield f"{rubric.place_of(('criterion', criterion.position, key))}: {message}"
+            found.append((("criterion", criterion.position, key), message))
+    return _lines(rubric, found)
+
+
+def _is_changed_copy(rubric: Rubric) -> bool:
+    """Return whether a rubric has the id of one of the grader's, and most of its criteria, but is another one."""
+    if rubric.id not in shipped_rubrics() or rubric.is_shipped or rubric.is_copy_of_shipped:
+        return False
+    own, copied = ({it.id for it in one.criteria} for one in (rubric, load_rubric(rubric.id)))
+    return 2 * len(own & copied) > len(own)
 
 
 def _of_criterion(rubric: Rubric, criterion: Criterion, everywhere: list[float]) -> Iterator[tuple[str, str]]:
@@ -107,16 +122,25 @@ def _of_criterion(rubric: Rubric, criterion: Criterion, everywhere: list[float])
     if stale := _unknown_measures(criterion.feedback, known):
         yield "feedback", f"the feedback says {enumerated(stale)}, which no criterion does"
     arguments, tolerance = criterion.arguments, criterion.arguments.get("tolerance", 0)
-    sizes = [it for key in _SIZES for it in _numbers(arguments.get(key)) if it > 0]
-    if "lower" in arguments and "upper" in arguments:
-        sizes.append(arguments["upper"] - arguments["lower"])
-    if sizes and tolerance >= min(sizes):
-        yield "with", f"the tolerance {tolerance:g} is not below what is measured, {min(sizes):g}: anything passes"
+    if tolerance >= max(_measured_sizes(arguments), default=inf):
+        yield "with", f"the tolerance {tolerance:g} is not below what {criterion.check.name} measures: anything passes"
     for key, value in arguments.items():
         unit = criterion.check.documentation.arguments.get(key, "")
+        if "metres" in unit and tolerance < _LEAST_ANGLE:  # the limits of a slider
+            continue
         yield from (("with", message) for message in _other_angles(key, unit, [*_numbers(value)]))
     if rubric.solution is not None and criterion.at and rubric.solution.reading.robot is not None:
         yield from (("at", message) for message in _beyond_limits(rubric, criterion))
+
+
+def _measured_sizes(arguments: Mapping[str, Any]) -> Iterator[float]:
+    """Yield how large what a check measures is: lengths, a mass, a range, or the distance of a place."""
+    yield from (it for key in _SIZES for it in _numbers(arguments.get(key)) if it > 0)
+    ends = [*_numbers([arguments.get("lower"), arguments.get("upper")])]
+    if len({*ends}) > 1:
+        yield max(ends) - min(ends)
+    if "angle" not in arguments:  # else only the orientation may be meant
+        yield from (max(_NEAR, *map(abs, _numbers(arguments[key]))) for key in _PLACES if key in arguments)
 
 
 def _numbers_given(criterion: Criterion) -> Iterator[float]:
@@ -146,7 +170,7 @@ def _unknown_measures(sentence: str, numbers: Sequence[float]) -> list[str]:
     """Return the measures in a sentence that are none of these numbers, as exact as they are written."""
     found = []
     for text, unit in _MEASURE.findall(sentence):
-        digits, scales = len(text.partition(".")[2]), (1.0, _UNITS.get(unit, radians(1.0)))
+        digits, scales = len(text.partition(".")[2]), (1.0, *_UNITS.get(unit, _ANGLES))
         fitting = {round(abs(number) * scale, digits) for number in numbers for scale in scales}
         if (digits or unit) and abs(float(text)) not in fitting:
             found.append(text)
@@ -157,16 +181,16 @@ def _other_angles(key: str, unit: str, values: list[float]) -> Iterator[str]:
     """Yield that angles seem to be radians where degrees are asked, or degrees where radians are."""
     for value in values:
         if "in degrees" in unit and _is_like_radians(value):
-            yield f"{key} is in degrees, and {value:g} looks like radians: {degrees(value):.0f} degrees?"
+            yield f"{key} is in degrees, and {value:g} looks like radians: {counted(round(degrees(value)), 'degree')}?"
         elif "in radians" in unit and abs(value) > 2 * pi + 1e-3:
             yield f"{key} is in radians, and {value:g} looks like degrees: {radians(value):.4f}?"
 
 
 def _is_like_radians(value: float) -> bool:
-    """Return whether a number is a multiple of 45 degrees in radians, or with three decimals or more of 15 degrees."""
+    """Return whether a number is a multiple of 45 degrees in radians; with more decimals of 15, of 1."""
     digits = len(f"{value:.10g}".partition(".")[2])
-    step = pi / (4 if digits == 2 else 12)
-    return digits >= 2 and value != 0 and round(round(value / step) * step, digits) == value
+    step = radians({2: 45, 3: 15}.get(digits, 1))
+    return digits >= 2 and 0 < abs(value) <= 2 * pi and round(round(value / step) * step, digits) == value
 
 
 def _beyond_limits(rubric: Rubric, criterion: Criterion) -> Iterator[str]:

@@ -79,9 +79,9 @@ def parameter_is(
 
 def value_of(submission: Submission, node: str, parameter: str) -> ParameterValue:
     """Return the value that a node gets. Raises MissingElement if it gets none, NotDecided where that is not known."""
-    from grader.workspace.workspace import Workspace  # late: few rubrics ask for it
+    from grader.workspace.workspace import workspace_of  # late: few rubrics ask for it
 
-    workspace = Workspace(submission)
+    workspace = workspace_of(submission)
     given = workspace.parameter_owners.get(node, [])
     values = [found.values[parameter] for found in given if parameter in found.values]
     if len({repr(it.value) for it in values}) == 1 and len(values) == len(given):

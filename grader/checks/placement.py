@@ -46,7 +46,9 @@ def frame_at(
     pose, at = robot.pose(link, relative_to=relative_to), origin_place(robot, link)
     placed = measured_point(f"the frame {link!r}", pose.translation, xyz, tolerance, relative_to, at=at)
     return (
-        _with_orientation(placed, turn_between(pose.rotation, rotation_from_rpy(rpy)), angle, f"rpy {point(rpy)}", at)
+        _with_orientation(
+            placed, turn_between(pose.rotation, rotation_from_rpy(rpy)), angle, f"rpy {point(rpy)} rad", at
+        )
         if angle < _ANY_ANGLE
         else placed
     )

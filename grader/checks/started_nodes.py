@@ -56,9 +56,9 @@ def find_faults(
         choices: The nodes that should be started, each with the names that it may have.
         wanted: What else is wanted.
     """
-    from grader.workspace.workspace import Workspace  # late: few rubrics ask for it
+    from grader.workspace.workspace import workspace_of  # late: few rubrics ask for it
 
-    workspace = Workspace(submission)
+    workspace = workspace_of(submission)
     named = [replace(node, node_name=workspace.name_of(node)) for node in launch.nodes if node.when is not False]
     launch = replace(launch, nodes=tuple(named))
     found = [*_started_although(launch, wanted.absent or ())]

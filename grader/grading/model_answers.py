@@ -51,7 +51,8 @@ def missing_answers(rubric: Rubric) -> str:
     file = _answers_file(rubric)
     if not rubric.answers or file.exists():
         return ""
-    return f"{rubric.id}: the answers file {printable_path(file)} does not exist, so no model answers are shown"
+    place = rubric.place_of(("answers",))
+    return f"{place}: the answers file {printable_path(file)} does not exist, so no model answers are shown"
 
 
 def _with_answers(rubric: Rubric, answers: Mapping[str, str]) -> Rubric:

@@ -50,7 +50,13 @@ class Hint(NamedTuple):
 
 
 class Result(NamedTuple):
-    """The outcome of a criterion, and what decides its points besides."""
+    """The outcome of a criterion, and what decides its points besides.
+
+    >>> from grader.grading.rubric import load_rubric
+    >>> result = Result(load_rubric("lab6").criteria[0], Outcome("failed", "the robot has no <link>"))
+    >>> result, result.points, result.outcome.message
+    (<Result urdf-loads: failed, 0/3>, Decimal('0'), 'the robot has no <link>')
+    """
 
     criterion: Criterion
     outcome: Outcome

@@ -150,9 +150,13 @@ class Rubric:
         """The command that shows its parts and criteria."""
         return f"grader rubric show {self.id if self.is_shipped else shell_quoted(self.path)}"
 
+    def line_of(self, path: TomlPath) -> int:
+        """Return the line of a key in the file, or of the innermost table around it."""
+        return _line_in(self.data, self.path, path)
+
     def place_of(self, path: TomlPath) -> str:
-        """Return the file and the line of a key, or of the innermost table around it: my_lab.toml:12."""
-        return _place_in(self.data, self.path, path)
+        """Return the file and the line of a key: my_lab.toml:12."""
+        return f"{printable_path(self.path)}:{self.line_of(path)}"
 
     def part(self, name: str) -> Part:
         """Return the part with this id; raise InputError, which lists the parts."""
@@ -164,8 +168,13 @@ class Rubric:
         raise InputError(f"the rubric {self.id} has no part {name!r}{guess} (see `{self.shown_by}`)")
 
 
-def _place_in(data: bytes, file: Path, path: TomlPath) -> str:
-    return f"{printable_path(file)}:{line_of(key_lines(read_toml(data, file)[0]), path)}"
+def _line_in(data: bytes, file: Path, path: TomlPath) -> int:
+    return line_of(_lines_of(data, file), path)
+
+
+@lru_cache(maxsize=1)
+def _lines_of(data: bytes, file: Path) -> dict[TomlPath, int]:
+    return key_lines(read_toml(data, file)[0])
 
 
 @cache
@@ -192,6 +201,9 @@ def load_rubric(name: str | Path) -> Rubric:
     """Load a rubric by its id or path, without model answers (see `grader.grading.model_answers`).
 
     Raises RubricError with one line for each mistake in it, InputError if it cannot be read.
+
+    >>> load_rubric("arm").points
+    Decimal('100')
     """
     path = find_rubric(str(name))
     return read_rubric(read_capped(path, advice=""), path)
@@ -253,10 +265,8 @@ def _reference_solution(rubric: TomlRow, path: Path, data: bytes) -> ReferenceSo
     lab = Lab(rubric.get("urdf", _URDF), package, rubric.get("folders", ()), packages=rubric.get("packages", ()))
 
     def error(what: str) -> InputError:
-        text, name = (
-            f"{_place_in(data, path, ('reference',))}: the reference {printable_path(place)} {what}",
-            rubric["id"],
-        )
+        line, name = _line_in(data, path, ("reference",)), rubric["id"]
+        text = f"{printable_path(path)}:{line}: the reference {printable_path(place)} {what}"
         if name in shipped_rubrics() and not place.exists():
             text += f" (`grader rubric copy {name} FOLDER` copies a rubric with its reference)"
         return InputError(text)

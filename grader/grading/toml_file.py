@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from grader.checks.toml_types import TomlType, WrongValue, simple_type
 from grader.errors import RubricError
 from grader.names import did_you_mean
-from grader.text import cut, printable, printable_path
+from grader.text import cut, enumerated, printable, printable_path
 
 TomlPath = tuple[str | int, ...]
 TomlRow = dict[str, Any]
@@ -37,9 +37,25 @@ _TOKEN = r"""(?sx)
 _LONG_KEY = re.compile(
     rf"""(?m)(?:^|[\[{{,])[ \t]*+((?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{_MAX_DEPTH}}})"""
 )
-_MAX_COMPLAINTS = 1000  # lines about one file
+_MAX_COMPLAINTS, _MAX_PLACES = 1000, 6  # lines about one file; places of one mistake
 _MAX_WIDTH = 100  # characters of a line that are shown on each side of a mistake
 _PLACE = r" \(at (?:line (\d+), column (\d+)|end of document)\)$"
+_CLOSING = {"Unterminated string": '"""', 'Expected "\'"': "'", "Expected \"'''\"": "'''"}  # what an error misses
+_TWICE = "this table is already given above"
+_SAID = {"Cannot overwrite a value": "this key is given twice", "Cannot declare": _TWICE, "Cannot mutate": _TWICE}
+# What usually is wrong where TOML cannot be read: a pattern of the line, in which \0 is the place of the error.
+_SLIPS = (
+    ("\0[“”„‟‘’«]|[“”„‟]\\s*\0$", "typographic quotes: write straight ones"),
+    (r"""^[^"']*("[^"\\]*|'[^']*)\0$""", "a text in quotes does not end on its line"),
+    (r'"""\0\S', 'these quotes end a text that begins above: one before does not end in """'),
+    (r'"\0\w', r"quotes in a text: write \" for them, or single quotes around it"),
+    (r"\{[^}]*\0$", "a table in braces is one line: write [criterion.with] above, and each key on a line below"),
+    ("\0(True|False)", "true and false have small letters"),
+    (r"\d\0,\d", "a number has a decimal point, no comma"),
+    (r"\\.\0", r"in double quotes, \ begins an escape: write / in a path"),
+    (r"^\s*\[(part|criterion|evidence)\0?\]", "write double brackets: [[{0}]]"),
+    (r"^\s*\[\[(part|criterion|evidence)\0\]\]", "an earlier [{0}] has single brackets: write [[{0}]]"),
+)
 _MAX_GUESSES = 50  # searches for a similar name in one rubric: each takes its time
 _MAX_SHOWN = 40  # characters of a value
 _MAX_BITS = 1000  # of a whole number that is written out
@@ -68,20 +84,42 @@ def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
 def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Path) -> None:
     """Raise RubricError with a line for each complaint, in the order of the file, if there are any."""
     if complaints:
-        lines = key_lines(text)
-        found = sorted((line_of(lines, where), order, what) for order, (where, what) in enumerate(complaints))
-        shown, more = printable_path(path), len(found) - _MAX_COMPLAINTS
-        listed = tuple(f"{shown}:{line}: {what}" for line, _, what in found[:_MAX_COMPLAINTS])
-        raise RubricError((*listed, f"{shown}: {more} more mistakes are not listed") if more > 0 else listed)
+        lines, shown = key_lines(text), printable_path(path)
+        found = one_line_each(path, [(line_of(lines, at), what) for at, what in complaints])
+        more = len(found) - _MAX_COMPLAINTS
+        rest = (f"{shown}: {more} more mistakes are not listed",) if more > 0 else ()
+        raise RubricError((*found[:_MAX_COMPLAINTS], *rest))
+
+
+def one_line_each(path: Path, found: Iterable[tuple[int, str]]) -> list[str]:
+    """Return what was found in a file by its lines; what several lines share once, with all of them."""
+    places: dict[str, list[int]] = {}
+    for line, what in sorted(found, key=lambda it: it[0]):
+        places.setdefault(what, []).append(line)
+    return [f"{printable_path(path)}:{line}: {what}{_also(other)}" for what, (line, *other) in places.items()]
+
+
+def _also(lines: Sequence[int]) -> str:
+    """Return the other lines of the same mistake, as a clause."""
+    numbers = [str(line) for line in dict.fromkeys(lines)]
+    return f" (also line{'s' if len(numbers) > 1 else ''} {enumerated(numbers, _MAX_PLACES)})" if numbers else ""
 
 
 def _syntax_mistake(error: str, text: str) -> str:
-    """Return the place of the mistake that a message of tomllib is about, what it says, and the line."""
-    lines = text.replace("\r\n", "\n").split("\n")
+    """Return the place of the mistake that a message of tomllib is about, what it means, and the line."""
+    text = text.replace("\r\n", "\n")
+    lines = text.split("\n")
     said, line, column, _ = re.split(_PLACE, error)
     row, at = (int(line), int(column)) if line else (len(lines), len(lines[-1]) + 1)
-    around = lines[row - 1][max(0, at - _MAX_WIDTH) : at + _MAX_WIDTH].strip() or "an empty line"
-    return f"{row}:{at}: {said[0].lower()}{said[1:]}: {printable(around)}"
+    if (opened := text.rfind(_CLOSING.get(said, "\0"))) >= 0:  # else the place is the end of the file
+        row, at = text.count("\n", 0, opened) + 1, opened - text.rfind("\n", 0, opened)
+        said = "a text in quotes begins here and does not end"
+    said = next((words for start, words in _SAID.items() if said.startswith(start)), said)
+    before, after = lines[row - 1][max(0, at - _MAX_WIDTH) : at - 1], lines[row - 1][at - 1 : at + _MAX_WIDTH]
+    marked = "\0".join(part.replace("\0", " ") for part in (before, after))
+    meant = (words.format(*slip.groups()) for pattern, words in _SLIPS if (slip := re.search(pattern, marked)))
+    around = (before + after).strip() or "an empty line"
+    return f"{row}:{at}: {next(meant, said[0].lower() + said[1:])}: {printable(around)}"
 
 
 def _why_not_utf8(data: bytes, at: int) -> str:
@@ -210,8 +248,10 @@ class TomlRowReader:
                 parsed[key] = table.keys[key].parse(value)
             except WrongValue as error:
                 self.complain((*where, key), f"{key} must be {error}, not {shorten_value(value)}")
+        below = row.get("with")
         for key in table.required:
-            if key not in row and key not in defaults:
+            is_below = isinstance(below, dict) and key in below  # which is a mistake of its own
+            if key not in row and key not in defaults and not is_below:
                 self.complain(where, f"this {table.name} has no {key}")
         return parsed
 

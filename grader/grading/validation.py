@@ -204,6 +204,8 @@ class Validation:
             if parameter is None:
                 known = [parameter for parameter in check.parameters if parameter not in given]
                 hint = self._guess(key, known) or f"; it takes: {', '.join(check.parameters) or 'nothing'}"
+                if key in keys.CRITERION.keys:
+                    hint = ": it is a key of the criterion, which belongs above [criterion.with]"
                 self._complain((*where, key), f"the check {check.name} takes no {key!r}{hint}")
                 continue
             try:

@@ -197,6 +197,7 @@ def _views_of(known: Robot, *, is_guarded: bool) -> _Views:
 class Configuration:
     """A robot with its joints at positions: where each link is, relative to any other.
 
+    A position is in radians for a joint that turns, in metres for one that slides; joints without one are at 0.
     Grading makes one of the robot that was read, with its joints at 0 or where the rubric says, and each check of a
     robot gets it; `moved` and `at` return the same robot with its joints elsewhere. A mimic joint follows its leader,
     unless it has a position itself. Planar and floating joints stay at 0. Links without a parent joint are roots, so a

@@ -89,13 +89,19 @@ def read_urdf(source: bytes | str | os.PathLike[str], path: str = "robot.urdf") 
     problem is reported, sorted by location.
 
     Args:
-        source: The path of a file, or the text or bytes of one. A str that ends in `.urdf` is a path.
+        source: The path of a file, or the text or bytes of one. A str that ends in `.urdf`, `.xacro` or `.xml` is a
+            path. Xacro is not expanded.
         path: The name of the file in locations; default: that of `source`.
 
     Raises:
         GraderError: There is no file at the path, or it cannot be read. No text raises.
+
+    >>> [link.name for link in read_urdf("rubrics/arm/arm.urdf").robot.links][:2]
+    ['world', 'base_link']
+    >>> read_urdf("<robot").verdict
+    'rejected'
     """
-    if isinstance(source, os.PathLike) or (isinstance(source, str) and source.endswith(ROBOT_ENDINGS)):
+    if isinstance(source, os.PathLike) or (isinstance(source, str) and source.endswith((*ROBOT_ENDINGS, ".xml"))):
         path = os.fspath(source)
         source = read_capped(path)
     given = source.encode("utf-8", "surrogatepass") if isinstance(source, str) else source

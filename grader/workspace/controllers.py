@@ -34,11 +34,15 @@ def controller_facts(workspace: Workspace) -> Iterator[Fact]:
     if not controllers:
         return
     yield from (Definition("controller", it.name, it.location) for it in controllers)
+    # In other parameters, a section replaces the type before it: that it is there is a mistake of parameters.
+    nested = ((keys[-1], node) for keys, node in _sections(workspace) if _MANAGER in keys[:-1])
+    yield from (Definition("controller", name, node.location) for name, node in nested)
     sections = {keys[-1].rpartition("/")[2]: node for keys, node in _sections(workspace)}
     for controller in controllers:
         yield from _type_facts(workspace, controller)
         yield from _section_facts(workspace, controller, sections)
     yield from _spawner_facts(workspace)
+    yield from _action_facts(workspace)
     managers = [node for _, node in workspace.nodes if node.executable == "ros2_control_node"]
     if managers and workspace.command_interfaces is None and workspace.has_all_interfaces:
         message = "the controller manager is started, but the robot has no <ros2_control>"
@@ -117,6 +121,12 @@ def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapp
             either = corrections(meant, sections[meant].location, controller.name, at) if meant is not None else ()
             yield Mismatch("controllers", f"{message} with ros__parameters", at, corrections=either)
         return
+    for joint, names in _needed_in(section, needed):
+        yield from _interface_facts(workspace, controller, joint, names)
+
+
+def _needed_in(section: YamlNode, needed: Mapping[str, str]) -> Iterator[tuple[YamlNode, list[str]]]:
+    """Yield the joints in the parameters of a controller, each with the command interfaces that it needs."""
     for key, wanted in needed.items():
         joints = section.get(key)
         given = section.get(wanted.removeprefix("=")) if wanted.startswith("=") else None
@@ -124,7 +134,16 @@ def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapp
         if given is not None:
             names = [it.text or "" for it in (given.items or [given])]
         for joint in (joints.items or [joints]) if joints is not None else ():
-            yield from _interface_facts(workspace, controller, joint, names)
+            yield joint, names
+
+
+def needed_interfaces(workspace: Workspace) -> frozenset[str]:
+    """Return the command interfaces that controllers need, each as joint/interface."""
+    sections = {keys[-1].rpartition("/")[2]: node for keys, node in _sections(workspace)}
+    types = known()["controllers"]
+    found = ((sections.get(it.name), types.get(it.type.text, {})) for it in defined_controllers(workspace))
+    needed = [_needed_in(section, kinds) for section, kinds in found if section is not None]
+    return frozenset(f"{joint.text}/{name}" for each in needed for joint, names in each for name in names)
 
 
 def _interface_facts(
@@ -163,6 +182,17 @@ def _spawner_facts(workspace: Workspace) -> Iterator[Fact]:
                 break
             for name in word.split():
                 yield Use("controller", name, node.location, "spawner")
+
+
+def _action_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the controllers whose actions own nodes ask for."""
+    for _, node in workspace.nodes:
+        own = workspace.python_node(node)
+        for endpoint in own.endpoints if own is not None else ():
+            topic = node.topic(endpoint.name or "") if endpoint.kind == "action client" else None
+            controller, _, action = (topic or "").rpartition("/")
+            if action in known()["controller_actions"]:
+                yield Use("controller", controller.strip("/"), endpoint.location, "ActionClient")
 
 
 def _is_defined_by_files(workspace: Workspace, words: tuple[str | None, ...]) -> bool:

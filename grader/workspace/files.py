@@ -9,15 +9,13 @@ from grader.names import closest, near
 from grader.package.installation import Installation
 from grader.package.launch.model import Launch
 from grader.package.launch.places import PREFIX, SHARE
-from grader.package.package import CMAKE, Package
+from grader.package.package import Package
 from grader.source import Location
 from grader.workspace.names import Compared, Correction, Fact, Mismatch, Undecided, corrections
-from grader.workspace.workspace import Workspace
+from grader.workspace.workspace import Workspace, are_installs_known, is_surely_absent
 
 _FIND = re.compile(r"\$\(find(?:-pkg-share)? ([\w-]+)\)/?([^\"'<>\s$]*)(?=[\"'<\s])")
 _PACKAGE = re.compile(r"package://([\w-]+)/([\w./-]+)(?=[\"'<\s])")
-_FOR_TESTS = re.compile(r"if\s*\(\s*BUILD_TESTING.*?endif", re.DOTALL)
-_MAX_CMAKE = 128 * 1024
 _PATH = re.compile(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
 
 
@@ -82,19 +80,13 @@ def _fault_of(workspace: Workspace, package: Package, path: str, at: Location) -
             message = f"there is no package {name!r}; did you mean {meant!r}?"
             yield Mismatch("files", message, at, corrections=corrections(name, at, meant))
         return
-    target, setup = f"share/{name}/{rest}", owner.installation
+    target = f"share/{name}/{rest}"
     if not rest or target in owner.installed or any(it.startswith(f"{target}/") for it in owner.installed):
         return
-    if setup is None or setup.fault is not None or setup.unknown or _installs_for_tests(owner):
+    if not are_installs_known(owner):
         yield Undecided("files", f"whether a build installs {target} is not evaluated")
         return
     yield _not_there(owner, target, at)
-
-
-def _installs_for_tests(package: Package) -> bool:
-    """Return whether CMakeLists.txt installs something only if BUILD_TESTING is on, as it is by default."""
-    text = package.tree.files[CMAKE].read(_MAX_CMAKE).decode("utf-8", "replace") if package.is_cmake else ""
-    return any("install(" in block.lower() for block in _FOR_TESTS.findall(text))
 
 
 def _not_there(owner: Package, target: str, at: Location) -> Mismatch:
@@ -114,11 +106,8 @@ def _not_there(owner: Package, target: str, at: Location) -> Mismatch:
         return Mismatch("files", message, at, setup.location(setup.called_at), corrections=either)
     meant = closest(name, map(posixpath.basename, owner.tree.files))
     guess = f"; did you mean {meant!r}?" if meant else ""
-    # A file that a program writes is in a folder of its own, and like no other.
-    folders = {posixpath.dirname(it) for it in owner.installed}
-    is_sure = meant is not None or posixpath.dirname(target) in folders
     message = f"{looked} the package has no file {name!r}{guess}"
-    return Mismatch("files", message, at, None, is_sure, corrections(name, at, meant))
+    return Mismatch("files", message, at, None, is_surely_absent(owner, target), corrections(name, at, meant))
 
 
 def _of_folders(target: str, elsewhere: str, at: Location, start: Location) -> tuple[Correction, ...]:

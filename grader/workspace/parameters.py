@@ -16,6 +16,7 @@ from grader.workspace.workspace import WithSources, Workspace
 from grader.workspace.yaml_values import PARAMETERS, is_parameters, sections_in, values_in
 
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
+_INPUT = re.compile(r"(odom|imu|pose|twist)\d+_config")  # of robot_localization
 _SEPARATORS = re.compile(r"[:/]+")
 # Keys of lists whose entries name sections beside them, in the files of Nav2, MoveIt and others.
 _LISTS = ("plugins", "navigators", "observation_sources", "filters", "controller_names")
@@ -31,10 +32,13 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     for path, nodes in workspace.parameter_files.items():
         yield Compared("parameters")
         yield from _file_given(workspace, path, nodes)
+    yield from _controllers_given(workspace)
     for package, node in workspace.nodes:
         own = workspace.python_node(node)
         if own is not None:
             yield from _declared(workspace, package, node, own)
+    for path in workspace.parameter_files:
+        yield from _filters(workspace.yaml_files.get(path))
     for package, node in workspace.nodes:
         yield from _required(workspace, package, node)
     for _, tree in workspace.trees:
@@ -76,6 +80,15 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
             yield Mismatch("parameters", message, sections[key].location, node.location, True, either)
 
 
+def _controllers_given(workspace: Workspace) -> Iterator[Fact]:
+    """Yield what is misplaced in files that only controllers are given."""
+    for path in sorted(workspace.controller_files.difference(workspace.parameter_files)):
+        tree = workspace.yaml_files.get(path)
+        if isinstance(tree, YamlNode):
+            yield Compared("parameters")
+            yield from _misplaced(tree)
+
+
 def _misplaced(tree: YamlNode) -> Iterator[Fact]:
     """Yield values that are not below ros__parameters, and ros__parameters inside of ros__parameters."""
     waiting: list[tuple[str, YamlNode, bool]] = [("", tree, False)]
@@ -107,13 +120,25 @@ def _declared(workspace: Workspace, package: Package, node: StartedNode, own: Py
     for it in own.parameters:
         if it.name is not None and not it.is_declared:
             yield Use("parameter", it.name, it.location, "get_parameter", owner)
-    found = parameters_of(node, WithSources(package), own.name or "", is_python=True)
+    found = parameters_of(node, WithSources(package, absent_are_empty=True), own.name or "", is_python=True)
     if found.unknown:
         yield Undecided("parameters", found.unknown)
     wide = workspace.wildcard_places(node)
     for name, value in found.values.items():
         if value.location not in wide and not name.startswith("qos_overrides."):
             yield Use("parameter", name, value.location, f"the node {workspace.name_of(node)!r}", owner)
+
+
+def _filters(tree: YamlNode | YamlFault | None) -> Iterator[Fact]:
+    """Yield which values of an input a filter of robot_localization takes, where there are not 15 of them."""
+    for _, section in sections_in(tree) if isinstance(tree, YamlNode) else ():
+        for value in values_in(section):
+            count = len(value.node.items)
+            if value.keys and _INPUT.fullmatch(value.keys[-1]) and count not in (0, 15):
+                message = (
+                    f"{value.keys[-1]} has {count} values; it needs 15: x y z, angles, their rates and accelerations"
+                )
+                yield Mismatch("parameters", message, value.node.location)
 
 
 def _required(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:

@@ -48,6 +48,8 @@ def _why_no_program(package: Package, name: str) -> tuple[str, str | None]:
         return f"a build installs {name!r} in {folder}, not in {home}", None
     files = [*setup.programs, *(copy.target for copy in setup.copies)] if setup is not None else []
     elsewhere = next((path for path in files if path.rpartition("/")[2] == name), None)
+    if elsewhere == f"lib/{package.name}/{name}":
+        return f"a build installs {name!r} without the right to execute it: write install(PROGRAMS ...)", None
     if elsewhere is not None:
         return f"a build installs {name!r} as {elsewhere}, but ros2 run looks in lib/{package.name}", None
     names = sorted({*(path.rpartition("/")[2] for path in files if path.startswith(f"lib/{package.name}/")), *entries})

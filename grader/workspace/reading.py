@@ -16,20 +16,21 @@ from grader.workspace.moveit import moveit_facts
 from grader.workspace.names import Agreement, Fact, Family, Mismatch, agreement
 from grader.workspace.parameters import parameter_facts
 from grader.workspace.programs import program_facts
+from grader.workspace.srdf import srdf_facts
 from grader.workspace.topics import topic_facts
 from grader.workspace.unused import unused_files
-from grader.workspace.workspace import Workspace
+from grader.workspace.workspace import Workspace, workspace_of
 
 _READERS = (
     file_facts, frame_facts, controller_facts, parameter_facts, argument_facts, program_facts, topic_facts,
-    gazebo_facts, bridge_facts, moveit_facts, dependency_facts,
+    gazebo_facts, bridge_facts, srdf_facts, moveit_facts, dependency_facts,
 )  # fmt: skip
 
 
 @lru_cache(maxsize=2)
 def read_agreement(submission: Submission) -> Agreement:
     """Return what does not agree in the packages of a submission."""
-    workspace = Workspace(submission)
+    workspace = workspace_of(submission)
     found = agreement(_facts(workspace))
     # names_agree needs a package.
     families = found.families if workspace.packages else frozenset[Family]()
@@ -45,7 +46,7 @@ def wrong_names(submission: Submission, family: Family) -> list[Mismatch]:
 
 def read_facts(submission: Submission) -> Iterator[Fact]:
     """Yield what the files of a submission define and use."""
-    return _facts(Workspace(submission))
+    return _facts(workspace_of(submission))
 
 
 def _facts(workspace: Workspace) -> Iterator[Fact]:

@@ -12,7 +12,12 @@ from pathlib import Path
 import pytest
 
 from grader.files.reading import URDF_LIMIT
+from grader.grading.grade import grade
+from grader.grading.rubric import Rubric, load_rubric
+from grader.submission.opening import open_submission
 from tests.command_line import ROOT, Done, run
+from tests.workspace.carts import Edit, edited
+from tests.workspace.test_families import WRONG
 
 ARM = ROOT / "tests/corpus/authoring/arm.urdf"
 LAB6 = ROOT / "rubrics/lab6/my_robot"
@@ -122,3 +127,56 @@ def test_a_rubric_that_is_too_large_is_refused(tmp_path: Path, monkeypatch: pyte
     done = new(tmp_path, ARM)
     assert (done.returncode, b"too many facts for a rubric" in done.stderr) == (2, True)
     assert not (tmp_path / "lab.toml").exists()
+
+
+def write_cart(folder: Path, *edits: Edit) -> Path:
+    """Write the workspace of the cart with edits, and return its folder."""
+    for path, text in edited(*edits).items():
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        _ = (folder / path).write_text(text)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def of_cart(tmp_path_factory: pytest.TempPathFactory) -> Rubric:
+    """Return the draft of the workspace of the cart."""
+    folder = tmp_path_factory.mktemp("cart")
+    assert new(folder, write_cart(folder / "src")).returncode == 0
+    return load_rubric(str(folder / "lab.toml"))
+
+
+# All that is asked of an element is lost without it.
+ONCE = {message: edits for _, message, edits in WRONG if "has no <ros2_control>" not in message}
+
+
+@pytest.mark.parametrize("edits", ONCE.values(), ids=ONCE)
+def test_a_mistake_of_names_costs_once(edits: list[Edit], of_cart: Rubric, tmp_path: Path) -> None:
+    """What else fails because of it, such as a node that does not start, is carried from it."""
+    report = grade(of_cart, open_submission(str(write_cart(tmp_path, *edits)), of_cart.lab))
+    assert [it.criterion.check.name for it in report.results if it.is_lost] == ["names_agree"]
+
+
+def test_values_of_parameters_are_comments_that_may_become_criteria(of_cart: Rubric) -> None:
+    """A rubric in which all of them are criteria is right; they have no points yet."""
+    text = of_cart.path.read_text()
+    before, marked, values = text.partition("# --- Other values")
+    line, _, values = values.partition("\n")
+    changed = of_cart.path.with_name("values.toml")
+    _ = changed.write_text(f"{before}{marked}{line}\n{re.sub('(?m)^# ', '', values)}")
+    done = run(("rubric", "check", changed))
+    more = values.count("# [[criterion]]")
+    assert more == 10
+    assert f"{len(of_cart.criteria) + more} criteria, 100 points, no mistakes found" in done.stdout.decode(), (
+        done.stderr
+    )
+
+
+@pytest.mark.parametrize("family", dict.fromkeys(family for family, _, _ in WRONG))
+def test_what_is_odd_in_the_names_of_a_reference_is_said_in_one_line(family: str, tmp_path: Path) -> None:
+    """Its family is no criterion, and the other families are."""
+    edits = next(edits for one, _, edits in WRONG if one == family)
+    lines = new(tmp_path, write_cart(tmp_path / "src", *edits)).stdout.decode().splitlines()
+    assert len([line for line in lines if re.match(rf"omitted: {family} names_agree: .*1.*: \S+:\d+: ", line)]) == 1
+    asked = re.findall('with = { of = "(.*)" }', (tmp_path / "lab.toml").read_text())
+    assert family not in asked
+    assert len(asked) == 7

@@ -11,7 +11,7 @@ import pytest
 
 from grader.checks.check import Subject, describe
 from grader.checks.outcome import Outcome
-from grader.errors import MissingElement
+from grader.errors import InputError, MissingElement
 from grader.grading.criterion import Criterion, Part
 from grader.grading.grade import grade
 from grader.grading.rubric import ReferenceSolution, Rubric
@@ -53,7 +53,7 @@ class _Solution(ReferenceSolution):
     """A reference solution without a file."""
 
     def __init__(self, of: Scene) -> None:
-        super().__init__(Path(), Lab(""), str)
+        super().__init__(Path(), Lab(""), InputError)
         self._of = of
 
     @property

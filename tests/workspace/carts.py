@@ -10,6 +10,7 @@ from grader.submission.submission import Lab
 from grader.workspace.names import Agreement, Mismatch
 from grader.workspace.reading import read_agreement
 
+Edit = tuple[str, str, str]  # the end of a path, and a text there that occurs once, with a new one
 _FOLDER = Path(__file__).parent.parent / "corpus" / "given" / "cartkit" / "src"
 
 
@@ -20,8 +21,8 @@ def cart_files() -> Mapping[str, str]:
     return {path.relative_to(_FOLDER).as_posix(): path.read_text(encoding="utf-8") for path in paths}
 
 
-def edited(*edits: tuple[str, str, str]) -> dict[str, str]:
-    """Return the texts with edits: the end of a path, and a text there that occurs once, with a new one."""
+def edited(*edits: Edit) -> dict[str, str]:
+    """Return the texts with edits."""
     texts = dict(cart_files())
     for end, old, new in edits:
         [path] = [it for it in texts if it.endswith(end)]

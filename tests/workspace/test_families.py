@@ -3,14 +3,13 @@
 import pytest
 
 from grader.workspace.names import Family
-from tests.workspace.carts import agreement_of, edited, sure
+from tests.workspace.carts import Edit, agreement_of, edited, sure
 
 _LAUNCH, _ROBOT_LAUNCH = "launch/cart.launch.py", "launch/robot.launch.py"
 _CONTROLLERS, _URDF = "config/controllers.yaml", "cart.urdf.xacro"
 _DETECTOR, _ALARM = "cart_nodes/detector.py", "cart_nodes/alarm.py"
-_Edit = tuple[str, str, str]
 
-WRONG: list[tuple[Family, str, list[_Edit]]] = [
+WRONG: list[tuple[Family, str, list[Edit]]] = [
     ("files", ("share/cart_bringup/config/detectors.yaml is looked for, but the package has no file 'detectors.yaml';"
      " did you mean 'detector.yaml'?"), [(_LAUNCH, '"detector.yaml"', '"detectors.yaml"')]),
     ("files", ("share/cart_bringup/config/hall.yaml is looked for, but a build installs it as"
@@ -57,6 +56,14 @@ WRONG: list[tuple[Family, str, list[_Edit]]] = [
     ("controllers", ("joint_state_broadcaster.type: there is no controller of the type"
      " 'joint_state_broadcaste/JointStateBroadcaster'; did you mean 'joint_state_broadcaster/JointStateBroadcaster'?"),
      [(_CONTROLLERS, "joint_state_broadcaster/Joint", "joint_state_broadcaste/Joint")]),
+    ("controllers", "ActionClient: there is no controller 'limb'", [
+        (_ALARM, "import rclpy\n", "import rclpy\nfrom control_msgs.action import FollowJointTrajectory\nfrom rclpy.action import ActionClient\n"),
+        ("cart_nodes/package.xml", "<exec_depend>rclpy", "<exec_depend>control_msgs</exec_depend><exec_depend>rclpy"),
+        (_ALARM, 'self.declare_parameter("volume", 5)', ('self.declare_parameter("volume", 5)\n'
+         '        ActionClient(self, FollowJointTrajectory, "/limb/follow_joint_trajectory")'))]),
+    ("parameters", "imu0_config has 3 values; it needs 15: x y z, angles, their rates and accelerations",
+     [("config/detector.yaml", "  ros__parameters:\n", "  ros__parameters:\n    imu0_config: [true, true, false]\n"),
+      (_DETECTOR, 'self.declare_parameter("threshold", 0.5)', 'self.declare_parameter("threshold", 0.5); self.declare_parameter("imu0_config", [])')]),
     ("parameters", ("robot_state_publisher stops without the parameter robot_description, which it does not get; did you"
      " mean it by 'robot_descripton'?"), [(_ROBOT_LAUNCH, '"robot_description"', '"robot_descripton"')]),
     ("parameters", "there are parameters for detect, but none for the node 'detector', which gets this file",
@@ -64,6 +71,9 @@ WRONG: list[tuple[Family, str, list[_Edit]]] = [
     ("parameters", "threshold is not below a key ros__parameters, so rcl cannot read the file",
      [("config/detector.yaml", "  ros__parameters:\n    threshold: 0.5\n    camera_frame: camera_link",
        "  threshold: 0.5")]),
+    ("parameters", "wheel_controller: ros__parameters is inside of other ros__parameters",
+     [(_CONTROLLERS, "\nwheel_controller:\n  ros__parameters:\n    left", "    wheel_controller:\n      ros__parameters:\n        left"),
+      (_CONTROLLERS, "    right_wheel_names", "        right_wheel_names")]),
     ("parameters", ("the node 'detector': there is no parameter 'treshold'; did you mean 'threshold'"
      " (cart_nodes/cart_nodes/detector.py:10)?"), [("config/detector.yaml", "threshold", "treshold")]),
     ("parameters", "get_parameter: there is no parameter 'level'", [(_DETECTOR, 'get_parameter("threshold")', 'get_parameter("level")')]),
@@ -116,14 +126,14 @@ WRONG: list[tuple[Family, str, list[_Edit]]] = [
 
 
 @pytest.mark.parametrize(("family", "message", "edits"), WRONG, ids=[f"{it[0]}: {it[1][:50]}" for it in WRONG])
-def test_a_wrong_name_is_a_sure_problem_of_one_family(family: Family, message: str, edits: list[_Edit]) -> None:
+def test_a_wrong_name_is_a_sure_problem_of_one_family(family: Family, message: str, edits: list[Edit]) -> None:
     """What certainly fails at run time is named with both places, and counts in one family."""
     found = sure(agreement_of(edited(*edits)))
     assert message in [it.message for it in found], found
     assert {it.family for it in found} == {family}
 
 
-CORRECT: list[tuple[str, list[_Edit]]] = [
+CORRECT: list[tuple[str, list[Edit]]] = [
     ("parameters of every node", [("config/detector.yaml", "detector:", "/**:")]),
     ("parameters by the full name of a node", [("config/detector.yaml", "detector:", "/detector:")]),
     ("parameters of every node are not declared by each", [
@@ -259,7 +269,7 @@ CORRECT: list[tuple[str, list[_Edit]]] = [
 
 
 @pytest.mark.parametrize("edits", [it[1] for it in CORRECT], ids=[it[0] for it in CORRECT])
-def test_what_ros_accepts_is_no_sure_problem(edits: list[_Edit]) -> None:
+def test_what_ros_accepts_is_no_sure_problem(edits: list[Edit]) -> None:
     """Other ways to write the same, and names that something which is not submitted may define, are not wrong."""
     assert sure(agreement_of(edited(*edits))) == []
 

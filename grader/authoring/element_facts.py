@@ -1,0 +1,185 @@
+"""The facts of the elements for simulators and controllers, which ROS 2 itself does not read."""
+
+import re
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping
+from math import isfinite
+from typing import Any
+
+from grader.authoring.facts import Carried, Fact, Facts, Omission, Solution
+from grader.package.launch.places import is_of_one_machine
+from grader.package.trees import is_path
+from grader.python.budget import Budget
+from grader.submission.urdf import Read, read_as_ros
+from grader.workspace.controllers import needed_interfaces
+from grader.workspace.reading import read_agreement
+from grader.workspace.workspace import workspace_of
+from grader.xml.elements import attributes_of, foreign_elements, name_of, readable, text_in
+from grader.xml.parsing import Element
+
+_MAX_VALUES = 500  # in one element of <robot>: a check compares each with each
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_CONDITION = re.compile(r"\[@[^=]+='([^']*)'\]")
+_TRUTH = {"true": True, "false": False}
+_INTERFACE = "command_interface/@name"
+_NAMED_BY = ("reference", "name", "filename", "type")
+_OF_ARGUMENTS = ("urdf_loads", "files names_agree", "arguments names_agree")
+_Values = dict[str, Any]
+
+
+def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
+    """Yield the values in each element for simulators and controllers; `causes` change the arguments of xacro.
+
+    What a controller needs of a joint is left to the names of controllers.
+    """
+    covered = needed_interfaces(workspace_of(solution.submission))
+    robot = solution.robot.robot
+    joints, links = {joint.name for joint in robot.joints}, {link.name for link in robot.links}
+    without = _without_launch_files(solution, covered)
+    are_compared = read_agreement(solution.submission).holds("topics")
+    met: Counter[str] = Counter()
+    for it in _entries(solution.root, covered):
+        if isinstance(it, Omission):
+            yield it
+            continue
+        met[it.words] += 1
+        carried = [*_carried_from_names(it, joints, links)]
+        if without is not None:
+            others = [one.arguments for one in without if isinstance(one, Fact) and one.words == it.words]
+            other = others[met[it.words] - 1] if len(others) >= met[it.words] else None
+            carried += _carried_from_launch(it, other, (*_OF_ARGUMENTS, *causes))
+        drawn = _without_topics if are_compared else dict
+        weaker = tuple(one._replace(arguments=drawn(one.arguments)) for one in carried)
+        yield it._replace(arguments=drawn(it.arguments), carried=weaker)
+
+
+def _without_topics(arguments: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return what is asked for without the names of topics, which need only agree."""
+    values = {path: value for path, value in arguments.get("values", {}).items() if not path.endswith("topic")}
+    others = {key: value for key, value in arguments.items() if key != "values"}
+    return {**others, "values": values} if values else others
+
+
+def _carried_from_names(fact: Fact, joints: Collection[str], links: Collection[str]) -> Iterator[Carried]:
+    """Yield what counts instead of a fact if names of joints or links are wrong."""
+    without_links = _weakened(fact.arguments, links)
+    weaker = _weakened(without_links, joints)
+    if weaker != fact.arguments:
+        of_joints = ("joints_named", "controllers names_agree") if weaker != without_links else ()
+        yield Carried((*of_joints, "frames names_agree"), fact.check, weaker)
+
+
+def _without_launch_files(solution: Solution, covered: Collection[str]) -> list[Fact | Omission] | None:
+    """Return the facts of the elements if no launch file gives arguments to xacro; None where there is no robot."""
+    urdf, submission = solution.submission.urdf, solution.submission
+    if not isinstance(urdf, Read) or not urdf.is_expanded:
+        return None
+    around = submission.surroundings(Budget())._replace(graded=None)
+    reading = read_as_ros(urdf.data, urdf.path, around).reading
+    return None if reading.robot is None or reading.root is None else [*_entries(reading.root, covered)]
+
+
+def _carried_from_launch(fact: Fact, other: Mapping[str, Any] | None, causes: tuple[str, ...]) -> list[Carried]:
+    """Return what counts instead of a fact if launch files give xacro no arguments: what stays true without them."""
+    if other == fact.arguments:
+        return []
+    if other is None:
+        return [Carried(causes, "urdf_loads")]
+    values, others = fact.arguments.get("values", {}), other.get("values", {})
+    same = {key: value for key, value in values.items() if others.get(key) == value}
+    return [Carried(causes, fact.check, {"at": fact.arguments["at"], **({"values": same} if same else {})})]
+
+
+def _weakened(arguments: Mapping[str, Any], names: Collection[str]) -> Mapping[str, Any]:
+    """Return the arguments without conditions and values that are names of joints and links."""
+    at = _CONDITION.sub(lambda found: "" if found[1] in names else found[0], arguments["at"])
+    values = {key: it for key, it in arguments.get("values", {}).items() if not isinstance(it, str) or it not in names}
+    return {"at": at, **({"values": values} if values else {})}
+
+
+def _entries(root: Element, covered: Collection[str]) -> Facts:
+    """Yield the values in each element, without the interfaces that are `covered`; or why it is omitted."""
+    for element in foreign_elements(root):
+        about = f"<{name_of(element)}>"
+        if sum(1 + len(inner.attrib) for inner in element.iter()) > _MAX_VALUES:
+            yield Omission(_label(element), f"it has more than {_MAX_VALUES} elements and attributes")
+            continue
+        conditions = "".join(f"[@{key}='{value}']" for key, value in attributes_of(element))
+        for label, path, values in _element_values(element):
+            at = f"{name_of(element)}{conditions}{f'/{path}' if path else ''}"
+            if (name_of(element), path) == ("ros2_control", "joint"):
+                _drop_covered(values, covered)
+            if is_path(at):
+                yield Fact(about, "entry_is", {"at": at, **({"values": values} if values else {})}, label)
+            else:
+                yield Omission(label, "a path cannot name it")
+
+
+def _drop_covered(values: _Values, covered: Collection[str]) -> None:
+    """Remove the command interfaces of a joint if controllers need all of them."""
+    found = values.get(_INTERFACE, [])
+    interfaces = found if isinstance(found, list) else [found]
+    if interfaces and all(f"{values.get('@name')}/{it}" in covered for it in interfaces):
+        del values[_INTERFACE]
+
+
+def _element_values(element: Element) -> Iterator[tuple[str, str, _Values]]:
+    """Yield the plain values in an element, then those in each child that has elements or attributes.
+
+    Each has a label, the path of the child, and values by their paths in it.
+    """
+    plain: _Values = {}
+    deep: list[Element] = []
+    for child in _children(element):
+        if _children(child) or child.attrib:
+            deep.append(child)
+        else:
+            _add(plain, name_of(child), _value(text_in(child)))
+    if plain or not deep:
+        yield _label(element), "", plain
+    for child in deep:
+        yield f"{_label(element)} {_label(child)}", name_of(child), _values_by_path(child)
+
+
+def _values_by_path(element: Element, path: str = "") -> _Values:
+    """Return all attributes and texts in an element by their paths; of repeated ones a list."""
+    found: _Values = {}
+    for key, text in element.attrib.items():
+        _add(found, f"{path}@{key!s}", _value(str(text)))
+    for child in _children(element):
+        inner = f"{path}{name_of(child)}"
+        if not _children(child) and (text_in(child) or not child.attrib):
+            _add(found, inner, _value(text_in(child)))
+        for key, value in _values_by_path(child, f"{inner}/").items():
+            _add(found, key, value)
+    return found
+
+
+def _add(found: _Values, key: str, value: Any) -> None:
+    """Add a value, unless it is a path that exists on one machine only; of several values with one path, a list."""
+    if isinstance(value, str) and is_of_one_machine(value):
+        return
+    if key not in found:
+        found[key] = value
+    else:
+        before = found[key] if isinstance(found[key], list) else [found[key]]
+        found[key] = before + (value if isinstance(value, list) else [value])
+
+
+def _value(text: str) -> str | bool | int | float:
+    """Return the text of an element or attribute as a rubric writes it: a number, true or false, else a string."""
+    word = readable(text.strip())
+    if word in _TRUTH:
+        return _TRUTH[word]
+    if _NUMBER.fullmatch(word) and isfinite(number := float(word)):
+        return int(word) if re.fullmatch(r"-?(?:0|[1-9]\d{0,14})", word) else number
+    return " ".join(word.split())
+
+
+def _children(element: Element) -> list[Element]:
+    return [child for child in element if isinstance(child.tag, str)]
+
+
+def _label(element: Element) -> str:
+    """Return the tag and the name of an element."""
+    return f"{name_of(element)} {next((str(element.get(key)) for key in _NAMED_BY if element.get(key)), '')}"
