@@ -29,6 +29,7 @@ def file_facts(workspace: Workspace) -> Iterator[Fact]:
             for fact in _fault_of(workspace, package, path, at):
                 yield fact._replace(is_sure=fact.is_sure and is_read) if isinstance(fact, Mismatch) else fact
     yield from _map_images(workspace)
+    yield from _models(workspace)
 
 
 class _Named(NamedTuple):
@@ -142,3 +143,17 @@ def _map_images(workspace: Workspace) -> Iterator[Fact]:
             message = f"the image of the map, {image.text!r}, does not exist{guess}"
             either = corrections(posixpath.basename(wanted), image.location, meant)
             yield Mismatch("files", message, image.location, corrections=either)
+
+
+def _models(workspace: Workspace) -> Iterator[Fact]:
+    """Yield models that worlds include, and whose names are similar to those of the workspace."""
+    files = [path for package in workspace.packages for path in package.tree.files]
+    models = {posixpath.basename(posixpath.dirname(it)) for it in files if it.endswith(("/model.sdf", "/model.config"))}
+    for file in workspace.sdf_files:
+        for element in file.root.iter("uri"):
+            name = (element.text or "").strip().removeprefix("model://").partition("/")[0]
+            meant = near(name, models) if (element.text or "").strip().startswith("model://") else None
+            if meant is not None and name not in models:
+                at = file.location(element)
+                message = f"there is no model {name!r}; did you mean {meant!r}?"
+                yield Mismatch("files", message, at, corrections=corrections(name, at, meant))

@@ -80,6 +80,7 @@ def main():
 main()
 """
 _FILES = {
+    "scout/models/shelf/model.sdf": '<sdf version="1.10"><model name="shelf"/></sdf>',
     "scout/bridge.yaml": _BRIDGE,
     "scout/scout.urdf": _ROBOT,
     "scout/arena.sdf": _WORLD,
@@ -115,7 +116,7 @@ def problems(*edits: tuple[str, str, str]) -> list[str]:
         assert old in texts[f"scout/{name}"]
         texts[f"scout/{name}"] = texts[f"scout/{name}"].replace(old, new)
     found = sure(agreement_of(texts))
-    assert {it.family for it in found} <= {"topics", "programs"}
+    assert {it.family for it in found} <= {"topics", "programs", "files"}
     return [it.message for it in found]
 
 
@@ -152,6 +153,8 @@ def problems(*edits: tuple[str, str, str]) -> list[str]:
         ([("drive.py", "import Twist", "import TwistStamped as Twist")],
          ("the topic /cmd_vel has geometry_msgs.msg.TwistStamped here, but is subscribed to by the bridge with"
          " geometry_msgs.msg.Twist (scout/bridge.yaml:5)")),
+        ([("arena.sdf", "  </world>", "    <include><uri>model://shelv</uri></include>\n  </world>")],
+         "there is no model 'shelv'; did you mean 'shelf'?"),
         ([("CMakeLists.txt", "install(PROGRAMS drive.py", "install(FILES drive.py")],
          "a build installs 'drive.py' without the right to execute it: write install(PROGRAMS ...)"),
     ],
@@ -167,6 +170,9 @@ def test_what_gazebo_does_not_do_is_named(edits: list[tuple[str, str, str]], mes
         [],
         [("bridge.yaml", "direction: ROS_TO_GZ", "direction: BIDIRECTIONAL")],
         [("scout.launch.py", '"-world", "arena", ', "")],
+        [("arena.sdf", "  </world>", "    <include><uri>model://shelf/model.sdf</uri></include>\n  </world>")],
+        [("arena.sdf", "  </world>", "    <include><uri>model://sun</uri></include>\n  </world>")],
+        [("arena.sdf", "  </world>", "    <include><uri>https://fuel.example/shelve</uri></include>\n  </world>")],
         [("scout.launch.py", '"-topic", "robot_description"', '"-file", "/tmp/robot.sdf"')],
         [("arena.sdf", '<plugin filename="gz-sim-physics-system" name="gz::sim::systems::Physics"/>', ""),
          ("arena.sdf", '<plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>', ""),
