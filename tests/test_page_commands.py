@@ -78,6 +78,26 @@ IN_TEXT = {  # commands in the text that are not run here: a test that does, or 
     "grader --install-completion": "changes the files of the shell; corpus/refusals.toml",
     "grader rubric new my_lab.toml --from solution.urdf": "docs/index.md has the same",
 }
+OTHER_PROGRAMS = {  # commands of other programs in the text of the README and of docs/: a test that runs them, or why none does
+    "git clone https://github.com/urdf-grader/urdf-grader": "nothing is published yet",
+    "pip install urdf-grader": "nothing is released yet",
+    "gh repo edit YOUR-ORG/NAME --template": "needs GitHub",
+    "python CHECKOUT/benchmarks/class_generator.py submissions --count 121 --kind mixed --layout canvas --lms canvas.csv": "classroom/test_walkthrough.py",
+    "ssh -L 8000:127.0.0.1:8000 host": "needs another machine",
+    "uv tool install .": "installs for the user; tried by hand with uv 0.13",
+    "uvx --from . grader grade my_robot.urdf": "needs uv; tried by hand with uv 0.13",
+    "uv --resolution lowest-direct": "the job `bounds` in .github/workflows/ci.yml",
+    "pipx install .": "installs for the user; tried by hand with pipx 1.18",
+    "wsl --install": "needs Windows",
+    "python -m grader": "an example of what not to do",
+    "python -I -m grader": "bundle/test_setup.py",
+    "python3 -m venv .venv": "here: test_the_installation",
+    "sudo apt install python3-venv": "installs for the whole machine",
+    "sudo apt install python3.11 python3.11-venv": "installs for the whole machine",
+    "python -m pydoc grader": "test_api.py",
+    "SUBMISSION=my_robot pytest test_rubric.py": "test_api.py",
+    "URDF=my_robot.urdf pytest test_lab6.py": "test_api.py",
+}
 STUDENTS = ("alice", "bob", "carol", "dave")
 CANVAS = "Student,ID,SIS User ID,SIS Login ID,Section,Lab 6 (12345)\n    Points Possible,,,,,100\n"
 GH = """\
@@ -161,10 +181,15 @@ def test_every_command_line_of_a_page_works(page: Path, presumed: Path, tmp_path
         assert code == (expected or [0])[-1], (line, printed)
 
 
+def codes(page: Path) -> list[str]:
+    """Return what is in backticks in the text of a page."""
+    text = re.sub(r"^ *```.*?^ *```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
+    return [" ".join(code.split()) for code in re.findall(r"`([^`]+)`", text)]
+
+
 def commands_in_text(page: Path) -> list[str]:
     """Return the commands of the grader in the text of a page, with values for what is written in capitals."""
-    text = re.sub(r"^ *```.*?^ *```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
-    found = [" ".join(command.split()) for command in re.findall(r"`(grader [^`]+)`", text)]
+    found = [code for code in codes(page) if code.startswith("grader ")]
     names = "|".join(sorted(map(re.escape, PLACEHOLDERS), key=len, reverse=True))
     return [re.sub(rf"(?<![\w-])({names})(?!\w)", lambda name: PLACEHOLDERS[name[1]], command) for command in found]
 
@@ -197,6 +222,14 @@ def test_every_exception_is_on_a_page() -> None:
         assert any(line.startswith(beginning) for line in lines), beginning
     assert set(IN_TEXT) <= {command for page in PAGES for command in commands_in_text(page)}
     assert set(FOLLOWED) <= {page.name for page in PAGES if blocks(page)}
+
+
+def test_every_command_of_another_program_is_listed() -> None:
+    """Each with its arguments in the text is run by a test, or the table says why it is not."""
+    programs = re.compile(r"([A-Z]+=\S+|sudo|pipx|uvx?|wsl|gh|git|ssh|python3?|pip|docker) .*")
+    pages = [page for page in PAGES if page.parent in (ROOT, ROOT / "docs") and page.name != "CONTRIBUTING.md"]
+    found = {code for page in pages for code in codes(page) if programs.fullmatch(code)}
+    assert found - {"gh api", "pip install", "pip download", "pip list", "pip --group"} == set(OTHER_PROGRAMS)
 
 
 def test_the_page_on_dimensions(tmp_path: Path) -> None:

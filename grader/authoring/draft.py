@@ -171,8 +171,9 @@ def _rubric_text(head: Head, rows: Sequence[_DraftCriterion], values: Mapping[st
     of_robot = [row for row in rows if not row.is_of_package]
     of_package = [row for row in rows if row.is_of_package]
     points = _points(of_robot, of_package)
+    checks = {row.fact.check for row in rows} | {it.check for row in rows for it in row.fact.carried}
     part, usual = (_ROBOT if of_robot else _PACKAGE), Counter(points).most_common(1)[0][0]
-    lines = [*_head_lines(head, sum(points)), *_default_lines(part, usual, {row.fact.check for row in rows})]
+    lines = [*_head_lines(head, sum(points)), *_default_lines(part, usual, checks)]
     if of_robot:
         lines += _part_lines(_ROBOT, "The robot", "urdf", sum(points[: len(of_robot)]))
     if of_package:

@@ -14,7 +14,7 @@ from grader.checks.outcome import point
 from grader.checks.visuals import MAX_SHAPES
 from grader.errors import MissingElement, NotDecided
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Box, Collision, Cylinder, Joint, Link, Mesh, Sphere, Visual
+from grader.robot.model import Box, Collision, Cylinder, Joint, Limit, Link, Mesh, Sphere, Visual
 from grader.robot.reader import Reading
 from grader.robot.shapes import is_empty
 from grader.robot.transforms import rotation_from_rpy
@@ -170,7 +170,16 @@ def _body_facts(link: Link) -> Facts:
     if not any(not is_empty(visual.geometry) for visual in link.visuals):
         yield from shapes
     elif shapes:
-        yield _link_fact(link.name, "collision_matches_visual")._replace(otherwise=shapes if only else ())
+        known = [
+            Carried(_shown(link.name), it.check, it.arguments) for it in shapes if only and it.check == "collides_as"
+        ]
+        match = _link_fact(link.name, "collision_matches_visual")
+        yield match._replace(otherwise=shapes if only else (), carried=tuple(known))
+
+
+def _shown(link: str) -> tuple[str, ...]:
+    """Return the words of the facts about what a link shows."""
+    return tuple(f"{link} {check}" for check in ("shows_box", "shows_cylinder", "shows_sphere", "centre_at"))
 
 
 def _collision(link: str, collision: Collision, only: Mapping[str, bool]) -> Fact:
@@ -197,18 +206,11 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
     title = f"the frame {link!r} is at {point((*xyz,))} m in {parent!r}"
     if any(rpy):
         title += f", with rpy {point((*_rounded([*map(degrees, rpy)], 1),))} degrees"
-    turned = {"rpy": rpy} if any(rpy) else {}
-    yield _link_fact(link, "frame_at", relative_to=parent, xyz=xyz, **turned)._replace(title=title)
+    frame = _link_fact(link, "frame_at", relative_to=parent, xyz=xyz, **({"rpy": rpy} if any(rpy) else {}))
+    yield frame._replace(title=title)
+    of_type = Carried((f"{link} held_by",), "frame_at", frame.arguments)  # a joint of another type has no such range
     if joint.limit is not None and joint.type in ("revolute", "prismatic"):
-        ends = (joint.limit.lower, joint.limit.upper)
-        turns = joint.type == "revolute"
-        lower, upper = _rounded([degrees(end) for end in ends], 1) if turns else _rounded(ends)
-        given = {"effort": joint.limit.effort, "velocity": joint.limit.velocity}
-        others = {name: value for name, value in given.items() if isfinite(value)}
-        others |= {} if turns else {"tolerance": _SLIDING_TOLERANCE}
-        unit = "degrees" if turns else "m"
-        title = f"the range of the joint that moves {link!r} is {lower:g} to {upper:g} {unit}"
-        yield _link_fact(link, "joint_limits", lower=lower, upper=upper, **others)._replace(title=title)
+        yield _range_fact(joint, joint.limit)._replace(carried=(of_type,))
     if joint.dynamics is not None and joint.type != "fixed":
         friction, damping = joint.dynamics.friction, joint.dynamics.damping
         title = f"the joint that moves {link!r} has friction {friction:g} and damping {damping:g}"
@@ -226,6 +228,18 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
         yield axis._replace(carried=(Carried((f"{link} frame_at",), "joint_axis", in_own_frame),))
 
 
+def _range_fact(joint: Joint, limit: Limit) -> Fact:
+    """Return the range of a joint that turns or slides, in degrees or metres."""
+    ends, turns = (limit.lower, limit.upper), joint.type == "revolute"
+    lower, upper = _rounded([degrees(end) for end in ends], 1) if turns else _rounded(ends)
+    given = {"effort": limit.effort, "velocity": limit.velocity}
+    others = {name: value for name, value in given.items() if isfinite(value)}
+    others |= {} if turns else {"tolerance": _SLIDING_TOLERANCE}
+    unit = "degrees" if turns else "m"
+    title = f"the range of the joint that moves {joint.child!r} is {lower:g} to {upper:g} {unit}"
+    return _link_fact(joint.child, "joint_limits", lower=lower, upper=upper, **others)._replace(title=title)
+
+
 def _tree_facts(solution: Solution) -> Iterator[Fact]:
     """Yield the names of joints that other elements use, the root, the numbers of joints, and how the tips move."""
     robot = solution.robot
@@ -235,11 +249,14 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
     if used:
         yield _robot_fact("joints_named", parent=root, joints=used)
     fixed = (joint.child for joint in joints if joint.parent == root and joint.type == "fixed")
-    yield _robot_fact("root_of_tree", link=root, holds=next(fixed, root))
+    rooted = _robot_fact("root_of_tree", link=root, holds=next(fixed, root))
+    yield rooted
+    held = tuple(f"{joint.child} {check}" for joint in joints for check in ("held_by", "mimics"))
+    of_types = Carried(held, rooted.check, rooted.arguments)
     moving = [joint for joint in joints if joint.type != "fixed"]
     kinds = Counter(joint.type for joint in moving)
     numbers = {"moving": sum(joint.mimic is None for joint in moving), **{kind: kinds[kind] for kind in _COUNTED}}
-    yield _robot_fact("counts", **numbers)
+    yield _robot_fact("counts", **numbers)._replace(carried=(of_types,))
     inner = {joint.parent for joint in joints}
     chains = {name: robot.chain(name) for name in robot.main_tree if name not in inner}
     tips = [name for name, chain in chains.items() if any(joint.type != "fixed" for joint in chain)]
@@ -248,4 +265,4 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
         title = f"{enumerated(names)} {'moves' if len(names) == 1 else 'move'} as in the reference solution"
         known = [f"{joint.child} {check}" for joint in joints for check in ("frame_at", "joint_axis", "mimics")]
         motion = _robot_fact("kinematics_match_reference", links=tips[:_MAX_TIPS], match="order")
-        yield motion._replace(title=title, carried=(Carried(tuple(known), "counts", numbers),))
+        yield motion._replace(title=title, carried=(Carried(tuple(known), "counts", numbers), of_types))

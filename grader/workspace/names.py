@@ -152,7 +152,7 @@ def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mism
 
 def corrections(name: str, at: Location, meant: str | None, defined: Location | None = None) -> tuple[Correction, ...]:
     """Return that a name becomes the one that is meant, or the reverse; none for names of two sides or numbers."""
-    if meant is None or not are_of_one_side(name, meant):
+    if meant is None or not (are_of_one_side(name, meant) or near(name, [meant])):
         return ()
     return (Correction(at, name, meant), *([Correction(defined, meant, name)] if defined is not None else []))
 

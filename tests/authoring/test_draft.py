@@ -180,3 +180,55 @@ def test_what_is_odd_in_the_names_of_a_reference_is_said_in_one_line(family: str
     asked = re.findall('with = { of = "(.*)" }', (tmp_path / "lab.toml").read_text())
     assert family not in asked
     assert len(asked) == 7
+
+
+DIFFDRIVE = ROOT / "rubrics/diffdrive/diffdrive_robot"
+SAMPLES = sorted(path.name for path in (ROOT / "submissions/diffdrive").iterdir() if path.is_dir())
+LAUNCH, URDF = "launch/diffdrive.launch.py", "urdf/diffdrive.urdf.xacro"
+# A robot with elements that depend on an argument, and which costs nothing where another mistake is.
+SIMULATED: list[Edit] = [
+    (URDF, '"use_mock_hardware" default="true"', '"use_mock_hardware" default="false"'),
+    (
+        URDF,
+        "</robot>",
+        '<xacro:if value="$(arg use_mock_hardware)"><gazebo><static>true</static></gazebo></xacro:if></robot>',
+    ),
+]
+CAUSES = {
+    "an argument": ((LAUNCH, '" use_mock_hardware:="', '" mock_hardware:="'), {"names_agree"}),
+    "the robot": ((URDF, 'radius="${wheel_radius}"', 'radius="0.07"'), {"shows_cylinder", "inertia_plausible"}),
+}  # fmt: skip
+
+
+def write_diffdrive(folder: Path, *edits: Edit) -> Path:
+    """Write the differential drive with edits of all places of a text, and return its folder."""
+    package = shutil.copytree(DIFFDRIVE, folder / "diffdrive_robot")
+    for path, old, new_text in edits:
+        text = (package / path).read_text()
+        assert old in text
+        _ = (package / path).write_text(text.replace(old, new_text))
+    return package
+
+
+@pytest.fixture(scope="module")
+def of_diffdrive(tmp_path_factory: pytest.TempPathFactory) -> Rubric:
+    """Return the draft of the differential drive, whose elements depend on an argument."""
+    folder = tmp_path_factory.mktemp("diffdrive")
+    assert new(folder, write_diffdrive(folder, *SIMULATED)).returncode == 0
+    return load_rubric(str(folder / "lab.toml"))
+
+
+@pytest.mark.parametrize(("edit", "lost"), CAUSES.values(), ids=CAUSES)
+def test_a_mistake_costs_where_it_is(edit: Edit, lost: set[str], of_diffdrive: Rubric, tmp_path: Path) -> None:
+    """Elements that an argument of xacro changes cost nothing more, nor what is compared with a wrong robot."""
+    package = write_diffdrive(tmp_path, *SIMULATED, edit)
+    report = grade(of_diffdrive, open_submission(str(package), of_diffdrive.lab))
+    assert {it.criterion.check.name for it in report.results if it.is_lost} == lost
+
+
+@pytest.mark.parametrize("name", [name for name in SAMPLES if not name.startswith("equivalent")])
+def test_the_mistake_of_a_sample_costs_once(name: str, of_diffdrive: Rubric) -> None:
+    """Whatever else of the differential drive fails because of it."""
+    report = grade(of_diffdrive, open_submission(str(ROOT / "submissions/diffdrive" / name), of_diffdrive.lab))
+    lost = [it.criterion for it in report.results if it.is_lost and it.criterion.about != "<gazebo>"]
+    assert len(lost) == 1, lost
