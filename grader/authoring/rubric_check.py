@@ -106,11 +106,12 @@ def likely_mistakes(rubric: Rubric) -> Sequence[str]:
 
 
 def _is_changed_copy(rubric: Rubric) -> bool:
-    """Return whether a rubric has the id of one of the grader's, and most of its criteria, but is another one."""
-    if rubric.id not in shipped_rubrics() or rubric.is_shipped or rubric.is_copy_of_shipped:
+    """Return whether a rubric has the id of one of the grader's and most of its criteria, but not quite the same."""
+    if rubric.id not in shipped_rubrics() or rubric.is_shipped:
         return False
-    own, copied = ({it.id for it in one.criteria} for one in (rubric, load_rubric(rubric.id)))
-    return 2 * len(own & copied) > len(own)
+    shipped = load_rubric(rubric.id).criteria
+    own, copied = ({it.id for it in criteria} for criteria in (rubric.criteria, shipped))
+    return rubric.criteria != shipped and 2 * len(own & copied) > len(own)
 
 
 def _of_criterion(rubric: Rubric, criterion: Criterion, everywhere: list[float]) -> Iterator[tuple[str, str]]:
