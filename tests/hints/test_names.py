@@ -63,6 +63,7 @@ def after(texts: Mapping[str, str], edits: Edits) -> dict[str, str]:
     ("place", "old", "new"),
     [
         ("config/controllers.yaml", "right_wheel_names: [right_wheel_joint]", "right_wheel_names: [rigth_wheel_joint]"),
+        ("config/controllers.yaml", "\nwheel_controller:\n  ros__parameters", "\nwheel_controller:\n  ros__paramters"),
         ("config/detector.yaml", "threshold: 0.5", "treshold: 0.5"),
         ("config/detector.yaml", "detector:", "detecter:"),
         ("config/detector.yaml", "detector:", "vision:"),
@@ -86,6 +87,7 @@ def after(texts: Mapping[str, str], edits: Edits) -> dict[str, str]:
         ("cart_nodes/setup.py", "cart_nodes.detector:main", "cart_nodes.detector:run"),
         ("cart_nodes/setup.py", '"alarm = ', '"alrm = '),
         ("detector.py", 'get_parameter("threshold")', 'get_parameter("treshold")'),
+        ("cart.urdf.xacro", 'left_wheel_joint">\n      <command_interface name="velocity"', 'left_wheel_joint">\n      <command_interface name="velocty"'),
         ("cart.urdf.xacro", '<gazebo reference="camera_link">', '<gazebo reference="camera_lnk">'),
     ],
 )  # fmt: skip
