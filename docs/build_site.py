@@ -4,7 +4,6 @@ The pages are written for GitHub. Here, what they link to outside of the site le
 """
 
 import re
-import runpy
 import shutil
 import sys
 import tomllib
@@ -23,6 +22,7 @@ REPOSITORY = PROJECT["urls"]["Repository"]
 OUTSIDE = [ROOT / name for name in ("CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md")]
 OFF_SITE = DOCS / "decisions.md"  # for contributors
 PAGES = {page: page.name for page in [*DOCS.glob("*.md"), *OUTSIDE] if page != OFF_SITE}
+PAGES[DOCS / "schemas/README.md"] = "json.md"
 FOLDERS = [DOCS, DOCS / "screenshots", ROOT / "tests/corpus/reports/drawings/expected/files"]
 PICTURES = {
     picture: picture.name for folder in FOLDERS for picture in folder.iterdir() if picture.suffix in (".svg", ".png")
@@ -67,9 +67,8 @@ def build(output: Path) -> None:
 
 def sources() -> Iterator[tuple[str, str]]:
     """Yield the name and the text of each page of the site."""
-    generated = runpy.run_path(str(DOCS / "make.py")).get("catalogue_pages", dict)()
     for page, name in PAGES.items():
-        text = with_links(page, generated.get(name) or page.read_text(encoding="utf-8"))
+        text = with_links(page, page.read_text(encoding="utf-8"))
         yield name, with_contents(text) if name == "index.md" else text
 
 

@@ -4,17 +4,21 @@ import re
 from collections.abc import Iterator
 from io import StringIO
 from pathlib import Path
+from typing import get_args
 
 from rich.console import Console
 from rich.text import Text
 
 from grader.checks.registry import own_checks
+from grader.cli.explain import SchemaName
 from grader.grading.grade import grade
 from grader.grading.keys import ADJUSTMENT, CARRIED, CRITERION, DEFAULTS, EVIDENCE, IGNORE, LATE, PART, RUBRIC, TEST
 from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
 from grader.hints.hinting import hinted
 from grader.report.explanations import EFFECTS, EVERY_KIND, default_text, example_blocks, explanation_of
+from grader.report.formats import json_schema
+from grader.report.json_data import to_json
 from grader.report.terminal import render_terminal
 from grader.submission.opening import open_submission
 
@@ -54,6 +58,7 @@ def pages() -> dict[str, str]:
         "rubric-reference.md": filled("rubric-reference.md", keys()),
         "grade-one-submission.md": filled("grade-one-submission.md", ["```", terminal(report).rstrip(), "```"]),
         "report.svg": picture(report),
+        **{f"schemas/{name}.json": to_json(json_schema(name)) for name in get_args(SchemaName)},
     }
 
 
@@ -67,15 +72,34 @@ def filled(name: str, lines: Iterator[str] | list[str]) -> str:
 
 
 def problems() -> Iterator[str]:
-    """Yield a line for each problem."""
+    """Yield a list of all problems, and a section for each with what `grader explain` prints."""
     for kind in EVERY_KIND:
-        yield f"- `{kind.code}` ({kind.severity}): {escaped(kind.title)}"
+        yield f"- [`{kind.code}`](#{kind.code.lower()}) ({kind.severity}): {escaped(kind.title)}"
+    yield ""
+    for kind in EVERY_KIND:
+        effect = f" {EFFECTS[kind.effect]}".rstrip()
+        yield from (f"## {kind.code}", "", f"{escaped(kind.title)} ({kind.severity}).", "")
+        yield from (escaped(explanation_of(kind)) + effect, "", *example(kind.code))
 
 
 def checks() -> Iterator[str]:
-    """Yield a line for each check."""
+    """Yield a list of all checks, and a section for each with what `grader explain` prints."""
     for check in own_checks():
-        yield f"- `{check.name}`: {escaped(check.documentation.paragraphs[0])}"
+        yield f"- [`{check.name}`](#{check.name}): {escaped(check.documentation.paragraphs[0])}"
+    yield ""
+    for check in own_checks():
+        yield from (f"## `{check.name}`", "")
+        for paragraph in check.documentation.paragraphs:
+            yield from (escaped(paragraph), "")
+        if check.parameters:
+            yield from ("| argument | meaning | type | default |", "|---|---|---|---|")
+        for name, parameter in check.parameters.items():
+            default = "required" if parameter.required else f"`{default_text(parameter.default)}`"
+            meaning = escaped(check.documentation.arguments[name])
+            yield f"| `{name}` | {meaning} | {parameter.type.name} | {default} |"
+        if check.parameters:
+            yield ""
+        yield from example(check.name)
 
 
 def keys() -> Iterator[str]:
@@ -86,35 +110,6 @@ def keys() -> Iterator[str]:
             needed = ", required" if name in table.required else ""
             yield f"- `{name}` ({kind.name.removeprefix('a ')}{needed}): {escaped(kind.schema['description'])}"
         yield ""
-
-
-def catalogue_pages() -> dict[str, str]:
-    """Return the two pages of the catalogue for a site, in the long form: each problem and check with its example."""
-    return {"problems.md": filled("problems.md", long_problems()), "checks.md": filled("checks.md", long_checks())}
-
-
-def long_problems() -> Iterator[str]:
-    """Yield a section for each problem."""
-    for kind in EVERY_KIND:
-        effect = f" {EFFECTS[kind.effect]}".rstrip()
-        yield from (f"## {kind.code}", "", f"{escaped(kind.title)} ({kind.severity}).", "")
-        yield from (escaped(explanation_of(kind)) + effect, "", *example(kind.code))
-
-
-def long_checks() -> Iterator[str]:
-    """Yield a section for each check."""
-    for check in own_checks():
-        yield from (f"### `{check.name}`", "")
-        for paragraph in check.documentation.paragraphs:
-            yield from (escaped(paragraph), "")
-        if check.parameters:
-            yield from ("| argument | meaning | type | default |", "|---|---|---|---|")
-        for name, parameter in check.parameters.items():
-            default = "required" if parameter.required else f"`{default_text(parameter.default)}`"
-            meaning = escaped(check.documentation.arguments[name])
-            yield f"| `{name}` | {meaning} | {parameter.type.name} | {default} |"
-        yield ""
-        yield from example(check.name)
 
 
 def example(name: str) -> Iterator[str]:
@@ -156,4 +151,5 @@ def escaped(text: str) -> str:
 
 if __name__ == "__main__":
     for name, text in pages().items():
+        (DOCS / name).parent.mkdir(exist_ok=True)
         (DOCS / name).write_text(text, encoding="utf-8")

@@ -6,7 +6,7 @@ angles in radians about fixed axes x, y, z (REP 103), and each pose is that of a
 
 from importlib import import_module
 
-__version__ = "1.0.0"
+__version__ = "0.9.0"
 
 _MODULES = {
     "Configuration": "robot.kinematics", "GraderError": "errors", "Joint": "robot.model", "Link": "robot.model",

@@ -8,6 +8,7 @@ from grader.text import quoted
 
 _MAX_CANDIDATES = 300
 _MAX_KNOWN = 1000
+_MARGIN = 0.1  # of difflib's ratios
 MAX_LENGTH = 60  # characters of names that are compared
 _CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
 _WORD = re.compile(r"\d+|[^\W\d_]+")
@@ -40,6 +41,19 @@ def closest(name: str, known: Iterable[str]) -> str | None:
     if not matches:  # difflib rates swapped letters in short names too low, such as xzy for xyz
         matches = [other for other in candidates if sorted(other) == sorted(lower)]
     return candidates[matches[0]] if matches else None
+
+
+def clearly_closest(name: str, known: Iterable[str]) -> str | None:
+    """Return the known name that is most like this one, if no other one is nearly as like it."""
+    from difflib import SequenceMatcher  # imported late, as above
+
+    names = list(known)
+    first = closest(name, names)
+    second = closest(name, (it for it in names if it != first))
+    if first is None or second is None:
+        return first
+    ratios = [SequenceMatcher(None, name.lower(), it.lower()).ratio() for it in (first, second)]
+    return first if ratios[0] - ratios[1] > _MARGIN else None
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:

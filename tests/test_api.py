@@ -125,10 +125,20 @@ def test_a_urdf_is_read_from_text(text: str) -> None:
     assert (read.verdict, read.robot, read.problems) == (same.verdict, same.robot, same.problems)
 
 
-def test_the_import_is_light() -> None:
-    """`import grader` loads no other module of the grader and no library."""
-    code = "import sys, grader; print([name for name in sys.modules if name[:7] == 'grader.' or name == 'lxml'])"
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, capture_output=True, text=True)
+@pytest.mark.parametrize(
+    ("code", "modules"),
+    [
+        ("import grader", ("grader.", "lxml")),
+        (
+            "import grader; grader.grade('submissions/lab6/lidar-offset-in-visual/my_robot/urdf/my_robot.urdf')",
+            ("numpy",),
+        ),
+    ],
+)
+def test_the_import_is_light(code: str, modules: tuple[str, ...]) -> None:
+    """`import grader` loads no other module of the grader and no library; a URDF is graded without numpy."""
+    listed = f"import sys; {code}; print([name for name in sys.modules if name.startswith({modules})])"
+    done = subprocess.run([sys.executable, "-c", listed], cwd=ROOT, check=True, capture_output=True, text=True)
     assert done.stdout == "[]\n"
 
 

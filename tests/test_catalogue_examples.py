@@ -183,10 +183,10 @@ def test_an_explanation_shows_the_example() -> None:
     assert "`grader explain frame_at`" in explanation("lidar-frame", rubric)
 
 
-def test_the_pages_of_a_site_show_every_example() -> None:
+def test_the_pages_show_every_example() -> None:
     """docs/make.py makes a section of each code and check, with its example in code blocks."""
-    pages = runpy.run_path(str(ROOT / "docs/make.py"))["catalogue_pages"]()
-    for page, names, heading in (("problems.md", CODES, "## {}"), ("checks.md", CHECKS, "### `{}`")):
+    pages = runpy.run_path(str(ROOT / "docs/make.py"))["pages"]()
+    for page, names, heading in (("problems.md", CODES, "## {}"), ("checks.md", CHECKS, "## `{}`")):
         for name in names:
             place = pages[page].index(f"\n{heading.format(name)}\n")
             for title, _, text in example_blocks(name):

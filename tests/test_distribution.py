@@ -73,7 +73,7 @@ def test_the_wheel_has_no_model_answers_and_no_samples(built: Path) -> None:
     with tarfile.open(sdist) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
     assert {
-        "submissions/lab6/reference/expected.toml",
+        "submissions/lab6/lidar-buried/expected.toml",
         "rubrics/lab6/rubric.toml",
         "LICENSE",
         "README.md",
@@ -82,7 +82,7 @@ def test_the_wheel_has_no_model_answers_and_no_samples(built: Path) -> None:
     assert not [
         name
         for name in names
-        if name.endswith(ANSWERS) or re.match(r"tests|benchmarks|submissions/(?!lab6/reference/)", name)
+        if name.endswith(ANSWERS) or re.match(r"tests|benchmarks|submissions/(?!lab6/lidar-buried/)", name)
     ]
 
 

@@ -61,7 +61,9 @@ def test_examples_of_the_reference_are_criteria(block: dict[str, Any]) -> None:
     assert set(block) <= set(RUBRIC.keys)
     defaults = block.get("defaults", {})
     assert set(defaults) <= set(DEFAULTS.keys)
-    rows = [*block.get("criterion", []), *(row["carried"] for row in block.get("criterion", []) if "carried" in row)]
+    rows = [*block.get("criterion", [])]
+    for carried in (row.get("carried", []) for row in block.get("criterion", [])):
+        rows += [carried] if isinstance(carried, dict) else carried
     for row in rows:
         assert set(row) <= {*CRITERION.keys, "from"}
         check = find_check(row["check"])

@@ -12,6 +12,7 @@ from grader.package.trees import is_path
 from grader.python.budget import Budget
 from grader.submission.urdf import Read, read_as_ros
 from grader.workspace.controllers import needed_interfaces
+from grader.workspace.reading import read_agreement
 from grader.workspace.workspace import workspace_of
 from grader.xml.elements import attributes_of, foreign_elements, name_of, readable, text_in
 from grader.xml.parsing import Element
@@ -35,6 +36,7 @@ def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
     robot = solution.robot.robot
     joints, links = {joint.name for joint in robot.joints}, {link.name for link in robot.links}
     without = _without_launch_files(solution, covered)
+    are_compared = read_agreement(solution.submission).holds("topics")
     met: Counter[str] = Counter()
     for it in _entries(solution.root, covered):
         if isinstance(it, Omission):
@@ -46,7 +48,16 @@ def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
             others = [one.arguments for one in without if isinstance(one, Fact) and one.words == it.words]
             other = others[met[it.words] - 1] if len(others) >= met[it.words] else None
             carried += _carried_from_launch(it, other, (*_OF_ARGUMENTS, *causes))
-        yield it._replace(carried=tuple(carried))
+        drawn = _without_topics if are_compared else dict
+        weaker = tuple(one._replace(arguments=drawn(one.arguments)) for one in carried)
+        yield it._replace(arguments=drawn(it.arguments), carried=weaker)
+
+
+def _without_topics(arguments: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return what is asked for without the names of topics, which need only agree."""
+    values = {path: value for path, value in arguments.get("values", {}).items() if not path.endswith("topic")}
+    others = {key: value for key, value in arguments.items() if key != "values"}
+    return {**others, "values": values} if values else others
 
 
 def _carried_from_names(fact: Fact, joints: Collection[str], links: Collection[str]) -> Iterator[Carried]:

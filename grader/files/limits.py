@@ -22,6 +22,7 @@ MAX_UNPACKED_SIZE = 512 * 1024 * 1024  # bytes of the files in an archive, witho
 MAX_ARCHIVES = 20  # in an archive or folder
 MAX_NESTED = 3  # archives inside each other
 MAX_RATIO = 200  # of the content of an archive to its own size
+SETUP_ASSISTANT = ".setup_assistant"  # where a MoveIt configuration says which robot it is for
 HARMLESS_SIZE = 32 * 1024 * 1024  # bytes that an archive may contain regardless of the ratio
 
 
@@ -31,7 +32,8 @@ def ignored_part(path: str) -> str | None:
     for index, folder in enumerate(folders):
         if folder in IGNORED_FOLDERS or folder.startswith("."):
             return "/".join(folders[: index + 1])
-    return path if name.startswith(".") or name in LITTER else None
+    is_hidden = name.startswith(".") and name != SETUP_ASSISTANT
+    return path if is_hidden or name in LITTER else None
 
 
 def is_generated(path: str) -> bool:

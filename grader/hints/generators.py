@@ -123,17 +123,18 @@ def _of_package(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal
 
             wanted = [(it.check.about.looks_at, it.arguments) for it in own if it.package == name]
             yield from package_proposals(submission.package, situation.reference_package(name), wanted)
-        yield from _of_names(situation.submission, [it for it in own if it.package == name])
+        yield from _of_names(situation, [it for it in own if it.package == name])
 
 
-def _of_names(submission: Submission, lost: _Lost) -> Iterator[Iterable[Proposal]]:
+def _of_names(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
     for criterion in [it for it in lost if it.check.name in ("names_agree", "parameter_is")]:
         from grader.hints.name_edits import name_proposals, value_proposals  # late: few rubrics ask for names
 
         if criterion.check.name == "names_agree":
-            yield name_proposals(submission, criterion.arguments["of"])
+            reference = situation.reference_package(criterion.package)
+            yield name_proposals(situation.submission, criterion.arguments["of"], reference)
         else:
-            yield value_proposals(submission, criterion.arguments)
+            yield value_proposals(situation.submission, criterion.arguments)
 
 
 def _of_own_numbers(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:

@@ -1,42 +1,82 @@
 """Edits of names that do not agree, where they are used or where they are defined, and of values of parameters."""
 
 import re
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain, combinations
+from operator import attrgetter
 from os.path import commonprefix
-from typing import Any
+from typing import Any, NamedTuple
 
 from grader.checks.parameters import measured, value_of
 from grader.errors import MissingElement, NotDecided
 from grader.hints.edits import Proposal
-from grader.package.package import CMAKE, MANIFEST
-from grader.source import Edits
+from grader.package.package import CMAKE, MANIFEST, Package
+from grader.source import Edits, Source
 from grader.submission.submission import Submission
 from grader.workspace.names import Correction, Family
 from grader.workspace.reading import wrong_names
+from grader.workspace.workspace import Workspace
 
+_MAX_WRONG = 4  # names of which all combinations are tried
+_TEXTS = (".py", ".xml", ".yaml", ".yml", ".xacro", ".urdf", ".sdf", ".txt", ".cfg")
 _MAX_KEY = 400  # characters from a key to its value
 _SEPARATED = re.compile(r".*[./:]")
 _WITH_ALL = (f"/{CMAKE}", f"/{MANIFEST}")  # files in which a name stands several times for one thing
 
 
-def name_proposals(submission: Submission, family: Family) -> Iterator[Proposal]:
-    """Yield the edits with which the names of a family agree: those that correct most at once, then those of the uses.
+def name_proposals(submission: Submission, family: Family, reference: Package | None) -> Iterator[Proposal]:
+    """Yield the edits with which the names of a family agree: one for all of them, else one for each.
 
-    A name that a file puts together from pieces has none.
+    Of two names the one is kept that more places write, in the submission or else in the reference; if as many do, both
+    ways are proposed. A name that a file puts together from pieces has none.
     """
-    wrong = wrong_names(submission, family)
-    ways = [[edits for it in one.corrections if (edits := correction_edits(submission, it))] for one in wrong]
-    if not all(ways):
-        return
-    uses = Counter(edits for each in ways for edits in each)
-    chosen = [[max(each, key=lambda edits: uses[edits]) for each in ways]]
-    chosen += [[each[0] for each in ways], [each[-1] for each in ways]]
-    for rank, each in enumerate(chosen):
-        edits = tuple(dict.fromkeys(edit for edits in each for edit in edits))
-        names = {edit.old for edit in edits}
-        cause = f"the name `{min(names)}`" if len(names) == 1 else "names that do not agree"
-        yield Proposal(edits, cause, rank=rank)
+    workspace, others = Workspace(submission), reference.packages.values() if reference is not None else ()
+    robot = workspace.robot
+    frames = [*map(attrgetter("name"), (*robot.links, *robot.joints))] if robot is not None else []
+    own, known = (
+        [source for it in each for source in workspace.sources_of(it, _TEXTS)] for each in (workspace.packages, others)
+    )
+    # A part of a path is a name of its own, a part of a topic is none.
+    pattern = r"(?<![\w-]){}(?![\w-])" if family in ("files", "programs") else r"(?<![\w/.-]){}(?![\w/-])"
+    texts = ("\n".join([*(it.text for it in own), *frames]), "\n".join(it.text for it in known))
+    spelling = _Spelling(own, texts, pattern)
+    ways = [[*_ways(submission, it.corrections, spelling)] for it in wrong_names(submission, family)]
+    yield from chain.from_iterable(ways)
+    best = [it for one in ways for it in one if it.rank == 0]
+    for count in range(2, len(ways) + 1) if len(ways) <= _MAX_WRONG else [len(ways)]:
+        for chosen in combinations(best, count):
+            edits = tuple(dict.fromkeys(edit for it in chosen for edit in it.edits))
+            yield Proposal(edits, "names that do not agree", rank=count)
+
+
+class _Spelling(NamedTuple):
+    """The files of a submission, and the texts of it and of the reference in which names are counted."""
+
+    sources: Sequence[Source]
+    texts: tuple[str, str]
+    pattern: str  # {} stands for the name
+
+    def preference(self, new: str, old: str) -> int:
+        """Return by how much more often one name is written than the other; 0 if neither text tells."""
+        patterns = [re.compile(self.pattern.format(re.escape(it))) for it in (new, old)]
+        own, reference = ([len(it.findall(text)) for it in patterns] for text in self.texts)
+        return (own[0] - own[1] if own[0] else 0) or reference[0] - reference[1]
+
+    def only_edit(self, correction: Correction) -> Edits:
+        """Return the edit of a name in the one place where the submission writes it; none where it is in several."""
+        old, new = correction.old.strip("/"), correction.new.strip("/")
+        places = [(source, span) for source in self.sources for span in _spans(source, old)]
+        return tuple(source.edit(*span, new) for source, span in places) if len(places) == 1 else ()
+
+
+def _ways(submission: Submission, either: Sequence[Correction], spelling: _Spelling) -> Iterator[Proposal]:
+    """Yield the edits that make a correction, or the reverse one; none into the name that fewer places write."""
+    made = [correction_edits(submission, it) or spelling.only_edit(it) for it in either]
+    for edits in filter(None, made):
+        preference = spelling.preference(edits[0].new, edits[0].old)
+        is_only = len(made) == 1
+        if is_only or preference > 0 or (preference == 0 and all(made)):
+            yield Proposal(edits, f"the name `{edits[0].old}`", rank=int(preference == 0 and not is_only))
 
 
 def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Iterator[Proposal]:
@@ -65,12 +105,16 @@ def correction_edits(submission: Submission, correction: Correction) -> Edits:
     if source is None:
         return ()
     for old, new in _as_written(correction.old, correction.new):
-        spans = [it.span() for it in re.finditer(rf"(?<![\w-]){re.escape(old)}(?![\w-]|\.\w)", source.text)]
+        spans = _spans(source, old)
         if not f"/{at.path}".endswith(_WITH_ALL):
             spans = _meant(source.text, old, spans, source.offset(at.line, at.column))
         if spans:
             return tuple(source.edit(*span, new) for span in spans)
     return ()
+
+
+def _spans(source: Source, name: str) -> list[tuple[int, int]]:
+    return [it.span() for it in re.finditer(rf"(?<![\w-]){re.escape(name)}(?![\w-]|\.\w)", source.text)]
 
 
 def _as_written(old: str, new: str) -> Iterator[tuple[str, str]]:

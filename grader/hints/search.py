@@ -12,10 +12,12 @@ from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError
+from grader.files.limits import ROBOT_ENDINGS
+from grader.files.reading import URDF_LIMIT
 from grader.grading.deciding import decide
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric
-from grader.hints.edits import FoundHint, Proposal, edited_files, with_files, with_urdf
+from grader.hints.edits import FoundHint, Proposal, content, edited_files, with_files, with_urdf
 from grader.hints.generators import STAGES, Situation, Stage, leaves_others, missing_hints
 from grader.hints.robot_difference import REFERENCE, STRUCTURE
 from grader.hints.robot_draft import Draft, end_of
@@ -48,6 +50,7 @@ class Trials:
         self.rubric, self.submission = rubric, submission
         self.results = {name: result for name, result in results.items() if result.criterion.part in parts}
         self._edited = dict[tuple[Edits, bool], Submission | None]()
+        self._of_reference = dict[str, bool]()
         self.left = _MAX_GRADINGS
         self.faults: list[str] = []  # the types of exceptions
         self.is_assumed = False  # whether the last one is read with words undone, and the submission is not
@@ -82,6 +85,17 @@ class Trials:
                 return {}  # at once: a shape in another one takes long to measure
             found[name] = result
         return found
+
+    def is_of_reference(self, path: str) -> bool:
+        """Return whether a file of the robot is the same in the reference, so that the mistake is in another one."""
+        if path not in self._of_reference and path.endswith(ROBOT_ENDINGS):
+            data, solution = content(self.submission, path), self.rubric.solution
+            self._of_reference[path] = False
+            if data and solution is not None and self.submission.package is not None:
+                with suppress(InputError):
+                    same = [it for it in solution.submission.whole_tree.files.values() if it.size == len(data)]
+                    self._of_reference[path] = any(it.read(URDF_LIMIT) == data for it in same)
+        return self._of_reference.get(path, False)
 
     def edited(self, edits: Edits, *, whole: bool = False) -> Submission | None:
         """Return the submission with edits; None where they do not fit. What was tried is proven next: it is kept."""
@@ -185,6 +199,11 @@ class _Proof(NamedTuple):
     is_late: bool
 
 
+def _is_reverse(one: Proposal, other: Proposal) -> bool:
+    """Return whether the edits change texts of which the other ones make the old ones."""
+    return {(edit.old, edit.new) for edit in one.edits} == {(edit.new, edit.old) for edit in other.edits}
+
+
 class HintSearch:
     """The search for one submission: `found` are proven edits that fit together, `edits` are those of all."""
 
@@ -272,6 +291,8 @@ class HintSearch:
                     if proposal.edits in seen:
                         continue
                     seen.add(proposal.edits)
+                    if any(self.trials.is_of_reference(it.path) for it in proposal.edits if not it.renamed):
+                        continue
                     if self.trials.left < _RESERVE:
                         self._is_cut = True
                         return
@@ -298,7 +319,7 @@ class HintSearch:
         best = best._replace(proposal=proof.proposal)
         equal = self._equal_to(best, proof.together, wanted, tried)
         is_of_robot = all(edit.path.endswith((".urdf", ".xacro")) for edit in proof.proposal.edits)
-        if equal is not None and is_of_robot:
+        if equal is not None and (is_of_robot or _is_reverse(proof.proposal, equal.proposal)):
             name = max((it for it in self._criteria if it in wanted), key=lambda name: self._criteria[name].points)
             self.missing[name] = FoundHint(proof.proposal, {}, "one of several", alternative=equal.proposal)
             self._told |= wanted

@@ -73,8 +73,10 @@ def entry_fault(package: Package, name: str) -> EntryFault | None:
     names = _certain_names(code) if code is not None else None
     if not entry.function or names is None or entry.function in names:
         return None
-    others = [node.name for node in code.tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)] if code else []
-    return _fault(entry, f"{path} has no {entry.function!r}", entry.function, others)
+    parts = [node for node in code.tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)] if code else []
+    functions = [node.name for node in parts if isinstance(node, ast.FunctionDef)]
+    only = functions[0] if len(functions) == 1 else ""
+    return _fault(entry, f"{path} has no {entry.function!r}", entry.function, [node.name for node in parts], only)
 
 
 def read_module(package: Package, path: str) -> Code | None:

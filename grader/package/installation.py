@@ -69,12 +69,15 @@ class Installation:
     entry_points: Value = None  # what setup() is given
     ignored: tuple[IgnoredArgument, ...] = ()  # arguments that setup() does not have
     scripts_folder: str = "bin"  # below the prefix, for console_scripts
+    scripts: tuple[str, ...] = ()  # likewise, of files that CMake installs with the right to execute them
     packages: tuple[str, ...] = ()  # the Python packages, as far as they are known
 
     def has_program(self, name: str, package: str) -> bool | None:
         """Return whether a build installs a program where `ros2 run` looks for it; None where this is not known."""
-        if f"lib/{package}/{name}" in (*self.programs, *(copy.target for copy in self.copies)):
-            return True
+        path = f"lib/{package}/{name}"
+        if path in self.programs or path in self.installed():
+            # CMake takes the right to execute from the files of install(FILES ...) and install(DIRECTORY ...).
+            return path in (*self.programs, *self.scripts) or not self.is_cmake
         points = self.entry_points if self.entry_points is not None else {}
         scripts = points.get("console_scripts", []) if isinstance(points, dict) else None
         if not isinstance(scripts, list) or not all(isinstance(script, str) for script in scripts) or self.unknown:

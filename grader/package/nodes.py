@@ -27,7 +27,7 @@ _NODES = frozenset(
     for name in ("node.Node", "Node", "lifecycle.Node", "lifecycle.LifecycleNode", "lifecycle.node.Node")
 )
 _CREATES = frozenset({"rclpy.create_node", *_NODES})
-_Kind = Literal["publisher", "subscription", "service", "client"]
+_Kind = Literal["publisher", "subscription", "service", "client", "action client"]
 _KINDS: dict[str, _Kind] = {
     "create_publisher": "publisher", "create_lifecycle_publisher": "publisher", "create_subscription": "subscription",
     "create_service": "service", "create_client": "client",
@@ -37,7 +37,7 @@ _METHODS = frozenset({*_KINDS, *_READS, "declare_parameter", "declare_parameters
 # What may be given a node, and declares and opens nothing but actions and the topics of tf2.
 _HARMLESS = frozenset(
     {"spin", "spin_once", "spin_until_future_complete", "add_node", "remove_node", "super", "isinstance", "print",
-     "hasattr", "getattr", "ActionClient", "ActionServer", "TransformListener", "TransformBroadcaster",
+     "hasattr", "getattr", "ActionServer", "TransformListener", "TransformBroadcaster",
      "StaticTransformBroadcaster"}
 )  # fmt: skip
 # By rclpy/qos.py of Jazzy, as qos_profile_NAME and as QoSPresetProfiles.NAME.value: depth, reliability, durability.
@@ -65,7 +65,7 @@ class _Qos(NamedTuple):
 
 
 class Endpoint(NamedTuple):
-    """A publisher, subscription, service or client. `type` is a full name: std_msgs.msg.Float32."""
+    """A publisher, subscription, service or client, also of an action. `type` is a full name: std_msgs.msg.Float32."""
 
     kind: _Kind
     type: str | None
@@ -351,8 +351,15 @@ class _Module:
                 for argument in (*call.args, *(keyword.value for keyword in call.keywords)):
                     at = self._receiver(part, argument) if isinstance(argument, ast.Name) else None
                     name = (dotted(function) or "this call").rpartition(".")[2]
-                    if at is not None and name not in _HARMLESS:
+                    if at is not None and name == "ActionClient":
+                        self._facts[at].append(self._action_client(part, call))
+                    elif at is not None and name not in _HARMLESS:
                         self._facts[at].append(_Doubt(f"{name} is given the node", self._at(call)))
+
+    def _action_client(self, part: _Part, call: ast.Call) -> Endpoint:
+        made = self._argument(part, call, 1, "action_type")
+        name = _text(self._argument(part, call, 2, "action_name"))
+        return Endpoint("action client", made.name if isinstance(made, QualifiedName) else None, name, self._at(call))
 
     def _read_init(self, part: _Part, call: ast.Call, owner: ast.expr) -> "Iterator[_Fact]":
         """Yield the name that a class gives its node, if its base is rclpy's Node itself."""

@@ -259,11 +259,16 @@ class Package:
         shares = tuple(f"{SHARE}/{name}/" for name in self.names)
         return self.installed.get(path.removeprefix(f"{PREFIX}/")) if path.startswith(shares) else None
 
+    @property
+    def _all(self) -> "tuple[Package, ...]":
+        return self, *self.packages.values()
+
     def has_package(self, name: str) -> bool:
         """Return whether a package certainly is on the machine: submitted, declared as needed, or part of ROS 2."""
         from grader.package.launch.nodes import is_of_ros  # late: as the readers of launch files
 
-        return self.find(name) is not None or self.depends_on(name) or is_of_ros(name)
+        # rosdep installs what any package of a workspace needs.
+        return self.find(name) is not None or any(it.depends_on(name) for it in self._all) or is_of_ros(name)
 
     def has_program(self, package: str, name: str) -> bool | None:
         """Return whether a package has a program, as far as its setup.py tells; one that is not known has it."""

@@ -1,11 +1,14 @@
 """The result of testing a rubric, as plain text and as JSON, schema grader/rubric-test/v1."""
 
+import re
 import textwrap
 from collections.abc import Iterator, Sequence
+from os.path import commonprefix
 
 from grader import __version__
 from grader.authoring.rubric_test import RubricTest
 from grader.authoring.samples import Loss
+from grader.files.limits import ROBOT_ENDINGS
 from grader.grading.criterion import worth
 from grader.report.as_json import SCORE
 from grader.report.json_data import (
@@ -30,6 +33,8 @@ from grader.text import counted, enumerated, first_lines, format_points, printab
 
 _MAX_LISTED, _MAX_DIFF = 10, 14
 _DEEPEST = 4  # indentation of a sentence
+_OF_ELEMENT = ("element deleted", "visual added")  # families of mutants whose place is no attribute
+_NUMBER_OF_ID = re.compile(r" \(\d+\)$")  # of equal ones
 
 
 def render_rubric_test(test: RubricTest, width: int) -> str:
@@ -39,12 +44,12 @@ def render_rubric_test(test: RubricTest, width: int) -> str:
     lines = [f"{test.reference.rubric.id}: {test.reference.rubric.title}", "", *_count_lines(test)]
     if lost:
         lines += ["", "The reference does not get full marks:", *lost]
-    lines += _listed("These equivalents of the reference lose points:", test.losses)
-    lines += _listed("These samples differ from their expected.toml:", test.samples.different if test.samples else ())
-    lines += _listed("On these mutants a check is faulty:", test.faults)
-    survivors = [Loss(it.mutant.id, {}, it.diff) for it in test.survivors]
-    lines += _listed("These mutants of the reference get full marks:", survivors)
-    if survivors:
+    differing = test.samples.different if test.samples else ()
+    lines += _listed("These equivalents of the reference lose points:", test.losses, width)
+    lines += _listed("These samples differ from their expected.toml:", differing, width)
+    lines += _listed("On these mutants a check is faulty:", test.faults, width)
+    lines += _listed("These mutants of the reference get full marks:", _by_element(test), width)
+    if test.survivors:
         lines += ["", "To accept a mutant, add it to [[test.ignore]] with a reason."]
     if test.idle:
         mutant = "mutant" if test.tried == test.total else "graded mutant"
@@ -97,14 +102,44 @@ def _count_or_none(count: int, one: str, several: str) -> str:
     return f"{count or 'none'} {one if count == 1 else several}"
 
 
-def _listed(title: str, losses: Sequence[Loss]) -> Iterator[str]:
+def _by_element(test: RubricTest) -> list[Loss]:
+    """Return the mutants that survive: those of one element, or of one line of another file, with the first diff."""
+    groups: dict[str, list[str]] = {}
+    diffs: dict[str, str] = {}
+    for mutant, diff, _ in test.survivors:
+        label = _NUMBER_OF_ID.sub("", mutant.id.partition(": ")[2].partition(" -> ")[0])
+        of_attribute = " " in label and mutant.family not in _OF_ELEMENT
+        element = label.rpartition(" ")[0] if of_attribute else label
+        is_of_robot = mutant.path.endswith(ROBOT_ENDINGS)
+        place = f"{element} in {mutant.path}" if is_of_robot else f"{mutant.path}, line {mutant.line}"
+        groups.setdefault(place, []).append(mutant.id)
+        diffs.setdefault(place, diff)
+    return [
+        Loss("\n    ".join([f"{place}: {len(ids)} mutants", *first_lines(ids, _MAX_LISTED)]), {}, diffs[place])
+        if len(ids) > 1
+        else Loss(ids[0], {}, diffs[place])
+        for place, ids in groups.items()
+    ]
+
+
+def _listed(title: str, losses: Sequence[Loss], width: int) -> Iterator[str]:
     if losses:
         yield from ("", title)
     for loss in losses[:_MAX_LISTED]:
-        yield from ("", f"  {loss.name}", *(f"    {name}: {message}" for name, message in loss.criteria.items()))
-        yield from (f"      {line}" for line in first_lines(loss.diff.splitlines(), _MAX_DIFF))
+        criteria = (f"    {name}: {message}" for name, message in loss.criteria.items())
+        yield from ("", *f"  {loss.name}".split("\n"), *criteria)
+        diff = first_lines(loss.diff.splitlines(), _MAX_DIFF)
+        yield from (f"      {line}" for line in _cut(diff, width - len("      ")))
     if len(losses) > _MAX_LISTED:
         yield from ("", f"  ... and {len(losses) - _MAX_LISTED} more, which --format json lists")
+
+
+def _cut(lines: Sequence[str], room: int) -> list[str]:
+    """Return the lines of a diff; those that are too long begin shortly before the change."""
+    changed = [it for it in lines if it[:1] in ("-", "+") and it[:4] not in ("--- ", "+++ ")]
+    shared = commonprefix([it[1:] for it in changed]) if len(changed) > 1 else ""  # noqa: RUF071  of texts, not of paths
+    start = max(len(shared) - room // 3, 0)
+    return [f"{it[0]}...{it[1 + start :]}" if it in changed and start and len(it) > room else it for it in lines]
 
 
 _LOSSES = Many(JsonObject({"name": TEXT, "criteria": mapping(TEXT), "diff": TEXT}))

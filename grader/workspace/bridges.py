@@ -100,7 +100,8 @@ def _conversions(row: _BridgeRow) -> Iterator[Mismatch]:
     """Yield that no bridge converts a type into the other one, and that the time of ROS is sent to Gazebo."""
     kinds = known()["bridge_types"].get(row.ros_type)
     if kinds is not None and row.gz_type not in kinds:
-        message = f"the bridge does not convert {row.ros_type.replace('.', '/')} and gz.msgs.{row.gz_type}; write gz.msgs.{kinds[0]}"
+        pair = f"{row.ros_type.replace('.', '/')} and gz.msgs.{row.gz_type}"
+        message = f"the bridge does not convert {pair}; write gz.msgs.{kinds[0]}"
         either = corrections(row.gz_type, row.location, kinds[0])
         yield Mismatch("topics", message, row.location, is_sure=row.is_used, corrections=either)
     if row.gz_type == "Clock" and row.direction == _TO_GAZEBO:
@@ -144,17 +145,14 @@ def _clocks(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Mismatch]:
     own = [row for row in rows if row.is_used]
     if not bridges or not own or any(row.ros == "clock" for row in rows) or _is_open(workspace):
         return
-    if any(
-        passed.path.split("/")[1] != "ros_gz_sim" and not workspace.source_of(passed.path)
-        for _, launch in workspace.roots
-        for passed in launch.passed
-    ):
+    included = [passed.path for _, launch in workspace.roots for passed in launch.passed]
+    if any(not workspace.source_of(path) and "/ros_gz_sim/" not in path for path in included):
         return
     for package, node in workspace.nodes:
         given = parameters_of(node, WithSources(package), workspace.name_of(node) or "", is_python=None).values
         found = given.get("use_sim_time")
         if found is not None and str(found.value).lower() == "true" and node.when:
-            message = f"{node.executable} waits for the time of the simulation, but no bridge takes the topic clock from Gazebo"
+            message = f"{node.executable} waits for the time of the simulation, but no bridge takes clock from Gazebo"
             yield Mismatch("topics", message, found.location, own[0].location)
             return
 

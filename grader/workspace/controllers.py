@@ -11,9 +11,9 @@ from grader.package.nodes import Endpoint
 from grader.package.yaml_nodes import YamlFault, YamlNode
 from grader.source import Location
 from grader.workspace.known import known
-from grader.workspace.names import Definition, Fact, Mismatch, Open, Use, corrections, place_text
+from grader.workspace.names import Correction, Definition, Fact, Mismatch, Open, Use, corrections, place_text
 from grader.workspace.workspace import Workspace
-from grader.workspace.yaml_values import sections_in
+from grader.workspace.yaml_values import PARAMETERS, is_misspelt_key, sections_in
 
 _MANAGER = "controller_manager"
 _SPAWNERS = ("spawner", "spawner.py")
@@ -42,6 +42,7 @@ def controller_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from _type_facts(workspace, controller)
         yield from _section_facts(workspace, controller, sections)
     yield from _spawner_facts(workspace)
+    yield from _action_facts(workspace)
     managers = [node for _, node in workspace.nodes if node.executable == "ros2_control_node"]
     if managers and workspace.command_interfaces is None and workspace.has_all_interfaces:
         message = "the controller manager is started, but the robot has no <ros2_control>"
@@ -116,12 +117,23 @@ def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapp
     if section is None:
         if needed and "**" not in sections and not controller.has_file:
             message = f"the controller {controller.name!r} has no parameters: there is no key {controller.name}"
-            meant, at = closest(controller.name, sections), controller.location
-            either = corrections(meant, sections[meant].location, controller.name, at) if meant is not None else ()
-            yield Mismatch("controllers", f"{message} with ros__parameters", at, corrections=either)
+            either = _of_sections(workspace, controller, sections)
+            yield Mismatch("controllers", f"{message} with ros__parameters", controller.location, corrections=either)
         return
     for joint, names in _needed_in(section, needed):
         yield from _interface_facts(workspace, controller, joint, names)
+
+
+def _of_sections(
+    workspace: Workspace, controller: _Controller, sections: Mapping[str, YamlNode]
+) -> tuple[Correction, ...]:
+    """Return the correction of the name of a controller above its parameters, or of the key ros__parameters there."""
+    meant = closest(controller.name, sections)
+    if meant is not None:
+        return corrections(meant, sections[meant].location, controller.name, controller.location)
+    own = [node for _, tree in workspace.trees if (node := tree.get(controller.name)) is not None]
+    keys = [it for node in own if isinstance(node.value, dict) for it in node.value.items()]
+    return next((corrections(key, node.location, PARAMETERS) for key, node in keys if is_misspelt_key(key, node)), ())
 
 
 def _needed_in(section: YamlNode, needed: Mapping[str, str]) -> Iterator[tuple[YamlNode, list[str]]]:
@@ -155,7 +167,8 @@ def _interface_facts(
         own, at = interfaces[name]
         there = f"<ros2_control> has {', '.join(sorted(own)) or 'none'} ({place_text(at)})"
         for missing in [it for it in needed if it not in own]:
-            yield Mismatch("controllers", f"{message}/{missing}; {there}", joint.location, at)
+            either = corrections(missing, joint.location, near(missing, own), at)
+            yield Mismatch("controllers", f"{message}/{missing}; {there}", joint.location, at, corrections=either)
     elif workspace.has_all_interfaces and interfaces and all(_is_joint(workspace, it) for it in [name, *interfaces]):
         for missing in needed[:1]:
             text = f"{message}/{missing}; <ros2_control> has no joint {name!r}"
@@ -181,6 +194,17 @@ def _spawner_facts(workspace: Workspace) -> Iterator[Fact]:
                 break
             for name in word.split():
                 yield Use("controller", name, node.location, "spawner")
+
+
+def _action_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the controllers whose actions own nodes ask for."""
+    for _, node in workspace.nodes:
+        own = workspace.python_node(node)
+        for endpoint in own.endpoints if own is not None else ():
+            topic = node.topic(endpoint.name or "") if endpoint.kind == "action client" else None
+            controller, _, action = (topic or "").rpartition("/")
+            if action in known()["controller_actions"]:
+                yield Use("controller", controller.strip("/"), endpoint.location, "ActionClient")
 
 
 def _is_defined_by_files(workspace: Workspace, words: tuple[str | None, ...]) -> bool:

@@ -32,10 +32,12 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from (Compared("dependencies") for _ in used)
         for name, at in used.items():
             if name not in declared:
-                message = f"package.xml of {package.name!r} does not declare {name!r}, which is used here"
+                meant, start = near(name, declared), package.manifest.name_location
+                guess = f"; did you mean {meant!r}?" if meant is not None else ""
+                message = f"package.xml of {package.name!r} does not declare {name!r}, which is used here{guess}"
                 # rosdep installs what packages need that are declared.
-                is_sure, start = name not in brought, package.manifest.name_location
-                either = corrections(name, at, near(name, declared - used.keys()), start)
+                is_sure = name not in brought
+                either = corrections(name, at, meant, start if meant not in used else None)
                 yield Mismatch("dependencies", message, at, start, is_sure, either)
 
 

@@ -3,15 +3,13 @@
 import re
 from collections.abc import Iterator
 
-from grader.errors import InputError
 from grader.package.launch.model import StartedNode
 from grader.robot.model import Robot
-from grader.source import LazyLocation, Location, Source
+from grader.source import LazyLocation, Location
 from grader.workspace.known import known
 from grader.workspace.names import Definition, Fact, Mismatch, Open, Use
 from grader.workspace.workspace import Workspace
 from grader.workspace.yaml_values import YamlValue, is_parameters, values_in
-from grader.xml.parsing import XmlFault, XmlFile
 
 _JOINTS = re.compile(r"(^|_)joints?$|(wheels?|joints?)_names?$")
 _FRAMES = re.compile(r"(^|_)(frame|frame_id)$")
@@ -19,7 +17,6 @@ _FRAMES = re.compile(r"(^|_)(frame|frame_id)$")
 _OWN_FRAMES = re.compile(r"^(odom|map|world|global|fixed|parent|target)_frame(_id)?$|^frame_prefix$")
 _STATIC = ("tf2_ros", "static_transform_publisher")
 _MAX_XML = 512 * 1024
-_SRDF_LINKS = ("link1", "link2", "parent_link", "child_link", "base_link", "tip_link")
 _GAZEBO_FRAMES = ("gz_frame_id", "ignition_frame_id", "frame_id", "frame_name", "frameName")
 _GAZEBO_JOINTS = ("left_joint", "right_joint", "joint_name", "left_steering_joint", "right_steering_joint")
 
@@ -43,7 +40,6 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
             for value in values_in(tree):
                 yield from _in_yaml(value, is_of_controller=not controllers.isdisjoint(value.keys))
     yield from _in_robot(workspace)
-    yield from _in_srdf(workspace)
 
 
 def _place(location: LazyLocation | None) -> Location:
@@ -138,37 +134,3 @@ def _in_robot(workspace: Workspace) -> Iterator[Fact]:
     for system in root.iterchildren("ros2_control"):
         for element in system.iterchildren("joint"):
             yield Use("joint", element.get("name", ""), workspace.place(element), "<ros2_control>")
-
-
-def _in_srdf(workspace: Workspace) -> Iterator[Fact]:
-    for package in workspace.packages:
-        for path in [it for it in package.tree.files if it.endswith(".srdf")]:
-            try:
-                data = package.tree.files[path].read(_MAX_XML)
-                file = XmlFile(data, Source(package.path(path), data.decode("utf-8", "replace")))
-            except (InputError, XmlFault):
-                continue
-            yield from _names_of_srdf(file)
-
-
-def _names_of_srdf(file: XmlFile) -> Iterator[Fact]:
-    root = file.root
-    virtual = {it.get("name") for it in root.iterchildren("virtual_joint")}
-    yield from (Definition("group", it.get("name", ""), file.location(it)) for it in root.iterchildren("group"))
-    for element in root.iter("*"):
-        if not isinstance(element.tag, str):
-            continue
-        at, name = file.location(element), element.get("name", "")
-        said = f"<{element.tag}>"
-        # The parent of a virtual joint is a frame of the world.
-        for key in [key for key in _SRDF_LINKS if element.get(key)]:
-            yield Use("link", element.get(key, ""), at, f"{said} {key}")
-        if element.tag in ("joint", "passive_joint") and name and name not in virtual:
-            yield Use("joint", name, at, said)
-        if element.tag == "link" and name:
-            yield Use("link", name, at, said)
-        for key in ("group", "parent_group"):
-            if element.get(key):
-                yield Use("group", element.get(key, ""), at, f"{said} {key}")
-        if element.tag == "group" and element.getparent() is not root and name:
-            yield Use("group", name, at, said)

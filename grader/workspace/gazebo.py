@@ -120,7 +120,7 @@ def _bridges(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield bridges without any topic."""
     for package, node in workspace.nodes:
         if node.package == BRIDGE and node.executable == "parameter_bridge" and node.arguments == ():
-            found = parameters_of(node, WithSources(package), "ros_gz_bridge", is_python=False)
+            found = parameters_of(node, WithSources(package), workspace.name_of(node) or "", is_python=False)
             if not found.unknown and "config_file" not in found.values:
                 message = "the bridge has no topics: neither arguments, nor the parameter config_file"
                 yield Mismatch("topics", message, node.location)

@@ -4,8 +4,9 @@ from collections.abc import Iterator
 
 from grader.package.yaml_nodes import YamlNode
 from grader.workspace.controllers import defined_controllers
-from grader.workspace.names import Fact, Mismatch, Use, corrections
+from grader.workspace.names import Fact, Mismatch, Use, corrections, place_text
 from grader.workspace.workspace import Workspace
+from grader.workspace.yaml_values import sections_in
 
 _MANAGER = "moveit_simple_controller_manager"
 _TABLES_OF_JOINTS = ("joint_limits", "initial_positions")
@@ -42,9 +43,23 @@ def _controllers(workspace: Workspace, manager: YamlNode) -> Iterator[Fact]:
         joints = section.get("joints")
         for joint in joints.items if joints is not None else ():
             yield Use("joint", joint.text or "", joint.location, f"{name}.joints")
+        yield from _other_joints(workspace, name, joints)
         kind, action = section.get("type"), section.get("action_ns")
         wanted = _ACTIONS.get(kind.text or "") if kind is not None else None
         if wanted is not None and action is not None and action.text not in ("", wanted):
             message = f"{name}.action_ns is {action.text!r}; the action of its controller is {wanted!r}"
             either = corrections(action.text or "", action.location, wanted)
             yield Mismatch("controllers", message, action.location, kind.location if kind else None, True, either)
+
+
+def _other_joints(workspace: Workspace, name: str, joints: YamlNode | None) -> Iterator[Mismatch]:
+    """Yield that MoveIt gives a controller other joints than it has, all of which are in the robot."""
+    sections = [section for _, tree in workspace.trees for keys, section in sections_in(tree) if keys[-1:] == (name,)]
+    theirs = sections[0].get("joints") if len(sections) == 1 else None
+    if joints is None or theirs is None or workspace.robot is None:
+        return
+    own, other = ({it.text or "" for it in node.items} for node in (joints, theirs))
+    differing = sorted(own ^ other)
+    if own and other and differing and all(map(workspace.robot.has_joint, differing)):
+        message = f"{name}.joints: MoveIt and the controller ({place_text(theirs.location)}) have other joints"
+        yield Mismatch("controllers", f"{message}: {', '.join(differing)}", joints.location, theirs.location)

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import Literal, NamedTuple, get_args
 
-from grader.names import are_of_one_side, closest, near
+from grader.names import are_of_one_side, clearly_closest, near
 from grader.source import Location
 from grader.text import quoted
 
@@ -139,7 +139,7 @@ def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mism
     meant = near(use.name, known, "link" if use.kind == "frame" else use.kind)
     if is_open and meant is None:
         return None
-    meant = meant or closest(use.name, known)
+    meant = meant or clearly_closest(use.name, known)
     is_sure = not is_open and (meant is not None or not use.optional)
     if use.optional and meant is None:
         return None
@@ -152,7 +152,7 @@ def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mism
 
 def corrections(name: str, at: Location, meant: str | None, defined: Location | None = None) -> tuple[Correction, ...]:
     """Return that a name becomes the one that is meant, or the reverse; none for names of two sides or numbers."""
-    if meant is None or not are_of_one_side(name, meant):
+    if meant is None or not (are_of_one_side(name, meant) or near(name, [meant])):
         return ()
     return (Correction(at, name, meant), *([Correction(defined, meant, name)] if defined is not None else []))
 

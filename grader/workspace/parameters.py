@@ -13,9 +13,10 @@ from grader.package.yaml_nodes import YamlFault, YamlNode
 from grader.workspace.known import known
 from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use, corrections
 from grader.workspace.workspace import WithSources, Workspace
-from grader.workspace.yaml_values import PARAMETERS, is_parameters, sections_in, values_in
+from grader.workspace.yaml_values import PARAMETERS, is_misspelt_key, is_parameters, sections_in, values_in
 
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
+_INPUT = re.compile(r"(odom|imu|pose|twist)\d+_config")  # of robot_localization
 _SEPARATORS = re.compile(r"[:/]+")
 # Keys of lists whose entries name sections beside them, in the files of Nav2, MoveIt and others.
 _LISTS = ("plugins", "navigators", "observation_sources", "filters", "controller_names")
@@ -36,6 +37,8 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
         own = workspace.python_node(node)
         if own is not None:
             yield from _declared(workspace, package, node, own)
+    for path in workspace.parameter_files:
+        yield from _filters(workspace.yaml_files.get(path))
     for package, node in workspace.nodes:
         yield from _required(workspace, package, node)
     for _, tree in workspace.trees:
@@ -64,16 +67,16 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
         for passed in launch.passed
         for _, value in passed.values
     )
+    lacking = {name for name in read if not any(fnmatchcase(name, key) or key == "**" for key in sections)}
     for node, name in names:
-        has_none = not any(fnmatchcase(name or "", key) or key == "**" for key in sections)
-        if has_none and unread and "**" not in sections:
+        if name in lacking and unread:
             meant = near(name or "", unread)
             is_known = workspace.package_of(node) is not None or node.package in known()["without_frames"]
             if meant is None and (is_passed or not is_known):
                 continue  # the others may be of nodes that are not submitted
-            key = meant or unread[0]
+            key, is_one = meant or unread[0], meant is not None or len(unread) == len(lacking) == 1
             message = f"there are parameters for {key}, but none for the node {name!r}, which gets this file"
-            either = corrections(key, sections[key].location, name if meant is not None else None, node.location)
+            either = corrections(key, sections[key].location, name if is_one else None, node.location)
             yield Mismatch("parameters", message, sections[key].location, node.location, True, either)
 
 
@@ -96,6 +99,10 @@ def _misplaced(tree: YamlNode) -> Iterator[Fact]:
                 if key == PARAMETERS and is_below:
                     message = f"{name}: ros__parameters is inside of other ros__parameters"
                     yield Mismatch("parameters", message, inner.location)
+                elif not is_below and is_misspelt_key(key, inner):
+                    message = f"{name}: rcl does not know the key {key!r}; did you mean {PARAMETERS!r}?"
+                    either = corrections(key, inner.location, PARAMETERS)
+                    yield Mismatch("parameters", message, inner.location, corrections=either)
                 else:
                     waiting.append((key, inner, is_below or key == PARAMETERS))
         elif not is_below and name:
@@ -124,6 +131,18 @@ def _declared(workspace: Workspace, package: Package, node: StartedNode, own: Py
     for name, value in found.values.items():
         if value.location not in wide and not name.startswith("qos_overrides."):
             yield Use("parameter", name, value.location, f"the node {workspace.name_of(node)!r}", owner)
+
+
+def _filters(tree: YamlNode | YamlFault | None) -> Iterator[Fact]:
+    """Yield which values of an input a filter of robot_localization takes, where there are not 15 of them."""
+    for _, section in sections_in(tree) if isinstance(tree, YamlNode) else ():
+        for value in values_in(section):
+            count = len(value.node.items)
+            if value.keys and _INPUT.fullmatch(value.keys[-1]) and count not in (0, 15):
+                message = (
+                    f"{value.keys[-1]} has {count} values; it needs 15: x y z, angles, their rates and accelerations"
+                )
+                yield Mismatch("parameters", message, value.node.location)
 
 
 def _required(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:

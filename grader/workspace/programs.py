@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from grader.names import closest
+from grader.names import closest, near
 from grader.package.entry_points import entry_fault, entry_points
 from grader.package.launch.parameters import parameters_of
 from grader.package.package import CMAKE, SETUP, Package
@@ -48,6 +48,8 @@ def _why_no_program(package: Package, name: str) -> tuple[str, str | None]:
         return f"a build installs {name!r} in {folder}, not in {home}", None
     files = [*setup.programs, *(copy.target for copy in setup.copies)] if setup is not None else []
     elsewhere = next((path for path in files if path.rpartition("/")[2] == name), None)
+    if elsewhere == f"lib/{package.name}/{name}":
+        return f"a build installs {name!r} without the right to execute it: write install(PROGRAMS ...)", None
     if elsewhere is not None:
         return f"a build installs {name!r} as {elsewhere}, but ros2 run looks in lib/{package.name}", None
     names = sorted({*(path.rpartition("/")[2] for path in files if path.startswith(f"lib/{package.name}/")), *entries})
@@ -56,7 +58,7 @@ def _why_no_program(package: Package, name: str) -> tuple[str, str | None]:
 
 def _unknown_program(package: str, name: str, names: Sequence[str]) -> tuple[str, str | None]:
     """Return that a package has only programs of other names, and the one that may be meant."""
-    guess = closest(name, names)
+    guess = closest(name, names) or near(name, names, "node")
     there = f"; did you mean {guess!r}?" if guess else f"; it has {', '.join(names) or 'none'}"
     return f"the package {package!r} has no program {name!r}{there}", guess
 

@@ -136,13 +136,19 @@ class Workspace:
     @cached_property
     def sdf_files(self) -> tuple[XmlFile, ...]:
         """The models and worlds of Gazebo that can be read."""
-        found = []
+        return tuple(self._xml_files((".sdf", ".world")))
+
+    @cached_property
+    def srdf_files(self) -> tuple[XmlFile, ...]:
+        """The descriptions of robots for MoveIt that can be read."""
+        return tuple(self._xml_files((".srdf",)))
+
+    def _xml_files(self, endings: tuple[str, ...]) -> Iterator[XmlFile]:
         for package in self.packages:
-            for path in [it for it in package.tree.files if it.endswith((".sdf", ".world"))][:_MAX_FILES]:
+            for path in [it for it in package.tree.files if it.endswith(endings)][:_MAX_FILES]:
                 with suppress(InputError, XmlFault):
                     data = package.tree.files[path].read(_MAX_YAML)
-                    found.append(XmlFile(data, Source(package.path(path), data.decode("utf-8", "replace"))))
-        return tuple(found)
+                    yield XmlFile(data, Source(package.path(path), data.decode("utf-8", "replace")))
 
     @cached_property
     def robot(self) -> Robot | None:
@@ -366,11 +372,12 @@ def workspace_of(submission: Submission) -> Workspace:
 def is_surely_absent(package: Package, target: str) -> bool:
     """Return whether a file that the package does not have is surely not installed at a path below the prefix.
 
-    A file that a program writes is in a folder of its own, and like no other.
+    What a program writes is in a folder of its own, and like no other, or a folder itself.
     """
     names = map(posixpath.basename, package.tree.files)
+    folder, _, name = target.rpartition("/")
     folders = {posixpath.dirname(it) for it in package.installed}
-    return closest(posixpath.basename(target), names) is not None or posixpath.dirname(target) in folders
+    return closest(name, names) is not None or (folder in folders and "." in name)
 
 
 def are_installs_known(package: Package) -> bool:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from grader.names import near
 from grader.package.yaml_nodes import YamlNode
 
 PARAMETERS = "ros__parameters"
@@ -50,6 +51,11 @@ def sections_in(node: YamlNode, keys: tuple[str, ...] = ()) -> Iterator[tuple[tu
             yield keys, inner
         else:
             yield from sections_in(inner, (*keys, key))
+
+
+def is_misspelt_key(key: str, node: YamlNode) -> bool:
+    """Return whether a key with a mapping surely stands for ros__parameters."""
+    return isinstance(node.value, dict) and near(key, [PARAMETERS]) is not None
 
 
 def is_parameters(node: YamlNode) -> bool:

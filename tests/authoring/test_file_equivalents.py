@@ -3,22 +3,19 @@
 import pytest
 
 from grader.authoring.file_equivalents import file_equivalents
-from grader.files.tree import make_tree, overlaid
+from grader.files.tree import overlaid
 from grader.package.yaml_nodes import yaml_value
-from grader.submission.opening import submission_of
-from grader.submission.submission import Lab, Submission
+from grader.submission.submission import Submission
 from grader.workspace.reading import read_agreement
 from grader.workspace.workspace import Workspace
-from tests.workspace.carts import cart_files
+from tests.workspace.carts import cart, cart_files
 
 DETECTOR = "cart_bringup/config/detector.yaml"
 
 
 def workspace_with(detector: str) -> Submission:
     """Return the workspace with another file of parameters of the detector."""
-    files = {**cart_files(), DETECTOR: detector}
-    tree = overlaid(make_tree("cart", (), ()), {path: text.encode() for path, text in files.items()})
-    return submission_of(tree, "cart", Lab("urdf/cart.urdf.xacro"))
+    return cart({**cart_files(), DETECTOR: detector})
 
 
 def parameters(submission: Submission) -> dict[str, list[object]]:

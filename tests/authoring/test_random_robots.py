@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from tests.command_line import run
 from tests.examples import examples
 
-numbers = st.floats(-3, 3).map(lambda value: f"{value:.6g}") | st.sampled_from(("0", "1.57", "-3.14", "1e-1", ".5"))
+numbers = st.floats(-3, 3).map(lambda value: f"{value:.6g}") | st.sampled_from(("0", "1.57", "-3.14", "1e-3", ".5"))
 sizes = st.floats(0.005, 2).map(lambda value: f"{value:.5g}") | st.just("-0.2")
 vectors = st.tuples(numbers, numbers, numbers).map(" ".join)
 axes = st.sampled_from(("0 0 1", "0 -1 0", "2 0 0", "1 1 1", "0.3 -0.2 0.9"))
@@ -33,7 +33,8 @@ inertials = st.builds(
     sizes,
     sizes,
 )
-limits = st.builds('<limit lower="{}" upper="{}" effort="{}" velocity="{}"/>'.format, numbers, numbers, sizes, sizes)
+ends = st.integers(-30, 30).map(lambda tenths: f"{tenths / 10}")  # a range below the usual tolerance is warned of
+limits = st.builds('<limit lower="{}" upper="{}" effort="{}" velocity="{}"/>'.format, ends, ends, sizes, sizes)
 dynamics = st.builds('<dynamics damping="{}" friction="{}"/>'.format, sizes, sizes)
 kinds = st.sampled_from(("fixed", "continuous", "revolute", "prismatic", "planar", "floating"))
 

@@ -1,6 +1,8 @@
 """The files that users copy are valid, and the page links to them."""
 
+import json
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -100,3 +102,30 @@ def test_the_page_lists_each_input_and_output() -> None:
     action = load(ROOT / "action.yml")
     for name in (*action["inputs"], *action["outputs"]):
         assert f"| `{name}` |" in page, name
+
+
+@pytest.mark.exhaustive
+def test_the_commands_of_the_image(tmp_path: Path) -> None:
+    """What the Dockerfile runs makes an environment in which a robot can be graded. The image itself is not built."""
+    text = (ROOT / "Dockerfile").read_text(encoding="utf-8")
+    ignored = (ROOT / ".dockerignore").read_text(encoding="utf-8").split()
+    shutil.copytree(ROOT, tmp_path / "source", ignore=lambda folder, _: ignored if Path(folder) == ROOT else [])
+    subprocess.run([sys.executable, "-m", "venv", tmp_path / "venv"], check=True)
+    runs = re.findall(r"^RUN (?:--mount=\S+ )?pip (.*)$", text, re.MULTILINE)
+    assert len(runs) == 2
+    for run in runs:
+        arguments = re.sub(r"/(?=wheels|source)", f"{tmp_path}/", run)
+        subprocess.run(f"{tmp_path}/venv/bin/pip {arguments}", shell=True, check=True)
+    robot = ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf"
+    entry = json.loads(re.findall(r"^ENTRYPOINT (.*)$", text, re.MULTILINE)[0])
+    done = subprocess.run(
+        [tmp_path / "venv/bin" / entry[0], "grade", robot], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def test_the_devcontainer_installs_the_checkout() -> None:
+    """It is JSON, and installs an extra that exists."""
+    settings = json.loads((ROOT / ".devcontainer/devcontainer.json").read_text(encoding="utf-8"))
+    assert settings["image"].startswith("mcr.microsoft.com/devcontainers/python:")
+    assert settings["postCreateCommand"] == "python -m pip install --quiet --editable '.[test,documents]'"

@@ -6,19 +6,20 @@ from pathlib import Path
 
 from grader.files.tree import make_tree, overlaid
 from grader.submission.opening import submission_of
-from grader.submission.submission import Lab
+from grader.submission.submission import Lab, Submission
 from grader.workspace.names import Agreement, Mismatch
 from grader.workspace.reading import read_agreement
 
 Edit = tuple[str, str, str]  # the end of a path, and a text there that occurs once, with a new one
-_FOLDER = Path(__file__).parent.parent / "corpus" / "given" / "cartkit" / "src"
+FOLDER = Path(__file__).parent.parent / "corpus" / "given" / "cartkit" / "src"
+LAB = Lab("urdf/cart.urdf.xacro")
 
 
 @cache
 def cart_files() -> Mapping[str, str]:
     """Return the texts of the workspace by their paths; in it, everything agrees."""
-    paths = [path for path in sorted(_FOLDER.rglob("*")) if path.is_file() and "__pycache__" not in path.parts]
-    return {path.relative_to(_FOLDER).as_posix(): path.read_text(encoding="utf-8") for path in paths}
+    paths = [path for path in sorted(FOLDER.rglob("*")) if path.is_file() and "__pycache__" not in path.parts]
+    return {path.relative_to(FOLDER).as_posix(): path.read_text(encoding="utf-8") for path in paths}
 
 
 def edited(*edits: Edit) -> dict[str, str]:
@@ -31,10 +32,16 @@ def edited(*edits: Edit) -> dict[str, str]:
     return texts
 
 
+def cart(texts: Mapping[str, str], lab: Lab = LAB) -> Submission:
+    """Return a submission of these files."""
+    return submission_of(
+        overlaid(make_tree("cart", (), ()), {path: text.encode() for path, text in texts.items()}), "cart", lab
+    )
+
+
 def agreement_of(texts: Mapping[str, str]) -> Agreement:
     """Return what does not agree in these files."""
-    tree = overlaid(make_tree("cart", (), ()), {path: text.encode() for path, text in texts.items()})
-    return read_agreement(submission_of(tree, "cart", Lab("urdf/cart.urdf.xacro")))
+    return read_agreement(cart(texts))
 
 
 def sure(found: Agreement) -> list[Mismatch]:

@@ -56,6 +56,14 @@ WRONG: list[tuple[Family, str, list[Edit]]] = [
     ("controllers", ("joint_state_broadcaster.type: there is no controller of the type"
      " 'joint_state_broadcaste/JointStateBroadcaster'; did you mean 'joint_state_broadcaster/JointStateBroadcaster'?"),
      [(_CONTROLLERS, "joint_state_broadcaster/Joint", "joint_state_broadcaste/Joint")]),
+    ("controllers", "ActionClient: there is no controller 'limb'", [
+        (_ALARM, "import rclpy\n", "import rclpy\nfrom control_msgs.action import FollowJointTrajectory\nfrom rclpy.action import ActionClient\n"),
+        ("cart_nodes/package.xml", "<exec_depend>rclpy", "<exec_depend>control_msgs</exec_depend><exec_depend>rclpy"),
+        (_ALARM, 'self.declare_parameter("volume", 5)', ('self.declare_parameter("volume", 5)\n'
+         '        ActionClient(self, FollowJointTrajectory, "/limb/follow_joint_trajectory")'))]),
+    ("parameters", "imu0_config has 3 values; it needs 15: x y z, angles, their rates and accelerations",
+     [("config/detector.yaml", "  ros__parameters:\n", "  ros__parameters:\n    imu0_config: [true, true, false]\n"),
+      (_DETECTOR, 'self.declare_parameter("threshold", 0.5)', 'self.declare_parameter("threshold", 0.5); self.declare_parameter("imu0_config", [])')]),
     ("parameters", ("robot_state_publisher stops without the parameter robot_description, which it does not get; did you"
      " mean it by 'robot_descripton'?"), [(_ROBOT_LAUNCH, '"robot_description"', '"robot_descripton"')]),
     ("parameters", "there are parameters for detect, but none for the node 'detector', which gets this file",

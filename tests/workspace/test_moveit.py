@@ -46,13 +46,13 @@ _FILES = {
 }  # fmt: skip
 
 
-def found_in(changed: dict[str, str]) -> list[str]:
+def found_in(changed: dict[str, str], urdf: str = "config/arm.urdf.xacro") -> list[str]:
     """Return the messages of what certainly is wrong in the package with changed files."""
     paths = [path for path in sorted(_ARM.rglob("*")) if path.is_file()]
     files = {path.relative_to(_ARM).as_posix().removesuffix(".txt"): path.read_bytes() for path in paths}
-    texts = {path: text.encode() for path, text in {**_FILES, **changed}.items()}
+    texts = {path: text.encode() for path, text in {**_FILES, **changed}.items() if text}
     tree = overlaid(make_tree("arm", (), ()), {**files, **texts})
-    found = read_agreement(submission_of(tree, "arm", Lab("config/arm.urdf.xacro")))
+    found = read_agreement(submission_of(tree, "arm", Lab(urdf)))
     return [it.message for it in found.mismatches if it.is_sure and it.family != "dependencies"]
 
 
@@ -77,6 +77,71 @@ def test_a_name_that_does_not_exist_is_wrong(path: str, old: str, new: str, mess
     """Each mistake is named."""
     text = _FILES.get(path) or (_ARM / path).read_text(encoding="utf-8")
     assert any(found.startswith(message) for found in found_in({path: text.replace(old, new)}))
+
+
+_LIMB = """\
+  <link name="{0}"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+  <joint name="{0}_joint" type="fixed"><parent link="{1}"/><child link="{0}"/></joint>
+"""
+
+
+def test_a_state_beyond_a_limit_is_wrong() -> None:
+    """Positions at the limits, and those of joints without limits, are not."""
+    state = '<group_state name="up" group="arm"><joint name="shoulder" value="{}"/></group_state></robot>'
+    for value in ("1", "-1.0", "0.5", "up"):
+        assert found_in({"config/arm.srdf": _SRDF.replace("</robot>", state.format(value))}) == []
+    found = found_in({"config/arm.srdf": _SRDF.replace("</robot>", state.format("2.7"))})
+    assert found == ["<group_state>: 'shoulder' is at 2.7; its limits are -1 and 1"]
+
+
+def test_neighbours_whose_collisions_are_not_disabled_are_wrong_if_others_are() -> None:
+    """If few pairs are disabled, the robot may have collisions that do not touch."""
+    robot = _ROBOT.replace("<ros2_control", "".join(map(_LIMB.format, "abcd", ("hand", *"abc"))) + "<ros2_control")
+    pairs = [("a", "b"), ("b", "c"), ("c", "d")]
+
+    def found(disabled: list[tuple[str, str]]) -> list[str]:
+        rows = "".join(f'<disable_collisions link1="{two}" link2="{one}"/>' for one, two in disabled)
+        return found_in(
+            {"config/arm.urdf.xacro": robot, "config/arm.srdf": _SRDF.replace("</robot>", f"{rows}</robot>")}
+        )
+
+    assert found(pairs) == found(pairs[:1]) == found([]) == []
+    assert found(pairs[:2]) == ["a joint connects 'c' and 'd', but <disable_collisions> does not name them"]
+
+
+def test_moveit_and_the_controller_have_the_same_joints() -> None:
+    """A joint that the robot does not have is said of the frames."""
+    robot = _ROBOT.replace("<ros2_control", _LIMB.format("a", "hand").replace("fixed", "continuous") + "<ros2_control")
+    own = {
+        "config/arm.urdf.xacro": robot,
+        "config/moveit_controllers.yaml": _MOVEIT.replace("[shoulder]", "[shoulder, a_joint]"),
+    }
+    assert found_in(own) == [
+        "arm_controller.joints: MoveIt and the controller (config/ros2_controllers.yaml:6) have other joints: a_joint"
+    ]
+
+
+def test_the_robot_is_the_one_that_the_setup_assistant_names() -> None:
+    """Its launch files give the arguments of xacro that the robot declares."""
+    launch = (_ARM / "launch/rsp.launch.py.txt").read_text(encoding="utf-8")
+    mapped = launch.replace(
+        ".to_moveit_configs()", '.robot_description(mappings={"simulated": "true"}).to_moveit_configs()'
+    )
+    assistant = (
+        "moveit_setup_assistant_config:\n  urdf: {package: arm_moveit_config, relative_path: robots/arm.xacro}\n"
+    )
+    robot = _ROBOT.replace('<robot name="arm">', '<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+                           '<xacro:arg name="simulate" default="false"/>')  # fmt: skip
+    cmake = (_ARM / "CMakeLists.txt").read_text(encoding="utf-8")
+    installed = cmake.replace("ament_package", "install(FILES .setup_assistant DESTINATION share/${PROJECT_NAME})\n"
+                              "install(DIRECTORY robots DESTINATION share/${PROJECT_NAME})\nament_package")  # fmt: skip
+    found = found_in({
+        ".setup_assistant": assistant, "robots/arm.xacro": robot, "config/arm.urdf.xacro": "", "CMakeLists.txt": installed,
+        "launch/rsp.launch.py": mapped,
+    }, "robots/arm.xacro")  # fmt: skip
+    assert found == [
+        "Command of xacro: there is no xacro argument 'simulated'; did you mean 'simulate' (robots/arm.xacro:1)?"
+    ]
 
 
 def test_nothing_is_said_of_a_robot_that_is_not_known() -> None:

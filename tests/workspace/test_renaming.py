@@ -7,9 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.workspace.names import Family
+from grader.hints.name_edits import correction_edits
+from grader.source import Edit
+from grader.workspace.names import FAMILY_OF, Correction, Family, Use
+from grader.workspace.reading import read_facts
 from tests.examples import examples
-from tests.workspace.carts import agreement_of, cart_files, edited, sure
+from tests.hints.trials import applied
+from tests.workspace.carts import agreement_of, cart, cart_files, edited, sure
 
 
 class _Name(NamedTuple):
@@ -44,6 +48,7 @@ _NAMES = [
 every_name = pytest.mark.parametrize("name", _NAMES, ids=[f"{it.name} in {it.place}" for it in _NAMES])
 # Made of letters that are in no name of the workspace, so that none of them is similar.
 _others = st.text("jqz", min_size=5, max_size=12)
+_SLIP = "?"
 
 
 @every_name
@@ -54,6 +59,24 @@ def test_a_name_that_is_used_in_one_place_only_gives_exactly_one_sure_problem(na
     slip = f"{name.name[:2]}{new[0]}{name.name[3:]}" if name.family in ("arguments", "topics", "files") else new
     found = sure(agreement_of(edited((name.place, name.use.format(name.name), name.use.format(slip)))))
     assert [it.family for it in found] == [name.family], found
+
+
+def _uses() -> list[tuple[Use, Edit]]:
+    """Return every use of a name that is written as a whole, with the edit that makes a slip in its last letter."""
+    facts = {(it.location, it.name): it for it in read_facts(cart(cart_files())) if isinstance(it, Use)}
+    slips = ((use, Correction(use.location, use.name, f"{use.name[:-1]}{_SLIP}")) for use in facts.values())
+    return [(use, edit) for use, slip in slips for edit in correction_edits(cart(cart_files()), slip)[:1]]
+
+
+@examples(20)
+@given(used=st.sampled_from(_uses()), letter=st.sampled_from("jqz"))
+def test_a_slip_in_any_use_gives_exactly_one_sure_problem(used: tuple[Use, Edit], letter: str) -> None:
+    """Whatever the reader, and wherever the name is written: of its family, and in no other one."""
+    use, edit = used
+    text = cart_files()[edit.path]
+    slip = applied(text.encode(), [edit._replace(new=edit.new.replace(_SLIP, letter))]).decode()
+    found = sure(agreement_of({**cart_files(), edit.path: slip}))
+    assert [it.family for it in found] == [FAMILY_OF[use.kind]], found
 
 
 _RENAMED = [

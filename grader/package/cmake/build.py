@@ -35,6 +35,7 @@ class Build:
         self.targets: dict[str, str] = {}  # executable, library, interfaces or unknown
         self.copies: dict[str, InstalledFile] = {}  # by the path below the prefix
         self.programs: set[str] = set()  # paths below the prefix
+        self.scripts: set[str] = set()  # likewise, of files
         self.modules: list[str] = []  # Python packages
         self.stops: list[InstallError] = []
         self.unknown: list[Unknown] = []
@@ -53,6 +54,7 @@ class Build:
             name=project if isinstance(project, str) else None,
             copies=tuple(self.copies.values()),
             programs=tuple(sorted(self.programs)),
+            scripts=tuple(sorted(self.scripts)),
             stops=tuple(self.stops),
             empty=tuple(self.listing.empty),
             unknown=tuple(dict.fromkeys([*self.doubts, *self.unknown])),
@@ -268,11 +270,13 @@ class Build:
         options = dict(groups[1:])
         if not groups[0][1]:
             return  # CMake does not look at the rest then
-        target = self._destination(options, command)
+        target, before = self._destination(options, command), set(self.copies)
         for text in groups[0][1] if target is not None and kind == "DIRECTORY" else ():
             self._copy_folder(text, target or "", command, options, _Patterns(groups))
         if target is not None and kind != "DIRECTORY":
             self._copy_files(groups[0][1], target, command, options)
+        if kind == "PROGRAMS" or any("PERMISSIONS" in key for key in options):
+            self.scripts.update(self.copies.keys() - before)
 
     def _leave_open(self, reason: Unknown) -> None:
         """Note that more may be installed."""

@@ -1,7 +1,7 @@
 """The package moveit_configs_utils of ROS 2 Jazzy: MoveItConfigsBuilder, and the nodes that its launch functions start.
 
 The builder reads the files of a MoveIt configuration while the launch file is loaded; one that it needs and that is not
-installed stops it. `.setup_assistant`, a hidden file, is no part of a submission: what only it says is unknown.
+installed stops it.
 """
 
 import posixpath
@@ -13,6 +13,7 @@ from functools import cache, partial
 from pathlib import Path, PurePosixPath
 from typing import Any
 
+from grader.files.limits import SETUP_ASSISTANT
 from grader.package.launch.api import DESCRIPTION
 from grader.package.launch.model import Contents, Context, FileText, UnknownTable, UnknownText
 from grader.package.launch.places import BY_MOVEIT, PREFIX, SHARE
@@ -208,9 +209,20 @@ class MoveItConfigurations:
         except (YamlFault, Undetermined, ValueError) as error:
             raise Undetermined(f"the file {found[1]} is not evaluated: {error}", at) from None
 
+    def _robot_of_assistant(self, own: _Configuration, at: Position) -> str | None:
+        """Return the path of the robot that .setup_assistant names, if it names one."""
+        path = f"{own.folder}/{SETUP_ASSISTANT}"
+        table = self._yaml(path, at) if self._is_there(path) else None
+        config = table.get("moveit_setup_assistant_config") if isinstance(table, dict) else None
+        robot = config.get("urdf", config.get("URDF")) if isinstance(config, dict) else None
+        package, file = (robot.get(key) if isinstance(robot, dict) else None for key in ("package", "relative_path"))
+        return f"{SHARE}/{package}/{file}" if isinstance(package, str) and isinstance(file, str) else None
+
     def _description(self, own: _Configuration, at: Position, given: Mapping[str, Value]) -> dict[str, Value]:
         """Return the robot; if its file is not there, MoveIt waits for a topic."""
         path = self._path(own, given, f"config/{own.robot}.urdf.xacro")
+        if "file_path" not in given:
+            path = self._robot_of_assistant(own, at) or path
         is_there = self._is_there(path)
         if not is_there and "file_path" not in given:
             return {own.description: own.doubted("the file of the robot that MoveIt finds is not evaluated", at)}

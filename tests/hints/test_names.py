@@ -1,0 +1,128 @@
+"""Hints of names that do not agree: the edit is made where the mistake is, in every kind of file."""
+
+from collections.abc import Mapping
+from functools import cache
+
+import pytest
+
+from grader.grading.grade import grade
+from grader.grading.report import Report
+from grader.grading.rubric import Rubric, read_rubric
+from grader.hints.hinting import hinted
+from grader.source import Edits
+from tests.hints.trials import applied
+from tests.workspace.carts import FOLDER, cart, cart_files, edited
+
+_FAMILIES = ("files", "frames", "controllers", "parameters", "arguments", "programs", "topics", "dependencies")
+_RUBRIC = """
+id = "cart"
+title = "A cart"
+urdf = "urdf/cart.urdf.xacro"
+package = "cart_bringup"
+packages = ["cart_bringup", "cart_description", "cart_nodes"]
+hints = "edit"
+reference = "src"
+part = [{ id = "names", title = "Names", needs = "package" }]
+"""
+_CRITERION = """
+[[criterion]]
+id = "{0}"
+part = "names"
+title = "The names of {0} agree"
+points = 1
+check = "names_agree"
+package = "cart_bringup"
+with = {{ of = "{0}" }}
+"""
+
+
+@cache
+def rubric() -> Rubric:
+    """Return a rubric that asks for all families of names, with the workspace as its reference."""
+    text = _RUBRIC + "".join(map(_CRITERION.format, _FAMILIES))
+    return read_rubric(text.encode(), FOLDER.parent / "rubric.toml")
+
+
+def found_for(texts: Mapping[str, str]) -> tuple[Report, Edits]:
+    """Return the report on a workspace with these files, with hints, and their edits."""
+    submission = cart(texts, rubric().lab)
+    report = grade(rubric(), submission)
+    assert report.score < 8
+    found = hinted(report, submission, "edit")
+    assert not found.faults
+    return found.report, found.edits
+
+
+def after(texts: Mapping[str, str], edits: Edits) -> dict[str, str]:
+    """Return the files with edits."""
+    changed = {edit.path: [it for it in edits if it.path == edit.path] for edit in edits}
+    return {**texts, **{path: applied(texts[path].encode(), own).decode() for path, own in changed.items()}}
+
+
+@pytest.mark.parametrize(
+    ("place", "old", "new"),
+    [
+        ("config/controllers.yaml", "right_wheel_names: [right_wheel_joint]", "right_wheel_names: [rigth_wheel_joint]"),
+        ("config/detector.yaml", "threshold: 0.5", "treshold: 0.5"),
+        ("config/detector.yaml", "detector:", "detecter:"),
+        ("config/detector.yaml", "detector:", "vision:"),
+        ("config/detector.yaml", "ros__parameters", "ros_parameters"),
+        ("config/navigation.yaml", "plugins: [obstacle_layer]", "plugins: [obstcle_layer]"),
+        ("config/navigation.yaml", "FollowPath:", "FollwPath:"),
+        ("config/bridge.yaml", "gz_topic_name: front_camera", "gz_topic_name: fornt_camera"),
+        ("worlds/hall.yaml", "image: hall.pgm", "image: hal.pgm"),
+        ("cart_bringup/CMakeLists.txt", "launch config worlds", "launch confg worlds"),
+        ("cart_bringup/package.xml", "<exec_depend>nav2_controller</", "<exec_depend>nav2_controler</"),
+        ("robot.launch.py", '"base_link"', '"base_lnk"'),
+        ("robot.launch.py", '["wheel_controller"', '["wheel_controler"'),
+        ("robot.launch.py", " controllers_file:=", " controler_file:="),
+        ("robot.launch.py", '"urdf", "cart.urdf.xacro"', '"urdf", "crat.urdf.xacro"'),
+        ("cart.launch.py", '{"sim_time"', '{"sim_tme"'),
+        ("cart.launch.py", 'executable="detector"', 'executable="detector_node"'),
+        ("cart.launch.py", '[("image"', '[("imgae"'),
+        ("cart.launch.py", '["map_server"', '["map_sever"'),
+        ("cart.launch.py", '{"volume": 3}', '{"volum": 3}'),
+        ("cart.launch.py", 'package="cart_nodes", executable="alarm"', 'package="cart_node", executable="alarm"'),
+        ("cart_nodes/setup.py", "cart_nodes.detector:main", "cart_nodes.detector:run"),
+        ("cart_nodes/setup.py", '"alarm = ', '"alrm = '),
+        ("detector.py", 'get_parameter("threshold")', 'get_parameter("treshold")'),
+        ("cart.urdf.xacro", '<gazebo reference="camera_link">', '<gazebo reference="camera_lnk">'),
+    ],
+)  # fmt: skip
+def test_a_slip_is_undone_where_it_is(place: str, old: str, new: str) -> None:
+    """Not by the same slip in the file that the name belongs to, though both agree then."""
+    texts = edited((place, old, new))
+    _, edits = found_for(texts)
+    assert after(texts, edits) == cart_files()
+
+
+def renamed(name: str, new: str) -> dict[str, str]:
+    """Return the files with a name that the reference does not have."""
+    return {path: text.replace(name, new) for path, text in cart_files().items()}
+
+
+def test_of_names_of_the_students_own_the_one_is_kept_that_more_places_write() -> None:
+    """The reference does not know either of them; the slip is in the definition."""
+    own = renamed("threshold", "limit")
+    [path] = [it for it in own if it.endswith("detector.py")]
+    texts = {**own, path: own[path].replace('declare_parameter("limit"', 'declare_parameter("limt"')}
+    _, edits = found_for(texts)
+    assert after(texts, edits) == own
+
+
+def test_of_two_names_that_as_many_places_write_both_edits_are_told_and_none_is_made() -> None:
+    """A list of plugins, and its section: nothing tells which of the two has the slip."""
+    own = renamed("FollowPath", "Pursuit")
+    [path] = [it for it in own if it.endswith("navigation.yaml")]
+    report, edits = found_for({**own, path: own[path].replace("[Pursuit]", "[Pursit]")})
+    assert edits == ()
+    [hint] = [it.hint for it in report.results if it.hint is not None]
+    assert hint.message.endswith("both work, so look which one is meant.")
+    assert "`Pursit` to `Pursuit`" in hint.message
+    assert "`Pursuit` to `Pursit`" in hint.message
+
+
+def test_a_slip_that_makes_two_problems_is_one_edit() -> None:
+    """A topic that is remapped under a wrong name is not published, too: with the right name, both are solved."""
+    _, edits = found_for(edited(("cart.launch.py", '("image", "camera/image")', '("imag", "camera/image")')))
+    assert [(edit.old, edit.new) for edit in edits] == [("imag", "image")]

@@ -1,0 +1,186 @@
+"""A robot in Gazebo: its topics and sensors, bridges, the world that it is created in, and the time."""
+
+import pytest
+
+from tests.workspace.carts import agreement_of, sure
+
+_BRIDGE = """\
+- {topic_name: clock, ros_type_name: rosgraph_msgs/msg/Clock, gz_type_name: gz.msgs.Clock, direction: GZ_TO_ROS}
+- {topic_name: scan, ros_type_name: sensor_msgs/msg/LaserScan, gz_type_name: gz.msgs.LaserScan, direction: GZ_TO_ROS}
+- {topic_name: imu, ros_type_name: sensor_msgs/msg/Imu, gz_type_name: gz.msgs.IMU, direction: GZ_TO_ROS}
+- {topic_name: odom, ros_type_name: nav_msgs/msg/Odometry, gz_type_name: gz.msgs.Odometry, direction: GZ_TO_ROS}
+- {topic_name: cmd_vel, ros_type_name: geometry_msgs/msg/Twist, gz_type_name: gz.msgs.Twist, direction: ROS_TO_GZ}
+"""
+_ROBOT = """\
+<robot name="scout">
+  <link name="base_link"/>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="gpu_lidar"><topic>scan</topic></sensor>
+    <sensor name="imu" type="imu"><topic>imu</topic></sensor>
+    <sensor name="bumper" type="bump"><topic>bumped</topic></sensor>
+  </gazebo>
+  <gazebo>
+    <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
+      <topic>cmd_vel</topic><odom_topic>/odom</odom_topic><tf_topic/>
+    </plugin>
+  </gazebo>
+</robot>
+"""
+_WORLD = """\
+<sdf version="1.10">
+  <world name="arena">
+    <plugin filename="gz-sim-physics-system" name="gz::sim::systems::Physics"/>
+    <plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>
+    <plugin filename="gz-sim-imu-system" name="gz::sim::systems::Imu"/>
+  </world>
+</sdf>
+"""
+_LAUNCH = """\
+from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription
+from launch.substitutions import Command, PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.substitutions import FindPackageShare
+
+
+def generate_launch_description():
+    share = FindPackageShare("scout")
+    robot = Command(["cat ", PathJoinSubstitution([share, "scout.urdf"])])
+    return LaunchDescription([
+        IncludeLaunchDescription(
+            PathJoinSubstitution([FindPackageShare("ros_gz_sim"), "launch", "gz_sim.launch.py"]),
+            launch_arguments={"gz_args": PathJoinSubstitution([share, "arena.sdf"])}.items()),
+        Node(package="robot_state_publisher", executable="robot_state_publisher",
+             parameters=[{"robot_description": robot}]),
+        Node(package="ros_gz_sim", executable="create", arguments=["-world", "arena", "-topic", "robot_description"]),
+        Node(package="ros_gz_bridge", executable="parameter_bridge",
+             parameters=[{"config_file": PathJoinSubstitution([share, "bridge.yaml"])}]),
+        Node(package="scout", executable="drive.py", parameters=[{"use_sim_time": True}]),
+    ])
+"""
+_DRIVE = """\
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+from sensor_msgs.msg import LaserScan
+
+
+class Drive(Node):
+    def __init__(self):
+        super().__init__("drive")
+        self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_subscription(LaserScan, "scan", print, 10)
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Drive())
+
+
+main()
+"""
+_FILES = {
+    "scout/bridge.yaml": _BRIDGE,
+    "scout/scout.urdf": _ROBOT,
+    "scout/arena.sdf": _WORLD,
+    "scout/scout.launch.py": _LAUNCH,
+    "scout/drive.py": _DRIVE,
+    "scout/CMakeLists.txt": """\
+cmake_minimum_required(VERSION 3.8)
+project(scout)
+find_package(ament_cmake REQUIRED)
+install(FILES bridge.yaml scout.urdf arena.sdf scout.launch.py DESTINATION share/${PROJECT_NAME})
+install(PROGRAMS drive.py DESTINATION lib/${PROJECT_NAME})
+ament_package()
+""",
+    "scout/package.xml": """\
+<package format="3">
+  <name>scout</name><version>0.0.0</version><description>A scout.</description>
+  <maintainer email="a@b.example">A</maintainer><license>Apache-2.0</license>
+  <depend>rclpy</depend><depend>geometry_msgs</depend><depend>sensor_msgs</depend>
+  <exec_depend>robot_state_publisher</exec_depend><exec_depend>ros_gz_sim</exec_depend>
+  <exec_depend>ros_gz_bridge</exec_depend>
+  <export><build_type>ament_cmake</build_type></export>
+</package>
+""",
+}
+_LASER = "{topic_name: scan, ros_type_name: sensor_msgs/msg/LaserScan, gz_type_name: gz.msgs.LaserScan"
+_AT_BRIDGE, _AT_ROBOT = "scout/bridge.yaml:2", "scout/scout.urdf:10"
+
+
+def problems(*edits: tuple[str, str, str]) -> list[str]:
+    """Return what certainly is wrong after edits: a file, a text in it, and a new one."""
+    texts = dict(_FILES)
+    for name, old, new in edits:
+        assert old in texts[f"scout/{name}"]
+        texts[f"scout/{name}"] = texts[f"scout/{name}"].replace(old, new)
+    found = sure(agreement_of(texts))
+    assert {it.family for it in found} <= {"topics", "programs"}
+    return [it.message for it in found]
+
+
+@pytest.mark.parametrize(
+    ("edits", "message"),
+    [
+        ([("bridge.yaml", "gz.msgs.IMU", "gz.msgs.Imu")],
+         "the bridge does not convert sensor_msgs/msg/Imu and gz.msgs.Imu; write gz.msgs.IMU"),
+        ([("bridge.yaml", "direction: ROS_TO_GZ", "direction: GZ_TO_ROS")],
+         f"the topic cmd_vel is bridged GZ_TO_ROS, but Gazebo reads it ({_AT_ROBOT}): write ROS_TO_GZ"),
+        ([("bridge.yaml", "gz.msgs.Odometry, direction: GZ_TO_ROS", "gz.msgs.Odometry, direction: ROS_TO_GZ")],
+         f"the topic odom is bridged ROS_TO_GZ, but Gazebo publishes it ({_AT_ROBOT}): write GZ_TO_ROS"),
+        ([("bridge.yaml", "gz.msgs.Odometry,", "gz.msgs.OdometryWithCovariance,")],
+         f"the topic odom of Gazebo has gz.msgs.Odometry ({_AT_ROBOT}), not gz.msgs.OdometryWithCovariance"),
+        ([("bridge.yaml", _LASER, _LASER.replace("{topic_name: scan", "{ros_topic_name: scan, gz_topic_name: lidar"))],
+         "no sensor publishes 'lidar' in Gazebo; did you mean 'scan' (scout/scout.urdf:4)?"),
+        ([("bridge.yaml", "{topic_name: cmd_vel", "{ros_topic_name: cmd_vel, gz_topic_name: command")],
+         f"nothing reads 'command' in Gazebo; did you mean 'cmd_vel' ({_AT_ROBOT})?"),
+        ([("bridge.yaml", _BRIDGE.splitlines(keepends=True)[0], "")],
+         "drive.py waits for the time of the simulation, but no bridge takes clock from Gazebo"),
+        ([("arena.sdf", '    <plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>\n', "")],
+         ("the world has no plugin gz::sim::systems::Sensors, so the sensor 'lidar' (scout/scout.urdf:4) publishes"
+         " nothing")),
+        ([("scout.launch.py", '"-world", "arena"', '"-world", "empty"')],
+         "the robot is created in the world 'empty', but the world of scout/arena.sdf is 'arena'"),
+        ([("scout.launch.py", '"-topic", "robot_description"', '"-topic", "robot"')],
+         "the robot is created from /robot, but robot_state_publisher publishes /robot_description"),
+        ([("scout.launch.py", 'parameters=[{"config_file": PathJoinSubstitution([share, "bridge.yaml"])}]', "name='b'"),
+          ("drive.py", '        self.create_subscription(LaserScan, "scan", print, 10)\n', "")],
+         "the bridge has no topics: neither arguments, nor the parameter config_file"),
+        ([("drive.py", "LaserScan", "PointCloud2")],
+         ("the topic /scan has sensor_msgs.msg.PointCloud2 here, but is published by the bridge with"
+         f" sensor_msgs.msg.LaserScan ({_AT_BRIDGE})")),
+        ([("drive.py", "import Twist", "import TwistStamped as Twist")],
+         ("the topic /cmd_vel has geometry_msgs.msg.TwistStamped here, but is subscribed to by the bridge with"
+         " geometry_msgs.msg.Twist (scout/bridge.yaml:5)")),
+        ([("CMakeLists.txt", "install(PROGRAMS drive.py", "install(FILES drive.py")],
+         "a build installs 'drive.py' without the right to execute it: write install(PROGRAMS ...)"),
+    ],
+)  # fmt: skip
+def test_what_gazebo_does_not_do_is_named(edits: list[tuple[str, str, str]], message: str) -> None:
+    """One mistake is one problem, and says what there is."""
+    assert problems(*edits) == [message]
+
+
+@pytest.mark.parametrize(
+    "edits",
+    [
+        [],
+        [("bridge.yaml", "direction: ROS_TO_GZ", "direction: BIDIRECTIONAL")],
+        [("scout.launch.py", '"-world", "arena", ', "")],
+        [("scout.launch.py", '"-topic", "robot_description"', '"-file", "/tmp/robot.sdf"')],
+        [("arena.sdf", '<plugin filename="gz-sim-physics-system" name="gz::sim::systems::Physics"/>', ""),
+         ("arena.sdf", '<plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>', ""),
+         ("arena.sdf", '<plugin filename="gz-sim-imu-system" name="gz::sim::systems::Imu"/>', "")],
+        [("bridge.yaml", _BRIDGE.splitlines(keepends=True)[0], ""),
+         ("scout.launch.py", '"use_sim_time": True', '"use_sim_time": False')],
+        [("bridge.yaml", _BRIDGE.splitlines(keepends=True)[0], ""),
+         ("scout.launch.py", 'FindPackageShare("ros_gz_sim"), "launch"', 'FindPackageShare("other_sim"), "launch"')],
+        [("bridge.yaml", "{topic_name: cmd_vel", "{ros_topic_name: cmd_vel, gz_topic_name: /model/scout/cmd_vel")],
+        [("CMakeLists.txt", "install(PROGRAMS drive.py", "install(FILES drive.py PERMISSIONS OWNER_EXECUTE"),
+         ("CMakeLists.txt", "PERMISSIONS OWNER_EXECUTE DESTINATION lib/${PROJECT_NAME}",
+          "DESTINATION lib/${PROJECT_NAME} PERMISSIONS OWNER_READ OWNER_EXECUTE")],
+    ],
+)  # fmt: skip
+def test_what_agrees_or_is_not_known_is_no_problem(edits: list[tuple[str, str, str]]) -> None:
+    """Worlds without systems get those of Gazebo; other packages may bridge the time."""
+    assert problems(*edits) == []
