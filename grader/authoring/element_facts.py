@@ -156,8 +156,11 @@ def _values_by_path(element: Element, path: str = "") -> _Values:
 
 
 def _add(found: _Values, key: str, value: Any) -> None:
-    """Add a value, unless it is a path that exists on one machine only; of several values with one path, a list."""
-    if isinstance(value, str) and is_of_one_machine(value):
+    """Add a value; of several values with one path, a list.
+
+    A path that exists on one machine only is none, nor is an empty text: what it becomes, an argument may say.
+    """
+    if isinstance(value, str) and (not value or is_of_one_machine(value)):
         return
     if key not in found:
         found[key] = value

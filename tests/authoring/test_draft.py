@@ -232,3 +232,12 @@ def test_the_mistake_of_a_sample_costs_once(name: str, of_diffdrive: Rubric) -> 
     report = grade(of_diffdrive, open_submission(str(ROOT / "submissions/diffdrive" / name), of_diffdrive.lab))
     lost = [it.criterion for it in report.results if it.is_lost and it.criterion.about != "<gazebo>"]
     assert len(lost) == 1, lost
+
+
+def test_more_values_of_a_node_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a comment that stays one if all lines become criteria."""
+    monkeypatch.setattr("grader.authoring.draft._MAX_VALUES", 1)
+    assert new(tmp_path, write_diffdrive(tmp_path)).returncode == 0
+    text = (tmp_path / "lab.toml").read_text()
+    assert "\n# # 1 more of drive_circle\n" in text
+    assert text.count('\n# [[criterion]]\n# id = "drive-circle-') == 1
