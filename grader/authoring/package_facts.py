@@ -220,14 +220,12 @@ def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[F
 def _launch_facts(submission: Submission, package: Package, path: str, prefix: str) -> Iterator[Fact]:
     """Yield what may be true of a launch file, which costs nothing if it starts nothing by a mistake of others."""
     name, launch = posixpath.basename(path), package.launch(path)
-    nodes = _nodes_that_start(launch)
-    if not nodes:  # else what it starts is asked for, whatever the file is called
-        yield _package_fact("launch_found", name, name=name)
+    yield _package_fact("launch_found", name, name=name)
     included = {posixpath.basename(it.path) for it in launch.passed}
     others = tuple(it for it in words_of_launches(submission) if it.split(" ")[-2] in included - {name})
     found = Carried((*_builds(submission), *_STOPPING, *others), "launch_found", {"name": name})
     after = found._replace(causes=(*found.causes, f"{prefix}{name} node_runs"))
-    if nodes:
+    if nodes := _nodes_that_start(launch):
         yield _package_fact("node_runs", name, launch=name, nodes=nodes)._replace(carried=(found,))
     yield from (it._replace(carried=(after,)) for it in _turned_facts(package, path))
     if launch.named("urdf", "rviz", "include"):
