@@ -8,10 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.checkout import checkout
 from tests.command_line import HANG_TIMEOUT
-
-ROOT = Path(__file__).parent.parent
-IGNORED = (".git", ".venv", "__pycache__", ".hypothesis", ".pytest_cache", ".mypy_cache", ".ruff_cache")
 
 pytestmark = pytest.mark.exhaustive
 
@@ -94,7 +92,7 @@ SAKAI = Form(
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
     """Return a copy of the project that may be changed."""
-    return Path(shutil.copytree(ROOT, tmp_path / "project", ignore=shutil.ignore_patterns(*IGNORED)))
+    return checkout(tmp_path / "project")
 
 
 def replace(path: Path, old: str, new: str) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.checkout import checkout
 from tests.command_line import HANG_TIMEOUT, ROOT, clean_environment, run_with_input
 from tests.tutorial import follow, run_commands
 from tests.wheels import offline
@@ -247,21 +248,6 @@ def script(text: str, folder: Path, **variables: str) -> None:
         stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False, timeout=HANG_TIMEOUT,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr
-
-
-def checkout(folder: Path) -> Path:
-    """Return a copy of the files of the project."""
-    done = subprocess.run(
-        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
-        cwd=ROOT,
-        capture_output=True,
-        check=True,
-    )
-    for name in filter(None, done.stdout.decode().split("\0")):
-        if (ROOT / name).is_file():
-            (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(ROOT / name, folder / name)
-    return folder
 
 
 def test_the_set_up_of_ci(tmp_path: Path) -> None:
