@@ -6,7 +6,7 @@ An output on the page stays as it is if it matches, where "..." stands for any t
 import re
 import shlex
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
@@ -26,27 +26,6 @@ class Step(NamedTuple):
     code: int
 
 
-def follow(page: str, folder: Path) -> tuple[str, list[Step]]:
-    """Do what a page says in a folder; return the page with current outputs, and what was run."""
-    steps: list[Step] = []
-    pieces = re.split(r"(^```\w*\n.*?^```\n)", page, flags=re.DOTALL | re.MULTILINE)
-    for index in range(1, len(pieces), 2):
-        kind, _, text = pieces[index].removeprefix("```").removesuffix("```\n").partition("\n")
-        name = _NAME.search(pieces[index - 1])
-        if kind == "sh":
-            printed, code = run_commands(text, folder)
-            is_shown = pieces[index + 1] == "\n" and pieces[index + 2].startswith("```\n")
-            shown = pieces[index + 2][4:-4] if is_shown else None
-            if shown is not None and not _matches(shown, printed):
-                pieces[index + 2] = f"```\n{printed.rstrip()}\n```\n"
-            steps.append(Step(text, shown, printed, code))
-        elif kind == "diff" and name:
-            _change(folder / name[1], text)
-        elif kind and name:
-            (folder / name[1]).write_text(text, encoding="utf-8")
-    return "".join(pieces), steps
-
-
 def run_commands(commands: str, folder: Path) -> tuple[str, int]:
     """Return what commands print in a folder, and the exit code of the last one."""
     printed, code = "", 0
@@ -63,6 +42,29 @@ def run_commands(commands: str, folder: Path) -> tuple[str, int]:
             (folder / target).write_bytes(done.stdout)
         printed += done.stderr.decode() + ("" if target else done.stdout.decode())
     return printed, code
+
+
+def follow(
+    page: str, folder: Path, run: Callable[[str, Path], tuple[str, int]] = run_commands
+) -> tuple[str, list[Step]]:
+    """Do what a page says in a folder; return the page with current outputs, and what was run."""
+    steps: list[Step] = []
+    pieces = re.split(r"(^```\w*\n.*?^```\n)", page, flags=re.DOTALL | re.MULTILINE)
+    for index in range(1, len(pieces), 2):
+        kind, _, text = pieces[index].removeprefix("```").removesuffix("```\n").partition("\n")
+        name = _NAME.search(pieces[index - 1])
+        if kind == "sh":
+            printed, code = run(text, folder)
+            is_shown = pieces[index + 1] == "\n" and pieces[index + 2].startswith("```\n")
+            shown = pieces[index + 2][4:-4] if is_shown else None
+            if shown is not None and not _matches(shown, printed):
+                pieces[index + 2] = f"```\n{printed.rstrip()}\n```\n"
+            steps.append(Step(text, shown, printed, code))
+        elif kind == "diff" and name:
+            _change(folder / name[1], text)
+        elif kind and name:
+            (folder / name[1]).write_text(text, encoding="utf-8")
+    return "".join(pieces), steps
 
 
 def _change(file: Path, diff: str) -> None:

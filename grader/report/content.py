@@ -236,15 +236,21 @@ def result_line(report: Report) -> str:
         return sentence(_pending_points(report)) if report.pending else "Nothing to grade."
     points = f"{format_points(report.score)} of {counted_points(decided)}"
     open_points = f"; {format_points(report.pending)} more {'needs' if report.pending == 1 else 'need'} manual grading"
+    faulty = [entry for entry in found.mistakes if entry.status == "errored"]
+    mistakes = [entry for entry in found.mistakes if entry.status != "errored"]
     reasons = []
-    if found.mistakes:
-        lost = format_points(sum((entry.lost for entry in found.mistakes), Decimal(0)))
-        reasons.append(f"{counted(len(found.mistakes), 'mistake costs', 'mistakes cost')} {lost}")
+    if mistakes:
+        reasons.append(f"{counted(len(mistakes), 'mistake costs', 'mistakes cost')} {_lost_by(mistakes)}")
     if found.unbuilt:
-        lost = format_points(sum((entry.lost for entry in found.unbuilt), Decimal(0)))
-        reasons.append(f"{'what is not built yet' if reasons else 'what is not built yet costs'} {lost}")
+        reasons.append(f"what is not built yet{'' if reasons else ' costs'} {_lost_by(found.unbuilt)}")
+    if faulty:  # no mistake of the student
+        reasons.append(f"{counted(len(faulty), 'faulty check costs', 'faulty checks cost')} {_lost_by(faulty)}")
     text = f"{points}: {', '.join(reasons)}" if reasons else f"All automatic checks passed: {points}"
     return f"{text}{open_points if report.pending else ''}."
+
+
+def _lost_by(entries: Iterable[Entry]) -> str:
+    return format_points(sum((entry.lost for entry in entries), Decimal(0)))
 
 
 def score_text(report: Report) -> str:

@@ -2,15 +2,17 @@
 
 from collections.abc import Iterator
 from decimal import Decimal
+from pathlib import Path
 
 import pytest
 
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.hints.hinting import hinted
-from grader.report.content import report_sections
+from grader.report.content import report_sections, result_line
 from grader.report.criteria import Entry
 from grader.submission.opening import read_submission
+from tests.report.reports import half_points
 from tests.samples import REPORTED, RUBRICS, SAMPLES
 
 ROBOTS = 1000
@@ -33,6 +35,11 @@ def assert_mistakes_add_up(report: Report) -> None:
     named = [result.criterion.id for entry in mistakes for result in entry.results]
     assert sum((entry.lost for entry in mistakes), Decimal(0)) == lost(report)
     assert len(named) == len(set(named))
+
+
+def test_a_faulty_check_is_no_mistake_of_the_student(tmp_path: Path) -> None:
+    """The result names what a faulty check costs apart from the mistakes."""
+    assert result_line(half_points(tmp_path)).endswith(" cost 0.5, 1 faulty check costs 0.125.")
 
 
 @pytest.mark.parametrize("name", REPORTED)

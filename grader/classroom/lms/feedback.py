@@ -106,7 +106,12 @@ def canvas_names(submissions: Collection[tuple[Student, tuple[str, ...]]], repor
         if certain := [file for file in files if _is_certain(file, users[paths])]:
             names[student.key] = min(certain, key=lambda file: (not file.lower().endswith(ending), file))
     why = f"submitted no {ending} file or archive with the Canvas user id in its name"
-    return names, {student.key: why for student, _ in submissions if student.key not in names}
+    without = {
+        student.key: why if paths else "nothing was submitted"
+        for student, paths in submissions
+        if student.key not in names
+    }
+    return names, without
 
 
 def write_feedback(reports: Mapping[str, bytes], names: Mapping[str, str], report: str) -> tuple[bytes, dict[str, str]]:
