@@ -3,6 +3,7 @@
 import gc
 import os
 import signal
+from collections import Counter, defaultdict
 
 import pytest
 from hypothesis import settings
@@ -23,7 +24,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 # repository; colours and widths change the output; pip may have another target. Tests that need a variable set it.
 _NAMES = (
     "CI", "CI_PROJECT_DIR", "CLICOLOR_FORCE", "COLUMNS", "FORCE_COLOR", "NO_COLOR", "PYTHONDONTWRITEBYTECODE",
-    "PYTHONHASHSEED", "PYTHONOPTIMIZE", "PYTHONWARNINGS", "TTY_COMPATIBLE", "TTY_INTERACTIVE",
+    "PYTEST_ADDOPTS", "PYTHONHASHSEED", "PYTHONOPTIMIZE", "PYTHONWARNINGS", "TTY_COMPATIBLE", "TTY_INTERACTIVE",
 )  # fmt: skip
 _BEGINNINGS = ("GITHUB_", "GIT_", "GRADER_", "PIP_", "_TYPER_")
 for name in [name for name in os.environ if name in _NAMES or name.startswith(_BEGINNINGS)]:
@@ -32,10 +33,27 @@ for name in [name for name in os.environ if name in _NAMES or name.startswith(_B
 os.environ |= {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
 
 
+_FEW = 8  # cases of a test that the README's command runs
+_SHARE = 10  # of more than 80 cases, one in ten
+
+
+@pytest.hookimpl(tryfirst=True)  # before tests are selected by their marks
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Start with the files that contain slow tests, because one worker runs a file and no other should wait for it."""
+    """Mark as slow all cases of a test but some from all over its table.
+
+    One worker runs a file: those with slow tests or many cases come first, so that none is waited for at the end.
+    """
     slow = {item.path for item in items if item.get_closest_marker("slow")}
-    items.sort(key=lambda item: item.path not in slow)
+    sizes = Counter(item.path for item in items)
+    items.sort(key=lambda item: (item.path not in slow, -sizes[item.path]))
+    cases = defaultdict[str, list[pytest.Item]](list)
+    for item in items:
+        if item.get_closest_marker("exhaustive") is None:
+            cases[item.nodeid.partition("[")[0]].append(item)
+    for many in cases.values():
+        step = max(1, len(many) // max(_FEW, len(many) // _SHARE))
+        for item in (one for index, one in enumerate(many) if index % step):
+            item.add_marker("slow")
 
 
 def pytest_collection_finish() -> None:

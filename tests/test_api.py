@@ -73,6 +73,7 @@ def test_what_cannot_be_graded_raises_one_error(tmp_path: Path) -> None:
         grader.grade(SAMPLES / "reference", tmp_path / "lab.toml")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "variable", "sample", "failed"),
     [

@@ -123,6 +123,7 @@ def test_every_package_has_a_layer() -> None:
 NAMED_BY_OTHERS = ("grader.checks.", "grader.cli.", "grader.api", "grader.__main__")
 
 
+@pytest.mark.slow
 def test_names_of_one_module_are_private() -> None:
     """A function, class or constant that no other module imports, of the grader or of its tests, starts with an underscore."""
     others = chain.from_iterable((ROOT.parent / folder).rglob("*.py") for folder in ("tests", "benchmarks", "docs"))

@@ -104,6 +104,7 @@ def test_a_variant_loses_the_expected_criteria(variant: made_up.Variant) -> None
         assert lost(made.text) == set(made.lost), made.text
 
 
+@pytest.mark.slow
 def test_two_mistakes_do_not_hide_each_other() -> None:
     """Any two mistakes in different elements lose what both lose."""
     for one, two in combinations(made_up.MISTAKES, 2):

@@ -34,6 +34,7 @@ def constants(tree: ast.AST) -> Iterator[str]:
             yield node.value
 
 
+@pytest.mark.slow
 def test_the_code_knows_no_lab() -> None:
     """No module has the name of a lab, of its criteria, links or joints as a value; the one exception is the default of --rubric.
 
@@ -69,6 +70,7 @@ def test_a_lab_has_samples_and_a_page(rubric: Rubric) -> None:
     assert f"rubrics/{rubric.id}/README.md" in (ROOT / "README.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_a_mistake_costs_what_it_is_worth() -> None:
     """One mistake costs at most 15 % of all points, although it moves, turns or weighs what other criteria measure."""
     reports = {name: SAMPLES[name].grade() for name in SAMPLES if "/" in name and "/equivalent-" not in name}

@@ -84,6 +84,7 @@ def megabyte(item: str, before: str = "", after: str = "") -> str:
     return head + "".join(item.replace("{}", str(number)) for number in range(count)) + tail
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "item",
     [
@@ -104,6 +105,7 @@ def test_a_robot_with_too_many_facts_is_refused(item: str, tmp_path: Path) -> No
 SHAPE = '<{0}><geometry><box size="1 1 {{}}1"/></geometry></{0}>'
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("tag", "item", "omitted"),
     [
@@ -171,6 +173,7 @@ def test_values_of_parameters_are_comments_that_may_become_criteria(of_cart: Rub
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", dict.fromkeys(family for family, _, _ in WRONG))
 def test_what_is_odd_in_the_names_of_a_reference_is_said_in_one_line(family: str, tmp_path: Path) -> None:
     """Its family is no criterion, and the other families are."""

@@ -86,6 +86,7 @@ def test_all_documents_share_one_budget(tmp_path: Path, monkeypatch: pytest.Monk
     assert not log.exists() or log.read_text() == "x"  # the first one may end before it writes; no other one starts
 
 
+@pytest.mark.slow
 def test_the_converter_bounds_its_own_processor_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The system stops a converter that the grader cannot stop."""
     code = f"import sys; sys.argv[2] = '1'; sys.path.insert(0, {str(ROOT)!r})\n"

@@ -121,6 +121,7 @@ def _pack(folder: Path, target: Path) -> Path:
     return target
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", ["canvas", "moodle", "folders"])
 def test_a_zip_is_graded_as_its_folder(layout: str, tmp_path: Path) -> None:
     """A zip as an LMS provides it is graded without unpacking: the reports are the same, and a second run grades nothing.
@@ -192,6 +193,7 @@ MODULES = (
 )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_nothing_of_a_class_is_imported(tmp_path: Path) -> None:
     """Nothing is imported even if the grader starts in the class folder, nor by its worker processes."""
     folder = urdf_class(tmp_path / "class", 5)
@@ -204,6 +206,7 @@ def test_nothing_of_a_class_is_imported(tmp_path: Path) -> None:
     assert GRADER[-2:] == ("-m", "grader")
 
 
+@pytest.mark.slow
 def test_awkward_names_are_found_in_the_roster(tmp_path: Path) -> None:
     """A folder with a bidirectional mark, a line break or a tab in its name belongs to the student of that name."""
     unmatched, absent = class_with_roster(tmp_path / "class", tmp_path / "roster.csv", 120)

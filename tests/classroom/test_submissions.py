@@ -200,6 +200,7 @@ def test_a_large_class_takes_linear_work(tmp_path: Path) -> None:
         assert len(read_class([uploads], None, "canvas").submissions[0].paths) == 2_000
 
 
+@pytest.mark.slow
 def test_students_cannot_affect_others() -> None:
     """Nobody takes another's submission: a short run of `python -m tests.classroom.hostile_classes`."""
     try_classes(40)

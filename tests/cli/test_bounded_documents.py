@@ -42,6 +42,7 @@ def write_submission(folder: Path) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_a_slow_document_needs_manual_grading(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -37,6 +37,7 @@ def lab(folder: Path, level: str) -> Path:
     return folder / "lab.toml"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("level", "says"),
     [

@@ -59,6 +59,7 @@ def hints(report: dict[str, Any]) -> list[dict[str, Any]]:
     return list(found.values())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MISTAKES)
 def test_the_mistake_itself_is_corrected(name: str, tmp_path: Path) -> None:
     """The only hint changes what the student got wrong and nothing else, and --fix reaches all automatic points."""

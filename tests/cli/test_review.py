@@ -41,6 +41,7 @@ def sheet_of(book: Path, *options: object) -> list[dict[str, str]]:
         return list(csv.DictReader(opened))
 
 
+@pytest.mark.slow
 def test_a_class_is_marked_by_a_sheet(tmp_path: Path) -> None:
     """121 students, 40 with answers: a row for each answer, which `mark --import` gives to all who have it."""
     make_desk_class(tmp_path)

@@ -197,6 +197,7 @@ def test_the_list_of_students(review: Review, book: Path) -> None:
     assert [label for label, *_ in review.get("end/people").json["people"]] == ["Ada Ash (ash)"]
 
 
+@pytest.mark.slow
 def test_next_question_goes_through_one_student(review: Review) -> None:
     """After the last one comes the first of the next student by name; a mark can be followed by it as well."""
     found, seen = addresses(review), []

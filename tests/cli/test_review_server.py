@@ -283,6 +283,7 @@ def test_a_request_without_end_is_disconnected(book: Path, monkeypatch: pytest.M
         pytest.fail("the connection is still open")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_the_command(book: Path, ending: signal.Signals) -> None:
     """It prints the address, marks, writes the grades after each mark, and ends with a signal: it says what is left; a port is free."""

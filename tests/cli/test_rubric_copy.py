@@ -11,6 +11,7 @@ from tests.classroom.gradebooks import grader
 from tests.samples import ROOT, SAMPLES
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", shipped_rubrics())
 def test_a_copy_works_as_it_is(name: str, tmp_path: Path) -> None:
     """Its reference gets full marks, its model answers are there, and it gives the same points and hints."""

@@ -55,6 +55,7 @@ def test_a_shipped_rubric_catches_every_mutant(name: str) -> None:
     assert found["samples"] == {"tried": own, "skipped": 0, "different": []}
 
 
+@pytest.mark.slow
 def test_survivors_are_listed_with_their_diff(tmp_path: Path) -> None:
     """The exit code is 0 because no correct robot loses points."""
     done = command(write_rubric(tmp_path))

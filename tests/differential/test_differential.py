@@ -36,6 +36,7 @@ def test_the_library_gives_the_verdicts_of_the_program() -> None:
     assert wrong == []
 
 
+@pytest.mark.slow
 @needs_urdfdom
 def test_mutated_urdfs() -> None:
     """The verdict on each mutant is that of ROS 2; the mutants are the same in every run, and some of them load."""

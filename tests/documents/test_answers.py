@@ -81,6 +81,7 @@ def test_a_pdf_has_the_lines_that_it_shows(by_word: bool) -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "content",
     [
@@ -143,6 +144,7 @@ def test_long_documents_are_cut_with_a_note() -> None:
     assert exact.message == "The answer on page 100 of report.pdf, needs manual grading"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "line",
     spread(

@@ -376,6 +376,7 @@ def test_a_member_without_a_name() -> None:
     assert list(tree_of(bytes(data)).files) == ["b.urdf"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", [".zip", ".tar.gz", ".tar.bz2", ".tar.xz"])
 def test_zip_bombs_by_ratio(ending: str) -> None:
     """An archive that unpacks to hundreds of times its size is refused quickly."""
@@ -530,6 +531,7 @@ def test_sparse_files_in_tars() -> None:
         tree.files["a.urdf"].read(10, first=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("pack", [gzip.compress, bz2.compress, lzma.compress])
 def test_compressed_bombs(pack: Callable[[bytes], bytes]) -> None:
     """A compressed file is unpacked only up to a limit, whether it contains a tar or not."""

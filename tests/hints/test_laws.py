@@ -107,6 +107,7 @@ def test_the_hints_for_a_mistake_of_students_hold(name: str) -> None:
     hold(mistake.base.changed(mistake.text), LAB6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BASES)
 def test_the_hints_of_mutants_hold(name: str) -> None:
     """The same for mutants of each correct robot, and for several mistakes in one."""

@@ -55,6 +55,7 @@ def test_sample_mistakes_get_hints_that_lead_to_full_marks() -> None:
     assert left <= without_a_file | without_a_part | {f"diffdrive/{name}" for name in of_names}
 
 
+@pytest.mark.slow
 def test_mistakes_of_students_get_hints_that_lead_to_full_marks() -> None:
     """At least 95 % of mistakes that cost points lose nothing with all edits, and 90 % become the correct robot."""
     found = list(of_students())

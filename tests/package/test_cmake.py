@@ -110,6 +110,7 @@ def test_a_package_without_its_end() -> None:
     assert "ament_package()" in read("", ending="").stops[0].message
 
 
+@pytest.mark.slow
 def test_a_long_text_takes_little_time() -> None:
     """Comments and commands that do not end are read once; nothing grows without a bound."""
     doubled = "set(a x)\n" + "set(a ${a}${a};${a})\n" * 60

@@ -198,6 +198,7 @@ def test_patterns_that_lead_out_are_unknown(pattern: str) -> None:
         PackageListing(make_tree("", [], ["a/b/c", "a/d", "b/c"])).glob(pattern, recursive=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "expression",
     spread(

@@ -122,6 +122,7 @@ def test_a_file(case: dict[str, Any]) -> None:
     assert outcome(text, case["language"]) in (case["starts"], None)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("language", ["py", "xml", "yaml"])
 def test_actions(language: str) -> None:
     """Each is judged as launch does; where `known` says so, it is judged."""

@@ -87,12 +87,14 @@ def compared(folder: Path, texts: list[str]) -> list[str]:
     return [f"{found}:\n{text}" for text, setup, ran in pairs if (found := wrong(setup, ran))]
 
 
+@pytest.mark.slow
 def test_short_programs(package: Path) -> None:
     """Programs that change the list of files, read a file, or raise an error: before the list, and after it."""
     programs: list[str] = json.loads(Path(__file__).with_name("programs.json").read_text("utf-8"))
     assert compared(package, [file.replace("{}", program) for program in programs for file in FILES[:2]]) == []
 
 
+@pytest.mark.slow
 def test_statements_at_random_places(package: Path) -> None:
     """Some hundred of the variations, the same in every run; some are decided each way."""
     texts = Random(46).sample(list(variations()), 300)

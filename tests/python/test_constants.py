@@ -2,6 +2,7 @@
 
 import ast
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -49,6 +50,7 @@ class _Manager:
         return None
 
 
+@pytest.mark.slow
 @given(st.lists(_LINES, max_size=7))
 @examples(400)
 def test_a_constant_has_the_value_that_python_gives_it(lines: list[str]) -> None:

@@ -130,6 +130,7 @@ _PROGRAMS = st.lists(st.recursive(_SIMPLE, _compound, max_leaves=5), min_size=1,
 _START = "import os\nfrom glob import glob\nfrom pathlib import Path\nfrom setuptools import setup\na = ['urdf']\nb = {'a': a}\n"
 
 
+@pytest.mark.slow
 @examples(30)
 @given(program=_PROGRAMS)
 def test_any_program_is_evaluated(program: str) -> None:
@@ -213,6 +214,7 @@ EXPENSIVE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", spread(EXPENSIVE, 6))
 def test_expensive_programs_are_stopped(name: str) -> None:
     """A program that would take long, or much memory, is not evaluated further, which is reported."""

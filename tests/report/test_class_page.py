@@ -45,6 +45,7 @@ def test_one_bar_does_not_flatten_the_others(others: int, is_cut: bool, tmp_path
     assert len(page.root.xpath("//*[@class='cut']")) == is_cut
 
 
+@pytest.mark.slow
 def test_text_of_students_stays_text(tmp_path: Path) -> None:
     """Names, ids, folders, robots, reasons and comments: no element, no address and no script comes from them."""
     pages = make_attacked_class(tmp_path, ATTACKS[:6]).pages
@@ -61,6 +62,7 @@ def test_text_of_students_stays_text(tmp_path: Path) -> None:
         assert "\n::error" not in file.read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_the_page_says_what_stats_says(tmp_path: Path) -> None:
     """A thousand students in four teams: the same words and numbers, as many behind each, in half a megabyte."""
     for number, size in enumerate(("1 1 1", "1 1 2", "1 1 1", "1 1 3")):

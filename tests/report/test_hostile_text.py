@@ -75,6 +75,7 @@ def test_text_of_a_submission_stays_text(texts: Mapping[str, str]) -> None:
     written(texts)
 
 
+@pytest.mark.slow
 @given(st.dictionaries(st.sampled_from(UNASKED), TEXT.filter(is_utf8), min_size=1))
 @examples(10)
 def test_irrelevant_text_does_not_affect_the_score(texts: Mapping[str, str]) -> None:
@@ -94,6 +95,7 @@ def structures_of(name: str, base: Base) -> dict[Format, Any]:
     return harmless_structures(report_of(name), base)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "base"),
     spread(

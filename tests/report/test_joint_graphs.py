@@ -3,6 +3,7 @@
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -28,6 +29,7 @@ def robot(links: dict[str, bool], graph: list[tuple[str, str, str]]) -> str:
     return f'<robot name="r">{"".join(parts)}</robot>'
 
 
+@pytest.mark.slow
 @examples(10)
 @given(st.dictionaries(names, st.booleans(), min_size=1), st.lists(joints, max_size=6))
 @example({"base_link": False, "lidar": False, "w": False}, LOOP)

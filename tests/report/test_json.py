@@ -38,6 +38,7 @@ def test_schemas_are_json_schemas(schema: dict[str, Any]) -> None:
     jsonschema.Draft202012Validator.check_schema(schema)
 
 
+@pytest.mark.slow
 def test_reports_and_inspections_of_edge_cases_are_valid() -> None:
     """Whatever the file: no exception, no NaN, no invalid Unicode."""
     report_schema, inspect_schema = (

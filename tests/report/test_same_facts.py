@@ -156,6 +156,7 @@ def test_all_formats_contain_the_same_facts(name: str) -> None:
     assert not {(kind.value, fact) for kind, fact in omitted(name) if fact.kind not in READERS[kind].excused}
 
 
+@pytest.mark.slow
 def test_every_excuse_is_needed() -> None:
     """A format that contains a fact needs no excuse for it."""
     found = frozenset().union(*map(omitted, [*REPORTED, _ADJUSTED]))

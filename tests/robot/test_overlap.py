@@ -299,6 +299,7 @@ def random_pose(rng: random.Random, size: float) -> Transform:
     return at(x, y, z, (rpy[0], rpy[1], rpy[2]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("second", [Box, Cylinder, Sphere])
 @pytest.mark.parametrize("first", [Box, Cylinder, Sphere])
 def test_coal_agrees(oracle: Oracle, first: type[Shape], second: type[Shape]) -> None:

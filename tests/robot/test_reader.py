@@ -359,6 +359,7 @@ _FRAMES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("frame", spread(_FRAMES.values(), 2), ids=_FRAMES)
 def test_a_megabyte_is_read_in_linear_time(frame: str) -> None:
     """Whatever a megabyte contains, it is read in linear time."""
@@ -367,6 +368,7 @@ def test_a_megabyte_is_read_in_linear_time(frame: str) -> None:
         read_urdf(raw)
 
 
+@pytest.mark.slow
 def test_many_attributes_are_read_in_linear_time() -> None:
     """An element with 300,000 attributes, of which none is a name, is not searched for a misspelt name."""
     attributes = " ".join(f'a{number}="1"' for number in range(300_000))

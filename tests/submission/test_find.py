@@ -332,6 +332,7 @@ def test_many_texts() -> None:
     assert len(found.others) == 400
 
 
+@pytest.mark.slow
 def test_very_many_urdfs() -> None:
     """All are listed, and only so many are read; files that include each other take no more time."""
     text = b"<robot>" + b"".join(b"<xacro:include filename='%d.urdf'/>" % n for n in range(80))

@@ -39,6 +39,7 @@ def results(request: pytest.FixtureRequest) -> Results:
     return found
 
 
+@pytest.mark.slow
 def test_hostile_documents_are_refused_after_bounded_work(results: Results) -> None:
     """Each is refused, or cannot be determined, after a bounded number of lines of Python; none stops the process."""
     outcomes = {name: results[name]["outcome"] for name in HOSTILE.keys() & results.keys()}
@@ -47,6 +48,7 @@ def test_hostile_documents_are_refused_after_bounded_work(results: Results) -> N
     assert len(HOSTILE) >= 60
 
 
+@pytest.mark.slow
 def test_large_documents_take_bounded_work(results: Results) -> None:
     """A document that is only large is expanded or refused after a bounded number of lines."""
     outcomes = {name: results[name]["outcome"] for name in LARGE.keys() & results.keys()}

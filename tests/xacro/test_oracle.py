@@ -25,6 +25,7 @@ KNOWN_DIFFERENCES = {
 """The documents on which the grader and xacro differ, and why that is accepted."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("group", "step"),
     light([*((group, 1) for group in GROUPS), ("expressions", 4)], lambda row: row == ("expressions", 1)),

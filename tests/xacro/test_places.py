@@ -3,6 +3,8 @@
 import json
 from pathlib import Path
 
+import pytest
+
 from grader.source import Location
 from tests.command_line import run
 from tests.xacro import grammar
@@ -32,6 +34,7 @@ def text_at(document: Document, location: Location) -> str:
     return "\n".join(text.split("\n")[location.line - 1 :])[location.column - 1 :]
 
 
+@pytest.mark.slow
 def test_every_element_is_where_it_is_written() -> None:
     """On random documents, each element's place is a tag of its name, or one that makes an element with a computed name."""
     count = 0

@@ -11,6 +11,7 @@ PARTS = 10
 PART = 200
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("part", spread(range(PARTS), 1))
 def test_random_documents(part: int) -> None:
     """Two thousand random documents are expanded, or refused, as xacro does."""

@@ -245,6 +245,7 @@ _PIECES = ("<", ">", "&", "&#", "&#x", '="', "='", "<!", "<!--", "<?", "<a", "<a
 _FRAMES = ("{}", "<robot {}", "<robot a='{}'/>", "<robot>{}</robot>", "<robot/>{}", "<robot/></x>{}")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("piece", "frame"), spread(product(_PIECES, _FRAMES), 18))
 def test_a_long_file_of_one_piece(piece: str, frame: str) -> None:
     """Time is linear wherever the piece is: a quarter of a megabyte takes a bounded number of lines."""

@@ -113,6 +113,7 @@ def _check(row: Row, work: Work, report: Report, alone: Report) -> None:
         assert {name for name, status in task2.items() if status != "passed"} == {*work.lost, *work.unknown}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("row", "folder"), WORKS, ids=[f"{row.name}/{folder}".rstrip("/") for row, folder in WORKS])
 def test_a_student_with_a_robot(row: Row, folder: str, graded: Class, plain: Callable[[str], Report]) -> None:
     """`grade` and `batch` give the mark of the plain URDF, and Task 2 what its package deserves."""

@@ -4,6 +4,7 @@ from itertools import product
 from math import cos, pi, sin
 
 import numpy as np
+import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -22,6 +23,7 @@ def panels(shapes: list[Shape], poses: list[Transform]) -> tuple[Panel, ...]:
     return panels_of(Picture(scene_with(shapes, poses), (), (), ()))
 
 
+@pytest.mark.slow
 @given(SHAPES, POSES)
 @example(Box((0.5, 0.5, 0.5)), Transform(rotation_from_rpy((pi / 2.0, 2.0, 0.0))))  # edges above each other
 @examples(10)
