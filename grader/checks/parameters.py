@@ -35,7 +35,7 @@ def parameter_is(
 ) -> Outcome:
     """A node gets this value of a parameter, wherever it is written, under the criterion's `args` if it has some.
 
-    Files of parameters, values in launch files and arguments of the node count as in ROS 2. Controllers get those of
+    Parameter files, values in launch files and arguments of the node count as in ROS 2. Controllers get those of
     the controller manager's files, and those that their spawner is given.
 
     Args:
