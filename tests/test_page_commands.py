@@ -95,7 +95,6 @@ OTHER_PROGRAMS = {  # commands of other programs in the text of the README and o
     "python3 -m venv .venv": "here: test_the_installation",
     "sudo apt install python3-venv": "installs for the whole machine",
     "sudo apt install python3.11 python3.11-venv": "installs for the whole machine",
-    "python -m pydoc grader": "test_api.py",
     "SUBMISSION=my_robot pytest test_rubric.py": "test_api.py",
     "URDF=my_robot.urdf pytest test_lab6.py": "test_api.py",
 }

@@ -23,10 +23,10 @@ from grader.workspace.workspace import workspace_of
 
 _THE_PACKAGE, _THE_NAMES, _THE_VALUES = "The package", "The names", "The values"  # headings
 _NAME_TITLES: Mapping[Family, str] = {
-    "files": "every file that is named is where a build installs it",
+    "files": "a build installs every file that is named",
     "frames": "every frame, link and joint that is named exists",
     "controllers": "all spawners, controllers and interfaces fit together",
-    "parameters": "every file of parameters has parameters of the nodes that get it",
+    "parameters": "every parameter file has parameters of the nodes that get it",
     "arguments": "every launch and xacro argument that is passed is declared",
     "programs": "every program, entry point and node that is named exists",
     "topics": "topics have the same names, types and quality of service in all nodes",

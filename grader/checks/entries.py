@@ -54,8 +54,8 @@ def entry_is(
     """The expanded robot, or a file of the package, has an entry at a path, with the given values.
 
     The file is YAML, or XML such as SDF, SRDF and package.xml. Numbers, and lists of numbers in a text of XML, are
-    compared as numbers; in XML, true is equal to 1, and false to 0. In YAML, a text in quotes is no number and no
-    boolean. Comments do not count. If several entries are at the path, one of them must be as expected.
+    compared as numbers; in XML, true is equal to 1, and false to 0. In YAML, a quoted text is neither a number
+    nor a boolean. Comments do not count. If several entries are at the path, one of them must be as expected.
 
     Args:
         file: The end of the path of a file in the package, such as "config/nav.yaml"; "robot" is the expanded robot.

@@ -156,7 +156,7 @@ def mimics(
 ) -> Outcome:
     """The joint that moves a link mimics the joint that moves another link.
 
-    It may do so through other joints: then the multipliers and offsets of all are composed.
+    It may do so through other mimic joints: then the multipliers and offsets are composed.
 
     Args:
         link: The link whose joint follows.

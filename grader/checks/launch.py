@@ -93,9 +93,9 @@ def node_runs(
 ) -> Outcome:
     """The launch file starts these nodes, with the defaults of its arguments or those of the criterion's `args`.
 
-    Launch files that it includes count, if they are part of the submission or of a well-known package. What ros2 launch
-    stops at fails: an error in the file, a wrong argument of an action, a file that it reads and that is not installed.
-    So does an entry point in setup.py of one of these nodes whose module or function does not exist.
+    Launch files that it includes count, if they are part of the submission or of a well-known package. Anything at
+    which ros2 launch stops fails: an error in the file, a wrong argument of an action, a file that is read but not
+    installed. So does an entry point in setup.py of one of these nodes whose module or function does not exist.
 
     Args:
         launch: The file's name, such as view.launch.py.
@@ -193,8 +193,8 @@ def _check_decided(
 def launch_finds_files(package: Package, *, name: str, built: bool = True, started: bool = True) -> Outcome:
     """The launch file looks for the URDF and RViz files where a build of the package installs them.
 
-    So it does for other files that it reads, and launch files that it includes. What it reads as text, with `open` or
-    `cat`, must be UTF-8, unless it names the encoding.
+    The same applies to other files that it reads, and to launch files that it includes. What it reads as text, with
+    `open` or `cat`, must be UTF-8, unless it names the encoding.
 
     Args:
         name: The file's name, such as view.launch.py.

@@ -23,8 +23,6 @@ def answered(
 ) -> Outcome:
     """A question is answered in writing; needs manual grading.
 
-    Always pending.
-
     Args:
         question: The question, as the report repeats it.
         places: Labels of the passage with the answer, such as "task 1 step 15" or "question 15"; they are tried in this
@@ -71,7 +69,7 @@ def answered(
 def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
     """A picture or document shows what the lab asks for; needs manual grading.
 
-    Always pending. Without a file of such a name, the headings of Word and PDF files are searched.
+    Without a file of such a name, the headings of Word and PDF files are searched.
 
     Args:
         names: Labels in the name of the file, in any spelling: "task 3 step 3", or words such as "webcam".

@@ -123,7 +123,7 @@ def shows_mesh(
         file: The end of the mesh's path: complete folder names and the file name; case-sensitive.
         scale: The scale along x, y and z.
         xyz: Where the origin of the mesh is, in metres.
-        rpy: How the mesh is turned, in radians about fixed axes, within 1 degree.
+        rpy: The rotation of the mesh, in radians about fixed axes, within 1 degree.
         tolerance: How far each coordinate may be off, in metres, and each scale, as a share of itself.
         relative_to: The link in whose frame the pose is, by default the link itself.
     """

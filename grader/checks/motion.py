@@ -47,7 +47,7 @@ def rolls_forward(
         forward: The direction in which the base should drive, in its own frame.
         up: The direction away from the ground, in the base's frame.
         tolerance: How far the direction may be off, in degrees in the ground plane.
-        any_type: Whether the joint above the wheel turns, whatever its type.
+        any_type: Whether the parent joint is treated as one that turns, whatever its type.
     """
     robot = _as_turning(robot, link) if any_type else robot
     joint = turning_joint(robot, link, base)
@@ -123,7 +123,7 @@ def turns_about_itself(
         base: The link relative to which it turns.
         tolerance: How far the joint's axis may be from the cylinder's axis, in metres.
         angle: How far the direction of the joint's axis may be off, in degrees.
-        any_type: Whether the joint above the cylinder turns, whatever its type.
+        any_type: Whether the parent joint is treated as one that turns, whatever its type.
     """
     robot = _as_turning(robot, link) if any_type else robot
     cylinders = [visual for visual in visuals(robot, link) if isinstance(visual.geometry, Cylinder)]

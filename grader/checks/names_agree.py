@@ -3,7 +3,7 @@
 from grader.checks.outcome import Outcome, failed, passed
 from grader.errors import NotDecided
 from grader.submission.submission import Submission
-from grader.text import first_lines
+from grader.text import enumerated, first_lines
 from grader.workspace.names import Family, place_text
 
 _MAX_NAMED = 3  # mistakes in a message
@@ -12,8 +12,8 @@ _MAX_NAMED = 3  # mistakes in a message
 def names_agree(submission: Submission, *, of: Family) -> Outcome:
     """The names that files of the packages use are defined: files, frames, parameters, programs and so on.
 
-    A name fails only where everything that could define it was read. One that a package which is not submitted may
-    define is not wrong. Names that other packages of the submission use do not count.
+    A name fails only if everything that could define it was read: one that a package outside of the submission may
+    define does not fail. Names that other packages of the submission use do not count.
 
     Args:
         of: What is named: files, frames, controllers, parameters, arguments, programs, topics or dependencies.
@@ -23,11 +23,20 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
     submission.needed_package()
     wrong, undecided = wrong_names(submission, of), read_agreement(submission).undecided
     if wrong:
-        texts = [f"{place_text(it.location)}: {it.message}" for it in wrong[1:]]
-        message = "; ".join([wrong[0].message, *first_lines(texts, _MAX_NAMED - 1)])
-        return failed(message, wrong[0].location, mistake=wrong[0].message)
+        places: dict[str, list[str]] = {}
+        for it in wrong:
+            places.setdefault(it.message, []).append(place_text(it.location))
+        (first, (_, *also)), *others = places.items()
+        texts = [f"{at}: {message}{_also(more)}" for message, (at, *more) in others]
+        message = "; ".join([f"{first}{_also(also)}", *first_lines(texts, _MAX_NAMED - 1)])
+        return failed(message, wrong[0].location, mistake=first)
     if of in undecided:
         reason = undecided[of]
         cause = f"cannot determine statically whether the names of {of} agree"
         raise NotDecided(f"{cause}: {reason}", cause)
     return passed(f"the names of {of} agree")
+
+
+def _also(places: list[str]) -> str:
+    """Return the further places of one mistake, in parentheses; empty without one."""
+    return f" (also {enumerated(places, _MAX_NAMED)})" if places else ""

@@ -35,7 +35,7 @@ def parameter_is(
 ) -> Outcome:
     """A node gets this value of a parameter, wherever it is written, under the criterion's `args` if it has some.
 
-    Files of parameters, values in launch files and arguments of the node count as in ROS 2. Controllers get those of
+    Parameter files, values in launch files and arguments of the node count as in ROS 2. Controllers get those of
     the controller manager's files, and those that their spawner is given.
 
     Args:
@@ -44,8 +44,8 @@ def parameter_is(
         value: The value that it should have; for a list all items, in order.
         one_of: Values of which it should have one.
         has: Values that a list should have among its items.
-        measure: What of the robot the value should equal: the radius or length of what the first of the links shows,
-            the distance between the frames of two links, or a limit of the joint that moves the first one.
+        measure: The measure of the robot that the value should equal: the radius or length of the shape of the first
+            link, the distance between the frames of two links, or a limit of the joint that moves the first one.
         links: The links that are measured.
         tolerance: How far a number may be off, in the number's own unit.
         where_given: Whether a node that does not get the parameter passes, for `carried`.

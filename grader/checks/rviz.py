@@ -33,7 +33,7 @@ def rviz_found(package: Package, *, name: str, launch: str = "") -> Outcome:
 
     Args:
         name: The name of the RViz file, such as view.rviz.
-        launch: The name of the launch file whose RViz file also passes, whatever that is called; by default, none.
+        launch: The name of a launch file whose RViz file also passes, under any name; by default, none.
     """
     opened = _read_launch(package, launch)
     path = _rviz_path(package, name, opened)
@@ -51,8 +51,7 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
     Args:
         name: The name of the RViz file, such as view.rviz.
         frame: The link in whose frame RViz should draw.
-        launch: The name of the launch file whose RViz file is examined, whatever that is called; by default, only
-            `name` decides.
+        launch: The name of a launch file whose RViz file is examined, under any name; by default, only `name` decides.
     """
     package = submission.needed_package()
     rviz = _read_rviz(package, name, launch)
@@ -85,8 +84,7 @@ def rviz_shows_robot(package: Package, *, name: str, topic: str = "/robot_descri
     Args:
         name: The name of the RViz file, such as view.rviz.
         topic: The topic from which the display should read the robot.
-        launch: The name of the launch file whose RViz file is examined, whatever that is called; by default, only
-            `name` decides.
+        launch: The name of a launch file whose RViz file is examined, under any name; by default, only `name` decides.
     """
     rviz = _read_rviz(package, name, launch)
     models = [display for display in rviz.displays if display.kind == "RobotModel"]
@@ -108,8 +106,7 @@ def rviz_display_on(package: Package, *, name: str, kind: str, launch: str = "")
         name: The name of the RViz file, such as view.rviz.
         kind: The class of the display, such as LaserScan; with a package, such as rviz_default_plugins/LaserScan, that
             package is required.
-        launch: The name of the launch file whose RViz file is examined, whatever that is called; by default, only
-            `name` decides.
+        launch: The name of a launch file whose RViz file is examined, under any name; by default, only `name` decides.
     """
     rviz = _read_rviz(package, name, launch)
     found = [display for display in rviz.displays if display.kind == kind.rpartition("/")[2]]

@@ -16,7 +16,7 @@ from grader.files.limits import ROBOT_ENDINGS
 from grader.grading.hint_levels import HintLevel
 from grader.report.formats import Format, inputs_of, render
 from grader.source import Base
-from grader.text import printable, shell_quoted
+from grader.text import enumerated, printable, shell_quoted
 
 if TYPE_CHECKING:
     from grader.grading.report import Report
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from grader.hints.hinting import Fix
 
 _SOURCES = (*ROBOT_ENDINGS, ".toml", ".py", ".yaml", ".yml", ".rviz", ".cfg")  # files that no report may replace
+_MAX_NAMED = 8  # criteria in a message
 _MAX_UP = 3  # folders between a package and what is graded in it
 _SHA256 = r"[0-9a-fA-F]{64}"
 
@@ -63,10 +64,10 @@ class GradeRun(NamedTuple):
     @property
     def reason(self) -> str:
         """Why the exit code is 1 although nothing failed; empty otherwise."""
-        names = ", ".join(result.criterion.id for result in self.report.pending_automatic)
+        names = enumerated([result.criterion.id for result in self.report.pending_automatic], _MAX_NAMED)
         if self.exit_code != ExitCode.FAILED or not names or self.report.has_failures:
             return ""
-        return printable(f"exit code 1: could not be decided, and needs manual grading: {names}")
+        return printable(f"exit code 1: cannot be determined, and needs manual grading: {names}")
 
 
 def grade_and_save(request: GradeRequest, warn: Warn, show: Callable[[GradeRun], None]) -> GradeRun:

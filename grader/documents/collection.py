@@ -34,7 +34,8 @@ _NO_ANSWERS = {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md"
 _OTHER = re.compile(
     r"\s*<(?:\?xml|!--|robot|launch|package)"  # XML with the ending .txt
     # "lab6: my_robot.urdf" and "24.5 of 30 points: ...", or the grade, below it: the report as text and in Markdown
-    r"|(?:# )?\S+: [^\n]*\n\s*(?:\*\*)?(?:All automatic checks passed: )?[\d.]+ (?:of|/) [\d.]+ points?\b"
+    r"|(?:# )?\S+: [^\n]*\n\s*(?:\*\*)?(?:All automatic checks passed: |No mistakes found: )?"
+    r"[\d.]+ (?:of|/) [\d.]+ points?\b"
     r"|::notice title=[\d.]+ / "  # the report for GitHub Actions
 )
 

@@ -292,7 +292,7 @@ def another_robot(rubric: Rubric, robot: Robot | None, link: str = "") -> Missin
 
 def _known_links_text(rubric: Rubric, robot: Robot) -> str:
     count = known_links(robot, rubric.links)
-    return f"{f'only {count} of the {len(rubric.links)}' if count else 'none of the'} links that the rubric names"
+    return f"{f'only {count} of the {len(rubric.links)}' if count else 'none of the'} links of the rubric {rubric.id}"
 
 
 def _missing_work(rubric: Rubric, submission: Submission) -> Mapping[str, str]:

@@ -25,9 +25,7 @@ if TYPE_CHECKING:
     from grader.robot.conventions import Convention
 
 _EXPANDED = "the URDF is xacro: it was expanded, as xacro does before ROS 2 reads it"
-_NOT_EXPANDED = (
-    "the URDF is xacro, but is loaded without xacro; all but its loading is graded on what xacro makes of it"
-)
+_NOT_EXPANDED = "the URDF is xacro, but is loaded without xacro; everything but its loading is graded on its expansion"
 _MAX_PICTURES = 50
 _MAX_UNREAD = 4
 _MIN_OF_CONVENTION = 2  # criteria that a convention decides

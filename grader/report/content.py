@@ -145,7 +145,7 @@ def _missing_lines(report: Report, results: Sequence[Result]) -> Iterator[Line]:
         yield Line("missing", printable(f"evidence: {pictures} named {enumerated(others, _MAX_LISTED)}"))
     unmatched = _unmatched(report) if results else []
     if unmatched:
-        yield Line("there", printable(f"There, but it matches nothing: {enumerated(unmatched, _MAX_LISTED)}"))
+        yield Line("there", printable(f"Matches nothing: {enumerated(unmatched, _MAX_LISTED)}"))
 
 
 def _unmatched(report: Report) -> list[str]:
@@ -245,7 +245,8 @@ def result_line(report: Report) -> str:
         reasons.append(f"what is not built yet{'' if reasons else ' costs'} {_lost_by(found.unbuilt)}")
     if faulty:  # no mistake of the student
         reasons.append(f"{counted(len(faulty), 'faulty check costs', 'faulty checks cost')} {_lost_by(faulty)}")
-    text = f"{points}: {', '.join(reasons)}" if reasons else f"All automatic checks passed: {points}"
+    passed = "No mistakes found" if report.pending_automatic else "All automatic checks passed"
+    text = f"{points}: {', '.join(reasons)}" if reasons else f"{passed}: {points}"
     return f"{text}{open_points if report.pending else ''}."
 
 

@@ -20,7 +20,7 @@ _SPAWNERS = ("spawner", "spawner.py")
 
 
 class _Controller(NamedTuple):
-    """A controller that a file of parameters defines for the controller manager."""
+    """A controller that a parameter file defines for the controller manager."""
 
     name: str
     type: YamlNode
@@ -59,7 +59,7 @@ def _sections(workspace: Workspace) -> Iterator[tuple[tuple[str, ...], YamlNode]
 
 
 def defined_controllers(workspace: Workspace) -> Iterator[_Controller]:
-    """Yield the controllers that files of parameters define, with their types."""
+    """Yield the controllers that parameter files define, with their types."""
     for keys, node in _sections(workspace):
         own = keys[-1].rpartition("/")[2]
         is_manager = own == _MANAGER and isinstance(node.value, dict)
@@ -181,7 +181,7 @@ def _is_joint(workspace: Workspace, name: str) -> bool:
 
 def _spawner_facts(workspace: Workspace) -> Iterator[Fact]:
     if any(isinstance(tree, YamlFault) for tree in workspace.yaml_files.values()):
-        yield Open("controller", reason="a file of parameters cannot be read")
+        yield Open("controller", reason="a parameter file cannot be read")
     if not workspace.has_controller_manager:  # the robot's driver starts one, with controllers of its own
         yield Open("controller")
     for _, node in workspace.nodes:

@@ -97,17 +97,17 @@ def _not_there(owner: Package, target: str, at: Location) -> Mismatch:
     start = Location(setup.source.path, 1, 1)
     elsewhere = next((it for it in owner.installed if posixpath.basename(it) == name), None)
     own = next((it for it in owner.tree.files if posixpath.basename(it) == name), None)
-    looked = f"{target} is looked for, but"
+    missing = f"a build installs no {target}"
     if elsewhere is not None:
         either = _of_folders(target, elsewhere, at, start)
-        return Mismatch("files", f"{looked} a build installs it as {elsewhere}", at, corrections=either)
+        return Mismatch("files", f"{missing}: it installs the file as {elsewhere}", at, corrections=either)
     if own is not None:
-        message = f"{looked} a build does not install {own}: no {setup.entry} names it"
+        message = f"{missing}: no {setup.entry} names {own}"
         either = _of_install(setup, own, start)
         return Mismatch("files", message, at, setup.location(setup.called_at), corrections=either)
     meant = closest(name, map(posixpath.basename, owner.tree.files))
     guess = f"; did you mean {meant!r}?" if meant else ""
-    message = f"{looked} the package has no file {name!r}{guess}"
+    message = f"{missing}: the package has no file {name!r}{guess}"
     return Mismatch("files", message, at, None, is_surely_absent(owner, target), corrections(name, at, meant))
 
 

@@ -1,4 +1,4 @@
-"""Parameters: whether files of parameters have some for the node that gets them, and whether own nodes declare them."""
+"""Parameters: whether parameter files have some for the node that gets them, and whether own nodes declare them."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -24,7 +24,7 @@ _NOT_LISTS = ("plugin_lib_names",)
 
 
 def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield what files of parameters have for nodes, what own nodes declare, and lists of plugins."""
+    """Yield what parameter files have for nodes, what own nodes declare, and lists of plugins."""
     for path, tree in workspace.yaml_files.items():
         if isinstance(tree, YamlFault):
             is_sure = path in workspace.parameter_files
@@ -48,7 +48,7 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -> Iterator[Fact]:
-    """Yield that a file of parameters has nothing for a node that is given it, but for a node that is not."""
+    """Yield that a parameter file has nothing for a node that is given it, but for a node that is not."""
     tree = workspace.yaml_files.get(path)
     # A container gives it to the components that are loaded into it.
     if not isinstance(tree, YamlNode) or any(node.package in ("ros_gz_bridge", "rclcpp_components") for node in nodes):

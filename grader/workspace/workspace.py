@@ -236,12 +236,12 @@ class Workspace:
 
     @cached_property
     def controllers(self) -> frozenset[str]:
-        """The names of sections in files of parameters that may be those of controllers."""
+        """The names of sections in parameter files that may be those of controllers."""
         return frozenset(keys[-1] for _, tree in self.trees for keys, _ in sections_in(tree) if keys)
 
     @cached_property
     def typed_sections(self) -> frozenset[str]:
-        """The names of controllers and others that files of parameters give a type."""
+        """The names of controllers and others that parameter files give a type."""
         sections = [(keys, section) for _, tree in self.trees for keys, section in sections_in(tree)]
         own = {keys[-1].rpartition("/")[2] for keys, section in sections if keys and section.get("type") is not None}
         named = {
@@ -270,7 +270,7 @@ class Workspace:
 
     @cached_property
     def parameter_files(self) -> Mapping[str, list[StartedNode]]:
-        """The files of parameters, by their paths in the submission, with the nodes that are given them."""
+        """The parameter files, by their paths in the submission, with the nodes that are given them."""
         found: dict[str, list[StartedNode]] = {}
         for _, node in self.nodes:
             for given in node.parameters or ():
@@ -309,7 +309,7 @@ class Workspace:
 
     @cached_property
     def controller_files(self) -> frozenset[str]:
-        """The files of parameters, by their paths in the submission, that Gazebo and spawners give controllers."""
+        """The parameter files, by their paths in the submission, that Gazebo and spawners give controllers."""
         spawned = (it for _, node in self.nodes if node.executable in _SPAWNERS for it in controllers_of(node) or ())
         given = (*self._simulated, *(it for controller in spawned for it in controller.parameters or ()))
         paths = (self.source_of(it.path) for it in given if it.path)

@@ -1,4 +1,4 @@
-"""The values in YAML files of parameters, each with the keys above it."""
+"""The values in YAML parameter files, each with the keys above it."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -43,7 +43,7 @@ def values_in(node: YamlNode, keys: tuple[str, ...] = ()) -> Iterator[YamlValue]
 
 
 def sections_in(node: YamlNode, keys: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], YamlNode]]:
-    """Yield the parameters of each node in a file of parameters: the keys of the node, and the mapping below."""
+    """Yield the parameters of each node in a parameter file: the keys of the node, and the mapping below."""
     if not isinstance(node.value, dict) or len(keys) > _MAX_DEPTH:
         return
     for key, inner in node.value.items():

@@ -198,7 +198,7 @@ class Expander:
     def _warn_of_names(self) -> None:
         """List the functions that wrote to stderr, the names of xacro that got other values, and each use of ^."""
         for name, place, attribute in self.texts.redefined.values():
-            message = f"{quoted(name)} is a name of xacro's own, which warns of another value: choose another name"
+            message = f"{quoted(name)} is a built-in name of xacro, which warns if it is redefined: choose another name"
             self.warn(xacro_problems.XACRO_REDEFINED, message, place, attribute)
         for name, expression in self.texts.noted:
             at = self._where(expression)

@@ -15,7 +15,7 @@ XACRO_UNDETERMINED = Kind(
     "XACRO006", "xacro that cannot be determined statically", severity="warning", effect="undetermined"
 )
 # xacro writes these to stderr, and expands the file all the same.
-XACRO_REDEFINED = warns("XACRO007", "A name of xacro's own that gets another value")
+XACRO_REDEFINED = warns("XACRO007", "A built-in name of xacro that is redefined")
 XACRO_DEPRECATED = warns("XACRO008", "A function that is called without its namespace")
 XACRO_PREFIXED = warns("XACRO009", "A macro whose name begins with xacro:")
 XACRO_ATTRIBUTE = warns("XACRO010", "An attribute that a xacro tag does not have")

@@ -14,7 +14,7 @@ DETECTOR = "cart_bringup/config/detector.yaml"
 
 
 def workspace_with(detector: str) -> Submission:
-    """Return the workspace with another file of parameters of the detector."""
+    """Return the workspace with another parameter file of the detector."""
     return cart({**cart_files(), DETECTOR: detector})
 
 

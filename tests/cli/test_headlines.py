@@ -28,12 +28,12 @@ def headline(kind: Format, text: str) -> str:
     """Return what a report of this format shows first, or as its score: 9 / 11."""
     patterns = {
         Format.TERMINAL: r" (\S+/\S+|Excused) A small lab",
-        Format.MARKDOWN: r"\A# small: .*? \*\*(?:All automatic checks passed: )?(\S+ (?:/|of) \S+|Excused)",
-        Format.JUNIT: r"<system-out>small: .*?\) (?:All automatic checks passed: )?(\S+ (?:/|of) \S+|Excused)",
+        Format.MARKDOWN: r"\A# small: .*? \*\*(?:All automatic checks passed: |No mistakes found: )?(\S+ (?:/|of) \S+|Excused)",
+        Format.JUNIT: r"<system-out>small: .*?\) (?:All automatic checks passed: |No mistakes found: )?(\S+ (?:/|of) \S+|Excused)",
         Format.GITHUB: r"\A::notice title=(.*?)(?: points)?%3A",
         Format.HTML: r'class="score"><strong>(.*?)(?: points)?</p>',
         Format.SVG: r"A small lab: (.*?)(?: points)?<",
-        Format.GRADESCOPE: r'"output": "# small: .*?\*\*(?:All automatic checks passed: )?(\S+ (?:/|of) \S+|Excused)',
+        Format.GRADESCOPE: r'"output": "# small: .*?\*\*(?:All automatic checks passed: |No mistakes found: )?(\S+ (?:/|of) \S+|Excused)',
     }
     found = re.search(patterns[kind], text)
     assert found, (kind, text[:400])

@@ -65,7 +65,7 @@ def test_nothing_of_a_submission_is_imported_or_run(trapped: Path, start: str, c
         timeout=HANG_TIMEOUT,
     )
     assert done.returncode == 1  # what setup.py does in the end cannot be determined statically
-    assert done.stderr.startswith(b"grader: exit code 1: could not be decided, and needs manual grading: ")
+    assert done.stderr.startswith(b"grader: exit code 1: cannot be determined, and needs manual grading: ")
     assert done.stderr.count(b"\n") == 1
     assert not (trapped.parent / "ran").exists()
 

@@ -216,7 +216,7 @@ def test_included_by() -> None:
 
 
 def test_files_are_named() -> None:
-    """A launch file names the files of parameters that it gives to nodes, and stops without one for all nodes."""
+    """A launch file names the parameter files that it gives to nodes, and stops without one for all nodes."""
     found = launch(f"SetParametersFromFile(str({FILE})), " + NAMED.format("CONFIG / 'wild.yaml'"))
     named = [[it.path for it in found.named(purpose)] for purpose in ("read", "parameters")]
     spawned = launch("Node(package='controller_manager', executable='spawner', arguments=['a', '-p', 'x.yaml'])")

@@ -10,12 +10,12 @@ _CONTROLLERS, _URDF = "config/controllers.yaml", "cart.urdf.xacro"
 _DETECTOR, _ALARM = "cart_nodes/detector.py", "cart_nodes/alarm.py"
 
 WRONG: list[tuple[Family, str, list[Edit]]] = [
-    ("files", ("share/cart_bringup/config/detectors.yaml is looked for, but the package has no file 'detectors.yaml';"
+    ("files", ("a build installs no share/cart_bringup/config/detectors.yaml: the package has no file 'detectors.yaml';"
      " did you mean 'detector.yaml'?"), [(_LAUNCH, '"detector.yaml"', '"detectors.yaml"')]),
-    ("files", ("share/cart_bringup/config/hall.yaml is looked for, but a build installs it as"
+    ("files", ("a build installs no share/cart_bringup/config/hall.yaml: it installs the file as"
      " share/cart_bringup/worlds/hall.yaml"), [(_LAUNCH, '"worlds"', '"config"')]),
-    ("files", ("share/cart_bringup/worlds/hall.yaml is looked for, but a build does not install worlds/hall.yaml: no"
-     " install() in CMakeLists.txt names it"), [("cart_bringup/CMakeLists.txt", " worlds", "")]),
+    ("files", ("a build installs no share/cart_bringup/worlds/hall.yaml: no install() in CMakeLists.txt names"
+     " worlds/hall.yaml"), [("cart_bringup/CMakeLists.txt", " worlds", "")]),
     ("files", "the image of the map, 'hall.png', does not exist; did you mean 'hall.pgm'?",
      [("worlds/hall.yaml", "hall.pgm", "hall.png")]),
     ("files", "there is no package 'cart_bringups'; did you mean 'cart_bringup'?",
@@ -214,7 +214,7 @@ CORRECT: list[tuple[str, list[Edit]]] = [
     ("a topic that a node of another package may publish", [
         (_LAUNCH, '"camera/image"', '"camera/image_raw"'), (_LAUNCH, '"nav2_map_server"', '"usb_cam"'),
         ("cart_bringup/package.xml", "nav2_map_server", "usb_cam")]),
-    ("a topic that a file of parameters names", [
+    ("a topic that a parameter file names", [
         (_LAUNCH, '"camera/image"', '"camera/image_raw"'),
         ("navigation.yaml", "robot_base_frame", "image_topic: camera/image_raw\n      robot_base_frame")]),
     ("a topic of a driver that is started by hand", [

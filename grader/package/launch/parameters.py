@@ -75,7 +75,7 @@ def _evaluate_file(call: Call, context: Context) -> None:
     path = _path_of(call, context)
     text = context.text_of(path) if isinstance(path, str) else None
     if call.kwargs.get("allow_substs") not in (None, False) and (text is None or _SUBSTITUTION in text):
-        raise Undetermined("substitutions in a file of parameters are not evaluated", call.at)
+        raise Undetermined("substitutions in a parameter file are not evaluated", call.at)
 
 
 def _path_of(call: Call, context: Context) -> Resolved:
@@ -84,7 +84,7 @@ def _path_of(call: Call, context: Context) -> Resolved:
     if isinstance(given, PurePosixPath):
         return str(given)
     if not all(isinstance(it, str | Call | Unknown) for it in (given if isinstance(given, list) else [given])):
-        raise Undetermined("the path of a file of parameters is not evaluated", call.at)
+        raise Undetermined("the path of a parameter file is not evaluated", call.at)
     return resolve(given, context, call.at)
 
 
@@ -351,7 +351,7 @@ def parameters_of(
 
     Args:
         node: The node, as it is started.
-        installation: What is installed: the files of parameters are read from it.
+        installation: What is installed: the parameter files are read from it.
         name: The name that the node has in its program if the launch file gives it none; or the full name of another
             node of the same process, such as a controller.
         is_python: Whether it is written in Python, if this is known.
@@ -424,7 +424,7 @@ def _key_of(given: GivenParameters, own: str | None) -> str:
 
 
 def _sections(node: YamlNode, key: str, *, is_plain: bool) -> Iterator[tuple[str, dict[str, ParameterValue]]]:
-    """Yield the sections of a file of parameters, each with its key, which begins with a slash."""
+    """Yield the sections of a parameter file, each with its key, which begins with a slash."""
     for name, value in node.value.items() if isinstance(node.value, dict) and key.count("/") < _MAX_DEPTH else ():
         if name == _KEY:
             values = _flat(value, "", 0)
@@ -443,7 +443,7 @@ def _flat(node: YamlNode, name: str, depth: int) -> Iterator[tuple[str, YamlNode
 
 def _of_file(node: YamlNode, *, is_plain: bool) -> ParameterValue:
     if not is_plain and _SUBSTITUTION in str(node.text):
-        return ParameterValue(Unknown("substitutions in a file of parameters are not evaluated", START), node.location)
+        return ParameterValue(Unknown("substitutions in a parameter file are not evaluated", START), node.location)
     return ParameterValue(_value_of(node), node.location)
 
 
