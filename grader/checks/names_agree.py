@@ -2,6 +2,7 @@
 
 from grader.checks.outcome import Outcome, failed, passed
 from grader.errors import NotDecided
+from grader.source import Location
 from grader.submission.submission import Submission
 from grader.text import first_lines
 from grader.workspace.names import Family, place_text
@@ -23,9 +24,12 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
     submission.needed_package()
     wrong, undecided = wrong_names(submission, of), read_agreement(submission).undecided
     if wrong:
-        texts = [f"{place_text(it.location)}: {it.message}" for it in wrong[1:]]
-        message = "; ".join([wrong[0].message, *first_lines(texts, _MAX_NAMED - 1)])
-        return failed(message, wrong[0].location, mistake=wrong[0].message)
+        places: dict[str, Location] = {}
+        for it in wrong:  # one mistake may be at several places
+            places.setdefault(it.message, it.location)
+        (message, at), *others = places.items()
+        texts = [f"{place_text(place)}: {text}" for text, place in others]
+        return failed("; ".join([message, *first_lines(texts, _MAX_NAMED - 1)]), at, mistake=message)
     if of in undecided:
         reason = undecided[of]
         cause = f"cannot determine statically whether the names of {of} agree"

@@ -55,7 +55,7 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
         return
     yield from _misplaced(tree)
     names = [(node, workspace.name_of(node)) for node in nodes]
-    sections = {keys[-1].rpartition("/")[2]: section for keys, section in sections_in(tree) if keys}
+    sections = {keys[-1].rpartition("/")[2]: keys for keys, _ in sections_in(tree) if keys}
     read = [name for _, name in names if name is not None]
     if len(read) < len(names) or not sections:
         return
@@ -76,8 +76,9 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
                 continue  # the others may be of nodes that are not submitted
             key, is_one = meant or unread[0], meant is not None or len(unread) == len(lacking) == 1
             message = f"there are parameters for {key}, but none for the node {name!r}, which gets this file"
-            either = corrections(key, sections[key].location, name if is_one else None, node.location)
-            yield Mismatch("parameters", message, sections[key].location, node.location, True, either)
+            at = tree.key_location(*sections[key])
+            either = corrections(key, at, name if is_one else None, node.location)
+            yield Mismatch("parameters", message, at, node.location, True, either)
 
 
 def _controllers_given(workspace: Workspace) -> Iterator[Fact]:
@@ -98,11 +99,11 @@ def _misplaced(tree: YamlNode) -> Iterator[Fact]:
             for key, inner in node.value.items():
                 if key == PARAMETERS and is_below:
                     message = f"{name}: ros__parameters is inside of other ros__parameters"
-                    yield Mismatch("parameters", message, inner.location)
+                    yield Mismatch("parameters", message, node.key_location(key))
                 elif not is_below and is_misspelt_key(key, inner):
                     message = f"{name}: rcl does not know the key {key!r}; did you mean {PARAMETERS!r}?"
-                    either = corrections(key, inner.location, PARAMETERS)
-                    yield Mismatch("parameters", message, inner.location, corrections=either)
+                    at = node.key_location(key)
+                    yield Mismatch("parameters", message, at, corrections=corrections(key, at, PARAMETERS))
                 else:
                     waiting.append((key, inner, is_below or key == PARAMETERS))
         elif not is_below and name:
