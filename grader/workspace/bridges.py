@@ -3,9 +3,11 @@
 import posixpath
 import re
 from collections.abc import Iterator
+from functools import partial
 from typing import NamedTuple
 
 from grader.names import closest
+from grader.package.installed_files import open_meant
 from grader.package.launch.parameters import parameters_of
 from grader.package.yaml_nodes import YamlNode
 from grader.source import Location
@@ -13,7 +15,7 @@ from grader.text import quoted
 from grader.workspace.gazebo import BRIDGE, LAUNCHES, GazeboTopic, gazebo_topics, roots
 from grader.workspace.known import known
 from grader.workspace.names import Compared, Fact, Mismatch, corrections, place_text
-from grader.workspace.workspace import WithSources, Workspace
+from grader.workspace.workspace import Workspace
 
 _TO_ROS, _TO_GAZEBO, _BOTH = "GZ_TO_ROS", "ROS_TO_GZ", "BIDIRECTIONAL"
 _DIRECTIONS = {"[": _TO_ROS, "]": _TO_GAZEBO, "@": _BOTH}
@@ -149,7 +151,7 @@ def _clocks(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Mismatch]:
     if any(not workspace.source_of(path) and "/ros_gz_sim/" not in path for path in included):
         return
     for package, node in workspace.nodes:
-        given = parameters_of(node, WithSources(package), workspace.name_of(node) or "", is_python=None).values
+        given = parameters_of(node, partial(open_meant, package), workspace.name_of(node) or "", is_python=None).values
         found = given.get("use_sim_time")
         if found is not None and str(found.value).lower() == "true" and node.when:
             message = f"{node.executable} waits for the time of the simulation, but no bridge takes clock from Gazebo"

@@ -1,16 +1,18 @@
 """Gazebo: the topics of sensors and systems in the robot and in worlds, and what launch files ask of the simulation."""
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
 
+from grader.package.installed_files import open_meant
 from grader.package.launch.model import StartedNode
 from grader.package.launch.parameters import parameters_of
 from grader.source import Location
 from grader.text import quoted
 from grader.workspace.known import known
 from grader.workspace.names import Fact, Mismatch, corrections, place_text
-from grader.workspace.workspace import WithSources, Workspace
+from grader.workspace.workspace import Workspace
 from grader.xml.parsing import Element, XmlFile
 
 BRIDGE, _SIMULATION = "ros_gz_bridge", "ros_gz_sim"
@@ -120,7 +122,7 @@ def _bridges(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield bridges without any topic."""
     for package, node in workspace.nodes:
         if node.package == BRIDGE and node.executable == "parameter_bridge" and node.arguments == ():
-            found = parameters_of(node, WithSources(package), workspace.name_of(node) or "", is_python=False)
+            found = parameters_of(node, partial(open_meant, package), workspace.name_of(node) or "", is_python=False)
             if not found.unknown and "config_file" not in found.values:
                 message = "the bridge has no topics: neither arguments, nor the parameter config_file"
                 yield Mismatch("topics", message, node.location)

@@ -3,8 +3,10 @@
 import re
 from collections.abc import Iterator, Sequence
 from fnmatch import fnmatchcase
+from functools import partial
 
 from grader.names import closest, near
+from grader.package.installed_files import open_meant
 from grader.package.launch.model import StartedNode
 from grader.package.launch.parameters import parameters_of
 from grader.package.nodes import PythonNode
@@ -12,7 +14,7 @@ from grader.package.package import Package
 from grader.package.yaml_nodes import YamlFault, YamlNode
 from grader.workspace.known import known
 from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use, corrections
-from grader.workspace.workspace import WithSources, Workspace
+from grader.workspace.workspace import Workspace
 from grader.workspace.yaml_values import PARAMETERS, is_misspelt_key, is_parameters, sections_in, values_in
 
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
@@ -125,7 +127,7 @@ def _declared(workspace: Workspace, package: Package, node: StartedNode, own: Py
     for it in own.parameters:
         if it.name is not None and not it.is_declared:
             yield Use("parameter", it.name, it.location, "get_parameter", owner)
-    found = parameters_of(node, WithSources(package, absent_are_empty=True), own.name or "", is_python=True)
+    found = parameters_of(node, partial(open_meant, package, absent_are_empty=True), own.name or "", is_python=True)
     if found.unknown:
         yield Undecided("parameters", found.unknown)
     wide = workspace.wildcard_places(node)
@@ -150,7 +152,7 @@ def _required(workspace: Workspace, package: Package, node: StartedNode) -> Iter
     """Yield the parameters that a program of another package needs, and does not get."""
     needed = known()["required_parameters"].get(f"{node.package}/{node.executable}", ())
     if needed and node.arguments == ():
-        found = parameters_of(node, WithSources(package), workspace.name_of(node) or "", is_python=False)
+        found = parameters_of(node, partial(open_meant, package), workspace.name_of(node) or "", is_python=False)
         for name in [it for it in needed if it not in found.values and not found.unknown]:
             guess = closest(name, found.values)
             either = corrections(guess, found.values[guess].location, name) if guess is not None else ()

@@ -69,7 +69,7 @@ def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
     if managers:
         yield from _started(workspace)
     for package, node in managers:
-        found = parameters_of(node, package, "lifecycle_manager")
+        found = parameters_of(node, package.open_installed, "lifecycle_manager")
         given = found.values.get("node_names")
         if found.unknown and given is None:
             yield Undecided("programs", found.unknown)

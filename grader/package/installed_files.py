@@ -1,0 +1,82 @@
+"""What builds install at the paths where files look for others, and what a package has instead."""
+
+import posixpath
+import re
+from contextlib import suppress
+from typing import NamedTuple
+
+from grader.errors import InputError
+from grader.names import closest
+from grader.package.launch.places import SHARE
+from grader.package.package import CMAKE, Package
+
+_FOR_TESTS = re.compile(r"if\s*\(\s*BUILD_TESTING.*?endif", re.DOTALL)
+_MAX_CMAKE, _MAX_FILE = 128 * 1024, 512 * 1024  # bytes
+
+
+class Absence(NamedTuple):
+    """What a package has instead of a file that is looked for, and this as the end of a sentence."""
+
+    text: str
+    elsewhere: str = ""  # where a build installs a file of this name, below the prefix
+    source: str = ""  # the file of this name that no build installs
+
+
+def share_parts(path: str) -> tuple[str, str]:
+    """Return the package in whose share folder a path is, and the path in it; of another path, empty texts."""
+    inside = posixpath.normpath(path)
+    owner, _, rest = inside.removeprefix(f"{SHARE}/").partition("/")
+    return (owner, rest) if inside.startswith(f"{SHARE}/") else ("", "")
+
+
+def absence(owner: Package, target: str) -> Absence:
+    """Return what a package has instead of the file that it does not install at a path below the prefix."""
+    name = posixpath.basename(target)
+    elsewhere = next((it for it in owner.installed if posixpath.basename(it) == name), "")
+    if elsewhere:
+        return Absence(f"a build installs it as {elsewhere}", elsewhere)
+    source = next((it for it in owner.tree.files if posixpath.basename(it) == name), "")
+    if source:
+        return Absence(f"a build does not install {source}", source=source)
+    return Absence(f"the package has no file {name!r}")
+
+
+def is_surely_absent(package: Package, target: str) -> bool:
+    """Return whether a file that the package does not have is surely not installed at a path below the prefix.
+
+    What a program writes is in a folder of its own, and like no other, or a folder itself.
+    """
+    names = map(posixpath.basename, package.tree.files)
+    folder, _, name = target.rpartition("/")
+    folders = {posixpath.dirname(it) for it in package.installed}
+    return closest(name, names) is not None or (folder in folders and "." in name)
+
+
+def are_installs_known(package: Package) -> bool:
+    """Return whether it is known what a build of a package installs."""
+    setup = package.installation
+    is_known = setup is not None and setup.fault is None and not setup.unknown
+    return is_known and not _installs_for_tests(package)
+
+
+def open_meant(package: Package, path: str, *, absent_are_empty: bool = False) -> tuple[bytes, str] | None:
+    """Return what builds install at a path below the prefix, else the only file of its name in the package of the path.
+
+    With `absent_are_empty`, a file that surely is not there is empty.
+    """
+    found, parts = package.open_installed(path), path.split("/")
+    owner = package.find(parts[1]) if found is None and len(parts) > 2 else None
+    if owner is None:
+        return found
+    named = [it for it in owner.tree.files if posixpath.basename(it) == parts[-1]]
+    if not named and absent_are_empty and are_installs_known(owner) and is_surely_absent(owner, path):
+        return b"", path
+    with suppress(InputError):
+        return (owner.tree.files[named[0]].read(_MAX_FILE), owner.path(named[0])) if len(named) == 1 else None
+    return None
+
+
+def _installs_for_tests(package: Package) -> bool:
+    """Return whether CMakeLists.txt installs something only if BUILD_TESTING is on, as it is by default."""
+    text = package.tree.files[CMAKE].read(_MAX_CMAKE).decode("utf-8", "replace") if package.is_cmake else ""
+    return any("install(" in block.lower() for block in _FOR_TESTS.findall(text))
