@@ -10,7 +10,7 @@ from grader.checks.started_nodes import Fault, Wanted, find_faults
 from grader.errors import InputError, MissingElement, NotDecided, RubricError
 from grader.files.reading import URDF_LIMIT
 from grader.names import closest
-from grader.package.installed_files import absence, share_parts
+from grader.package.installed_files import Lookup, look_up, share_parts
 from grader.package.launch.places import (
     BY_MOVEIT,
     BY_UTF8,
@@ -457,20 +457,17 @@ def _is_slip(word: str, known: str) -> bool:
 
 def _place_in_package(owner: Package, target: str, file: "NamedFile") -> _FilePlace:
     """Return whether a build of a package installs a file at the path where it is looked for."""
-    setup, what = owner.installation, _WORDS[file.purpose]
-    if setup is not None and setup.fault is not None and not setup.fault.sure:
-        return _FilePlace(file, "unknown", f"cannot determine statically whether a build installs the {what}")
-    if setup is None or setup.fault is not None:
-        why = setup.fault_text if setup is not None else "there is no setup.py"
-        return _FilePlace(file, "missing", f"a build installs no {what}: {why}")
-    installed = setup.installed()
-    if target in installed and setup.misspelt is not None:
-        return _FilePlace(file, "missing", f"a build does not install the {what}: {setup.misspelt.message}")
-    if target in installed:
-        return _place_not_utf8(owner, installed[target], file) or _FilePlace(file, "found", target)
-    if setup.unknown:
-        return _FilePlace(file, "unknown", f"cannot determine statically whether a build installs {target}")
-    return _place_not_there(owner, target, file)
+    found, setup, what = look_up(owner, target), owner.installation, _WORDS[file.purpose]
+    match found.state:
+        case "unknown":
+            return _FilePlace(file, "unknown", f"cannot determine statically whether a build installs {target}")
+        case "no build":
+            return _FilePlace(file, "missing", f"a build installs no {what}: {found.text}")
+        case "installed" if setup is not None and setup.misspelt is not None:
+            return _FilePlace(file, "missing", f"a build does not install the {what}: {setup.misspelt.message}")
+        case "installed":
+            return _place_not_utf8(owner, found.path, file) or _FilePlace(file, "found", target)
+    return _place_not_there(owner, target, found, file)
 
 
 def _place_not_utf8(owner: Package, path: str, file: "NamedFile") -> _FilePlace | None:
@@ -488,15 +485,15 @@ def _place_not_utf8(owner: Package, path: str, file: "NamedFile") -> _FilePlace 
     return None
 
 
-def _place_not_there(owner: Package, target: str, file: "NamedFile") -> _FilePlace:
+def _place_not_there(owner: Package, target: str, found: Lookup, file: "NamedFile") -> _FilePlace:
     """Return where else a build installs a file, or what the package has instead of it."""
-    found, rest = absence(owner, target), target.removeprefix(owner.share)
     message = f"the launch file looks for the {_WORDS[file.purpose]} at {target}, but {found.text}"
-    if found.elsewhere:
+    if found.state == "elsewhere":
         # Outside of the package's folder, at the path where the launch file looks in it: that is the fault of setup.py.
-        is_of_setup = not found.elsewhere.startswith(owner.share) and f"/{found.elsewhere}".endswith(f"/{rest}")
+        is_at_path = f"/{found.path}".endswith(f"/{target.removeprefix(owner.share)}")
+        is_of_setup = is_at_path and not found.path.startswith(owner.share)
         return _FilePlace(file, "missing" if is_of_setup else "wrong", message)
-    if found.source:
+    if found.state == "not installed":
         return _FilePlace(file, "missing", message)
     name, is_include = posixpath.basename(target), file.purpose == "include"
     others = {*map(posixpath.basename, owner.tree.files)} - {posixpath.basename(file.location.path)}

@@ -3,23 +3,26 @@
 import posixpath
 import re
 from contextlib import suppress
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from grader.errors import InputError
 from grader.names import closest
 from grader.package.launch.places import SHARE
 from grader.package.package import CMAKE, Package
 
+if TYPE_CHECKING:
+    from grader.package.installation import Installation
+
 _FOR_TESTS = re.compile(r"if\s*\(\s*BUILD_TESTING.*?endif", re.DOTALL)
 _MAX_CMAKE, _MAX_FILE = 128 * 1024, 512 * 1024  # bytes
 
 
-class Absence(NamedTuple):
-    """What a package has instead of a file that is looked for, and this as the end of a sentence."""
+class Lookup(NamedTuple):
+    """What a build installs at a path where a file is looked for, or why nothing, as the end of a sentence."""
 
-    text: str
-    elsewhere: str = ""  # where a build installs a file of this name, below the prefix
-    source: str = ""  # the file of this name that no build installs
+    state: Literal["installed", "unknown", "no build", "elsewhere", "not installed", "absent"]
+    path: str = ""  # the file of the package; elsewhere: where a build installs it, below the prefix
+    text: str = ""
 
 
 def share_parts(path: str) -> tuple[str, str]:
@@ -29,16 +32,30 @@ def share_parts(path: str) -> tuple[str, str]:
     return (owner, rest) if inside.startswith(f"{SHARE}/") else ("", "")
 
 
-def absence(owner: Package, target: str) -> Absence:
-    """Return what a package has instead of the file that it does not install at a path below the prefix."""
-    name = posixpath.basename(target)
-    elsewhere = next((it for it in owner.installed if posixpath.basename(it) == name), "")
+def look_up(owner: Package, target: str) -> Lookup:
+    """Return what a build of a package installs at a path below the prefix, or what the package has instead."""
+    setup, name = owner.installation, posixpath.basename(target)
+    if setup is None or setup.fault is not None:
+        return _without_setup(setup)
+    if target in owner.installed:
+        return Lookup("installed", owner.installed[target])
+    if setup.unknown:
+        return Lookup("unknown", text=f"cannot determine statically what {setup.file} installs")
+    elsewhere = next((path for path in owner.installed if posixpath.basename(path) == name), "")
     if elsewhere:
-        return Absence(f"a build installs it as {elsewhere}", elsewhere)
-    source = next((it for it in owner.tree.files if posixpath.basename(it) == name), "")
-    if source:
-        return Absence(f"a build does not install {source}", source=source)
-    return Absence(f"the package has no file {name!r}")
+        return Lookup("elsewhere", elsewhere, f"a build installs it as {elsewhere}")
+    own = next((path for path in owner.tree.files if posixpath.basename(path) == name), "")
+    text = f"a build does not install {name}" if own else f"the package has no file {name!r}"
+    return Lookup("not installed" if own else "absent", own, text)
+
+
+def _without_setup(setup: "Installation | None") -> Lookup:
+    """Return why nothing is known to be installed."""
+    if setup is None or setup.fault is None:
+        return Lookup("no build", text="its package has no setup.py")
+    if setup.fault.sure:
+        return Lookup("no build", text=setup.fault_text)
+    return Lookup("unknown", text=f"{setup.file} cannot be read ({setup.fault.message})")
 
 
 def is_surely_absent(package: Package, target: str) -> bool:

@@ -12,7 +12,7 @@ from grader.package.launch.parameters import parameters_of
 from grader.package.yaml_nodes import YamlNode
 from grader.source import Location
 from grader.text import quoted
-from grader.workspace.gazebo import BRIDGE, LAUNCHES, GazeboTopic, gazebo_topics, roots
+from grader.workspace.gazebo import BRIDGE, GazeboTopic, gazebo_topics, roots
 from grader.workspace.known import known
 from grader.workspace.names import Compared, Fact, Mismatch, corrections, place_text
 from grader.workspace.workspace import Workspace
@@ -49,9 +49,8 @@ class _BridgeRow(NamedTuple):
 
 def bridge_rows(workspace: Workspace) -> Iterator[_BridgeRow]:
     """Yield the rows of bridges in YAML files, and those in the arguments of bridges."""
-    launches = [source.text for package in workspace.packages for source in workspace.sources_of(package, LAUNCHES)]
     for path, tree in workspace.trees:
-        is_used = any(posixpath.basename(path) in text for text in launches)
+        is_used = any(posixpath.basename(path) in text for text in workspace.launch_texts)
         for row in tree.items:
             if row.get("ros_type_name") is not None and row.get("gz_type_name") is not None:
                 yield from _row_in_yaml(row, is_used=is_used)
@@ -173,11 +172,11 @@ def _defined(workspace: Workspace) -> set[str]:
 
 def _is_open(workspace: Workspace) -> bool:
     """Return whether there may be other sensors and bridges than those that were read."""
-    launches = [launch for _, _, launch in workspace.launches]
-    if workspace.robot is None or workspace.has_other_robots or any(it.syntax or it.unread for it in launches):
+    is_whole = workspace.robot is not None and not workspace.has_other_robots
+    if not is_whole or any(launch.more for _, _, launch in workspace.launches):
         return True
     arguments = [node.arguments for _, node in workspace.nodes if node.package in (BRIDGE, "ros_gz_image")]
-    if any(launch.unknown for launch in launches) or any(words is None or None in words for words in arguments):
+    if any(words is None or None in words for words in arguments):
         return True
     models = [it.findtext("uri") or "" for file in workspace.sdf_files for it in file.root.iter("include")]
     return any(uri.rpartition("/")[2].lower() not in _WITHOUT_SENSORS for uri in models)

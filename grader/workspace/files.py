@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from grader.names import closest, near
 from grader.package.installation import Installation
-from grader.package.installed_files import absence, are_installs_known, is_surely_absent, share_parts
+from grader.package.installed_files import are_installs_known, is_surely_absent, look_up, share_parts
 from grader.package.launch.model import Launch
 from grader.package.launch.places import PREFIX, SHARE
 from grader.package.package import Package
@@ -96,13 +96,14 @@ def _not_there(owner: Package, target: str, at: Location) -> Mismatch:
     setup, name = owner.installation, posixpath.basename(target)
     assert setup is not None
     start = Location(setup.source.path, 1, 1)
-    found = absence(owner, target)
+    found = look_up(owner, target)
     message = f"{target} is looked for, but {found.text}"
-    if found.elsewhere:
-        return Mismatch("files", message, at, corrections=_of_folders(target, found.elsewhere, at, start))
-    if found.source:
-        either, called_at = _of_install(setup, found.source, start), setup.location(setup.called_at)
-        return Mismatch("files", f"{message}: no {setup.entry} names it", at, called_at, corrections=either)
+    if found.state == "elsewhere":
+        return Mismatch("files", message, at, corrections=_of_folders(target, found.path, at, start))
+    if found.state == "not installed":
+        either, called_at = _of_install(setup, found.path, start), setup.location(setup.called_at)
+        message = f"{target} is looked for, but a build does not install {found.path}: no {setup.entry} names it"
+        return Mismatch("files", message, at, called_at, corrections=either)
     meant = closest(name, map(posixpath.basename, owner.tree.files))
     guess = f"; did you mean {meant!r}?" if meant else ""
     return Mismatch(

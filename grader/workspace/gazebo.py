@@ -16,7 +16,6 @@ from grader.workspace.workspace import Workspace
 from grader.xml.parsing import Element, XmlFile
 
 BRIDGE, _SIMULATION = "ros_gz_bridge", "ros_gz_sim"
-LAUNCHES = (".launch.py", "_launch.py", ".launch.xml", ".launch.yaml", ".launch")
 
 
 class GazeboTopic(NamedTuple):
@@ -65,7 +64,7 @@ def roots(workspace: Workspace) -> Iterator[tuple[Element, Callable[[Element], L
 
 def gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield systems that worlds lack, and what is spawned, or bridged, from what is not there."""
-    texts = [source.text for package in workspace.packages for source in workspace.sources_of(package, LAUNCHES)]
+    texts = workspace.launch_texts
     files = [it for it in workspace.sdf_files if any(it.source.path.rpartition("/")[2] in text for text in texts)]
     worlds = [(file, world) for file in files for world in file.root.iterchildren("world")]
     for file, world in worlds:

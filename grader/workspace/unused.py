@@ -12,21 +12,8 @@ from grader.workspace.workspace import Workspace
 
 _KINDS = (".yaml", ".yml", ".xacro", ".urdf", ".rviz", ".srdf")
 _TEXTS = (
-    *_KINDS,
-    ".py",
-    ".xml",
-    ".launch",
-    ".txt",
-    ".cpp",
-    ".hpp",
-    ".cc",
-    ".h",
-    ".md",
-    ".sh",
-    ".json",
-    ".sdf",
-    ".world",
-)
+    *_KINDS, ".py", ".xml", ".launch", ".txt", ".cpp", ".hpp", ".cc", ".h", ".md", ".sh", ".json", ".sdf", ".world",
+)  # fmt: skip
 _MAX_TEXT = 512 * 1024  # bytes
 _WORD = re.compile(rb"[\w-]+")
 _BY_USUAL_NAMES = b"moveit_configs_utils"  # it finds the files of a package by their usual names

@@ -11,7 +11,7 @@ from grader.errors import InputError
 from grader.package.installed_files import open_meant
 from grader.package.launch.model import GivenParameters, Launch, StartedNode
 from grader.package.launch.parameters import NodeParameters, controllers_of, parameters_of
-from grader.package.launch.places import PREFIX, SHARE
+from grader.package.launch.places import ENDINGS, PREFIX, SHARE
 from grader.package.nodes import PythonNode, PythonNodes, read_nodes
 from grader.package.package import MANIFEST, Package
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
@@ -319,6 +319,12 @@ class Workspace:
     def xacro_sources(self) -> tuple[Source, ...]:
         """The texts of the xacro files and URDFs."""
         return tuple(it for package in self.packages for it in self.sources_of(package, (".xacro", ".urdf")))
+
+    @cached_property
+    def launch_texts(self) -> tuple[str, ...]:
+        """The texts of the launch files."""
+        endings = (*ENDINGS, ".launch")
+        return tuple(it.text for package in self.packages for it in self.sources_of(package, endings))
 
     @cached_property
     def python_texts(self) -> tuple[str, ...]:
