@@ -2,10 +2,8 @@
 
 import posixpath
 import re
-from contextlib import suppress
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from grader.errors import InputError
 from grader.names import closest
 from grader.package.launch.places import SHARE
 from grader.package.package import CMAKE, Package
@@ -88,9 +86,8 @@ def open_meant(package: Package, path: str, *, absent_are_empty: bool = False) -
     named = [it for it in owner.tree.files if posixpath.basename(it) == parts[-1]]
     if not named and absent_are_empty and are_installs_known(owner) and is_surely_absent(owner, path):
         return b"", path
-    with suppress(InputError):
-        return (owner.tree.files[named[0]].read(_MAX_FILE), owner.path(named[0])) if len(named) == 1 else None
-    return None
+    data = owner.tree.read(named[0], _MAX_FILE) if len(named) == 1 else None
+    return (data, owner.path(named[0])) if data is not None else None
 
 
 def _installs_for_tests(package: Package) -> bool:

@@ -82,13 +82,11 @@ class Workspace:
             files = [it for it in package.tree.files if it.endswith((".yaml", ".yml")) and not it.startswith("test/")]
             paths = [it for it in files if it not in package.launch_files]
             for path in paths[:_MAX_FILES]:
-                own = package.path(path)
+                own, data = package.path(path), package.tree.read(path, _MAX_YAML)
                 try:
-                    found[own] = read_yaml(package.tree.files[path].read(_MAX_YAML), own)
+                    found |= {own: read_yaml(data, own)} if data is not None else {}
                 except YamlFault as fault:
                     found[own] = fault
-                except InputError:
-                    continue
         return found
 
     @property
@@ -300,12 +298,10 @@ class Workspace:
         """Yield the texts of the files of a package with these endings, without those of tests."""
         paths = [it for it in package.tree.files if it.endswith(endings) and not it.startswith("test/")]
         for path in paths[:_MAX_FILES]:
-            try:
-                data = package.tree.files[path].read(_MAX_YAML)
-            except InputError:
-                continue
-            text = data.decode("utf-8", "replace")
-            yield Source(package.path(path), _COMMENT[path.endswith(_OF_YAML)].sub(_blank, text))
+            data = package.tree.read(path, _MAX_YAML)
+            if data is not None:
+                text = data.decode("utf-8", "replace")
+                yield Source(package.path(path), _COMMENT[path.endswith(_OF_YAML)].sub(_blank, text))
 
     @cached_property
     def robot_files(self) -> frozenset[str] | None:
