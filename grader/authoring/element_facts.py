@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 from math import isfinite
 from typing import Any
 
-from grader.authoring.facts import Carried, Fact, Facts, Omission, Solution
+from grader.authoring.facts import Carried, Fact, Facts, Omission, Solution, are_joints_free
 from grader.package.launch.places import is_of_one_machine
 from grader.package.trees import is_path
 from grader.python.budget import Budget
@@ -35,10 +35,19 @@ def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
     covered = needed_interfaces(workspace_of(solution.submission))
     robot = solution.robot.robot
     joints, links = {joint.name for joint in robot.joints}, {link.name for link in robot.links}
-    without = _without_launch_files(solution, covered)
+    free = joints if are_joints_free(solution) else set[str]()
     are_compared = read_agreement(solution.submission).holds("topics")
+
+    def asked(it: Fact | Omission) -> Fact | Omission:
+        if isinstance(it, Omission):
+            return it
+        arguments = _weakened(it.arguments, free)
+        return it._replace(arguments=_without_topics(arguments) if are_compared else arguments)
+
+    without_launch = _root_without_launch_files(solution)
+    without = None if without_launch is None else [*map(asked, _entries(without_launch, covered))]
     met: Counter[str] = Counter()
-    for it in _entries(solution.root, covered):
+    for it in map(asked, _entries(solution.root, covered)):
         if isinstance(it, Omission):
             yield it
             continue
@@ -48,9 +57,7 @@ def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
             others = [one.arguments for one in without if isinstance(one, Fact) and one.words == it.words]
             other = others[met[it.words] - 1] if len(others) >= met[it.words] else None
             carried += _carried_from_launch(it, other, (*_OF_ARGUMENTS, *causes))
-        drawn = _without_topics if are_compared else dict
-        weaker = tuple(one._replace(arguments=drawn(one.arguments)) for one in carried)
-        yield it._replace(arguments=drawn(it.arguments), carried=weaker)
+        yield it._replace(carried=tuple(carried))
 
 
 def _without_topics(arguments: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -69,14 +76,14 @@ def _carried_from_names(fact: Fact, joints: Collection[str], links: Collection[s
         yield Carried((*of_joints, "frames names_agree"), fact.check, weaker)
 
 
-def _without_launch_files(solution: Solution, covered: Collection[str]) -> list[Fact | Omission] | None:
-    """Return the facts of the elements if no launch file gives arguments to xacro; None where there is no robot."""
+def _root_without_launch_files(solution: Solution) -> Element | None:
+    """Return the <robot> if no launch file gives arguments to xacro; None where there is no robot."""
     urdf, submission = solution.submission.urdf, solution.submission
     if not isinstance(urdf, Read) or not urdf.is_expanded:
         return None
     around = submission.surroundings(Budget())._replace(graded=None)
     reading = read_as_ros(urdf.data, urdf.path, around).reading
-    return None if reading.robot is None or reading.root is None else [*_entries(reading.root, covered)]
+    return None if reading.robot is None else reading.root
 
 
 def _carried_from_launch(fact: Fact, other: Mapping[str, Any] | None, causes: tuple[str, ...]) -> list[Carried]:

@@ -20,6 +20,7 @@ from grader.robot.shapes import is_empty
 from grader.robot.transforms import rotation_from_rpy
 from grader.submission.submission import Submission
 from grader.text import enumerated
+from grader.workspace.reading import read_agreement
 from grader.xml.elements import words_of_foreign
 from grader.xml.parsing import Element
 
@@ -94,6 +95,12 @@ def robot_facts(solution: Solution) -> Facts:
         yield from _body_facts(link)
     if robot.parent_joints:
         yield from _tree_facts(solution)
+
+
+def are_joints_free(solution: Solution) -> bool:
+    """Return whether joints may have other names: those that files use are compared with those of the robot."""
+    found = read_agreement(solution.submission)
+    return found.holds("frames") and found.holds("controllers")
 
 
 def _link_fact(link: str, check: str, **arguments: Any) -> Fact:
@@ -205,7 +212,7 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
     xyz, rpy = _rounded(pose.translation), _rounded(pose.rpy, 4)
     title = f"the frame {link!r} is at {point((*xyz,))} m in {parent!r}"
     if any(rpy):
-        title += f", with rpy {point((*_rounded([*map(degrees, rpy)], 1),))} degrees"
+        title += f", with rpy = {point((*_rounded([*map(degrees, rpy)], 1),))} (degrees)"
     frame = _link_fact(link, "frame_at", relative_to=parent, xyz=xyz, **({"rpy": rpy} if any(rpy) else {}))
     yield frame._replace(title=title)
     of_type = Carried((f"{link} held_by",), "frame_at", frame.arguments)  # a joint of another type has no such range
@@ -246,7 +253,7 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
     joints, root = robot.parent_joints.values(), robot.main_tree[0]
     words = words_of_foreign(solution.root)
     used = {joint.name: joint.child for joint in joints if joint.name in words}
-    if used:
+    if used and not are_joints_free(solution):
         yield _robot_fact("joints_named", parent=root, joints=used)
     fixed = (joint.child for joint in joints if joint.parent == root and joint.type == "fixed")
     rooted = _robot_fact("root_of_tree", link=root, holds=next(fixed, root))

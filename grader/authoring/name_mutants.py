@@ -16,7 +16,6 @@ _YAML = (".yaml", ".yml")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _INSTALL = re.compile(r"(?im)^[ \t]*install[ \t]*\([^()]*\)")
 _DEPENDENCY = re.compile(r"<((?:build_|build_export_|exec_)?depend)\b[^>]*>\s*([\w-]+)\s*</\1>")
-_TO_VALUE = re.compile(r"[\"']?\s*:(?:\s|#[^\n]*\n)*(?:[&!]\S+\s+)?")  # from a key
 _REVERSED = {"true": "false", "false": "true", "True": "False", "False": "True"}
 
 
@@ -68,9 +67,9 @@ def _of_node(source: Source, label: str, node: YamlNode, seen: set[YamlNode]) ->
     for number, item in enumerate(node.items, 1):
         yield from _of_node(source, f"{label}{number}.", item, seen)
     for key, inner in node.value.items() if isinstance(node.value, dict) else ():
-        end = source.offset(inner.location.line, inner.location.column)
-        start = source.text.rfind(key, 0, end)
-        if isinstance(inner.value, dict) and start >= 0 and _TO_VALUE.fullmatch(source.text, start + len(key), end):
+        at = node.key_location(key)
+        start = source.offset(at.line, at.column)
+        if isinstance(inner.value, dict) and source.text.startswith(key, start):
             yield MutantEdit("name misspelt", f"{label}{key}", start, start + len(key), misspelt(key))
         yield from _of_node(source, f"{label}{key}.", inner, seen)
 

@@ -98,7 +98,7 @@ def collides_as(
     [wanted] = shapes
     what = _shape_text(wanted)
     what += f" at {point(xyz)} m" if xyz else ""
-    what += f" with rpy {point(rpy)} rad" if any(rpy or ()) else ""
+    what += f" with rpy = {point(rpy)} (radians)" if any(rpy or ()) else ""
     what += f" in {relative_to!r}" if relative_to else ""
     T_link_wanted = placed_by(robot.pose(relative_to or link, relative_to=link), Origin(xyz or _ZERO, rpy or _ZERO))
 

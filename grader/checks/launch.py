@@ -10,13 +10,13 @@ from grader.checks.started_nodes import Fault, Wanted, find_faults
 from grader.errors import InputError, MissingElement, NotDecided, RubricError
 from grader.files.reading import URDF_LIMIT
 from grader.names import closest
+from grader.package.installed_files import Lookup, look_up, share_parts
 from grader.package.launch.places import (
     BY_MOVEIT,
     BY_UTF8,
     HOME,
     PREFIX,
     ROS,
-    SHARE,
     WORKING_FOLDER,
     is_launch_named,
     is_of_one_machine,
@@ -297,9 +297,8 @@ def _is_local(place: _FilePlace) -> bool:
 
 def _is_in_misnamed(package: Package, place: _FilePlace) -> bool:
     """Return whether a file is looked for below a wrong name of the package, which is not on the machine."""
-    path = place.file.path or ""
-    owner = path.removeprefix(f"{SHARE}/").partition("/")[0]
-    return place.state == "wrong" and path.startswith(f"{SHARE}/") and package.find(owner) is None
+    owner, _ = share_parts(place.file.path or "")
+    return place.state == "wrong" and bool(owner) and package.find(owner) is None
 
 
 def _pass_places(places: Sequence[_FilePlace]) -> Outcome:
@@ -354,8 +353,8 @@ def _place_of(package: Package, file: "NamedFile", *, built: bool) -> _FilePlace
         reason = f"{name}(...) is made part of a text, which is not its value then: use PathJoinSubstitution([...])"
         return _FilePlace(file, "wrong", reason)
     what, path = _WORDS[file.purpose], posixpath.normpath(file.path)
-    if path.startswith(f"{SHARE}/"):
-        owner, _, rest = path.removeprefix(f"{SHARE}/").partition("/")
+    owner, rest = share_parts(path)
+    if owner:
         other = package.find(owner)
         if other is None:
             return _place_in_unknown(package, owner, rest, file)
@@ -458,20 +457,17 @@ def _is_slip(word: str, known: str) -> bool:
 
 def _place_in_package(owner: Package, target: str, file: "NamedFile") -> _FilePlace:
     """Return whether a build of a package installs a file at the path where it is looked for."""
-    setup, what = owner.installation, _WORDS[file.purpose]
-    if setup is not None and setup.fault is not None and not setup.fault.sure:
-        return _FilePlace(file, "unknown", f"cannot determine statically whether a build installs the {what}")
-    if setup is None or setup.fault is not None:
-        why = setup.fault_text if setup is not None else "there is no setup.py"
-        return _FilePlace(file, "missing", f"a build installs no {what}: {why}")
-    installed = setup.installed()
-    if target in installed and setup.misspelt is not None:
-        return _FilePlace(file, "missing", f"a build does not install the {what}: {setup.misspelt.message}")
-    if target in installed:
-        return _place_not_utf8(owner, installed[target], file) or _FilePlace(file, "found", target)
-    if setup.unknown:
-        return _FilePlace(file, "unknown", f"cannot determine statically whether a build installs {target}")
-    return _place_not_there(owner, installed, target, file)
+    found, setup, what = look_up(owner, target), owner.installation, _WORDS[file.purpose]
+    match found.state:
+        case "unknown":
+            return _FilePlace(file, "unknown", f"cannot determine statically whether a build installs {target}")
+        case "no build":
+            return _FilePlace(file, "missing", f"a build installs no {what}: {found.text}")
+        case "installed" if setup is not None and setup.misspelt is not None:
+            return _FilePlace(file, "missing", f"a build does not install the {what}: {setup.misspelt.message}")
+        case "installed":
+            return _place_not_utf8(owner, found.path, file) or _FilePlace(file, "found", target)
+    return _place_not_there(owner, target, found, file)
 
 
 def _place_not_utf8(owner: Package, path: str, file: "NamedFile") -> _FilePlace | None:
@@ -489,22 +485,19 @@ def _place_not_utf8(owner: Package, path: str, file: "NamedFile") -> _FilePlace 
     return None
 
 
-def _place_not_there(owner: Package, installed: Iterable[str], target: str, file: "NamedFile") -> _FilePlace:
+def _place_not_there(owner: Package, target: str, found: Lookup, file: "NamedFile") -> _FilePlace:
     """Return where else a build installs a file, or what the package has instead of it."""
-    name, looks = posixpath.basename(target), f"the launch file looks for the {_WORDS[file.purpose]} at {target}"
-    others = [path for path in installed if posixpath.basename(path) == name]
-    if others:
-        rest = target.removeprefix(owner.share)
-        is_elsewhere = not others[0].startswith(owner.share) and f"/{others[0]}".endswith(f"/{rest}")
+    message = f"the launch file looks for the {_WORDS[file.purpose]} at {target}, but {found.text}"
+    if found.state == "elsewhere":
         # Outside of the package's folder, at the path where the launch file looks in it: that is the fault of setup.py.
-        message = f"{looks}, but a build installs it as {others[0]}"
-        return _FilePlace(file, "missing" if is_elsewhere else "wrong", message)
-    names = set(map(posixpath.basename, owner.tree.files))
-    if name in names:
-        return _FilePlace(file, "missing", f"{looks}, but a build does not install {name}")
-    own, is_include = posixpath.basename(file.location.path), file.purpose == "include"
-    alike = sorted(it for it in names - {own} if it.lower().endswith(_ENDINGS[file.purpose]))
-    message = f"{looks}, but the package has no file {name!r}"
+        is_at_path = f"/{found.path}".endswith(f"/{target.removeprefix(owner.share)}")
+        is_of_setup = is_at_path and not found.path.startswith(owner.share)
+        return _FilePlace(file, "missing" if is_of_setup else "wrong", message)
+    if found.state == "not installed":
+        return _FilePlace(file, "missing", message)
+    name, is_include = posixpath.basename(target), file.purpose == "include"
+    others = {*map(posixpath.basename, owner.tree.files)} - {posixpath.basename(file.location.path)}
+    alike = sorted(it for it in others if it.lower().endswith(_ENDINGS[file.purpose]))
     if not alike and not is_include:
         return _FilePlace(file, "missing", message)
     similar = closest(name, alike) or (alike[0] if len(alike) == 1 and not is_include else None)

@@ -28,6 +28,7 @@ from grader.checks.visuals import file_name, shape_name, visual_pose, visuals
 from grader.errors import MissingElement, NotDecided
 from grader.files.tree import File
 from grader.names import closest
+from grader.package.installed_files import look_up
 from grader.package.launch.places import is_of_one_machine
 from grader.package.package import Package
 from grader.package.package_problems import MESH_PATH
@@ -338,21 +339,13 @@ def _without_package(name: str, path: str, submission: Submission) -> str:
 
 def _why_not_installed(package: Package, target: str, held: list[str]) -> str:
     """Return why a build does not install a file of a package at a path; empty if it does."""
-    setup = package.installation
-    if setup is None:
-        return "is not installed: its package has no setup.py"
-    if setup.fault is not None and setup.fault.sure:
-        return f"is not installed: {setup.fault_text}"
-    installed, doubt = setup.installed(), ""
-    if setup.fault is not None:
-        doubt = f"{setup.file} cannot be read ({setup.fault.message})"
-    elif setup.unknown:
-        doubt = f"cannot determine statically what {setup.file} installs"
-    if target in installed:
+    found, setup = look_up(package, target), package.installation
+    if found.state == "unknown":
+        raise NotDecided(found.text, found.text)
+    if found.state == "installed":
         return ""
-    if doubt:
-        raise NotDecided(doubt, doubt)
-    elsewhere = next((path for path, source in installed.items() if source in held), None)
-    if elsewhere is not None:
-        return f"is looked for at {target}, but a build installs it as {elsewhere}"
+    if found.state == "elsewhere":
+        return f"is looked for at {target}, but {found.text}"
+    if setup is None or found.state == "no build":
+        return f"is not installed: {found.text}"
     return f"is not installed: add {held[0]} to {setup.entries}, for {posixpath.dirname(target)}"

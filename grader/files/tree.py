@@ -89,6 +89,13 @@ class Tree:
         """The paths of the links in it, which are not followed."""
         return [path for path in sorted(self.unseen) if not ignored_part(f"{path}/")]
 
+    def read(self, path: str, limit: int) -> bytes | None:
+        """Return the bytes of a file; None where there is none, or none that can be read within a limit."""
+        try:
+            return self.files[path].read(limit) if path in self.files else None
+        except InputError:
+            return None
+
     def only(self, belongs: Callable[[str], bool]) -> "Tree":
         """Return the tree of only the files, folders and notes whose paths belong; a folder's path ends in a slash."""
         files = {path: file for path, file in self.files.items() if belongs(path)}

@@ -9,7 +9,6 @@ from os.path import commonprefix
 from typing import NamedTuple
 
 from grader import markup
-from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import overlaid
 from grader.python.budget import Budget
@@ -188,11 +187,7 @@ def content(submission: Submission, path: str) -> bytes | None:
     """Return the bytes of a file of a submission; None where it has none that can be read."""
     if isinstance(submission.urdf, Read) and path == submission.urdf.path:
         return submission.urdf.data
-    file = submission.whole_tree.files.get(path)
-    try:
-        return file.read(URDF_LIMIT) if file is not None else None
-    except InputError:
-        return None
+    return submission.whole_tree.read(path, URDF_LIMIT)
 
 
 def with_urdf(submission: Submission, files: _Files) -> Submission:

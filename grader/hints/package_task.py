@@ -5,7 +5,6 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from grader.errors import InputError
 from grader.hints.edits import Proposal
 from grader.names import closest
 from grader.package.launch.model import Launch
@@ -76,12 +75,8 @@ def _kind_of(path: str) -> str:
 
 
 def _text(package: Package, path: str) -> str | None:
-    file = package.tree.files.get(path)
-    try:
-        limit = _RVIZ_LIMIT if path.endswith(".rviz") else PYTHON_LIMIT
-        return file.read(limit).decode("utf-8", "surrogateescape") if file is not None else None
-    except InputError:
-        return None
+    data = package.tree.read(path, _RVIZ_LIMIT if path.endswith(".rviz") else PYTHON_LIMIT)
+    return data.decode("utf-8", "surrogateescape") if data is not None else None
 
 
 def change(edits: Iterable[Edit], cause: str, what: str = "") -> Proposal:

@@ -4,7 +4,6 @@ import ast
 import re
 from typing import NamedTuple
 
-from grader.errors import InputError
 from grader.names import closest
 from grader.package.package import Package
 from grader.python.budget import PYTHON_LIMIT
@@ -81,10 +80,8 @@ def entry_fault(package: Package, name: str) -> EntryFault | None:
 
 def read_module(package: Package, path: str) -> Code | None:
     """Return a parsed Python file of a package; None for one that is not read."""
-    try:
-        code = parse(package.tree.files[path].read(PYTHON_LIMIT), package.path(path))
-    except InputError:
-        return None
+    data = package.tree.read(path, PYTHON_LIMIT)
+    code = parse(data, package.path(path)) if data is not None else None
     return code if isinstance(code, Code) else None
 
 

@@ -1,7 +1,7 @@
 """YAML with the location of each value, read by event: neither depth nor aliases use unlimited time or memory."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import yaml
@@ -37,6 +37,7 @@ class YamlNode:
     value: "str | list[YamlNode] | dict[str, YamlNode]"
     quoted: bool = False  # a text in quotes, which is a string even if it is true or 1
     end_mark: Any = None  # of a text
+    key_marks: dict[str, Any] = field(default_factory=dict)  # of a mapping
 
     @property
     def location(self) -> Location:
@@ -55,6 +56,13 @@ class YamlNode:
         for key in keys:
             node = node.value.get(key) if node is not None and isinstance(node.value, dict) else None
         return node
+
+    def key_location(self, *keys: str) -> Location:
+        """Return where the last of some keys, which are there, begins."""
+        *outer, last = keys
+        mapping = self.get(*outer)
+        assert mapping is not None
+        return _location_of(mapping.source, mapping.key_marks[last])
 
     @property
     def text(self) -> str | None:
@@ -120,7 +128,7 @@ def _location_of(source: Source, mark: Any) -> Location:
 
 def _compose_nodes(events: Iterator[yaml.Event], source: Source) -> YamlNode:
     root = YamlNode(source, next(events).start_mark, {})
-    open_nodes: list[tuple[YamlNode, list[str]]] = []  # each with the key in it whose value follows
+    open_nodes: list[tuple[YamlNode, list[YamlNode]]] = []  # each with the key in it whose value follows
     anchors = _Anchors(source)
     first = True
     for count, event in enumerate(events, 1):
@@ -172,10 +180,13 @@ class _Anchors:
         return found
 
 
-def _attach_node(parent: YamlNode, key: list[str], node: YamlNode) -> None:
+def _attach_node(parent: YamlNode, key: list[YamlNode], node: YamlNode) -> None:
     if isinstance(parent.value, list):
         parent.value.append(node)
-    elif isinstance(parent.value, dict) and key:
-        parent.value[key.pop()] = node  # the last key counts, in PyYAML as in RViz
+    elif not key:
+        key.append(node)
     elif isinstance(parent.value, dict):
-        key.append(node.text if node.text is not None else f"\0{len(parent.value)}")
+        named = key.pop()
+        name = named.text if named.text is not None else f"\0{len(parent.value)}"
+        parent.value[name] = node  # the last key counts, in PyYAML as in RViz
+        parent.key_marks[name] = named.mark

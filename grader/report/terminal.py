@@ -233,14 +233,14 @@ def block(console: Console, text: Text, indent: int, head: Text | None = None) -
     return (Text(" " * indent) if head is None else head) + Text("\n" + " " * indent).join(lines)
 
 
-def excerpt_block(console: Console, source: Source, where: Location, indent: int, style: str = "red") -> Text:
+def excerpt_block(console: Console, source: Source, where: Location, indent: int) -> Text:
     """Return the source line of a location, and a line that underlines the marked part."""
     number = str(where.line)
     before, meant, after = excerpt(source, where, max(8, console.width - indent - len(number) - 3))
     mark, bar = _symbol(console, "\u2500", "-"), _symbol(console, "\u2502", "|")
     text = Text.assemble((f"{' ' * indent}{number} {bar} ", "dim"), (before + meant + after).rstrip())
     under = " " * len(before) + mark * max(1, len(meant))
-    return text.append(f"\n{' ' * (indent + len(number))} {bar} ", "dim").append(under, style)
+    return text.append(f"\n{' ' * (indent + len(number))} {bar} ", "dim").append(under, "red")
 
 
 def _symbol(console: Console, fancy: str, plain: str) -> str:

@@ -10,10 +10,10 @@ from typing import NamedTuple, NoReturn
 
 from grader.errors import MissingElement, NotDecided
 from grader.names import did_you_mean
+from grader.robot.transforms import Vector
 from grader.source import LazyLocation
 from grader.text import quoted
 
-Vector = tuple[float, float, float]
 INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")  # the components, in the order of Inertial.inertia
 
 

@@ -6,25 +6,10 @@ NotDecided, or MissingElement where xacro refuses the text of the field.
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from grader.errors import MissingElement, NotDecided
-from grader.robot.model import (
-    Calibration,
-    Collision,
-    Dynamics,
-    Inertial,
-    Joint,
-    Limit,
-    Link,
-    Material,
-    Mimic,
-    Origin,
-    Robot,
-    SafetyController,
-    Vector,
-    Visual,
-)
+from grader.robot.model import Joint, Link, Material, Robot, Visual
 from grader.text import quoted
 
 _KEYS = {"name": "@name", "type": "@type", "visuals": "visual", "collisions": "collision"}  # in UnresolvedParts
@@ -77,6 +62,11 @@ def _value_if_known(part: Link | Joint, field: str, value: _Value) -> _Value:
     raise MissingElement(key, owner, message=message, location=found.location)
 
 
+def _field_if_known(field: str) -> Any:
+    """Return the property of a view that is this field of what it shows."""
+    return property(lambda view: _value_if_known(view, field, getattr(view.known, field)))
+
+
 def _copy_fields(view: object, known: object, *names: str) -> None:
     """Give a view fields of what it shows, which are never open; it is frozen as that is."""
     for name in names:
@@ -117,21 +107,10 @@ class _LinkView(Link):
     def known(self) -> Link:
         return self._known
 
-    @property
-    def name(self) -> str:
-        return _value_if_known(self, "name", self._known.name)
-
-    @property
-    def visuals(self) -> tuple[Visual, ...]:
-        return _value_if_known(self, "visuals", self._known.visuals)
-
-    @property
-    def collisions(self) -> tuple[Collision, ...]:
-        return _value_if_known(self, "collisions", self._known.collisions)
-
-    @property
-    def inertial(self) -> Inertial | None:
-        return _value_if_known(self, "inertial", self._known.inertial)
+    name = _field_if_known("name")
+    visuals = _field_if_known("visuals")
+    collisions = _field_if_known("collisions")
+    inertial = _field_if_known("inertial")
 
 
 class _JointView(Joint):
@@ -148,49 +127,17 @@ class _JointView(Joint):
     def known(self) -> Joint:
         return self._known
 
-    @property
-    def name(self) -> str:
-        return _value_if_known(self, "name", self._known.name)
-
-    @property
-    def type(self) -> str:
-        return _value_if_known(self, "type", self._known.type)
-
-    @property
-    def parent(self) -> str:
-        return _value_if_known(self, "parent", self._known.parent)
-
-    @property
-    def child(self) -> str:
-        return _value_if_known(self, "child", self._known.child)
-
-    @property
-    def origin(self) -> Origin | None:
-        return _value_if_known(self, "origin", self._known.origin)
-
-    @property
-    def axis(self) -> Vector | None:
-        return _value_if_known(self, "axis", self._known.axis)
-
-    @property
-    def limit(self) -> Limit | None:
-        return _value_if_known(self, "limit", self._known.limit)
-
-    @property
-    def mimic(self) -> Mimic | None:
-        return _value_if_known(self, "mimic", self._known.mimic)
-
-    @property
-    def dynamics(self) -> Dynamics | None:
-        return _value_if_known(self, "dynamics", self._known.dynamics)
-
-    @property
-    def safety_controller(self) -> SafetyController | None:
-        return _value_if_known(self, "safety_controller", self._known.safety_controller)
-
-    @property
-    def calibration(self) -> Calibration | None:
-        return _value_if_known(self, "calibration", self._known.calibration)
+    name = _field_if_known("name")
+    type = _field_if_known("type")
+    parent = _field_if_known("parent")
+    child = _field_if_known("child")
+    origin = _field_if_known("origin")
+    axis = _field_if_known("axis")
+    limit = _field_if_known("limit")
+    mimic = _field_if_known("mimic")
+    dynamics = _field_if_known("dynamics")
+    safety_controller = _field_if_known("safety_controller")
+    calibration = _field_if_known("calibration")
 
 
 class _IncompleteRobot(Robot):

@@ -12,7 +12,7 @@ from grader.robot.transforms import Transform, Vector, rotation_about
 from grader.source import LazyLocation, Source
 from grader.submission.submission import Submission
 
-_PUBLISHER = ("tf2_ros", "static_transform_publisher")
+STATIC_PUBLISHER = ("tf2_ros", "static_transform_publisher")
 _PLACE, _RPY, _QUATERNION = ("--x", "--y", "--z"), ("--roll", "--pitch", "--yaw"), ("--qx", "--qy", "--qz", "--qw")
 _FRAMES = ("--frame-id", "--child-frame-id")
 _BY_POSITION = {  # the words without options: with yaw, pitch and roll, or with a quaternion
@@ -52,7 +52,9 @@ def with_transforms(robot: Robot, submission: Submission, paths: Sequence[str]) 
         launch = package.launch(name) if name is not None else None
         if launch is None or launch.syntax is not None or launch.faults:
             continue  # nothing is published
-        started = [it for it in launch.nodes if (it.package, it.executable) == _PUBLISHER and it.when is not False]
+        started = [
+            it for it in launch.nodes if (it.package, it.executable) == STATIC_PUBLISHER and it.when is not False
+        ]
         frames = [_frame_of(node, submission) for node in started]
         for frame in (it for it in frames if it is not None and it.child not in roots):
             robot = _with_frame(robot, frame)
@@ -88,10 +90,8 @@ def _with_frame(robot: Robot, frame: _Frame) -> Robot:
 
 def _frame_of(node: StartedNode, submission: Submission) -> _Frame | None:
     """Return the frame that a static_transform_publisher publishes, its child empty for none; None if it is unknown."""
-    words = node.arguments if node.arguments is not None else (None,)
-    words = words[: words.index("--ros-args")] if "--ros-args" in words else words
+    words, names = _words_of(node), frames_named(node)
     options = _options_of(words)
-    names = [(options.get(option) or "").removeprefix("/") for option in _FRAMES]
     if None in words and not names[1]:
         return None
     at = node.location
@@ -103,6 +103,18 @@ def _frame_of(node: StartedNode, submission: Submission) -> _Frame | None:
         return _Frame(names[0], names[1], None, location, f"the frame {names[1]!r}: {reason}")
     origin = _origin_of({name: text or "" for name, text in options.items()}, location)
     return _Frame(names[0], names[1] if names[0] and origin is not None else "", origin, location)
+
+
+def _words_of(node: StartedNode) -> tuple[str | None, ...]:
+    words = node.arguments if node.arguments is not None else (None,)
+    return words[: words.index("--ros-args")] if "--ros-args" in words else words
+
+
+def frames_named(node: StartedNode) -> tuple[str, str]:
+    """Return the parent and the child that a static_transform_publisher is given, empty where they are not known."""
+    options = _options_of(_words_of(node))
+    parent, child = ((options.get(option) or "").removeprefix("/") for option in _FRAMES)
+    return parent, child
 
 
 def _options_of(words: Sequence[str | None]) -> dict[str, str | None]:

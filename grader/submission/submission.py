@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.errors import InputError, MissingElement, NotDecided
+from grader.errors import MissingElement, NotDecided
 from grader.files.limits import MAX_FILE_SIZE, ROBOT_ENDINGS
 from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.files.tree import File, Tree, make_tree
@@ -270,8 +270,5 @@ class Submission:
         """Return the text of one of its files, for quoting; None if it cannot be read."""
         if isinstance(self.urdf, Read) and path == self.urdf.path:
             return self.urdf.source
-        file = self.whole_tree.files.get(path)
-        try:
-            return Source(path, file.read(URDF_LIMIT).decode("utf-8", "replace")) if file is not None else None
-        except InputError:
-            return None
+        data = self.whole_tree.read(path, URDF_LIMIT)
+        return Source(path, data.decode("utf-8", "replace")) if data is not None else None

@@ -74,13 +74,6 @@ class Read(NamedTuple):
         return self.as_it_stands or self.reading
 
     @property
-    def xacro_warning(self) -> Problem | None:
-        """The first text that xacro writes to stderr when it expands the file; None if it writes nothing."""
-        from grader.xacro.xacro_problems import WRITTEN_TO_STDERR  # late: most URDFs are no xacro
-
-        return next((problem for problem in self.reading.problems if problem.kind in WRITTEN_TO_STDERR), None)
-
-    @property
     def source(self) -> Source:
         """The text that the student wrote."""
         return Source(self.path, self.data.decode("utf-8", "replace")) if self.is_expanded else self.reading.source

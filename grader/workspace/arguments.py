@@ -26,7 +26,7 @@ def argument_facts(workspace: Workspace) -> Iterator[Fact]:
             used = {name for found in _CONFIGURATION.findall(text) for name in found if name}
             yield from (Definition("launch argument", name, start, owner) for name in used)
             yield from _of_included(workspace, launch, owner)
-            if launch.unknown or launch.syntax or launch.unread:
+            if launch.more:
                 yield Open("launch argument", owner)
     for owner, names in known()["launch_arguments"].items():
         yield from (Definition("launch argument", name, Location(owner, 1, 1), owner) for name in names)

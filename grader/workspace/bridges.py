@@ -3,17 +3,19 @@
 import posixpath
 import re
 from collections.abc import Iterator
+from functools import partial
 from typing import NamedTuple
 
 from grader.names import closest
+from grader.package.installed_files import open_meant
 from grader.package.launch.parameters import parameters_of
 from grader.package.yaml_nodes import YamlNode
 from grader.source import Location
 from grader.text import quoted
-from grader.workspace.gazebo import BRIDGE, LAUNCHES, GazeboTopic, gazebo_topics, roots
+from grader.workspace.gazebo import BRIDGE, GazeboTopic, gazebo_topics, roots
 from grader.workspace.known import known
 from grader.workspace.names import Compared, Fact, Mismatch, corrections, place_text
-from grader.workspace.workspace import WithSources, Workspace
+from grader.workspace.workspace import Workspace
 
 _TO_ROS, _TO_GAZEBO, _BOTH = "GZ_TO_ROS", "ROS_TO_GZ", "BIDIRECTIONAL"
 _DIRECTIONS = {"[": _TO_ROS, "]": _TO_GAZEBO, "@": _BOTH}
@@ -47,9 +49,8 @@ class _BridgeRow(NamedTuple):
 
 def bridge_rows(workspace: Workspace) -> Iterator[_BridgeRow]:
     """Yield the rows of bridges in YAML files, and those in the arguments of bridges."""
-    launches = [source.text for package in workspace.packages for source in workspace.sources_of(package, LAUNCHES)]
     for path, tree in workspace.trees:
-        is_used = any(posixpath.basename(path) in text for text in launches)
+        is_used = any(posixpath.basename(path) in text for text in workspace.launch_texts)
         for row in tree.items:
             if row.get("ros_type_name") is not None and row.get("gz_type_name") is not None:
                 yield from _row_in_yaml(row, is_used=is_used)
@@ -149,7 +150,7 @@ def _clocks(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Mismatch]:
     if any(not workspace.source_of(path) and "/ros_gz_sim/" not in path for path in included):
         return
     for package, node in workspace.nodes:
-        given = parameters_of(node, WithSources(package), workspace.name_of(node) or "", is_python=None).values
+        given = parameters_of(node, partial(open_meant, package), workspace.name_of(node) or "", is_python=None).values
         found = given.get("use_sim_time")
         if found is not None and str(found.value).lower() == "true" and node.when:
             message = f"{node.executable} waits for the time of the simulation, but no bridge takes clock from Gazebo"
@@ -171,11 +172,11 @@ def _defined(workspace: Workspace) -> set[str]:
 
 def _is_open(workspace: Workspace) -> bool:
     """Return whether there may be other sensors and bridges than those that were read."""
-    launches = [launch for _, _, launch in workspace.launches]
-    if workspace.robot is None or workspace.has_other_robots or any(it.syntax or it.unread for it in launches):
+    is_whole = workspace.robot is not None and not workspace.has_other_robots
+    if not is_whole or any(launch.more for _, _, launch in workspace.launches):
         return True
     arguments = [node.arguments for _, node in workspace.nodes if node.package in (BRIDGE, "ros_gz_image")]
-    if any(launch.unknown for launch in launches) or any(words is None or None in words for words in arguments):
+    if any(words is None or None in words for words in arguments):
         return True
     models = [it.findtext("uri") or "" for file in workspace.sdf_files for it in file.root.iter("include")]
     return any(uri.rpartition("/")[2].lower() not in _WITHOUT_SENSORS for uri in models)

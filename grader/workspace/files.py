@@ -7,12 +7,13 @@ from typing import NamedTuple
 
 from grader.names import closest, near
 from grader.package.installation import Installation
+from grader.package.installed_files import are_installs_known, is_surely_absent, look_up, share_parts
 from grader.package.launch.model import Launch
 from grader.package.launch.places import PREFIX, SHARE
 from grader.package.package import Package
 from grader.source import Location
 from grader.workspace.names import Compared, Correction, Fact, Mismatch, Undecided, corrections
-from grader.workspace.workspace import Workspace, are_installs_known, is_surely_absent
+from grader.workspace.workspace import Workspace
 
 _FIND = re.compile(r"\$\(find(?:-pkg-share)? ([\w-]+)\)/?([^\"'<>\s$]*)(?=[\"'<\s])")
 _PACKAGE = re.compile(r"package://([\w-]+)/([\w./-]+)(?=[\"'<\s])")
@@ -73,7 +74,7 @@ def _texts_of(launch: Launch) -> Iterator[tuple[str | None, Location, bool]]:
 
 def _fault_of(workspace: Workspace, package: Package, path: str, at: Location) -> Iterator[Fact]:
     """Yield that no file is installed at a path, if this is certain."""
-    name, _, rest = posixpath.normpath(path).removeprefix(f"{SHARE}/").partition("/")
+    name, rest = share_parts(path)
     owner = package.find(name)
     if owner is None:
         meant = near(name, [it.name for it in workspace.packages])
@@ -95,16 +96,13 @@ def _not_there(owner: Package, target: str, at: Location) -> Mismatch:
     setup, name = owner.installation, posixpath.basename(target)
     assert setup is not None
     start = Location(setup.source.path, 1, 1)
-    elsewhere = next((it for it in owner.installed if posixpath.basename(it) == name), None)
-    own = next((it for it in owner.tree.files if posixpath.basename(it) == name), None)
-    missing = f"a build installs no {target}"
-    if elsewhere is not None:
-        either = _of_folders(target, elsewhere, at, start)
-        return Mismatch("files", f"{missing}: it installs the file as {elsewhere}", at, corrections=either)
-    if own is not None:
-        message = f"{missing}: no {setup.entry} names {own}"
-        either = _of_install(setup, own, start)
-        return Mismatch("files", message, at, setup.location(setup.called_at), corrections=either)
+    found, missing = look_up(owner, target), f"a build installs no {target}"
+    if found.state == "elsewhere":
+        message = f"{missing}: it installs the file as {found.path}"
+        return Mismatch("files", message, at, corrections=_of_folders(target, found.path, at, start))
+    if found.state == "not installed":
+        either, called_at = _of_install(setup, found.path, start), setup.location(setup.called_at)
+        return Mismatch("files", f"{missing}: no {setup.entry} names {found.path}", at, called_at, corrections=either)
     meant = closest(name, map(posixpath.basename, owner.tree.files))
     guess = f"; did you mean {meant!r}?" if meant else ""
     message = f"{missing}: the package has no file {name!r}{guess}"

@@ -3,9 +3,9 @@
 import re
 from collections.abc import Iterator
 
-from grader.package.launch.model import StartedNode
 from grader.robot.model import Robot
 from grader.source import LazyLocation, Location
+from grader.submission.static_transforms import STATIC_PUBLISHER, frames_named
 from grader.workspace.known import known
 from grader.workspace.names import Definition, Fact, Mismatch, Open, Use
 from grader.workspace.workspace import Workspace
@@ -15,8 +15,6 @@ _JOINTS = re.compile(r"(^|_)joints?$|(wheels?|joints?)_names?$")
 _FRAMES = re.compile(r"(^|_)(frame|frame_id)$")
 # What a program calls the frames that it makes itself.
 _OWN_FRAMES = re.compile(r"^(odom|map|world|global|fixed|parent|target)_frame(_id)?$|^frame_prefix$")
-_STATIC = ("tf2_ros", "static_transform_publisher")
-_MAX_XML = 512 * 1024
 _GAZEBO_FRAMES = ("gz_frame_id", "ignition_frame_id", "frame_id", "frame_name", "frameName")
 _GAZEBO_JOINTS = ("left_joint", "right_joint", "joint_name", "left_steering_joint", "right_steering_joint")
 
@@ -51,9 +49,8 @@ def _openings(workspace: Workspace) -> Iterator[Fact]:
     if workspace.has_other_robots:
         yield from (Open("frame"), Open("link"), Open("joint"), Open("group"))
     for _, _, launch in workspace.launches:
-        if launch.unknown or launch.syntax is not None:
-            reason = launch.unknown[0].message if launch.unknown else "a launch file cannot be read"
-            yield Open("frame", reason=reason)
+        if launch.more:
+            yield Open("frame", reason=launch.more)
     packages = {package.name for package in workspace.packages}
     for _, node in workspace.nodes:
         if node.package not in known()["without_frames"] and node.package not in packages:
@@ -66,30 +63,15 @@ def _openings(workspace: Workspace) -> Iterator[Fact]:
         yield Open("frame")
 
 
-def _static_transform(node: StartedNode) -> tuple[str, str] | None:
-    """Return the parent and the child of a static_transform_publisher; None where they are not known."""
-    words = node.arguments
-    if words is None or None in words:
-        return None
-    texts = [word for word in words if word is not None]
-    if "--ros-args" in texts:
-        texts = texts[: texts.index("--ros-args")]
-    found = [texts[texts.index(option) + 1] for option in ("--frame-id", "--child-frame-id") if option in texts[:-1]]
-    if len(found) == 2:
-        return found[0], found[1]
-    return (texts[-2], texts[-1]) if len(texts) in (8, 9) else None
-
-
 def _static_transforms(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
     children = {joint.child: joint for joint in robot.joints}
     for _, node in workspace.nodes:
-        if (node.package, node.executable) != _STATIC:
+        if (node.package, node.executable) != STATIC_PUBLISHER:
             continue
-        frames = _static_transform(node)
-        if frames is None:
+        parent, child = frames_named(node)
+        if not parent or not child or None in (node.arguments or (None,)):
             yield Open("frame", reason="the frames of a static_transform_publisher are not evaluated")
             continue
-        parent, child = (frame.removeprefix("/") for frame in frames)
         yield Definition("frame", child, node.location)
         yield Use("frame", parent, node.location, "static_transform_publisher")
         if child in children:

@@ -1,20 +1,21 @@
 """Gazebo: the topics of sensors and systems in the robot and in worlds, and what launch files ask of the simulation."""
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
 
+from grader.package.installed_files import open_meant
 from grader.package.launch.model import StartedNode
 from grader.package.launch.parameters import parameters_of
 from grader.source import Location
 from grader.text import quoted
 from grader.workspace.known import known
 from grader.workspace.names import Fact, Mismatch, corrections, place_text
-from grader.workspace.workspace import WithSources, Workspace
+from grader.workspace.workspace import Workspace
 from grader.xml.parsing import Element, XmlFile
 
 BRIDGE, _SIMULATION = "ros_gz_bridge", "ros_gz_sim"
-LAUNCHES = (".launch.py", "_launch.py", ".launch.xml", ".launch.yaml", ".launch")
 
 
 class GazeboTopic(NamedTuple):
@@ -63,7 +64,7 @@ def roots(workspace: Workspace) -> Iterator[tuple[Element, Callable[[Element], L
 
 def gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield systems that worlds lack, and what is spawned, or bridged, from what is not there."""
-    texts = [source.text for package in workspace.packages for source in workspace.sources_of(package, LAUNCHES)]
+    texts = workspace.launch_texts
     files = [it for it in workspace.sdf_files if any(it.source.path.rpartition("/")[2] in text for text in texts)]
     worlds = [(file, world) for file in files for world in file.root.iterchildren("world")]
     for file, world in worlds:
@@ -120,7 +121,7 @@ def _bridges(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield bridges without any topic."""
     for package, node in workspace.nodes:
         if node.package == BRIDGE and node.executable == "parameter_bridge" and node.arguments == ():
-            found = parameters_of(node, WithSources(package), workspace.name_of(node) or "", is_python=False)
+            found = parameters_of(node, partial(open_meant, package), workspace.name_of(node) or "", is_python=False)
             if not found.unknown and "config_file" not in found.values:
                 message = "the bridge has no topics: neither arguments, nor the parameter config_file"
                 yield Mismatch("topics", message, node.location)

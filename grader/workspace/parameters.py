@@ -3,8 +3,10 @@
 import re
 from collections.abc import Iterator, Sequence
 from fnmatch import fnmatchcase
+from functools import partial
 
 from grader.names import closest, near
+from grader.package.installed_files import open_meant
 from grader.package.launch.model import StartedNode
 from grader.package.launch.parameters import parameters_of
 from grader.package.nodes import PythonNode
@@ -12,7 +14,7 @@ from grader.package.package import Package
 from grader.package.yaml_nodes import YamlFault, YamlNode
 from grader.workspace.known import known
 from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use, corrections
-from grader.workspace.workspace import WithSources, Workspace
+from grader.workspace.workspace import Workspace
 from grader.workspace.yaml_values import PARAMETERS, is_misspelt_key, is_parameters, sections_in, values_in
 
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
@@ -55,7 +57,7 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
         return
     yield from _misplaced(tree)
     names = [(node, workspace.name_of(node)) for node in nodes]
-    sections = {keys[-1].rpartition("/")[2]: section for keys, section in sections_in(tree) if keys}
+    sections = {keys[-1].rpartition("/")[2]: keys for keys, _ in sections_in(tree) if keys}
     read = [name for _, name in names if name is not None]
     if len(read) < len(names) or not sections:
         return
@@ -76,8 +78,9 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
                 continue  # the others may be of nodes that are not submitted
             key, is_one = meant or unread[0], meant is not None or len(unread) == len(lacking) == 1
             message = f"there are parameters for {key}, but none for the node {name!r}, which gets this file"
-            either = corrections(key, sections[key].location, name if is_one else None, node.location)
-            yield Mismatch("parameters", message, sections[key].location, node.location, True, either)
+            at = tree.key_location(*sections[key])
+            either = corrections(key, at, name if is_one else None, node.location)
+            yield Mismatch("parameters", message, at, node.location, True, either)
 
 
 def _controllers_given(workspace: Workspace) -> Iterator[Fact]:
@@ -98,11 +101,11 @@ def _misplaced(tree: YamlNode) -> Iterator[Fact]:
             for key, inner in node.value.items():
                 if key == PARAMETERS and is_below:
                     message = f"{name}: ros__parameters is inside of other ros__parameters"
-                    yield Mismatch("parameters", message, inner.location)
+                    yield Mismatch("parameters", message, node.key_location(key))
                 elif not is_below and is_misspelt_key(key, inner):
                     message = f"{name}: rcl does not know the key {key!r}; did you mean {PARAMETERS!r}?"
-                    either = corrections(key, inner.location, PARAMETERS)
-                    yield Mismatch("parameters", message, inner.location, corrections=either)
+                    at = node.key_location(key)
+                    yield Mismatch("parameters", message, at, corrections=corrections(key, at, PARAMETERS))
                 else:
                     waiting.append((key, inner, is_below or key == PARAMETERS))
         elif not is_below and name:
@@ -124,7 +127,7 @@ def _declared(workspace: Workspace, package: Package, node: StartedNode, own: Py
     for it in own.parameters:
         if it.name is not None and not it.is_declared:
             yield Use("parameter", it.name, it.location, "get_parameter", owner)
-    found = parameters_of(node, WithSources(package, absent_are_empty=True), own.name or "", is_python=True)
+    found = parameters_of(node, partial(open_meant, package, absent_are_empty=True), own.name or "", is_python=True)
     if found.unknown:
         yield Undecided("parameters", found.unknown)
     wide = workspace.wildcard_places(node)
@@ -149,7 +152,7 @@ def _required(workspace: Workspace, package: Package, node: StartedNode) -> Iter
     """Yield the parameters that a program of another package needs, and does not get."""
     needed = known()["required_parameters"].get(f"{node.package}/{node.executable}", ())
     if needed and node.arguments == ():
-        found = parameters_of(node, WithSources(package), workspace.name_of(node) or "", is_python=False)
+        found = parameters_of(node, partial(open_meant, package), workspace.name_of(node) or "", is_python=False)
         for name in [it for it in needed if it not in found.values and not found.unknown]:
             guess = closest(name, found.values)
             either = corrections(guess, found.values[guess].location, name) if guess is not None else ()

@@ -69,7 +69,7 @@ def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
     if managers:
         yield from _started(workspace)
     for package, node in managers:
-        found = parameters_of(node, package, "lifecycle_manager")
+        found = parameters_of(node, package.open_installed, "lifecycle_manager")
         given = found.values.get("node_names")
         if found.unknown and given is None:
             yield Undecided("programs", found.unknown)
@@ -81,8 +81,8 @@ def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
 def _started(workspace: Workspace) -> Iterator[Fact]:
     """Yield the nodes that launch files start, and that there may be more."""
     for _, _, launch in workspace.launches:
-        if launch.unknown or launch.syntax or launch.unread:
-            yield Open("node", reason=launch.unknown[0].message if launch.unknown else "a launch file cannot be read")
+        if launch.more:
+            yield Open("node", reason=launch.more)
     for _, node in workspace.nodes:
         name = workspace.name_of(node)
         if name is not None:

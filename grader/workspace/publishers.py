@@ -20,7 +20,7 @@ def may_be_published(workspace: Workspace, topic: str) -> bool:
     first, last = topic.strip("/").partition("/")[0], topic.rpartition("/")[2]
     if last in _BY_OTHERS or first in workspace.controllers:
         return True
-    if any(launch.unknown or launch.syntax or launch.unread for _, _, launch in workspace.launches):
+    if any(launch.more for _, _, launch in workspace.launches):
         return True
     root = workspace.robot_root
     remapped = root.iter("remapping", "ros_topic") if root is not None else ()

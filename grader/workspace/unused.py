@@ -5,28 +5,14 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 
-from grader.errors import InputError
 from grader.package.package import Package
 from grader.source import Location
 from grader.workspace.workspace import Workspace
 
 _KINDS = (".yaml", ".yml", ".xacro", ".urdf", ".rviz", ".srdf")
 _TEXTS = (
-    *_KINDS,
-    ".py",
-    ".xml",
-    ".launch",
-    ".txt",
-    ".cpp",
-    ".hpp",
-    ".cc",
-    ".h",
-    ".md",
-    ".sh",
-    ".json",
-    ".sdf",
-    ".world",
-)
+    *_KINDS, ".py", ".xml", ".launch", ".txt", ".cpp", ".hpp", ".cc", ".h", ".md", ".sh", ".json", ".sdf", ".world",
+)  # fmt: skip
 _MAX_TEXT = 512 * 1024  # bytes
 _WORD = re.compile(rb"[\w-]+")
 _BY_USUAL_NAMES = b"moveit_configs_utils"  # it finds the files of a package by their usual names
@@ -50,9 +36,7 @@ def unused_files(workspace: Workspace) -> Iterator[Location]:
 
 def _words(package: Package) -> Iterator[tuple[str, frozenset[bytes]]]:
     """Yield the words of each text of a package."""
-    for path, file in package.tree.files.items():
-        if path.endswith(_TEXTS):
-            try:
-                yield package.path(path), frozenset(_WORD.findall(file.read(_MAX_TEXT)))
-            except InputError:
-                continue
+    for path in [it for it in package.tree.files if it.endswith(_TEXTS)]:
+        data = package.tree.read(path, _MAX_TEXT)
+        if data is not None:
+            yield package.path(path), frozenset(_WORD.findall(data))

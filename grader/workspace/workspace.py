@@ -2,18 +2,18 @@
 
 import posixpath
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 
 from grader.errors import InputError
-from grader.names import closest
+from grader.package.installed_files import open_meant
 from grader.package.launch.model import GivenParameters, Launch, StartedNode
 from grader.package.launch.parameters import NodeParameters, controllers_of, parameters_of
-from grader.package.launch.places import PREFIX, SHARE
+from grader.package.launch.places import ENDINGS, PREFIX, SHARE
 from grader.package.nodes import PythonNode, PythonNodes, read_nodes
-from grader.package.package import CMAKE, MANIFEST, Package
+from grader.package.package import MANIFEST, Package
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.robot.model import Robot
 from grader.source import LazyLocation, Location, Source
@@ -27,47 +27,10 @@ from grader.xml.parsing import Element, XmlFault, XmlFile
 _SYSTEM = re.compile(r"<ros2_control\b")
 _MANAGER, _SPAWNERS = "controller_manager", ("spawner", "spawner.py")
 _FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
-_FOR_TESTS = re.compile(r"if\s*\(\s*BUILD_TESTING.*?endif", re.DOTALL)
-_MAX_CMAKE = 128 * 1024
 _MAX_FILES = 60  # of one kind in a package
 _MAX_YAML = 512 * 1024  # bytes
 _OF_YAML = (".yaml", ".yml", ".py")
 _COMMENT = {False: re.compile(r"<!--.*?-->", re.DOTALL), True: re.compile(r"(?:^|(?<=\s))#[^\n]*")}
-
-
-@dataclass(frozen=True)
-class WithSources:
-    """What builds install, and in place of a file that they do not install the one that may be meant."""
-
-    package: Package
-    absent_are_empty: bool = False  # whether files that surely are not there count as empty
-
-    def open_installed(self, path: str) -> tuple[bytes, str] | None:
-        """Return an installed file, else the only file of this name in the package whose folder is named."""
-        found = self.package.open_installed(path)
-        parts = path.split("/")
-        owner = self.package.find(parts[1]) if found is None and len(parts) > 2 else None
-        named = [it for it in owner.tree.files if it.rpartition("/")[2] == parts[-1]] if owner is not None else []
-        if owner is None or len(named) > 1:
-            return found
-        if not named:
-            is_absent = self.absent_are_empty and are_installs_known(owner) and is_surely_absent(owner, path)
-            return (b"", path) if is_absent else None
-        with suppress(InputError):
-            found = owner.tree.files[named[0]].read(_MAX_YAML), owner.path(named[0])
-        return found
-
-    def has_package(self, name: str) -> bool:
-        """Return whether a package certainly is on the machine."""
-        return self.package.has_package(name)
-
-    def has_program(self, package: str, name: str) -> bool | None:
-        """Return whether a package has a program; None where this is not known."""
-        return self.package.has_program(package, name)
-
-    def files_in(self, folder: str) -> Sequence[str] | None:
-        """Return the files that are installed in a folder."""
-        return self.package.files_in(folder)
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,13 +82,11 @@ class Workspace:
             files = [it for it in package.tree.files if it.endswith((".yaml", ".yml")) and not it.startswith("test/")]
             paths = [it for it in files if it not in package.launch_files]
             for path in paths[:_MAX_FILES]:
-                own = package.path(path)
+                own, data = package.path(path), package.tree.read(path, _MAX_YAML)
                 try:
-                    found[own] = read_yaml(package.tree.files[path].read(_MAX_YAML), own)
+                    found |= {own: read_yaml(data, own)} if data is not None else {}
                 except YamlFault as fault:
                     found[own] = fault
-                except InputError:
-                    continue
         return found
 
     @property
@@ -285,17 +246,17 @@ class Workspace:
         found: dict[str, list[NodeParameters]] = {}
         for package, launch in self.roots:
             managers = [it for it in launch.nodes if self.name_of(it) == _MANAGER]
-            sources = WithSources(package, absent_are_empty=True)
+            opened = partial(open_meant, package, absent_are_empty=True)
             for node in launch.nodes:
                 name, own = self.name_of(node), self.python_node(node)
                 if (name is not None and node.package != _MANAGER) or node in managers:
-                    given = parameters_of(node, sources, name or "", is_python=own is not None or None)
+                    given = parameters_of(node, opened, name or "", is_python=own is not None or None)
                     found.setdefault(name or "", []).append(given)
                 for controller in (controllers_of(node) or ()) if node.executable in _SPAWNERS else ():
                     before = [it for manager in managers for it in manager.parameters or ()]
                     files = (*before, *self._simulated, *(controller.parameters or ()))
                     started = replace(controller, parameters=files)
-                    given = parameters_of(started, sources, is_python=False)
+                    given = parameters_of(started, opened, is_python=False)
                     found.setdefault(controller.node_name or "", []).append(given)
         return found
 
@@ -337,12 +298,10 @@ class Workspace:
         """Yield the texts of the files of a package with these endings, without those of tests."""
         paths = [it for it in package.tree.files if it.endswith(endings) and not it.startswith("test/")]
         for path in paths[:_MAX_FILES]:
-            try:
-                data = package.tree.files[path].read(_MAX_YAML)
-            except InputError:
-                continue
-            text = data.decode("utf-8", "replace")
-            yield Source(package.path(path), _COMMENT[path.endswith(_OF_YAML)].sub(_blank, text))
+            data = package.tree.read(path, _MAX_YAML)
+            if data is not None:
+                text = data.decode("utf-8", "replace")
+                yield Source(package.path(path), _COMMENT[path.endswith(_OF_YAML)].sub(_blank, text))
 
     @cached_property
     def robot_files(self) -> frozenset[str] | None:
@@ -358,6 +317,12 @@ class Workspace:
         return tuple(it for package in self.packages for it in self.sources_of(package, (".xacro", ".urdf")))
 
     @cached_property
+    def launch_texts(self) -> tuple[str, ...]:
+        """The texts of the launch files."""
+        endings = (*ENDINGS, ".launch")
+        return tuple(it.text for package in self.packages for it in self.sources_of(package, endings))
+
+    @cached_property
     def python_texts(self) -> tuple[str, ...]:
         """The texts of the Python files."""
         return tuple(it.text for package in self.packages for it in self.sources_of(package, (".py",)))
@@ -367,30 +332,6 @@ class Workspace:
 def workspace_of(submission: Submission) -> Workspace:
     """Return the workspace of a submission, which is read once."""
     return Workspace(submission)
-
-
-def is_surely_absent(package: Package, target: str) -> bool:
-    """Return whether a file that the package does not have is surely not installed at a path below the prefix.
-
-    What a program writes is in a folder of its own, and like no other, or a folder itself.
-    """
-    names = map(posixpath.basename, package.tree.files)
-    folder, _, name = target.rpartition("/")
-    folders = {posixpath.dirname(it) for it in package.installed}
-    return closest(name, names) is not None or (folder in folders and "." in name)
-
-
-def are_installs_known(package: Package) -> bool:
-    """Return whether it is known what a build of a package installs."""
-    setup = package.installation
-    is_known = setup is not None and setup.fault is None and not setup.unknown
-    return is_known and not _installs_for_tests(package)
-
-
-def _installs_for_tests(package: Package) -> bool:
-    """Return whether CMakeLists.txt installs something only if BUILD_TESTING is on, as it is by default."""
-    text = package.tree.files[CMAKE].read(_MAX_CMAKE).decode("utf-8", "replace") if package.is_cmake else ""
-    return any("install(" in block.lower() for block in _FOR_TESTS.findall(text))
 
 
 def _blank(found: re.Match[str]) -> str:

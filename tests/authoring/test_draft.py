@@ -229,6 +229,16 @@ def test_a_mistake_costs_where_it_is(edit: Edit, lost: set[str], of_diffdrive: R
     assert {it.criterion.check.name for it in report.results if it.is_lost} == lost
 
 
+def test_joints_may_have_other_names_where_all_files_use_them(of_diffdrive: Rubric, tmp_path: Path) -> None:
+    """What controllers name is compared with the robot, so a draft asks for no names of joints."""
+    package = write_diffdrive(tmp_path, *SIMULATED)
+    for path in package.rglob("*.*"):
+        if "_wheel_joint" in (text := path.read_text()):
+            _ = path.write_text(text.replace("_wheel_joint", "_drive"))
+    report = grade(of_diffdrive, open_submission(str(package), of_diffdrive.lab))
+    assert (report.score, [it for it in report.results if it.is_lost]) == (report.max_score, [])
+
+
 @pytest.mark.parametrize("name", [name for name in SAMPLES if not name.startswith("equivalent")])
 def test_the_mistake_of_a_sample_costs_once(name: str, of_diffdrive: Rubric) -> None:
     """Whatever else of the differential drive fails because of it."""

@@ -63,7 +63,7 @@ def node(built: str, what: str = ".to_dict()") -> str:
 def given(body: str, machine: Installed | None = None) -> dict[str, Any]:
     """Return the parameters of the node that is started; `?` for those that are unknown, `more` if there may be more."""
     machine = machine or installed()
-    found = parameters_of(launch(body, machine).nodes[0], machine, "b")
+    found = parameters_of(launch(body, machine).nodes[0], machine.open_installed, "b")
     values = {name: "?" if isinstance(it.value, Unknown) else it.value for name, it in found.values.items()}
     return values | ({"more": found.unknown} if found.unknown else {})
 

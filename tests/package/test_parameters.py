@@ -61,7 +61,7 @@ def node(actions: str, ending: str = "py") -> StartedNode:
 
 def given(actions: str, ending: str = "py", **options: Any) -> NodeParameters:
     """Return the parameters of the last node that is started."""
-    return parameters_of(node(actions, ending), Installed(FILES), **options)
+    return parameters_of(node(actions, ending), Installed(FILES).open_installed, **options)
 
 
 def values(found: NodeParameters) -> dict[str, Any]:
@@ -232,7 +232,10 @@ def controllers(words: str) -> list[tuple[str | None, str | None, dict[str, Any]
     found = controllers_of(node(f"Node(package='controller_manager', executable='spawner', arguments=[{words}])"))
     if found is None:
         return None
-    return [(it.node_name, it.namespace, values(parameters_of(it, Installed(FILES), is_python=False))) for it in found]
+    return [
+        (it.node_name, it.namespace, values(parameters_of(it, Installed(FILES).open_installed, is_python=False)))
+        for it in found
+    ]
 
 
 def test_controllers() -> None:

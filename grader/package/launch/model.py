@@ -224,6 +224,12 @@ class Launch:
         """Return the files that are named for one of these purposes."""
         return tuple(reference for reference in self.references if reference.purpose in purposes)
 
+    @property
+    def more(self) -> str:
+        """Why it may start more than is known; empty where it does not."""
+        is_read = self.syntax is None and not self.unread
+        return self.unknown[0].message if self.unknown else "" if is_read else "a launch file cannot be read"
+
     def frames_of(self, link: str) -> tuple[str | None, ...]:
         """Return the frames of a link that robot_state_publisher publishes (a rubric may prefix it); None if unknown.
 

@@ -5,7 +5,7 @@ Launch evaluates them first; rclcpp and rclpy then read the files and rules on t
 
 import posixpath
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from math import inf, nan
@@ -17,7 +17,6 @@ from grader.package.launch.model import (
     Contents,
     Context,
     GivenParameters,
-    Installation,
     ParameterValue,
     Resolved,
     StartedNode,
@@ -195,6 +194,9 @@ def _is_uniform(values: list[Any]) -> bool:
     return kind in SCALARS and all(isinstance(value, kind) for value in values if kind)
 
 
+_OpenFile = Callable[[str], tuple[bytes, str] | None]  # returns an installed file, and its path in the submission
+
+
 class _Place(NamedTuple):
     """Where parameters are written: in which action, and the place of it."""
 
@@ -341,7 +343,7 @@ class NodeParameters(NamedTuple):
 
 
 def parameters_of(
-    node: StartedNode, installation: Installation, name: str = "", *, is_python: bool | None = None
+    node: StartedNode, open_file: _OpenFile, name: str = "", *, is_python: bool | None = None
 ) -> NodeParameters:
     """Return the parameters that a node gets from a launch file, and where each is written.
 
@@ -351,7 +353,7 @@ def parameters_of(
 
     Args:
         node: The node, as it is started.
-        installation: What is installed: the parameter files are read from it.
+        open_file: Returns the parameter file at a path below the prefix, and its path in the submission.
         name: The name that the node has in its program if the launch file gives it none; or the full name of another
             node of the same process, such as a controller.
         is_python: Whether it is written in Python, if this is known.
@@ -364,7 +366,7 @@ def parameters_of(
         return NodeParameters({}, "the parameters of the node are not evaluated")
     for given in node.parameters:
         try:
-            tables = [*_tables_of(given, installation, _full_name(node, ""))]
+            tables = [*_tables_of(given, open_file, _full_name(node, ""))]
         except Undetermined as error:
             reasons.append(str(error))
             doubt = Unknown(str(error), START)
@@ -397,7 +399,7 @@ def _full_name(node: StartedNode, name: str) -> str | None:
 
 
 def _tables_of(
-    given: GivenParameters, installation: Installation, own: str | None
+    given: GivenParameters, open_file: _OpenFile, own: str | None
 ) -> Iterator[tuple[str, Mapping[str, ParameterValue]]]:
     """Yield the parameters by keys of nodes; `own` is the full name that the launch file gives. Raises Undetermined."""
     if given.unknown:
@@ -406,7 +408,7 @@ def _tables_of(
         yield _key_of(given, own), given.values
         return
     path = posixpath.normpath(given.path)
-    found = installation.open_installed(path.removeprefix(f"{PREFIX}/")) if path.startswith(f"{PREFIX}/") else None
+    found = open_file(path.removeprefix(f"{PREFIX}/")) if path.startswith(f"{PREFIX}/") else None
     if found is None:
         raise Undetermined(f"the file {path.removeprefix(PREFIX)} is not read: the submission does not install it")
     try:
