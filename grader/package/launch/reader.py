@@ -9,7 +9,6 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from operator import attrgetter, methodcaller
 from pathlib import PurePosixPath
-from typing import Any
 
 from grader.merge_conflicts import resolve_conflicts
 from grader.package.launch.actions import CIRCULAR_INCLUDE, ActionVisitor, Include
@@ -58,32 +57,40 @@ _JOINED = ("nodes", "references", "faults", "unknown", "doubts", "declared", "va
 _MAX_KEPT = 4  # launch files
 
 
-def _recorded(name: str) -> Any:
-    """Return the method of a recorder that passes a question on and keeps the answer."""
-
-    def ask(recorder: "_Recorder", *args: str) -> object:
-        question = methodcaller(name, *args)
-        recorder.answers.append((question, question(recorder.installation)))
-        return recorder.answers[-1][1]
-
-    return ask
-
-
 class _Recorder:
     """An installation that records what is asked of it. With the same answers, a launch file is evaluated alike."""
 
     def __init__(self, installation: Installation) -> None:
-        self.installation = installation
-        self.answers: list[tuple[Callable[[Installation], object], object]] = []
+        self._installation = installation
+        self._answers: list[tuple[Callable[[Installation], object], object]] = []
 
-    open_installed = _recorded("open_installed")
-    has_package = _recorded("has_package")
-    files_in = _recorded("files_in")
-    has_program = _recorded("has_program")
+    def open_installed(self, path: str) -> tuple[bytes, str] | None:
+        """Return an installed file."""
+        found = self._installation.open_installed(path)
+        self._answers.append((methodcaller("open_installed", path), found))
+        return found
+
+    def has_package(self, name: str) -> bool:
+        """Return whether a package certainly is on the machine."""
+        found = self._installation.has_package(name)
+        self._answers.append((methodcaller("has_package", name), found))
+        return found
+
+    def files_in(self, folder: str) -> Sequence[str] | None:
+        """Return the names of the installed files in a folder."""
+        found = self._installation.files_in(folder)
+        self._answers.append((methodcaller("files_in", folder), found))
+        return found
+
+    def has_program(self, package: str, name: str) -> bool | None:
+        """Return whether a package has a program."""
+        found = self._installation.has_program(package, name)
+        self._answers.append((methodcaller("has_program", package, name), found))
+        return found
 
     def is_equal(self, other: Installation) -> bool:
         """Return whether another installation answers alike."""
-        return all(question(other) == answer for question, answer in self.answers)
+        return all(question(other) == answer for question, answer in self._answers)
 
 
 # The results of the last launch files: those of a handout are read again, and all while hints are searched.
