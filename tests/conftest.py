@@ -3,6 +3,7 @@
 import gc
 import os
 import signal
+import sys
 from collections import Counter, defaultdict
 
 import pytest
@@ -16,9 +17,12 @@ settings.register_profile("repeatable", deadline=None, derandomize=True, databas
 settings.register_profile("random", deadline=None, derandomize=False, database=None, max_examples=100, print_blob=True)
 settings.load_profile("repeatable")
 
-# A command that a shell starts with `&` ignores Ctrl-C, and so would the commands that the tests start and interrupt.
+# A command that a shell starts with `&` ignores Ctrl-C, one that `nohup` starts a closed terminal, and so would the
+# commands that the tests start and interrupt.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+if sys.platform != "win32" and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 # On a CI system the grader annotates, and takes the checkout for the repository; a git hook sets variables for another
 # repository; colours and widths change the output; pip may have another target. Tests that need a variable set it.
