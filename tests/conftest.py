@@ -28,7 +28,7 @@ if sys.platform != "win32" and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
 # repository; colours and widths change the output; pip may have another target. Tests that need a variable set it.
 _NAMES = (
     "CI", "CI_PROJECT_DIR", "CLICOLOR_FORCE", "COLUMNS", "FORCE_COLOR", "NO_COLOR", "PYTHONDONTWRITEBYTECODE",
-    "PYTEST_ADDOPTS", "PYTHONHASHSEED", "PYTHONOPTIMIZE", "PYTHONWARNINGS", "TTY_COMPATIBLE", "TTY_INTERACTIVE",
+    "PYTHONHASHSEED", "PYTHONOPTIMIZE", "PYTHONWARNINGS", "TTY_COMPATIBLE", "TTY_INTERACTIVE",
 )  # fmt: skip
 _BEGINNINGS = ("GITHUB_", "GIT_", "GRADER_", "PIP_", "_TYPER_")
 for name in [name for name in os.environ if name in _NAMES or name.startswith(_BEGINNINGS)]:
