@@ -88,11 +88,13 @@ def test_the_wheel_has_no_model_answers_and_no_samples(built: Path) -> None:
 
 @pytest.mark.exhaustive
 def test_the_sdist_builds_the_same_wheel(built: Path, tmp_path: Path) -> None:
-    """A packager gets the files of the checkout."""
+    """A packager gets the files of the checkout, and the same bytes."""
     with tarfile.open(next(built.glob("*.tar.gz"))) as archive:
         archive.extractall(tmp_path, filter="data")
     again = build(next(tmp_path.iterdir()), tmp_path / "dist", "wheel")
-    assert contents(next(again.glob("*.whl"))) == contents(next(built.glob("*.whl")))
+    (first,), (second,) = built.glob("*.whl"), again.glob("*.whl")
+    assert contents(second) == contents(first)
+    assert second.read_bytes() == first.read_bytes()
 
 
 @pytest.mark.exhaustive
