@@ -348,4 +348,4 @@ def _why_not_installed(package: Package, target: str, held: list[str]) -> str:
         return f"is looked for at {target}, but {found.text}"
     if setup is None or found.state == "no build":
         return f"is not installed: {found.text}"
-    return f"is not installed: add {held[0]} to {setup.entries}, for {posixpath.dirname(target)}"
+    return f"is not installed: add {found.path or held[0]} to {setup.entries}, for {posixpath.dirname(target)}"

@@ -39,12 +39,21 @@ def look_up(owner: Package, target: str) -> Lookup:
         return Lookup("installed", owner.installed[target])
     if setup.unknown:
         return Lookup("unknown", text=f"cannot determine statically what {setup.file} installs")
-    elsewhere = next((path for path in owner.installed if posixpath.basename(path) == name), "")
+    sources = _meant_by(owner, target)
+    elsewhere = next((path for path, source in owner.installed.items() if source in sources), "")
+    if not sources:  # builds may install a file under another name
+        elsewhere = next((path for path in owner.installed if posixpath.basename(path) == name), "")
     if elsewhere:
         return Lookup("elsewhere", elsewhere, f"a build installs it as {elsewhere}")
-    own = next((path for path in owner.tree.files if posixpath.basename(path) == name), "")
-    text = f"a build does not install {name}" if own else f"the package has no file {name!r}"
+    own = sources[0] if sources else ""
+    text = f"a build does not install {own}" if own else f"the package has no file {name!r}"
     return Lookup("not installed" if own else "absent", own, text)
+
+
+def _meant_by(owner: Package, target: str) -> list[str]:
+    """Return the file of a package that is at the same place in its folder, else all with the same name."""
+    inside, name = target.removeprefix(owner.share), posixpath.basename(target)
+    return [inside] if inside in owner.tree.files else [it for it in owner.tree.files if posixpath.basename(it) == name]
 
 
 def _without_setup(setup: "Installation | None") -> Lookup:
