@@ -10,6 +10,8 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from tests.command_line import HANG_TIMEOUT
+
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
@@ -53,6 +55,7 @@ def open_pages(browser: "Browser") -> Callable[..., OpenPage]:
 
     def open_one(address: Path | str, **options: object) -> OpenPage:
         page = browser.new_page(**options)
+        page.set_default_timeout(HANG_TIMEOUT * 1000)
         found = OpenPage(page)
         page.on("request", lambda request: found.requests.append(request.url))
         page.on("console", lambda message: found.messages.append(message.text))
