@@ -11,8 +11,8 @@ import pytest
 from tests.command_line import HANG_TIMEOUT, clean_environment, run, run_process
 from tests.samples import ROOT, SAMPLES
 
-SEEDS = 4
-HINT_SEEDS, HINT_STEP = 2, 4  # with so many seeds the hints of every fourth sample are searched
+SEEDS = 2
+HINT_STEP = 8  # the hints of every eighth sample are searched
 
 PACKAGE = ROOT / "rubrics/lab6/my_robot"
 GREEN = "0 0.6 0 1"
@@ -49,16 +49,16 @@ def test_reports_are_the_same_with_every_hash_seed(tmp_path: Path) -> None:
 
 
 @pytest.mark.exhaustive
-def test_every_sample_has_one_report_over_four_hash_seeds() -> None:
-    """All samples are graded with each seed, in one process; hints take longer, and are searched for some with two seeds."""
+def test_every_sample_has_one_report_over_two_hash_seeds() -> None:
+    """All samples are graded with each seed, in one process; hints take longer, and are searched for some."""
     digests: dict[str, list[str]] = {}
     for seed in range(SEEDS):
-        words = [sys.executable, "-m", "tests.report_digests", str(HINT_STEP if seed < HINT_SEEDS else 0)]
+        words = [sys.executable, "-m", "tests.report_digests", str(HINT_STEP)]
         environment = {**clean_environment(), "PYTHONHASHSEED": str(seed)}
         done = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, check=True, timeout=HANG_TIMEOUT)
         for line in done.stdout.decode().splitlines():
             name, _, digest = line.rpartition(" ")
             digests.setdefault(name, []).append(digest)
-    assert {len(digests[name]) for name in SAMPLES} == {SEEDS}
-    assert {len(found) for name, found in digests.items() if name not in SAMPLES} == {HINT_SEEDS}
+    assert {len(found) for found in digests.values()} == {SEEDS}
+    assert digests.keys() > set(SAMPLES)
     assert [name for name, found in digests.items() if len({*found}) > 1] == []

@@ -4,6 +4,7 @@
 """
 
 import json
+from collections.abc import Iterable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -35,12 +36,13 @@ UNKNOWN: dict[str, str] = {
 }
 
 
-def build_samples() -> dict[str, Build]:
-    """Build all samples with colcon."""
+def build_samples(samples: Iterable[str] = SAMPLES) -> dict[str, Build]:
+    """Build samples with colcon."""
     with TemporaryDirectory() as name:
-        folders = [Path(name, sample) for sample in SAMPLES]
+        folders = [Path(name, sample) for sample in samples]
         texts = [make_package(folder.name, folder / "src/my_robot") for folder in folders]
-        return dict(zip(SAMPLES, build_all(zip(folders, texts, strict=True)), strict=True))
+        builds = build_all(zip(folders, texts, strict=True))
+        return {folder.name: build for folder, build in zip(folders, builds, strict=True)}
 
 
 def recorded() -> dict[str, Build]:
@@ -70,10 +72,10 @@ def test_colcon_installs_the_determined_files(sample: str, tmp_path: Path) -> No
 @pytest.mark.exhaustive
 @pytest.mark.skipif(not is_available(), reason="needs colcon: see CONTRIBUTING.md")
 def test_colcon_does_what_is_recorded() -> None:
-    """A build of each sample installs the recorded files, or fails."""
-    built, known = build_samples(), recorded()
-    assert {name: build.installed for name, build in built.items() if not build.error} == {
-        name: build.installed for name, build in known.items() if not build.error
+    """A build of every fifth sample installs the recorded files, or fails."""
+    built, known = build_samples(list(SAMPLES)[::5]), recorded()
+    assert {name: None if it.error else it.installed for name, it in built.items()} == {
+        name: None if known[name].error else known[name].installed for name in built
     }
 
 

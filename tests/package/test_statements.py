@@ -104,6 +104,6 @@ def test_statements_at_random_places(package: Path) -> None:
 
 
 @pytest.mark.exhaustive
-def test_every_statement_at_every_place(package: Path) -> None:
-    """All variations."""
-    assert compared(package, list(variations())) == []
+def test_statements_at_many_places(package: Path) -> None:
+    """A seventh of the variations, with each statement in each file."""
+    assert compared(package, list(variations())[::7]) == []

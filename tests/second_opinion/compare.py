@@ -4,6 +4,7 @@ import time
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from functools import cache
+from itertools import islice
 from multiprocessing import Pool
 from typing import NamedTuple
 from xml.etree import ElementTree as ET
@@ -104,11 +105,11 @@ def compared_seeds(seeds: Iterable[int], processes: int = 1) -> Iterator[Compari
         yield from pool.imap(_of_seed, seeds, chunksize=100)
 
 
-def compared_mutants(rubric: str) -> Iterator[Comparison]:
-    """Yield the comparisons of all mutants of the robot of a rubric's reference; xacro itself expands those in xacro."""
+def compared_mutants(rubric: str, step: int = 1) -> Iterator[Comparison]:
+    """Yield the comparisons of mutants of the robot of a rubric's reference; xacro itself expands those in xacro."""
     trial = Trial(_rubric(rubric)[1])
     texts = {path: trial.text(path) for path in trial.robot_files}
-    for mutant in trial.mutants():
+    for mutant in islice(trial.mutants(), None, None, step):
         submission = trial.submission(mutant) if mutant.path in texts and not mutant.is_deleted else None
         if submission is None:
             continue

@@ -74,9 +74,9 @@ def test_random_robots(part: int) -> None:
 @pytest.mark.parametrize(
     "rubric", [pytest.param(name, marks=pytest.mark.exhaustive) for name in ("lab6", "arm", "sensors")]
 )
-def test_all_mutants(rubric: str) -> None:
-    """All mutants of the reference that `grader rubric test` grades get the same results."""
-    assert_alike(compared_mutants(rubric), 500)
+def test_many_mutants(rubric: str) -> None:
+    """Mutants of the reference that `grader rubric test` grades get the same results: every fourth of all."""
+    assert_alike(compared_mutants(rubric, step=4), 500)
 
 
 @pytest.mark.exhaustive
