@@ -42,7 +42,16 @@ class Batch:
         tasks = (self._task(submissions.pop(), force=force) for _ in range(len(submissions)))
         queue = Queue(executor, workers, partial(grade_all, self._shared), _without_documents, self._errored)
         for results in queue.results(tasks):
-            self._writer.append(*map(self._line, results))
+            progress = self.progress
+            lines = list[bytes]()
+            for result in results:
+                submission, current = self._at_work.pop(result.student)
+                if (place := (submission.root, submission.paths)) not in self._counted:  # that of a team counts once
+                    self._counted.add(place)
+                    progress = progress.with_result(result.verdict)
+                lines.append(self._line(result, submission, current))
+            self._writer.append(*lines)
+            self.progress = progress  # after the write: a run that is interrupted says how many results are kept
             show(self.progress)
         return self.progress
 
@@ -57,12 +66,8 @@ class Batch:
         reason = str(error) if isinstance(error, WorkerError) else f"{type(error).__name__}: {error}"
         return undecided(self._shared, StoredResult(task.key, 0, "errored", reason=reason))
 
-    def _line(self, result: StoredResult) -> bytes:
+    def _line(self, result: StoredResult, submission: ClassSubmission, current: StoredResult | None) -> bytes:
         """Return the line of a result, empty if the file has it."""
-        submission, current = self._at_work.pop(result.student)
-        if (place := (submission.root, submission.paths)) not in self._counted:  # that of a team counts once
-            self._counted.add(place)
-            self.progress = self.progress.with_result(result.verdict)
         found = current if result.verdict == "unchanged" and current is not None else result
         person = {name: value for name in _OF_PERSON if (value := getattr(submission.student, name))}
         new = found._replace(
