@@ -28,7 +28,7 @@ from grader.checks.visuals import file_name, shape_name, visual_pose, visuals
 from grader.errors import MissingElement, NotDecided
 from grader.files.tree import File
 from grader.names import closest
-from grader.package.installed_files import look_up
+from grader.package.installed_files import Lookup, look_up
 from grader.package.launch.places import is_of_one_machine
 from grader.package.package import Package
 from grader.package.package_problems import MESH_PATH
@@ -301,21 +301,33 @@ def _why_not_found(mesh: _MeshFile, submission: Submission) -> str:
         return _without_package(mesh.package, path, submission)
     if path.startswith("../") or path in ("..", "."):
         return "is outside of its package"
-    name = posixpath.basename(path)
+    return _fault_in_package(package, f"share/{mesh.package}/{path}", submission)
+
+
+def _fault_in_package(package: Package, target: str, submission: Submission) -> str:
+    """Return what is wrong with the file that a build installs at a path, or why it installs none there."""
+    found = look_up(package, target)
+    file = package.tree.files.get(found.path) if found.state == "installed" else None
+    if file is not None:
+        return content_fault(file)
+    name = posixpath.basename(target)
     held = [file for file in package.tree.files if posixpath.basename(file) == name]
-    if not held:
-        if submission.tree.unopened:
-            raise NotDecided(f"{name} may be in an archive that could not be opened", "an archive could not be opened")
-        similar = closest(name, map(posixpath.basename, package.tree.files))
-        return f"is not in the package {package.name!r}{f'; there is {quoted(similar)}' if similar else ''}"
-    fault = _why_not_installed(package, f"share/{mesh.package}/{path}", held)
-    return fault or content_fault(package.tree.files.get(path) or package.tree.files[held[0]])
+    if held:
+        return _why_not_installed(package, target, found, held[0])
+    if submission.tree.unopened:
+        raise NotDecided(f"{name} may be in an archive that could not be opened", "an archive could not be opened")
+    similar = closest(name, map(posixpath.basename, package.tree.files))
+    return f"is not in the package {package.name!r}{f'; there is {quoted(similar)}' if similar else ''}"
 
 
 def _file_of(mesh: _MeshFile, submission: Submission) -> File | None:
     """Return the file of a submitted package that a mesh names."""
     package = submission.packages[0].find(mesh.package) if submission.packages else None
-    return package.tree.files.get(posixpath.normpath(mesh.path)) if package is not None else None
+    if package is None:
+        return None
+    path = posixpath.normpath(mesh.path)
+    found = look_up(package, f"share/{mesh.package}/{path}")
+    return package.tree.files.get(found.path if found.state == "installed" else path)
 
 
 def _path_from_xacro(path: str) -> tuple[str, str] | None:
@@ -337,15 +349,13 @@ def _without_package(name: str, path: str, submission: Submission) -> str:
     return f"names the package {quoted(name)}{hint}"
 
 
-def _why_not_installed(package: Package, target: str, held: list[str]) -> str:
-    """Return why a build does not install a file of a package at a path; empty if it does."""
-    found, setup = look_up(package, target), package.installation
+def _why_not_installed(package: Package, target: str, found: Lookup, held: str) -> str:
+    """Return why a build does not install a file of a package at a path, by what it has instead."""
+    setup = package.installation
     if found.state == "unknown":
         raise NotDecided(found.text, found.text)
-    if found.state == "installed":
-        return ""
     if found.state == "elsewhere":
         return f"is looked for at {target}, but {found.text}"
     if setup is None or found.state == "no build":
         return f"is not installed: {found.text}"
-    return f"is not installed: add {found.path or held[0]} to {setup.entries}, for {posixpath.dirname(target)}"
+    return f"is not installed: add {found.path or held} to {setup.entries}, for {posixpath.dirname(target)}"

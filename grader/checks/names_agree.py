@@ -23,9 +23,9 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
     submission.needed_package()
     wrong, undecided = wrong_names(submission, of), read_agreement(submission).undecided
     if wrong:
-        places: dict[str, list[str]] = {}
+        places: dict[str, dict[str, None]] = {}
         for it in wrong:
-            places.setdefault(it.message, []).append(place_text(it.location))
+            places.setdefault(it.message, {})[place_text(it.location)] = None
         (first, (_, *also)), *others = places.items()
         texts = [f"{at}: {message}{_also(more)}" for message, (at, *more) in others]
         message = "; ".join([f"{first}{_also(also)}", *first_lines(texts, _MAX_NAMED - 1)])

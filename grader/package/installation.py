@@ -74,6 +74,8 @@ class Installation:
 
     def has_program(self, name: str, package: str) -> bool | None:
         """Return whether a build installs a program where `ros2 run` looks for it; None where this is not known."""
+        if self.fault is not None and not self.fault.sure:
+            return None
         path = f"lib/{package}/{name}"
         if path in self.programs or path in self.installed():
             # CMake takes the right to execute from the files of install(FILES ...) and install(DIRECTORY ...).

@@ -10,6 +10,7 @@ from grader.package.package import CMAKE, Package
 
 if TYPE_CHECKING:
     from grader.package.installation import Installation
+    from grader.python.parse import SyntaxFault
 
 _FOR_TESTS = re.compile(r"if\s*\(\s*BUILD_TESTING.*?endif", re.DOTALL)
 _MAX_CMAKE, _MAX_FILE = 128 * 1024, 512 * 1024  # bytes
@@ -32,22 +33,33 @@ def share_parts(path: str) -> tuple[str, str]:
 
 def look_up(owner: Package, target: str) -> Lookup:
     """Return what a build of a package installs at a path below the prefix, or what the package has instead."""
-    setup, name = owner.installation, posixpath.basename(target)
-    if setup is None or setup.fault is not None:
-        return _without_setup(setup)
+    setup = owner.installation
+    if setup is None:
+        return Lookup("no build", text=f"its package has no {owner.build_file}")
+    if setup.fault is not None:
+        return _not_read(setup, setup.fault)
     if target in owner.installed:
         return Lookup("installed", owner.installed[target])
     if setup.unknown:
         return Lookup("unknown", text=f"cannot determine statically what {setup.file} installs")
-    sources = _meant_by(owner, target)
+    return _instead(owner, target)
+
+
+def _instead(owner: Package, target: str) -> Lookup:
+    """Return what a package, or a build of it, has instead of a file at a path below the prefix."""
+    name, sources = posixpath.basename(target), _meant_by(owner, target)
     elsewhere = next((path for path, source in owner.installed.items() if source in sources), "")
     if not sources:  # builds may install a file under another name
         elsewhere = next((path for path in owner.installed if posixpath.basename(path) == name), "")
     if elsewhere:
         return Lookup("elsewhere", elsewhere, f"a build installs it as {elsewhere}")
-    own = sources[0] if sources else ""
-    text = f"a build does not install {own}" if own else f"the package has no file {name!r}"
-    return Lookup("not installed" if own else "absent", own, text)
+    if not sources:
+        return Lookup("absent", text=f"the package has no file {name!r}")
+    text = f"a build does not install {sources[0]}"
+    for path, source in owner.installed.items():
+        if posixpath.basename(source) == name:
+            return Lookup("not installed", sources[0], f"{text}; it installs {source} as {path}")
+    return Lookup("not installed", sources[0], text)
 
 
 def _meant_by(owner: Package, target: str) -> list[str]:
@@ -56,13 +68,11 @@ def _meant_by(owner: Package, target: str) -> list[str]:
     return [inside] if inside in owner.tree.files else [it for it in owner.tree.files if posixpath.basename(it) == name]
 
 
-def _without_setup(setup: "Installation | None") -> Lookup:
+def _not_read(setup: "Installation", fault: "SyntaxFault") -> Lookup:
     """Return why nothing is known to be installed."""
-    if setup is None or setup.fault is None:
-        return Lookup("no build", text="its package has no setup.py")
-    if setup.fault.sure:
+    if fault.sure:
         return Lookup("no build", text=setup.fault_text)
-    return Lookup("unknown", text=f"{setup.file} cannot be read ({setup.fault.message})")
+    return Lookup("unknown", text=f"{setup.file} cannot be read ({fault.message})")
 
 
 def is_surely_absent(package: Package, target: str) -> bool:
@@ -92,7 +102,7 @@ def open_meant(package: Package, path: str, *, absent_are_empty: bool = False) -
     owner = package.find(parts[1]) if found is None and len(parts) > 2 else None
     if owner is None:
         return found
-    named = [it for it in owner.tree.files if posixpath.basename(it) == parts[-1]]
+    named = _meant_by(owner, path)
     if not named and absent_are_empty and are_installs_known(owner) and is_surely_absent(owner, path):
         return b"", path
     data = owner.tree.read(named[0], _MAX_FILE) if len(named) == 1 else None

@@ -114,8 +114,13 @@ class Package:
     @property
     def is_cmake(self) -> bool:
         """Return whether CMake, not setup.py, installs the package."""
-        other_type = self.manifest is not None and self.manifest.build_type not in ("ament_python", "")
-        return CMAKE in self.tree.files and (SETUP not in self.tree.files or other_type)
+        return CMAKE in self.tree.files and (SETUP not in self.tree.files or self.build_file == CMAKE)
+
+    @property
+    def build_file(self) -> str:
+        """Return the file that should install the package, by its package.xml: setup.py or CMakeLists.txt."""
+        build_type = self.manifest.build_type if self.manifest is not None else ""
+        return SETUP if build_type in ("ament_python", "") else CMAKE
 
     @cached_property
     def installation(self) -> "Installation | None":

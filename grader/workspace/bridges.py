@@ -34,6 +34,7 @@ class _BridgeRow(NamedTuple):
     gz_type: str  # its last word
     direction: str
     location: Location
+    type_location: Location  # of the type in Gazebo
     is_used: bool  # whether a launch file names the file of the row
 
     @property
@@ -52,27 +53,27 @@ def bridge_rows(workspace: Workspace) -> Iterator[_BridgeRow]:
     for path, tree in workspace.trees:
         is_used = any(posixpath.basename(path) in text for text in workspace.launch_texts)
         for row in tree.items:
-            if row.get("ros_type_name") is not None and row.get("gz_type_name") is not None:
-                yield from _row_in_yaml(row, is_used=is_used)
+            yield from _row_in_yaml(row, is_used=is_used)
     for _, node in workspace.nodes:
         for word in node.arguments or () if node.package == BRIDGE else ():
             found = _ARGUMENT.fullmatch(word or "")
             if found is not None:
                 name, types = found["topic"].strip("/"), (found["ros"].replace("/", "."), found["gz"].split(".")[-1])
-                yield _BridgeRow(name, name, *types, _DIRECTIONS[found["direction"]], node.location, is_used=True)
+                both = node.location, node.location
+                yield _BridgeRow(name, name, *types, _DIRECTIONS[found["direction"]], *both, is_used=True)
 
 
 def _row_in_yaml(row: YamlNode, *, is_used: bool) -> Iterator[_BridgeRow]:
     both = row.get("topic_name")
     ros, gz = row.get("ros_topic_name") or both, row.get("gz_topic_name") or both
-    types = [row.get(key) for key in ("ros_type_name", "gz_type_name")]
-    if ros is None or gz is None or not ros.text or not gz.text:
+    ros_type, gz_type = row.get("ros_type_name"), row.get("gz_type_name")
+    if ros is None or gz is None or ros_type is None or gz_type is None or not ros.text or not gz.text:
         return
-    ros_type, gz_type = ((it.text or "") if it is not None else "" for it in types)
     direction = row.get("direction")
     way = _BOTH if direction is None else direction.text or _BOTH
     names = ros.text.strip("/"), gz.text.strip("/")
-    yield _BridgeRow(*names, ros_type.replace("/", "."), gz_type.split(".")[-1], way, gz.location, is_used)
+    types = (ros_type.text or "").replace("/", "."), (gz_type.text or "").split(".")[-1]
+    yield _BridgeRow(*names, *types, way, gz.location, gz_type.location, is_used)
 
 
 def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -103,8 +104,8 @@ def _conversions(row: _BridgeRow) -> Iterator[Mismatch]:
     if kinds is not None and row.gz_type not in kinds:
         pair = f"{row.ros_type.replace('.', '/')} and gz.msgs.{row.gz_type}"
         message = f"the bridge does not convert {pair}; write gz.msgs.{kinds[0]}"
-        either = corrections(row.gz_type, row.location, kinds[0])
-        yield Mismatch("topics", message, row.location, is_sure=row.is_used, corrections=either)
+        either = corrections(row.gz_type, row.type_location, kinds[0])
+        yield Mismatch("topics", message, row.type_location, is_sure=row.is_used, corrections=either)
     if row.gz_type == "Clock" and row.direction == _TO_GAZEBO:
         message = f"the bridge sends the time of ROS to Gazebo: the clock is Gazebo's, so write {_TO_ROS}"
         yield Mismatch("topics", message, row.location, is_sure=row.is_used)
@@ -125,7 +126,7 @@ def _contradictions(row: _BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mism
         message = (
             f"the topic {row.gz} of Gazebo has gz.msgs.{topics[0].type} ({place_text(at)}), not gz.msgs.{row.gz_type}"
         )
-        yield Mismatch("topics", message, row.location, at, row.is_used)
+        yield Mismatch("topics", message, row.type_location, at, row.is_used)
 
 
 def _not_there(row: _BridgeRow, unused: list[GazeboTopic], *, is_known: bool) -> Iterator[Mismatch]:

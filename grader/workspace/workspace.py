@@ -11,7 +11,7 @@ from grader.errors import InputError
 from grader.package.installed_files import open_meant
 from grader.package.launch.model import GivenParameters, Launch, StartedNode
 from grader.package.launch.parameters import NodeParameters, controllers_of, parameters_of
-from grader.package.launch.places import ENDINGS, PREFIX, SHARE
+from grader.package.launch.places import PREFIX, SHARE
 from grader.package.nodes import PythonNode, PythonNodes, read_nodes
 from grader.package.package import MANIFEST, Package
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
@@ -318,9 +318,9 @@ class Workspace:
 
     @cached_property
     def launch_texts(self) -> tuple[str, ...]:
-        """The texts of the launch files."""
-        endings = (*ENDINGS, ".launch")
-        return tuple(it.text for package in self.packages for it in self.sources_of(package, endings))
+        """The texts of the launch files, of those of ROS 1 too."""
+        own = [(package, (*package.launch_files, ".launch")) for package in self.packages]
+        return tuple(it.text for package, endings in own for it in self.sources_of(package, endings))
 
     @cached_property
     def python_texts(self) -> tuple[str, ...]:
