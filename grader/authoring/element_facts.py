@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from math import isfinite
 from typing import Any
 
@@ -35,19 +35,19 @@ def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
     covered = needed_interfaces(workspace_of(solution.submission))
     robot = solution.robot.robot
     joints, links = {joint.name for joint in robot.joints}, {link.name for link in robot.links}
-    free = joints if are_joints_free(solution) else set[str]()
+    free = joints - links if are_joints_free(solution) else set[str]()
     are_compared = read_agreement(solution.submission).holds("topics")
 
-    def asked(it: Fact | Omission) -> Fact | Omission:
-        if isinstance(it, Omission):
-            return it
-        arguments = _weakened(it.arguments, free)
-        return it._replace(arguments=_without_topics(arguments) if are_compared else arguments)
+    def asked(root: Element) -> list[Fact | Omission]:
+        found = list(_entries(root, covered))
+        if are_compared:
+            found = [it if isinstance(it, Omission) else _without_topics(it) for it in found]
+        return [*_without_joints(found, free)]
 
     without_launch = _root_without_launch_files(solution)
-    without = None if without_launch is None else [*map(asked, _entries(without_launch, covered))]
+    without = None if without_launch is None else asked(without_launch)
     met: Counter[str] = Counter()
-    for it in map(asked, _entries(solution.root, covered)):
+    for it in asked(solution.root):
         if isinstance(it, Omission):
             yield it
             continue
@@ -60,11 +60,41 @@ def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
         yield it._replace(carried=tuple(carried))
 
 
-def _without_topics(arguments: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return what is asked for without the names of topics, which need only agree."""
-    values = {path: value for path, value in arguments.get("values", {}).items() if not path.endswith("topic")}
-    others = {key: value for key, value in arguments.items() if key != "values"}
-    return {**others, "values": values} if values else others
+def _without_topics(fact: Fact) -> Fact:
+    """Return a fact without the names of topics, which need only agree."""
+    values = {path: value for path, value in fact.arguments.get("values", {}).items() if not path.endswith("topic")}
+    return fact._replace(arguments=_entry(fact.arguments["at"], values))
+
+
+def _without_joints(facts: Sequence[Fact | Omission], joints: Collection[str]) -> Facts:
+    """Yield facts without the names of joints that are compared with those of the robot.
+
+    Those that are the same then, such as the interfaces of two wheels, become one: so many entries have the values.
+    """
+    freed = [it if isinstance(it, Omission) else it._replace(arguments=_freed(it.arguments, joints)) for it in facts]
+    for index, (it, before) in enumerate(zip(freed, facts, strict=True)):
+        if isinstance(it, Omission) or it == before:
+            yield it
+            continue
+        same = [at for at, one in enumerate(freed) if isinstance(one, Fact) and one.arguments == it.arguments]
+        if len(same) == 1:
+            yield it
+        elif same[0] == index:
+            above, _, last = it.arguments["at"].rpartition("/")
+            values = {
+                f"{last}/{key}": (value if isinstance(value, list) else [value]) * len(same)
+                for key, value in it.arguments.get("values", {}).items()
+            }
+            yield it._replace(arguments=_entry(above, values)) if values else it
+
+
+def _freed(arguments: Mapping[str, Any], joints: Collection[str]) -> Mapping[str, Any]:
+    """Return the arguments without the names of joints that are compared: which wheel is left, nothing compares."""
+    at, values = arguments["at"], arguments.get("values", {})
+    if at.startswith("ros2_control") and at.endswith("/joint"):
+        return _weakened(arguments, joints)
+    named = {key for key in values if key.rpartition("/")[2] == "joint_name" and _names_any(values[key], joints)}
+    return _entry(at, {key: value for key, value in values.items() if key not in named})
 
 
 def _carried_from_names(fact: Fact, joints: Collection[str], links: Collection[str]) -> Iterator[Carried]:
@@ -94,13 +124,22 @@ def _carried_from_launch(fact: Fact, other: Mapping[str, Any] | None, causes: tu
         return [Carried(causes, "urdf_loads")]
     values, others = fact.arguments.get("values", {}), other.get("values", {})
     same = {key: value for key, value in values.items() if others.get(key) == value}
-    return [Carried(causes, fact.check, {"at": fact.arguments["at"], **({"values": same} if same else {})})]
+    return [Carried(causes, fact.check, _entry(fact.arguments["at"], same))]
 
 
 def _weakened(arguments: Mapping[str, Any], names: Collection[str]) -> Mapping[str, Any]:
     """Return the arguments without conditions and values that are names of joints and links."""
     at = _CONDITION.sub(lambda found: "" if found[1] in names else found[0], arguments["at"])
-    values = {key: it for key, it in arguments.get("values", {}).items() if not isinstance(it, str) or it not in names}
+    return _entry(at, {key: it for key, it in arguments.get("values", {}).items() if not _names_any(it, names)})
+
+
+def _names_any(value: Any, names: Collection[str]) -> bool:
+    """Return whether a value is a name, or a list with one."""
+    return any(isinstance(it, str) and it in names for it in (value if isinstance(value, list) else [value]))
+
+
+def _entry(at: str, values: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the arguments of entry_is."""
     return {"at": at, **({"values": values} if values else {})}
 
 
@@ -117,7 +156,7 @@ def _entries(root: Element, covered: Collection[str]) -> Facts:
             if (name_of(element), path) == ("ros2_control", "joint"):
                 _drop_covered(values, covered)
             if is_path(at):
-                yield Fact(about, "entry_is", {"at": at, **({"values": values} if values else {})}, label)
+                yield Fact(about, "entry_is", _entry(at, values), label)
             else:
                 yield Omission(label, "a path cannot name it")
 

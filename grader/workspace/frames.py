@@ -10,6 +10,7 @@ from grader.workspace.known import known
 from grader.workspace.names import Definition, Fact, Mismatch, Open, Use
 from grader.workspace.workspace import Workspace
 from grader.workspace.yaml_values import YamlValue, is_parameters, values_in
+from grader.xml.parsing import Element
 
 _JOINTS = re.compile(r"(^|_)joints?$|(wheels?|joints?)_names?$")
 _FRAMES = re.compile(r"(^|_)(frame|frame_id)$")
@@ -114,5 +115,14 @@ def _in_robot(workspace: Workspace) -> Iterator[Fact]:
             elif text:
                 yield Use("frame", text, workspace.place(inner), f"<{inner.tag}>")
     for system in root.iterchildren("ros2_control"):
-        for element in system.iterchildren("joint"):
-            yield Use("joint", element.get("name", ""), workspace.place(element), "<ros2_control>")
+        yield from _in_system(workspace, system)
+
+
+def _in_system(workspace: Workspace, system: Element) -> Iterator[Fact]:
+    """Yield the joints that a system of ros2_control names."""
+    for element in system.iterchildren("joint"):
+        yield Use("joint", element.get("name", ""), workspace.place(element), "<ros2_control>")
+        for param in element.iterchildren("param"):
+            text = (param.text or "").strip()
+            if param.get("name") == "mimic" and text:
+                yield Use("joint", text, workspace.place(param), "the parameter mimic")
