@@ -15,7 +15,8 @@ def held_by(posed: Posed, link: str, parent: str, joint_type: str, free: bool = 
     types = [joint.type for joint in way or () if joint.type != "fixed"]
     if way and not types and joint_type != "fixed":
         raise Missing("moving joint", link)
-    is_free = not any(joint.is_mimic or (joint.limit and joint.limit[3] <= 0) for joint in way or ())
+    moving = [joint for joint in way or () if joint.type != "fixed"]
+    is_free = not any(joint.is_mimic or (joint.limit and joint.limit[3] <= 0) for joint in moving)
     return way is not None and types == ([] if joint_type == "fixed" else [joint_type]) and (is_free or not free), None
 
 
