@@ -52,7 +52,7 @@ def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
             yield it
             continue
         met[it.words] += 1
-        carried = [*_carried_from_names(it, joints, links)]
+        carried = [*it.carried, *_carried_from_names(it, joints, links)]
         if without is not None:
             others = [one.arguments for one in without if isinstance(one, Fact) and one.words == it.words]
             other = others[met[it.words] - 1] if len(others) >= met[it.words] else None
@@ -85,7 +85,8 @@ def _without_joints(facts: Sequence[Fact | Omission], joints: Collection[str]) -
                 f"{last}/{key}": (value if isinstance(value, list) else [value]) * len(same)
                 for key, value in it.arguments.get("values", {}).items()
             }
-            yield it._replace(arguments=_entry(above, values)) if values else it
+            of_one = Carried(("controllers names_agree",), it.check, it.arguments)
+            yield it._replace(arguments=_entry(above, values), carried=(of_one,)) if values else it
 
 
 def _freed(arguments: Mapping[str, Any], joints: Collection[str]) -> Mapping[str, Any]:

@@ -229,14 +229,72 @@ def test_a_mistake_costs_where_it_is(edit: Edit, lost: set[str], of_diffdrive: R
     assert {it.criterion.check.name for it in report.results if it.is_lost} == lost
 
 
-def test_joints_may_have_other_names_where_all_files_use_them(of_diffdrive: Rubric, tmp_path: Path) -> None:
-    """What controllers name is compared with the robot, so a draft asks for no names of joints."""
-    package = write_diffdrive(tmp_path, *SIMULATED)
+def rename_joints(package: Path) -> None:
+    """Give the joints of the wheels other names, wherever they are used."""
     for path in package.rglob("*.*"):
         if "_wheel_joint" in (text := path.read_text()):
             _ = path.write_text(text.replace("_wheel_joint", "_drive"))
+
+
+def test_joints_may_have_other_names_where_all_files_use_them(of_diffdrive: Rubric, tmp_path: Path) -> None:
+    """What controllers name is compared with the robot, so a draft asks for no names of joints."""
+    package = write_diffdrive(tmp_path, *SIMULATED)
+    rename_joints(package)
     report = grade(of_diffdrive, open_submission(str(package), of_diffdrive.lab))
     assert (report.score, [it for it in report.results if it.is_lost]) == (report.max_score, [])
+
+
+# What is added to the reference, and how it is wrong: no names of joints are asked for but those that nothing compares.
+NAMED: dict[str, tuple[str, str, str]] = {
+    "a joint without a state": (
+        "",
+        '<command_interface name="velocity"/>\n        <state_interface name="position"/>\n        <state_interface name="velocity"/>\n      </joint>\n      <joint',
+        '<command_interface name="velocity"/>\n      </joint>\n      <joint',
+    ),
+    "which joint is left": (
+        "<gazebo><plugin><left_joint>left_wheel_joint</left_joint><right_joint>right_wheel_joint</right_joint></plugin></gazebo>",
+        "<left_joint>left_wheel_joint",
+        "<left_joint>right_wheel_joint",
+    ),
+    "a joint of a transmission": (
+        '<transmission name="left"><joint name="left_wheel_joint"/></transmission>',
+        '<transmission name="left"><joint name="left_wheel_joint"',
+        '<transmission name="left"><joint name="port_shaft"',
+    ),
+    "a link called like a joint": (
+        '<link name="spar"/><joint name="spar" type="fixed"><parent link="base_link"/><child link="spar"/></joint><gazebo reference="spar"><mu1>0.1</mu1></gazebo>',
+        '<gazebo reference="spar">',
+        '<gazebo reference="base_link">',
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("added", "old", "wrong"), NAMED.values(), ids=NAMED)
+def test_names_of_joints_that_nothing_compares_are_asked_for(added: str, old: str, wrong: str, tmp_path: Path) -> None:
+    """And of joints that are alike, that each has its interfaces."""
+    system = "urdf/diffdrive.ros2_control.xacro"
+    edits: list[Edit] = [(URDF, "</robot>", f"{added}</robot>")]
+    assert new(tmp_path, write_diffdrive(tmp_path, *edits)).returncode == 0
+    rubric = load_rubric(str(tmp_path / "lab.toml"))
+    package = write_diffdrive(tmp_path / "wrong", *edits, (URDF if added else system, old, wrong))
+    report = grade(rubric, open_submission(str(package), rubric.lab))
+    assert [it.criterion.check.name for it in report.results if it.is_lost] == ["entry_is"]
+
+
+def test_lists_with_names_of_joints_that_are_compared_are_not_asked_for(tmp_path: Path) -> None:
+    """Such as the joints whose positions Gazebo publishes, and the joint that another one follows."""
+    publisher = "".join(f"<joint_name>{side}_wheel_joint</joint_name>" for side in ("left", "right"))
+    mimic = '<param name="mimic">left_wheel_joint</param><param name="multiplier">1</param><state_interface'
+    edits: list[Edit] = [
+        (URDF, "</robot>", f"<gazebo><plugin>{publisher}</plugin></gazebo></robot>"),
+        ("urdf/diffdrive.ros2_control.xacro", "<state_interface", mimic),
+    ]
+    assert new(tmp_path, write_diffdrive(tmp_path, *edits)).returncode == 0
+    rubric = load_rubric(str(tmp_path / "lab.toml"))
+    package = write_diffdrive(tmp_path / "other", *edits)
+    rename_joints(package)
+    report = grade(rubric, open_submission(str(package), rubric.lab))
+    assert [it.outcome.message for it in report.results if it.is_lost] == []
 
 
 @pytest.mark.parametrize("name", [name for name in SAMPLES if not name.startswith("equivalent")])

@@ -7,6 +7,8 @@ from tests.workspace.carts import Edit, agreement_of, edited, sure
 
 _LAUNCH, _ROBOT_LAUNCH = "launch/cart.launch.py", "launch/robot.launch.py"
 _CONTROLLERS, _URDF = "config/controllers.yaml", "cart.urdf.xacro"
+_AT_LAUNCH = "cart_bringup/launch/cart.launch.py"
+_OWN_PROGRAM = 'Node(package="cart_bringup", executable="monitor"),'
 _DETECTOR, _ALARM = "cart_nodes/detector.py", "cart_nodes/alarm.py"
 
 WRONG: list[tuple[Family, str, list[Edit]]] = [
@@ -331,3 +333,21 @@ def test_a_urdf_alone_has_problems_but_no_families() -> None:
     robot = "<robot name='cart'><link name='base'/><gazebo reference='bas'/></robot>"
     found = agreement_of({"cart.urdf": robot})
     assert (found.families, [it.family for it in found.mismatches]) == (frozenset(), ["frames"])
+
+
+def test_programs_are_undecided_where_the_file_that_installs_them_is_too_large() -> None:
+    """It may install each of them."""
+    texts = {**edited(), "cart_bringup/CMakeLists.txt": "# more\n" * 20_000}
+    texts[_AT_LAUNCH] = texts[_AT_LAUNCH].replace(
+        "return LaunchDescription([", f"return LaunchDescription([{_OWN_PROGRAM}"
+    )
+    found = agreement_of(texts)
+    assert "programs" in found.undecided
+    assert [it for it in sure(found) if it.family == "programs"] == []
+
+
+def test_a_copy_elsewhere_leaves_nothing_open() -> None:
+    """Files that a build does not install are those at the same place in the package."""
+    edit = ("cart_bringup/CMakeLists.txt", "launch config worlds", "launch worlds")
+    copied = {**edited(edit), "cart_bringup/old/controllers.yaml": ""}
+    assert agreement_of(copied).undecided == agreement_of(edited(edit)).undecided

@@ -190,3 +190,17 @@ def test_what_gazebo_does_not_do_is_named(edits: list[tuple[str, str, str]], mes
 def test_what_agrees_or_is_not_known_is_no_problem(edits: list[tuple[str, str, str]]) -> None:
     """Worlds without systems get those of Gazebo; other packages may bridge the time."""
     assert problems(*edits) == []
+
+
+def test_a_wrong_type_is_shown_where_it_is_written() -> None:
+    """Not at the topic; a launch file may also be one by its folder."""
+    texts = {name: text.replace("scout.launch.py", "launch/scout.py") for name, text in _FILES.items()}
+    texts["scout/launch/scout.py"] = texts.pop("scout/scout.launch.py")
+    texts["scout/bridge.yaml"] = texts["scout/bridge.yaml"].replace("gz.msgs.IMU", "gz.msgs.Imu")
+    [found] = sure(agreement_of(texts))
+    assert found.message.startswith("the bridge does not convert")
+    assert (
+        texts["scout/bridge.yaml"]
+        .splitlines()[found.location.line - 1][found.location.column - 1 :]
+        .startswith("gz.msgs.Imu")
+    )
