@@ -44,11 +44,11 @@ class Materials:
         """Read a material directly under <robot>; without a valid colour it is black."""
         problems = self._problems
         name = element.get("name") or ""
-        material, _ = self._read_material(element, name, "ROS 2 shows black")
+        material, is_reported = self._read_material(element, name, "ROS 2 shows black")
         if element.get("name") is None:
             problems.add(urdf_problems.UNNAMED_MATERIAL, "this material has no name; no link can use it", element)
         elif material is None:
-            if element.find("color[@rgba]") is None:
+            if not is_reported:
                 message = f"material {quoted(name)} has no valid colour; ROS 2 makes it black"
                 problems.add(urdf_problems.COLOURLESS_MATERIAL, message, element)
             problems.check_printed(name, element, "name")
