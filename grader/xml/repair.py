@@ -79,7 +79,9 @@ def repair(text: str) -> _Repair:
         kept = f"{kept[:start]}{_VISIBLE.sub(' ', kept[start:end])}{kept[end:]}"
     found = _Repairer(kept).run()
     assumed = [*assumed, *found.assumed] if found.xml else []
-    return found._replace(changes=sorted([*found.changes, *changes]), assumed=assumed)
+    around = [range(change.start, change.end) for change in found.changes]  # a tag with a comment in a value
+    own = [change for change in changes if not any(change.start in tag for tag in around)]
+    return found._replace(changes=sorted([*found.changes, *own]), assumed=assumed)
 
 
 def unclosed_comments(text: str) -> list[tuple[int, int]]:
