@@ -116,10 +116,12 @@ def python(project: Path, *arguments: str) -> None:
     assert done.returncode == 0, done.stdout[-5000:] + done.stderr[-5000:]
 
 
-def passes(project: Path, *tests: str) -> None:
-    """Run tests in the copy of the project, as the README's command does; all of them must pass."""
+def passes(project: Path, *tests: str, new: str = "") -> None:
+    """Run tests in the copy of the project: those of the README's command, and each case of what is new."""
     options = ("-m", "pytest", "-q", "-n0", "-p", "no:cacheprovider", "--no-header")
     python(project, *options, "-m", "not slow and not exhaustive", *tests)
+    if new:  # fails if no test has a case of it
+        python(project, *options, "-m", "not exhaustive", "-k", new, *tests)
 
 
 def add_to_changelog(project: Path, line: str) -> None:
@@ -144,6 +146,7 @@ def test_a_new_check(project: Path) -> None:
         "tests/test_architecture.py",
         "tests/test_docs.py",
         "tests/checks",
+        new="shows_cube",
     )
 
 
@@ -159,6 +162,7 @@ def test_a_new_rubric(project: Path) -> None:
         "tests/grading",
         "tests/bundle",
         "tests/cli/test_answers.py",
+        new="lab0",
     )
 
 
@@ -173,7 +177,7 @@ def test_a_new_format(project: Path) -> None:
         project, "-m", "grader", "grade", "submissions/lab6/several-mistakes", "--format", "line", "--fail-under", "0"
     )
     passes(project, "tests/report", "tests/cli/test_save.py", "tests/submission",
-           "tests/test_architecture.py", "tests/test_docs.py")  # fmt: skip
+           "tests/test_architecture.py", "tests/test_docs.py", new="line")  # fmt: skip
 
 
 def test_a_new_lms(project: Path) -> None:

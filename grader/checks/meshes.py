@@ -306,14 +306,12 @@ def _why_not_found(mesh: _MeshFile, submission: Submission) -> str:
 
 def _fault_in_package(package: Package, target: str, submission: Submission) -> str:
     """Return what is wrong with the file that a build installs at a path, or why it installs none there."""
-    found = look_up(package, target)
+    found, name = look_up(package, target), posixpath.basename(target)
     file = package.tree.files.get(found.path) if found.state == "installed" else None
     if file is not None:
         return content_fault(file)
-    name = posixpath.basename(target)
-    held = [file for file in package.tree.files if posixpath.basename(file) == name]
-    if held:
-        return _why_not_installed(package, target, found, held[0])
+    if any(posixpath.basename(path) == name for path in package.tree.files):
+        return _why_not_installed(package, target, found)
     if submission.tree.unopened:
         raise NotDecided(f"{name} may be in an archive that could not be opened", "an archive could not be opened")
     similar = closest(name, map(posixpath.basename, package.tree.files))
@@ -349,7 +347,7 @@ def _without_package(name: str, path: str, submission: Submission) -> str:
     return f"names the package {quoted(name)}{hint}"
 
 
-def _why_not_installed(package: Package, target: str, found: Lookup, held: str) -> str:
+def _why_not_installed(package: Package, target: str, found: Lookup) -> str:
     """Return why a build does not install a file of a package at a path, by what it has instead."""
     setup = package.installation
     if found.state == "unknown":
@@ -358,4 +356,4 @@ def _why_not_installed(package: Package, target: str, found: Lookup, held: str) 
         return f"is looked for at {target}, but {found.text}"
     if setup is None or found.state == "no build":
         return f"is not installed: {found.text}"
-    return f"is not installed: add {found.path or held} to {setup.entries}, for {posixpath.dirname(target)}"
+    return f"is not installed: add {found.path} to {setup.entries}, for {posixpath.dirname(target)}"

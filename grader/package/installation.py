@@ -74,7 +74,7 @@ class Installation:
 
     def has_program(self, name: str, package: str) -> bool | None:
         """Return whether a build installs a program where `ros2 run` looks for it; None where this is not known."""
-        if self.fault is not None and not self.fault.sure:
+        if self.unread:
             return None
         path = f"lib/{package}/{name}"
         if path in self.programs or path in self.installed():
@@ -107,6 +107,13 @@ class Installation:
         if self.fault is None:
             return ""
         return f"{'CMake' if self.is_cmake else 'Python'} cannot read {self.file}: {self.fault.message}"
+
+    @property
+    def unread(self) -> str:
+        """Why it is not known what the file does, as part of a sentence; empty if it is, or if it certainly fails."""
+        if self.fault is None or self.fault.sure:
+            return ""
+        return f"{self.file} cannot be read ({self.fault.message})"
 
     @property
     def entries(self) -> str:

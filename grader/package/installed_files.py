@@ -2,15 +2,11 @@
 
 import posixpath
 import re
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 from grader.names import closest
 from grader.package.launch.places import SHARE
 from grader.package.package import CMAKE, Package
-
-if TYPE_CHECKING:
-    from grader.package.installation import Installation
-    from grader.python.parse import SyntaxFault
 
 _FOR_TESTS = re.compile(r"if\s*\(\s*BUILD_TESTING.*?endif", re.DOTALL)
 _MAX_CMAKE, _MAX_FILE = 128 * 1024, 512 * 1024  # bytes
@@ -37,7 +33,7 @@ def look_up(owner: Package, target: str) -> Lookup:
     if setup is None:
         return Lookup("no build", text=f"its package has no {owner.build_file}")
     if setup.fault is not None:
-        return _not_read(setup, setup.fault)
+        return Lookup("unknown", text=setup.unread) if setup.unread else Lookup("no build", text=setup.fault_text)
     if target in owner.installed:
         return Lookup("installed", owner.installed[target])
     if setup.unknown:
@@ -66,13 +62,6 @@ def _meant_by(owner: Package, target: str) -> list[str]:
     """Return the file of a package that is at the same place in its folder, else all with the same name."""
     inside, name = target.removeprefix(owner.share), posixpath.basename(target)
     return [inside] if inside in owner.tree.files else [it for it in owner.tree.files if posixpath.basename(it) == name]
-
-
-def _not_read(setup: "Installation", fault: "SyntaxFault") -> Lookup:
-    """Return why nothing is known to be installed."""
-    if fault.sure:
-        return Lookup("no build", text=setup.fault_text)
-    return Lookup("unknown", text=f"{setup.file} cannot be read ({fault.message})")
 
 
 def is_surely_absent(package: Package, target: str) -> bool:

@@ -59,8 +59,8 @@ def bridge_rows(workspace: Workspace) -> Iterator[_BridgeRow]:
             found = _ARGUMENT.fullmatch(word or "")
             if found is not None:
                 name, types = found["topic"].strip("/"), (found["ros"].replace("/", "."), found["gz"].split(".")[-1])
-                both = node.location, node.location
-                yield _BridgeRow(name, name, *types, _DIRECTIONS[found["direction"]], *both, is_used=True)
+                at = node.location
+                yield _BridgeRow(name, name, *types, _DIRECTIONS[found["direction"]], at, at, is_used=True)
 
 
 def _row_in_yaml(row: YamlNode, *, is_used: bool) -> Iterator[_BridgeRow]:

@@ -103,6 +103,9 @@ def _not_there(owner: Package, target: str, at: Location) -> Mismatch:
     if found.state == "not installed":
         either, called_at = _of_install(setup, found.path, start), setup.location(setup.called_at)
         return Mismatch("files", f"{missing}: no {setup.entry} names {found.path}", at, called_at, corrections=either)
+    inside = target.removeprefix(owner.share)
+    if inside in owner.tree.folders:
+        return Mismatch("files", f"{missing}: no {setup.entry} names the folder {inside}", at, is_sure=False)
     meant = closest(name, map(posixpath.basename, owner.tree.files))
     guess = f"; did you mean {meant!r}?" if meant else ""
     message = f"{missing}: the package has no file {name!r}{guess}"

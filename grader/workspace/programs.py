@@ -27,8 +27,8 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
         if owner is not None:
             yield Compared("programs")
         setup = owner.installation if owner is not None else None
-        if setup is not None and setup.fault is not None and not setup.fault.sure:
-            yield Undecided("programs", f"{setup.file} cannot be read ({setup.fault.message})")
+        if setup is not None and setup.unread:
+            yield Undecided("programs", setup.unread)
         if owner is not None and owner.has_program(node.package, node.executable) is False:
             reason, meant = _why_no_program(owner, node.executable)
             start = Location(owner.path(CMAKE if owner.is_cmake else SETUP), 1, 1)

@@ -2,7 +2,7 @@
 
 import posixpath
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
@@ -296,8 +296,10 @@ class Workspace:
 
     def sources_of(self, package: Package, endings: tuple[str, ...]) -> Iterator[Source]:
         """Yield the texts of the files of a package with these endings, without those of tests."""
-        paths = [it for it in package.tree.files if it.endswith(endings) and not it.startswith("test/")]
-        for path in paths[:_MAX_FILES]:
+        return self._sources(package, [it for it in package.tree.files if it.endswith(endings)])
+
+    def _sources(self, package: Package, paths: Sequence[str]) -> Iterator[Source]:
+        for path in [it for it in paths if not it.startswith("test/")][:_MAX_FILES]:
             data = package.tree.read(path, _MAX_YAML)
             if data is not None:
                 text = data.decode("utf-8", "replace")
@@ -319,8 +321,9 @@ class Workspace:
     @cached_property
     def launch_texts(self) -> tuple[str, ...]:
         """The texts of the launch files, of those of ROS 1 too."""
-        own = [(package, (*package.launch_files, ".launch")) for package in self.packages]
-        return tuple(it.text for package, endings in own for it in self.sources_of(package, endings))
+        sources = [source for package in self.packages for source in self._sources(package, package.launch_files)]
+        sources += [source for package in self.packages for source in self.sources_of(package, (".launch",))]
+        return tuple(source.text for source in sources)
 
     @cached_property
     def python_texts(self) -> tuple[str, ...]:

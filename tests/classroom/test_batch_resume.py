@@ -11,6 +11,7 @@ from random import Random
 
 import pytest
 
+from grader.cli.app import run
 from tests.classroom.class_runs import (
     HOSTILE_RUBRIC,
     WITH_HOSTILE,
@@ -93,6 +94,20 @@ def test_killed_six_times(folder: Path, undisturbed: tuple[dict[str, bytes], flo
 def _wait(process: "subprocess.Popen[str]", seconds: float) -> None:
     with suppress(subprocess.TimeoutExpired):
         process.wait(seconds)
+
+
+def test_a_result_that_is_not_written_is_not_called_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Where Ctrl-C comes before the write."""
+
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("grader.classroom.results.ResultsWriter.append", interrupted)
+    folder = urdf_class(tmp_path / "class", 2)
+    assert run(["batch", str(folder), "--gradebook", str(tmp_path / "book"), "--jobs", "1"]) == 130
+    assert "stopped: 0 of 2 have a result, which is kept" in capsys.readouterr().err
 
 
 @pytest.mark.slow
