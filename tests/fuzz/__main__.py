@@ -11,7 +11,8 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Mapping
+from base64 import b64encode
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -94,6 +95,12 @@ def run_once(name: str, path: Path) -> float:
         return time.process_time() - start
 
 
+def _described(folder: Path) -> Iterator[str]:
+    """Yield each traceback and its input, for a log that is all that is left of a machine."""
+    for path in _found(folder, "crash"):
+        yield path.read_text() if path.suffix == ".txt" else f"{path.name}: {b64encode(path.read_bytes()).decode()}"
+
+
 def _escaped(word: str) -> str:
     return "".join(chr(byte) if 32 <= byte < 127 and byte not in b'"\\' else f"\\x{byte:02X}" for byte in word.encode())
 
@@ -139,7 +146,7 @@ def main() -> int:
         tasks = [pool.submit(search, name, out, options.seconds, options.runs) for name in names]
         for task in as_completed(tasks):
             rows.append(task.result())
-            print(line(rows[-1]), flush=True)
+            print(line(rows[-1]), *_described(out / rows[-1]["harness"]), sep="\n", flush=True)
             if options.json is not None:
                 with options.json.open("a") as file:
                     file.write(json.dumps(rows[-1]) + "\n")

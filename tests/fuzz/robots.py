@@ -47,7 +47,7 @@ _SCREEN = Screen(width=80)
 def urdf(data: bytes) -> None:
     """Any bytes are read; problems have places in the file, and poses are numbers or say why there is none."""
     reading = read_urdf(data, "a.urdf")
-    check_reading(reading, decoded(data))
+    check_reading(reading)
     if reading.robot is not None:
         robot = Configuration(reading.robot)
         for link in reading.robot.links:
@@ -55,14 +55,14 @@ def urdf(data: bytes) -> None:
                 assert all(abs(turned) <= 1.001 for turned in robot.pose(link.name).rotate((0.6, 0.8, 0.0)))
 
 
-def check_reading(reading: Reading, text: str) -> None:
+def check_reading(reading: Reading) -> None:
     """Assert what holds of every URDF that was read: a verdict that its problems explain, each with its place."""
     effects = {problem.kind.effect for problem in reading.problems}
     assert (reading.verdict == "rejected") == bool(effects & {"rejects", "undetermined"})
     assert (reading.verdict == "degraded") == (reading.verdict != "rejected" and "drops" in effects)
     for problem in reading.problems:
         check_message(problem.message)
-        check_location(problem.location, {reading.source.path: text})
+        check_location(problem.location, {reading.source.path: reading.source.text})
 
 
 def inspection(data: bytes) -> None:

@@ -70,9 +70,10 @@ def _check_report(report: Report, submission: Submission) -> None:
     assert 0 <= report.score <= report.max_score + report.bonus
     assert report.score + report.pending <= report.max_score + report.bonus
     texts = {path: decoded(file.read(1 << 20)) for path, file in submission.whole_tree.files.items()}
-    if submission.is_single and submission.path is not None:
+    if submission.path is not None:
         source = submission.source(submission.path)
-        texts = {submission.path: source.text} if source is not None else {}
+        others = {} if submission.is_single else texts
+        texts = {**others, submission.path: source.text} if source is not None else others
     for result in report.results:
         check_message(result.outcome.message)
         location = result.outcome.location
