@@ -206,7 +206,10 @@ class Results:
                         return
                     yield line
         except OSError as error:
-            raise InputError(f"cannot read {printable_path(self._file)}: {error.strerror}") from None
+            raise self._not_read(error) from None
+
+    def _not_read(self, error: OSError) -> InputError:
+        return InputError(f"cannot read {printable_path(self._file)}: {error.strerror}")
 
     @property
     def next_run(self) -> int:
@@ -243,11 +246,14 @@ class Results:
         if not places:
             yield from ({} for _ in keys)
             return
-        with self._file.open("rb") as file:
-            for key in keys:
-                if key in places:
-                    file.seek(places[key])
-                yield _values_in(file.readline()) if key in places else {}
+        try:
+            with self._file.open("rb") as file:
+                for key in keys:
+                    if key in places:
+                        file.seek(places[key])
+                    yield _values_in(file.readline()) if key in places else {}
+        except OSError as error:
+            raise self._not_read(error) from None
 
 
 class ResultsWriter:

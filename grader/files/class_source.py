@@ -87,7 +87,10 @@ class ClassDirectory:
 
     def is_folder(self, path: str) -> bool:
         """Return whether a path is that of a folder."""
-        return Path(self._root, path).is_dir()
+        try:
+            return Path(self._root, path).is_dir()
+        except OSError as error:
+            raise read_error(error, printable_path(path)) from None
 
     def folder(self, path: str) -> Tree:
         """Return the files below a folder."""
