@@ -16,7 +16,7 @@ from grader.files.archive import ARCHIVE_ERRORS, error_text
 from grader.files.class_source import ClassDirectory, ClassZip
 from grader.files.limits import ROBOT_ENDINGS
 from grader.files.opening import archive_kind, with_inner, without_endings
-from grader.files.reading import URDF_LIMIT, not_there, read_start
+from grader.files.reading import URDF_LIMIT, not_there, read_error, read_start
 from grader.files.tree import Tree
 from grader.grading.rubric import Rubric
 from grader.submission.labs import LabFolders
@@ -41,7 +41,9 @@ def listing_of(path: Path) -> ClassListing:
         if path.is_dir():
             return ClassDirectory(path)
         exists = os.path.lexists(path)
-    except (OSError, ValueError) as error:
+    except OSError as error:
+        raise read_error(error, shown) from None
+    except ValueError as error:
         raise InputError(f"cannot read {shown}: {error}") from None
     if not exists:
         raise not_there(path)

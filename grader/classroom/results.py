@@ -22,7 +22,7 @@ from zlib import crc32
 
 from grader.checks.outcome import Status
 from grader.errors import InputError
-from grader.files.reading import sha256_of
+from grader.files.reading import read_error, sha256_of
 from grader.text import enumerated, printable_path
 
 Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
@@ -206,10 +206,7 @@ class Results:
                         return
                     yield line
         except OSError as error:
-            raise self._not_read(error) from None
-
-    def _not_read(self, error: OSError) -> InputError:
-        return InputError(f"cannot read {printable_path(self._file)}: {error.strerror}")
+            raise read_error(error, printable_path(self._file)) from None
 
     @property
     def next_run(self) -> int:
@@ -253,7 +250,7 @@ class Results:
                         file.seek(places[key])
                     yield _values_in(file.readline()) if key in places else {}
         except OSError as error:
-            raise self._not_read(error) from None
+            raise read_error(error, printable_path(self._file)) from None
 
 
 class ResultsWriter:

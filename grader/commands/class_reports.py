@@ -44,7 +44,7 @@ _CLASS_PAGE = "index.html"
 _TASK_SIZE = 4  # reports
 _SECONDS = 60.0  # in which hints are searched, and a few reports written
 _NOTHING = Outcome("skipped", "not graded, because nothing was submitted")
-MOVED = (
+_MOVED = (
     "The submission has moved or changed since it was graded, so this report has no details: run `grader batch` again."
 )
 
@@ -113,7 +113,7 @@ def _graded_again(book: Gradebook, stored: StoredResult, *, has_hints: bool) -> 
     submission = book.reopened(stored) if stored.verdict != "errored" else None
     if submission is None:
         report = book.report(stored)
-        return report._replace(notes=(MOVED,)) if stored.verdict == "graded" else report
+        return report._replace(notes=(_MOVED,)) if stored.verdict == "graded" else report
     report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
     if not has_hints or book.rubric.hints == "none" or not report.has_failures:
         return report

@@ -12,7 +12,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from grader.commands.class_reports import MOVED
 from tests.faults.scenarios import Scenario
 from tests.faults.shim import Shim
 
@@ -30,7 +29,7 @@ class Ran(NamedTuple):
 
 
 _CLASS_PAGE = "/index.html"
-RESULTS, _GRADES, _FEEDBACK = "/results.jsonl", "/grades.csv", "feedback.zip"
+RESULTS, _GRADES = "/results.jsonl", "/grades.csv"
 _OF_ONE_RUN = {"run": 0, "crc32": 0, "written": []}  # in a line of results: another run may leave other values
 _REMOVED = ("report.json",)  # what `--save` names is removed first: a run that is refused leaves no old report
 
@@ -134,8 +133,8 @@ def complaints(bench: Bench, scenario: Scenario, expected: Expected, ran: Ran, k
     state = bench.state()
     new = [line for line in ran.err.splitlines() if line not in expected.ran.err.splitlines()]
     yield from _of_messages(ran, expected.ran, new)
-    is_done, has_warned = ran.code == expected.ran.code, bool(new) or _has_unread(ran, expected.ran)
-    yield from _of_files(state, expected, kind, is_done=is_done, has_warned=has_warned)
+    is_done = ran.code == expected.ran.code
+    yield from _of_files(state, expected, kind, is_done=is_done, has_warned=bool(new))
     for name in expected.after:
         if name.endswith(RESULTS):
             yield from _of_results(name, state.get(name, b""), expected, is_done=is_done)
@@ -157,13 +156,8 @@ def _of_messages(ran: Ran, expected: Ran, new: list[str]) -> Iterator[str]:
         yield f"a raw message: {ran.err.strip()}"
     if ran.code != expected.code and not (new and all(line.startswith("grader: ") for line in new)):
         yield f"exit code {ran.code} without a line: {ran.err.strip()!r}"
-    if ran.code == expected.code and ran.out != expected.out and not new and not _has_unread(ran, expected):
+    if ran.code == expected.code and ran.out != expected.out and not new:
         yield f"another output, and no warning: {ran.out.decode()[:300]!r}"
-
-
-def _has_unread(ran: Ran, expected: Ran) -> bool:
-    """Return whether the table of a class shows more submissions as unreadable, which is no line of the errors."""
-    return ran.out.count(b" unreadable") > expected.out.count(b" unreadable")
 
 
 def _of_files(
@@ -178,8 +172,6 @@ def _of_files(
             continue
         if name.endswith(_CLASS_PAGE) and found is not None and found.endswith(b"</html>\n"):
             continue  # a picture of a robot on it may be missing
-        if name == _FEEDBACK and found is not None and MOVED.encode() in found:
-            continue  # the report on a submission that could not be read again says so
         if name not in before and name not in after:
             if kind != "unlink":
                 yield f"{name} is left behind"
