@@ -1,5 +1,6 @@
 """Opening a submission of a class: its digest, and what is refused."""
 
+import errno
 import io
 import os
 import shutil
@@ -7,11 +8,12 @@ import zipfile
 from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 
 from grader.classroom.class_files import open_class_submission
-from grader.errors import InputError
+from grader.errors import InputError, MachineError
 from grader.files import reading
 from grader.files.folder import read_folder
 from grader.files.opening import outer_tree
@@ -124,6 +126,15 @@ def test_nothing_outside_of_the_class_is_opened(tmp_path: Path) -> None:
     """A path that leads elsewhere is refused before it is opened."""
     with pytest.raises(InputError, match="it is outside of the submission"):
         reading.read_start("/etc/passwd", 10, "x", str(tmp_path))
+
+
+def test_a_fault_of_the_machine_is_none_of_the_submission(tmp_path: Path) -> None:
+    """A folder that cannot be looked at says so, and has not changed."""
+    package(tmp_path)
+    with patch.object(Path, "is_dir", side_effect=OSError(errno.EIO, "why")), pytest.raises(MachineError, match="why"):
+        digest(tmp_path, "ann")
+    with patch.object(Path, "is_dir", side_effect=[True, OSError(errno.EIO, "why")]), pytest.raises(MachineError):
+        digest(tmp_path, "ann")
 
 
 @pytest.mark.parametrize("name", ["ann.pdf", "ann.docx", "ann.md", "ann.txt", "ann.png"])

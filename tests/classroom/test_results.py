@@ -1,5 +1,6 @@
 """The lines of results: what is written is read, whatever the end of the file; the newest line of a student counts."""
 
+import errno
 from collections.abc import Iterator
 from pathlib import Path
 from unittest.mock import patch
@@ -9,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.results import Results, ResultsWriter, Run, StoredCriterion, StoredResult
-from grader.errors import InputError
+from grader.errors import GraderError, InputError, MachineError
 from tests.examples import examples
 
 TEXT = st.text(st.characters(codec="utf-8"), max_size=8)
@@ -52,6 +53,16 @@ def test_the_newest_line_of_each_student_is_read(
         assert not one.texts or found.texts(one) == one.texts
         assert found.texts(one._replace(digest=f"{one.digest} ")) == {}
     assert found.of("\x00nobody") is None
+
+
+@pytest.mark.parametrize(("number", "kind"), [(errno.EIO, MachineError), (errno.EACCES, InputError)])
+def test_results_that_can_no_longer_be_read(number: int, kind: type[GraderError], tmp_path: Path) -> None:
+    """A line has one message, whether the disk or the file is the cause."""
+    with ResultsWriter(tmp_path / "results.jsonl", 0) as writer:
+        writer.append(StoredResult("ann", 1, "graded", "d1").line)
+    found, refused = Results(tmp_path / "results.jsonl"), OSError(number, "why")
+    with patch.object(Path, "open", side_effect=refused), pytest.raises(kind, match=r"^cannot read .*: why"):
+        found.of("ann")
 
 
 def test_a_torn_last_line_is_ignored_and_cut(tmp_path: Path) -> None:
