@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from math import isfinite
 from typing import Any
 
@@ -10,6 +10,7 @@ from grader.authoring.facts import Carried, Fact, Facts, Omission, Solution, are
 from grader.package.launch.places import is_of_one_machine
 from grader.package.trees import is_path
 from grader.python.budget import Budget
+from grader.robot.link_tree import JOINT_OF
 from grader.submission.urdf import Read, read_as_ros
 from grader.workspace.controllers import needed_interfaces
 from grader.workspace.reading import read_agreement
@@ -20,6 +21,8 @@ from grader.xml.parsing import Element
 _MAX_VALUES = 500  # in one element of <robot>: a check compares each with each
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _CONDITION = re.compile(r"\[@[^=]+='([^']*)'\]")
+_REFERENCE = re.compile(r"\[@reference='([^']*)'\]")
+_JOINT_KEY = re.compile(r"(?:^|[/_])joints?$|joint_names?$|/joint/@name$|^joint/@name$")
 _TRUTH = {"true": True, "false": False}
 _INTERFACE = "command_interface/@name"
 _NAMED_BY = ("reference", "name", "filename", "type")
@@ -35,24 +38,28 @@ def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
     covered = needed_interfaces(workspace_of(solution.submission))
     robot = solution.robot.robot
     joints, links = {joint.name for joint in robot.joints}, {link.name for link in robot.links}
-    free = joints - links if are_joints_free(solution) else set[str]()
+    selectors = {
+        it.name: f"{JOINT_OF}{it.child}" for it in robot.joints if it.name not in links and "'" not in it.child
+    }
+    if not are_joints_free(solution):
+        selectors = {}
+    joints.update(selectors.values())
     are_compared = read_agreement(solution.submission).holds("topics")
 
-    def asked(root: Element) -> list[Fact | Omission]:
-        found = list(_entries(root, covered))
-        if are_compared:
-            found = [it if isinstance(it, Omission) else _without_topics(it) for it in found]
-        return [*_without_joints(found, free)]
+    def asked(it: Fact | Omission) -> Fact | Omission:
+        if isinstance(it, Omission):
+            return it
+        return _by_links(_without_topics(it) if are_compared else it, selectors)
 
     without_launch = _root_without_launch_files(solution)
-    without = None if without_launch is None else asked(without_launch)
+    without = None if without_launch is None else [*map(asked, _entries(without_launch, covered))]
     met: Counter[str] = Counter()
-    for it in asked(solution.root):
+    for it in map(asked, _entries(solution.root, covered)):
         if isinstance(it, Omission):
             yield it
             continue
         met[it.words] += 1
-        carried = [*it.carried, *_carried_from_names(it, joints, links)]
+        carried = [*_carried_from_names(it, joints, links)]
         if without is not None:
             others = [one.arguments for one in without if isinstance(one, Fact) and one.words == it.words]
             other = others[met[it.words] - 1] if len(others) >= met[it.words] else None
@@ -66,36 +73,18 @@ def _without_topics(fact: Fact) -> Fact:
     return fact._replace(arguments=_entry(fact.arguments["at"], values))
 
 
-def _without_joints(facts: Sequence[Fact | Omission], joints: Collection[str]) -> Facts:
-    """Yield facts without the names of joints that are compared with those of the robot.
+def _by_links(fact: Fact, selectors: Mapping[str, str]) -> Fact:
+    """Return a fact with joints named by the links that they hold; `selectors` has these by the names of joints."""
+    at, values = fact.arguments["at"], fact.arguments.get("values", {})
+    is_joint, is_of_system = at.endswith("/joint"), at.startswith("ros2_control")
+    at = _REFERENCE.sub(lambda found: f"[@reference='{selectors.get(found[1], found[1])}']", at)
 
-    Those that are the same then, such as the interfaces of two wheels, become one: so many entries have the values.
-    """
-    freed = [it if isinstance(it, Omission) else it._replace(arguments=_freed(it.arguments, joints)) for it in facts]
-    for index, (it, before) in enumerate(zip(freed, facts, strict=True)):
-        if isinstance(it, Omission) or it == before:
-            yield it
-            continue
-        same = [at for at, one in enumerate(freed) if isinstance(one, Fact) and one.arguments == it.arguments]
-        if len(same) == 1:
-            yield it
-        elif same[0] == index:
-            above, _, last = it.arguments["at"].rpartition("/")
-            values = {
-                f"{last}/{key}": (value if isinstance(value, list) else [value]) * len(same)
-                for key, value in it.arguments.get("values", {}).items()
-            }
-            of_one = Carried(("controllers names_agree",), it.check, it.arguments)
-            yield it._replace(arguments=_entry(above, values), carried=(of_one,)) if values else it
+    def named(key: str, value: Any) -> Any:
+        if not (is_of_system or _JOINT_KEY.search(key) or (is_joint and key == "@name")):
+            return value
+        return [selectors.get(it, it) for it in value] if isinstance(value, list) else selectors.get(value, value)
 
-
-def _freed(arguments: Mapping[str, Any], joints: Collection[str]) -> Mapping[str, Any]:
-    """Return the arguments without the names of joints that are compared: which wheel is left, nothing compares."""
-    at, values = arguments["at"], arguments.get("values", {})
-    if at.startswith("ros2_control") and at.endswith("/joint"):
-        return _weakened(arguments, joints)
-    named = {key for key in values if key.rpartition("/")[2] == "joint_name" and _names_any(values[key], joints)}
-    return _entry(at, {key: value for key, value in values.items() if key not in named})
+    return fact._replace(arguments=_entry(at, {key: named(key, value) for key, value in values.items()}))
 
 
 def _carried_from_names(fact: Fact, joints: Collection[str], links: Collection[str]) -> Iterator[Carried]:

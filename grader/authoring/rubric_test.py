@@ -30,6 +30,7 @@ from grader.grading.rubric import Rubric, read_rubric
 from grader.hints.edits import content, with_files, with_urdf
 from grader.hints.search import is_worse
 from grader.package.package import MANIFEST
+from grader.robot.link_tree import JOINT_OF
 from grader.source import Edit, Source
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
@@ -206,7 +207,7 @@ class Trial:
         """Yield what each rewriting of the reference loses: most lose nothing."""
         urdf = self.reference.urdf
         if isinstance(urdf, Read) and urdf.loaded.verdict == "clean" and urdf.reading.root is not None:
-            has_places = any(name.startswith("@") for name in _names_in(self.rubric))
+            has_places = any(name.startswith("@") and not name.startswith(JOINT_OF) for name in _names_in(self.rubric))
             for found in equivalents(urdf.reading.root, RewritingRules(self.kept, has_places)):
                 submission = _rewritten(self.reference, urdf, found)
                 lost = self._lost(submission, self._must_pass(submission, found.family))
@@ -250,6 +251,7 @@ def _texts_in(value: Any) -> Iterator[str]:
         value = [*value, *value.values()]
     if isinstance(value, str):
         yield value
+        yield from re.findall(rf"{JOINT_OF}([^']+)", value)
     elif isinstance(value, Iterable):
         for item in value:
             yield from _texts_in(item)

@@ -13,7 +13,7 @@ from grader.package.package import Package
 from grader.package.trees import Entry, Search, Step, is_path, read_tree, steps_of, xml_entry
 from grader.pairing import most_pairs
 from grader.robot.kinematics import Configuration
-from grader.robot.link_tree import selected_link
+from grader.robot.link_tree import selected_name
 from grader.robot.reader import Reading
 from grader.source import LazyLocation
 from grader.submission.submission import Submission
@@ -335,8 +335,8 @@ def _robot_entry(reading: Reading, root: Element) -> Entry:
 
 
 def _with_links(step: Step, robot: Configuration) -> Step:
-    """Return a step whose conditions name links by their names, not by selectors."""
-    found = ((key, selected_link(robot.known, robot.known_parents, value)) for key, value in step.conditions)
+    """Return a step whose conditions have names, not selectors."""
+    found = ((key, selected_name(robot.known, robot.known_parents, value)) for key, value in step.conditions)
     return step._replace(conditions=tuple(found))
 
 

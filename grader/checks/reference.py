@@ -11,7 +11,7 @@ from grader.checks.toml_types import Constraint, NonNegative
 from grader.errors import MissingElement, NotDecided, RubricError
 from grader.names import did_you_mean
 from grader.robot.kinematics import SINGLE, Configuration
-from grader.robot.link_tree import selected_link
+from grader.robot.link_tree import selected_name
 from grader.robot.model import Joint, Robot
 from grader.robot.transforms import Transform
 from grader.text import counted, enumerated, quoted
@@ -76,7 +76,7 @@ def kinematics_match_reference(
 
 
 def _link_name(robot: Configuration, link: str) -> str:
-    name = selected_link(robot.known, robot.known_parents, link)
+    name = selected_name(robot.known, robot.known_parents, link)
     robot.link(name)
     return name
 

@@ -11,7 +11,7 @@ from grader.grading.criterion import Criterion
 from grader.grading.rubric import ReferenceSolution, Rubric
 from grader.problems import Problem
 from grader.robot.kinematics import Configuration
-from grader.robot.link_tree import is_selector, selected_link
+from grader.robot.link_tree import JOINT_OF, selected_name
 from grader.robot.model import Joint
 from grader.source import Source
 from grader.submission.submission import Submission
@@ -93,7 +93,7 @@ class Subjects:
         """
         if self.robot is None or "reference" in check.examined:
             return arguments
-        return {key: _named_links(value, self.robot) for key, value in arguments.items()}
+        return {key: named_links(value, self.robot) for key, value in arguments.items()}
 
     def _pose_robot(self, robot: Configuration, at: Mapping[str, float]) -> Configuration:
         key = tuple(at.items())
@@ -116,7 +116,7 @@ class Subjects:
 def check_selectors(robot: Configuration, criterion: Criterion) -> None:
     """Raise MissingElement or NotDecided if a criterion names a link by a place that no link has, or several have."""
     carried = [dict(one.arguments) for one in criterion.carried]
-    _named_links([dict(criterion.arguments), *carried, [*criterion.at]], robot)
+    named_links([dict(criterion.arguments), *carried, [*criterion.at]], robot)
 
 
 def joints_at(robot: Configuration, at: Mapping[str, float]) -> list[tuple[Joint, float, str]]:
@@ -130,29 +130,29 @@ def joints_at(robot: Configuration, at: Mapping[str, float]) -> list[tuple[Joint
 
 def _find_joint(robot: Configuration, name: str) -> Joint:
     """Return a joint that turns or slides, by its name or by a selector of the link that it moves."""
-    if is_selector(name) and not robot.robot.has_joint(name):
-        link = selected_link(robot.known, robot.known_parents, name)
-        found = robot.parent_joints.get(link)
+    named = name if robot.robot.has_joint(name) else selected_name(robot.known, robot.known_parents, name)
+    if named != name and not name.startswith(JOINT_OF):
+        found = robot.parent_joints.get(named)
         if found is None:
             raise MissingElement("joint", name, message=f"no joint moves {name}")
         return found
-    joint = robot.joint(name)
+    joint = robot.joint(named)
     if joint.type not in (*_TURNING, *_SLIDING):
         at = joint.location and joint.location._replace(attribute="type")
-        message = f"the joint {quoted(name)} is {joint.type or 'of no type'}; it should turn or slide"
+        message = f"the joint {quoted(named)} is {joint.type or 'of no type'}; it should turn or slide"
         raise MissingElement("moving joint", name, message=message, location=at)
     return joint
 
 
-def _named_links(value: Any, robot: Configuration) -> Any:
-    """Return a value with each selector replaced by the name of its link; raises MissingElement and NotDecided."""
+def named_links(value: Any, robot: Configuration) -> Any:
+    """Return a value with each selector replaced by a name; raises MissingElement and NotDecided."""
     match value:
         case str():
-            return selected_link(robot.known, robot.known_parents, value)
+            return selected_name(robot.known, robot.known_parents, value)
         case list() | tuple():
-            return type(value)(_named_links(item, robot) for item in value)
+            return type(value)(named_links(item, robot) for item in value)
         case Mapping():
-            return {key: _named_links(item, robot) for key, item in value.items()}
+            return {key: named_links(item, robot) for key, item in value.items()}
     return value
 
 

@@ -12,7 +12,7 @@ from grader.errors import InputError
 from grader.grading import keys
 from grader.grading.criterion import DEADLINE, TOTAL
 from grader.grading.toml_file import KeyTable, TomlPath, TomlRow, TomlRowReader, shorten_value
-from grader.robot.link_tree import is_selector, texts_in
+from grader.robot.link_tree import JOINT_OF, is_selector, texts_in
 from grader.text import enumerated
 
 _MAX_LISTED = 20  # names in one message
@@ -114,9 +114,9 @@ class Validation:
                 f"args gives launch arguments, but the check {check.name} examines neither the robot nor a package"
             )
             self._complain((*where, "args"), message)
-        links = [value for key, value in row.get("with", {}).items() if key in LINK_ARGUMENTS]
-        texts = (*row.get("at", ()), *texts_in(links))
-        for name in (text for text in texts if text.startswith("@") and not is_selector(text)):
+        links = [*texts_in([value for key, value in row.get("with", {}).items() if key in LINK_ARGUMENTS])]
+        unknown = [text for text in (*row.get("at", ()), *links) if text.startswith("@") and not is_selector(text)]
+        for name in (*unknown, *(text for text in links if text.startswith(JOINT_OF))):
             self._complain(where, f"no link is named by {name!r}: write @root, @tip, or @moved:1, @moved:2 and so on")
         if "reference" in check.examined and not self.rubric.get("reference"):
             message = f"the check {check.name} compares with the reference solution: the rubric needs the key reference"

@@ -1,7 +1,7 @@
 """The tree of links: their parent joints, what keeps them from being one tree, and links that are named by their place.
 
 ROS 2 makes the tree in `model.h` (initTree, initRoot) and kdl_parser (addChildrenToTree). A rubric can name a link by
-its place in the tree: "@root", "@tip", "@moved:2".
+its place in the tree: "@root", "@tip", "@moved:2"; and a joint by the link that it holds: "@joint:left_wheel".
 """
 
 import re
@@ -23,7 +23,8 @@ _MAX_CYCLES = 10
 _MAX_NAMED = 20
 _MAX_ROOTS = 50
 
-_SELECTOR = re.compile(r"@(?:root|tip|moved:([1-9]\d{0,3}))")
+JOINT_OF = "@joint:"
+_SELECTOR = re.compile(rf"@(?:root|tip|moved:([1-9]\d{{0,3}}))|{JOINT_OF}(.+)")
 _MAX_CHOICES = 5  # links that a name may mean, in a message
 
 _Edges = dict[str, list[Joint]]  # the joints by their parent link
@@ -205,7 +206,7 @@ class _LinkPlace(NamedTuple):
 
 
 def is_selector(text: str) -> bool:
-    """Return whether a text names a link by its place in the tree."""
+    """Return whether a text names a link by its place in the tree, or a joint by its link."""
     return _SELECTOR.fullmatch(text) is not None
 
 
@@ -221,12 +222,12 @@ def texts_in(value: Any) -> Iterator[str]:
             yield from texts_in(list(value.values()))
 
 
-def selected_link(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
-    """Return the name of the link that a selector means, and any other text as it is; `parents` are the parent joints.
+def selected_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
+    """Return the name that a selector means, and any other text as it is; `parents` are the parent joints of links.
 
     Of several trees the one with the most links counts. "@root" is its root. The chain with the most moving joints,
     which are neither fixed nor mimic joints, leads to "@tip", its last link, and "@moved:2" is the child of its second
-    moving joint.
+    moving joint. "@joint:left_wheel" is the parent joint of a link.
 
     Raises MissingElement where there is no such link, NotDecided where several could be meant.
     """
@@ -234,6 +235,11 @@ def selected_link(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
     if found is None or robot.has_link(name):
         return name
     robot.check_complete()
+    if found[2] is not None:
+        link = robot.link(found[2]).name
+        if link not in parents:
+            raise MissingElement("joint", name, message=f"no joint holds {quoted(link)}")
+        return parents[link].name
     places = _find_places(robot, parents)
     root = _main_root(places, name)
     places = {link: place for link, place in places.items() if place.root == root}
@@ -250,7 +256,7 @@ def selected_link(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
 def selected_or_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
     """Return the link that a selector means; a name, or a selector that means no single link, as it is."""
     try:
-        return selected_link(robot, parents, name)
+        return selected_name(robot, parents, name)
     except (MissingElement, NotDecided):
         return name
 

@@ -244,7 +244,7 @@ def test_joints_may_have_other_names_where_all_files_use_them(of_diffdrive: Rubr
     assert (report.score, [it for it in report.results if it.is_lost]) == (report.max_score, [])
 
 
-# What is added to the reference, and how it is wrong: no names of joints are asked for but those that nothing compares.
+# What is added to the reference, and how it is wrong.
 NAMED: dict[str, tuple[str, str, str]] = {
     "a joint without a state": (
         "",
@@ -261,6 +261,11 @@ NAMED: dict[str, tuple[str, str, str]] = {
         '<transmission name="left"><joint name="left_wheel_joint"',
         '<transmission name="left"><joint name="port_shaft"',
     ),
+    "a joint for which Gazebo has values": (
+        '<gazebo reference="left_wheel_joint"><provideFeedback>true</provideFeedback></gazebo>',
+        '<gazebo reference="left_wheel_joint">',
+        '<gazebo reference="right_wheel_joint">',
+    ),
     "a link called like a joint": (
         '<link name="spar"/><joint name="spar" type="fixed"><parent link="base_link"/><child link="spar"/></joint><gazebo reference="spar"><mu1>0.1</mu1></gazebo>',
         '<gazebo reference="spar">',
@@ -270,8 +275,8 @@ NAMED: dict[str, tuple[str, str, str]] = {
 
 
 @pytest.mark.parametrize(("added", "old", "wrong"), NAMED.values(), ids=NAMED)
-def test_names_of_joints_that_nothing_compares_are_asked_for(added: str, old: str, wrong: str, tmp_path: Path) -> None:
-    """And of joints that are alike, that each has its interfaces."""
+def test_joints_are_asked_for_by_their_links(added: str, old: str, wrong: str, tmp_path: Path) -> None:
+    """So each has its interfaces, and is the one that is meant, whatever its name."""
     system = "urdf/diffdrive.ros2_control.xacro"
     edits: list[Edit] = [(URDF, "</robot>", f"{added}</robot>")]
     assert new(tmp_path, write_diffdrive(tmp_path, *edits)).returncode == 0
@@ -279,6 +284,25 @@ def test_names_of_joints_that_nothing_compares_are_asked_for(added: str, old: st
     package = write_diffdrive(tmp_path / "wrong", *edits, (URDF if added else system, old, wrong))
     report = grade(rubric, open_submission(str(package), rubric.lab))
     assert [it.criterion.check.name for it in report.results if it.is_lost] == ["entry_is"]
+    package = write_diffdrive(tmp_path / "other", *edits)
+    rename_joints(package)
+    report = grade(rubric, open_submission(str(package), rubric.lab))
+    assert [it.outcome.message for it in report.results if it.is_lost] == []
+
+
+def test_plugins_that_are_alike_may_be_in_several_elements(tmp_path: Path) -> None:
+    """Gazebo collects them from all <gazebo> elements."""
+    plugins = [
+        f'<plugin filename="p"><joint_name>{side}_wheel_joint</joint_name></plugin>' for side in ("left", "right")
+    ]
+    one = f"<gazebo>{''.join(plugins)}</gazebo></robot>"
+    assert new(tmp_path, write_diffdrive(tmp_path, (URDF, "</robot>", one))).returncode == 0
+    rubric = load_rubric(str(tmp_path / "lab.toml"))
+    for name, texts, lost in (("several", plugins, 0), ("left only", plugins[:1], 1)):
+        apart = "".join(f"<gazebo>{it}</gazebo>" for it in texts)
+        package = write_diffdrive(tmp_path / name, (URDF, "</robot>", f"{apart}</robot>"))
+        report = grade(rubric, open_submission(str(package), rubric.lab))
+        assert [it.criterion.check.name for it in report.results if it.is_lost] == ["entry_is"] * lost
 
 
 def test_lists_with_names_of_joints_that_are_compared_are_not_asked_for(tmp_path: Path) -> None:

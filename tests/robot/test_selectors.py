@@ -1,4 +1,4 @@
-"""Links named by their place in the tree: the root, the tip, the links that moving joints move."""
+"""Links named by their place in the tree: the root, the tip, the links that moving joints move; and joints by links."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.errors import MissingElement, NotDecided
-from grader.robot.link_tree import parent_joints, selected_link, selected_or_name
+from grader.robot.link_tree import parent_joints, selected_name, selected_or_name
 from grader.robot.model import Joint, Link, Mimic, Robot
 
 # base -fixed- mount -m1- upper -fixed- flange -m2- hand -fixed- tool, and a camera on the base
@@ -24,7 +24,7 @@ def robot(*joints: str, alone: str = "", **more: dict[str, Any]) -> Robot:
 
 def selected(found: Robot, name: str) -> str:
     """Return the link that a selector means."""
-    return selected_link(found, parent_joints(found), name)
+    return selected_name(found, parent_joints(found), name)
 
 
 @pytest.mark.parametrize(
@@ -41,6 +41,15 @@ def test_the_order_of_the_file_does_not_matter(joints: list[str]) -> None:
     """The links are the same in every order of the joints."""
     found = robot(*joints)
     assert [selected(found, name) for name in ("@root", "@moved:1", "@moved:2", "@tip")] == ["b", "u", "h", "t"]
+
+
+@pytest.mark.parametrize(("link", "message"), [("b", "no joint holds 'b'"), ("x", "there is no link 'x'")])
+def test_a_joint_is_named_by_its_link(link: str, message: str) -> None:
+    """It is the parent joint; a root has none."""
+    assert [selected(robot(*ARM), f"@joint:{it}") for it in "mhc"] == ["bm", "fh", "bc"]
+    with pytest.raises(MissingElement) as caught:
+        selected(robot(*ARM), f"@joint:{link}")
+    assert str(caught.value).startswith(message)
 
 
 @pytest.mark.parametrize("name", ["@moved:3", "@moved:99"])
