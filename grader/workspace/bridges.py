@@ -9,9 +9,9 @@ from typing import NamedTuple
 from grader.names import closest
 from grader.package.installed_files import open_meant
 from grader.package.launch.parameters import parameters_of
-from grader.package.yaml_nodes import YamlNode
+from grader.package.yaml_nodes import YamlFault, YamlNode
 from grader.source import Location
-from grader.text import quoted
+from grader.text import enumerated, quoted
 from grader.workspace.gazebo import BRIDGE, GazeboTopic, gazebo_topics, roots
 from grader.workspace.known import known
 from grader.workspace.names import Compared, Fact, Mismatch, corrections, place_text
@@ -20,6 +20,7 @@ from grader.workspace.workspace import Workspace
 _TO_ROS, _TO_GAZEBO, _BOTH = "GZ_TO_ROS", "ROS_TO_GZ", "BIDIRECTIONAL"
 _DIRECTIONS = {"[": _TO_ROS, "]": _TO_GAZEBO, "@": _BOTH}
 _ARGUMENT = re.compile(r"(?P<topic>[^@\s]+)@(?P<ros>[\w/]+)(?P<direction>[@\[\]])(?P<gz>[\w.]+)")
+_OLDER_FORM = re.compile("^ignition[.]msgs(?=[.])")
 _DERIVED = ("points", "image", "depth_image", "camera_info")  # below the topic, or beside it
 # Models in worlds that have no sensors.
 _WITHOUT_SENSORS = ("sun", "ground_plane", "ground plane")
@@ -31,10 +32,11 @@ class _BridgeRow(NamedTuple):
     ros: str
     gz: str
     ros_type: str  # in the form of Python: sensor_msgs.msg.Image
-    gz_type: str  # its last word
+    gz_type: str  # in its newer form: gz.msgs.Image
     direction: str
     location: Location
-    type_location: Location  # of the type in Gazebo
+    ros_type_location: Location
+    gz_type_location: Location
     is_used: bool  # whether a launch file names the file of the row
 
     @property
@@ -58,9 +60,12 @@ def bridge_rows(workspace: Workspace) -> Iterator[_BridgeRow]:
         for word in node.arguments or () if node.package == BRIDGE else ():
             found = _ARGUMENT.fullmatch(word or "")
             if found is not None:
-                name, types = found["topic"].strip("/"), (found["ros"].replace("/", "."), found["gz"].split(".")[-1])
-                at = node.location
-                yield _BridgeRow(name, name, *types, _DIRECTIONS[found["direction"]], at, at, is_used=True)
+                name, types, at = found["topic"].strip("/"), _types_of(found["ros"], found["gz"]), node.location
+                yield _BridgeRow(name, name, *types, _DIRECTIONS[found["direction"]], at, at, at, is_used=True)
+
+
+def _types_of(ros: str, gz: str) -> tuple[str, str]:
+    return ros.replace("/", "."), _OLDER_FORM.sub("gz.msgs", gz)
 
 
 def _row_in_yaml(row: YamlNode, *, is_used: bool) -> Iterator[_BridgeRow]:
@@ -72,12 +77,16 @@ def _row_in_yaml(row: YamlNode, *, is_used: bool) -> Iterator[_BridgeRow]:
     direction = row.get("direction")
     way = _BOTH if direction is None else direction.text or _BOTH
     names = ros.text.strip("/"), gz.text.strip("/")
-    types = (ros_type.text or "").replace("/", "."), (gz_type.text or "").split(".")[-1]
-    yield _BridgeRow(*names, *types, way, gz.location, gz_type.location, is_used)
+    types = _types_of(ros_type.text or "", gz_type.text or "")
+    yield _BridgeRow(*names, *types, way, gz.location, ros_type.location, gz_type.location, is_used)
 
 
 def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield rows with types or directions that no bridge has, those of topics that Gazebo does not have, and clocks."""
+    for path in bridge_files(workspace):
+        fault = workspace.yaml_files.get(path)
+        if isinstance(fault, YamlFault):
+            yield Mismatch("topics", f"this is not YAML: {fault}", fault.location)
     rows = list(bridge_rows(workspace))
     if not rows:
         return
@@ -89,8 +98,8 @@ def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
     is_known = not _is_open(workspace)
     for row in rows:
         yield Compared("topics")
-        yield from _conversions(row)
         same = [it for it in topics if it.name == row.gz]
+        yield from _conversions(row, {f"gz.msgs.{it.type}" for it in same})
         if row.gz in defined:
             yield from _contradictions(row, same)
         elif not row.gz.startswith(("world/", "model/")) and "$" not in row.gz:
@@ -98,15 +107,40 @@ def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _clocks(workspace, rows)
 
 
-def _conversions(row: _BridgeRow) -> Iterator[Mismatch]:
-    """Yield that no bridge converts a type into the other one, and that the time of ROS is sent to Gazebo."""
-    kinds = known()["bridge_types"].get(row.ros_type)
-    if kinds is not None and row.gz_type not in kinds:
-        pair = f"{row.ros_type.replace('.', '/')} and gz.msgs.{row.gz_type}"
-        message = f"the bridge does not convert {pair}; write gz.msgs.{kinds[0]}"
-        either = corrections(row.gz_type, row.type_location, kinds[0])
-        yield Mismatch("topics", message, row.type_location, is_sure=row.is_used, corrections=either)
-    if row.gz_type == "Clock" and row.direction == _TO_GAZEBO:
+def bridge_files(workspace: Workspace) -> set[str]:
+    """Return the files with rows that launch files give to bridges, by their paths in the submission."""
+    given = [
+        one.values.get("config_file")
+        for _, it in workspace.nodes
+        if it.package == BRIDGE
+        for one in it.parameters or ()
+    ]
+    paths = [it.value for it in given if it is not None]
+    passed = [it for _, launch in workspace.roots for it in launch.passed if f"/{BRIDGE}/" in it.path]
+    paths += [value for it in passed for name, value in it.values if name == "config_file"]
+    return {found for path in paths if isinstance(path, str) and (found := workspace.source_of(path)) is not None}
+
+
+def _conversions(row: _BridgeRow, of_gazebo: set[str]) -> Iterator[Mismatch]:
+    """Yield that no bridge converts a type into the other one, and that the time of ROS is sent to Gazebo.
+
+    Where the topics of Gazebo have the type of the row, the other one is wrong.
+    """
+    kinds = known()["bridge_types"]
+    fitting = [f"gz.msgs.{it}" for it in kinds.get(row.ros_type, ())]
+    if fitting and row.gz_type not in fitting:
+        ros = row.ros_type.replace(".", "/")
+        message = f"the bridge does not convert {ros} and {row.gz_type or 'an empty type'}"
+        meant = [
+            name.replace(".", "/") for name, own in kinds.items() if row.gz_type in {f"gz.msgs.{it}" for it in own}
+        ]
+        if of_gazebo == {row.gz_type} and meant:
+            wrong, at = ros, row.ros_type_location
+        else:
+            wrong, meant, at = row.gz_type, fitting[:1], row.gz_type_location
+        either = corrections(wrong, at, meant[0]) if wrong and len(meant) == 1 else ()
+        yield Mismatch("topics", f"{message}; write {enumerated(meant, word='or')}", at, None, row.is_used, either)
+    if row.gz_type == "gz.msgs.Clock" and row.direction == _TO_GAZEBO:
         message = f"the bridge sends the time of ROS to Gazebo: the clock is Gazebo's, so write {_TO_ROS}"
         yield Mismatch("topics", message, row.location, is_sure=row.is_used)
 
@@ -120,18 +154,16 @@ def _contradictions(row: _BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mism
         at = topics[0].location
         message = f"the topic {row.gz} is bridged {wrong}, but Gazebo {done} ({place_text(at)}): write {right}"
         yield Mismatch("topics", message, row.location, at, row.is_used)
-    kinds = known()["bridge_types"].get(row.ros_type, ())
-    if topics and row.gz_type in kinds and all(it.type != row.gz_type for it in topics):
+    fitting = [f"gz.msgs.{it}" for it in known()["bridge_types"].get(row.ros_type, ())]
+    if topics and row.gz_type in fitting and all(f"gz.msgs.{it.type}" != row.gz_type for it in topics):
         at = topics[0].location
-        message = (
-            f"the topic {row.gz} of Gazebo has gz.msgs.{topics[0].type} ({place_text(at)}), not gz.msgs.{row.gz_type}"
-        )
-        yield Mismatch("topics", message, row.type_location, at, row.is_used)
+        message = f"the topic {row.gz} of Gazebo has gz.msgs.{topics[0].type} ({place_text(at)}), not {row.gz_type}"
+        yield Mismatch("topics", message, row.gz_type_location, at, row.is_used)
 
 
 def _not_there(row: _BridgeRow, unused: list[GazeboTopic], *, is_known: bool) -> Iterator[Mismatch]:
     """Yield that Gazebo does not have the topic of a row, while no row has one of the same type that it has."""
-    fitting = {it.name: it for it in unused if it.type == row.gz_type and it.is_input != row.is_published}
+    fitting = {it.name: it for it in unused if f"gz.msgs.{it.type}" == row.gz_type and it.is_input != row.is_published}
     if fitting:
         meant = closest(row.gz, fitting) or min(fitting)
         at = fitting[meant].location

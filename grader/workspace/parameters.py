@@ -12,6 +12,7 @@ from grader.package.launch.parameters import parameters_of
 from grader.package.nodes import PythonNode
 from grader.package.package import Package
 from grader.package.yaml_nodes import YamlFault, YamlNode
+from grader.workspace.bridges import bridge_files
 from grader.workspace.known import known
 from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use, corrections
 from grader.workspace.workspace import Workspace
@@ -27,8 +28,9 @@ _NOT_LISTS = ("plugin_lib_names",)
 
 def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield what parameter files have for nodes, what own nodes declare, and lists of plugins."""
+    of_bridges = bridge_files(workspace)
     for path, tree in workspace.yaml_files.items():
-        if isinstance(tree, YamlFault):
+        if isinstance(tree, YamlFault) and path not in of_bridges:
             is_sure = path in workspace.parameter_files
             yield Mismatch("parameters", f"this is not YAML: {tree}", tree.location, is_sure=is_sure)
     for path, nodes in workspace.parameter_files.items():

@@ -125,6 +125,14 @@ def problems(*edits: tuple[str, str, str]) -> list[str]:
     [
         ([("bridge.yaml", "gz.msgs.IMU", "gz.msgs.Imu")],
          "the bridge does not convert sensor_msgs/msg/Imu and gz.msgs.Imu; write gz.msgs.IMU"),
+        ([("bridge.yaml", "gz.msgs.IMU", "IMU")],
+         "the bridge does not convert sensor_msgs/msg/Imu and IMU; write gz.msgs.IMU"),
+        ([("bridge.yaml", "gz_type_name: gz.msgs.IMU", "gz_type_name: ")],
+         "the bridge does not convert sensor_msgs/msg/Imu and an empty type; write gz.msgs.IMU"),
+        ([("bridge.yaml", "sensor_msgs/msg/Imu", "sensor_msgs/msg/Image")],
+         "the bridge does not convert sensor_msgs/msg/Image and gz.msgs.IMU; write sensor_msgs/msg/Imu"),
+        ([("bridge.yaml", "direction: ROS_TO_GZ}", "direction: ROS_TO_GZ")],
+         ("this is not YAML: while parsing a flow mapping did not find expected ',' or '}'")),
         ([("bridge.yaml", "direction: ROS_TO_GZ", "direction: GZ_TO_ROS")],
          f"the topic cmd_vel is bridged GZ_TO_ROS, but Gazebo reads it ({_AT_ROBOT}): write ROS_TO_GZ"),
         ([("bridge.yaml", "gz.msgs.Odometry, direction: GZ_TO_ROS", "gz.msgs.Odometry, direction: ROS_TO_GZ")],
@@ -169,6 +177,7 @@ def test_what_gazebo_does_not_do_is_named(edits: list[tuple[str, str, str]], mes
     [
         [],
         [("bridge.yaml", "direction: ROS_TO_GZ", "direction: BIDIRECTIONAL")],
+        [("bridge.yaml", "gz.msgs.IMU", "ignition.msgs.IMU")],
         [("scout.launch.py", '"-world", "arena", ', "")],
         [("arena.sdf", "  </world>", "    <include><uri>model://shelf/model.sdf</uri></include>\n  </world>")],
         [("arena.sdf", "  </world>", "    <include><uri>model://sun</uri></include>\n  </world>")],
@@ -204,3 +213,19 @@ def test_a_wrong_type_is_shown_where_it_is_written() -> None:
         .splitlines()[found.location.line - 1][found.location.column - 1 :]
         .startswith("gz.msgs.Imu")
     )
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "meant"),
+    [
+        ("gz.msgs.IMU", "gz.msgs.Imu", [("gz.msgs.Imu", "gz.msgs.IMU")]),
+        ("sensor_msgs/msg/Imu", "sensor_msgs/msg/Image", [("sensor_msgs/msg/Image", "sensor_msgs/msg/Imu")]),
+        ("gz_type_name: gz.msgs.IMU", "gz_type_name: ", []),
+    ],
+)
+def test_the_type_that_is_wrong_is_corrected(old: str, new: str, meant: list[tuple[str, str]]) -> None:
+    """That of ROS, if the topic of Gazebo has the other; an empty one has no place for the whole type."""
+    texts = dict(_FILES)
+    texts["scout/bridge.yaml"] = texts["scout/bridge.yaml"].replace(old, new)
+    [found] = sure(agreement_of(texts))
+    assert [(it.old, it.new) for it in found.corrections] == meant
