@@ -1,5 +1,6 @@
 """Whether the content of a mesh file is of the format of its ending. No mesh is loaded."""
 
+import posixpath
 import struct
 
 from grader.errors import InputError, NotDecided
@@ -11,8 +12,10 @@ _HEAD, _TRIANGLE = 84, 50  # bytes of a binary STL: its head, which ends in the 
 _BEGINS_WITH = {".glb": b"glTF", ".ply": b"ply"}
 
 
-def content_fault(file: File) -> str:
-    """Return what is wrong with the content of a mesh file; empty if it may be of the format of its ending.
+def content_fault(file: File, path: str) -> str:
+    """Return what is wrong with the content of a mesh file; empty if it may be of the format that its path says.
+
+    The path is that at which a build installs it, perhaps with another ending.
 
     Raises NotDecided if the file cannot be read, or is a pointer to one.
     """
@@ -24,11 +27,12 @@ def content_fault(file: File) -> str:
         raise NotDecided(str(error), "a mesh cannot be read") from None
     if start.startswith(_LFS_POINTER):
         raise NotDecided("this download holds only the pointer of Git LFS, not the mesh", "a mesh is a Git LFS pointer")
-    return "" if _is_of_format(file, start) else f"is no {file.suffix.removeprefix('.').upper()} file"
+    suffix = posixpath.splitext(path)[1].lower()
+    return "" if _is_of_format(file, start, suffix) else f"is no {suffix.removeprefix('.').upper()} file"
 
 
-def _is_of_format(file: File, start: bytes) -> bool:
-    match file.suffix:
+def _is_of_format(file: File, start: bytes, suffix: str) -> bool:
+    match suffix:
         case ".stl":  # as Assimp, which RViz uses, tells the two kinds apart
             is_binary = file.size >= _HEAD and file.size == _HEAD + _TRIANGLE * struct.unpack_from("<I", start, 80)[0]
             return is_binary or start.lstrip().lower().startswith(b"solid")
@@ -36,5 +40,5 @@ def _is_of_format(file: File, start: bytes) -> bool:
             return b"<COLLADA" in start
         case ".obj":
             return b"\0" not in start
-        case suffix:
+        case _:
             return start.startswith(_BEGINS_WITH.get(suffix, b""))

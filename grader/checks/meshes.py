@@ -158,7 +158,7 @@ def _broken_collision(robot: Configuration, submission: Submission, link: str) -
             mesh = mesh_file(shape.filename, is_expanded=is_expanded)
             with suppress(NotDecided):
                 file = _file_of(mesh, submission)
-                fault = content_fault(file) if file is not None else ""
+                fault = content_fault(file, mesh.path) if file is not None else ""
                 if fault:
                     message = f"the collision mesh {file_name(mesh.written)} of {link!r} {fault}"
                     return failed(message, place(shape.location, "filename"))
@@ -309,8 +309,8 @@ def _fault_in_package(package: Package, target: str, submission: Submission) -> 
     found, name = look_up(package, target), posixpath.basename(target)
     file = package.tree.files.get(found.path) if found.state == "installed" else None
     if file is not None:
-        return content_fault(file)
-    if any(posixpath.basename(path) == name for path in package.tree.files):
+        return content_fault(file, target)
+    if found.state == "unknown" or any(posixpath.basename(path) == name for path in package.tree.files):
         return _why_not_installed(package, target, found)
     if submission.tree.unopened:
         raise NotDecided(f"{name} may be in an archive that could not be opened", "an archive could not be opened")

@@ -9,7 +9,7 @@ from grader.checks.check import About
 from grader.checks.outcome import Outcome, failed, judged, passed
 from grader.errors import MissingElement, NotDecided
 from grader.names import closest
-from grader.package.package import CMAKE, MANIFEST, RESOURCE_INDEX, SETUP, Package
+from grader.package.package import MANIFEST, RESOURCE_INDEX, SETUP, Package
 from grader.submission.submission import Submission
 from grader.text import enumerated, first_lines
 
@@ -174,10 +174,8 @@ def _readable_setup(package: Package) -> "Installation":
     """
     setup = package.installation
     if setup is None:
-        build_type = package.manifest.build_type if package.manifest is not None else ""
-        name, kind = (CMAKE, "ament_cmake") if build_type == "ament_cmake" else (SETUP, "ament_python")
-        message = f"the package has no {name}, so a build of an {kind} package installs nothing"
-        raise MissingElement(SETUP, package.folder, message=message, absent=name)
+        message = f"the package has no {package.lacking}, so a build installs nothing"
+        raise MissingElement(SETUP, package.folder, message=message, absent=package.lacking)
     if setup.fault is not None and setup.fault.sure:
         raise MissingElement(SETUP, package.folder, message=setup.fault_text, location=setup.fault.location)
     if setup.unread:

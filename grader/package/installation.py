@@ -74,7 +74,7 @@ class Installation:
 
     def has_program(self, name: str, package: str) -> bool | None:
         """Return whether a build installs a program where `ros2 run` looks for it; None where this is not known."""
-        if self.unread:
+        if self.fault is not None:
             return None
         path = f"lib/{package}/{name}"
         if path in self.programs or path in self.installed():

@@ -119,8 +119,16 @@ class Package:
     @property
     def build_file(self) -> str:
         """Return the file that should install the package, by its package.xml: setup.py or CMakeLists.txt."""
-        build_type = self.manifest.build_type if self.manifest is not None else ""
-        return SETUP if build_type in ("ament_python", "") else CMAKE
+        return SETUP if self._build_type in ("ament_python", "") else CMAKE
+
+    @property
+    def lacking(self) -> str:
+        """What a package without a build file lacks, in words: that of its build type, or either."""
+        return f"{SETUP} or {CMAKE}" if self._build_type in ("catkin", "") else self.build_file
+
+    @property
+    def _build_type(self) -> str:
+        return self.manifest.build_type if self.manifest is not None else ""
 
     @cached_property
     def installation(self) -> "Installation | None":

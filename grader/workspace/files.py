@@ -88,7 +88,11 @@ def _fault_of(workspace: Workspace, package: Package, path: str, at: Location) -
     if not are_installs_known(owner):
         yield Undecided("files", f"whether a build installs {target} is not evaluated")
         return
-    yield _not_there(owner, target, at)
+    inside = target.removeprefix(owner.share)
+    if inside in owner.tree.folders:
+        yield from _no_folder(owner, inside, f"a build installs no {target}", at)
+    else:
+        yield _not_there(owner, target, at)
 
 
 def _not_there(owner: Package, target: str, at: Location) -> Mismatch:
@@ -103,13 +107,23 @@ def _not_there(owner: Package, target: str, at: Location) -> Mismatch:
     if found.state == "not installed":
         either, called_at = _of_install(setup, found.path, start), setup.location(setup.called_at)
         return Mismatch("files", f"{missing}: no {setup.entry} names {found.path}", at, called_at, corrections=either)
-    inside = target.removeprefix(owner.share)
-    if inside in owner.tree.folders:
-        return Mismatch("files", f"{missing}: no {setup.entry} names the folder {inside}", at, is_sure=False)
     meant = closest(name, map(posixpath.basename, owner.tree.files))
     guess = f"; did you mean {meant!r}?" if meant else ""
     message = f"{missing}: the package has no file {name!r}{guess}"
     return Mismatch("files", message, at, None, is_surely_absent(owner, target), corrections(name, at, meant))
+
+
+def _no_folder(owner: Package, inside: str, missing: str, at: Location) -> Iterator[Mismatch]:
+    """Yield where else a build installs what is in a folder, if anywhere. CMake also makes folders that stay empty."""
+    setup = owner.installation
+    assert setup is not None
+    other = next((it for it in owner.installed.items() if it[1].startswith(f"{inside}/")), None)
+    may_be_made = setup.is_cmake and posixpath.basename(inside) in setup.source.text
+    if other is not None:
+        message = f"{missing}: it installs {other[1]} as {other[0]}"
+        yield Mismatch("files", message, at, is_sure=not may_be_made)
+    elif not may_be_made:
+        yield Mismatch("files", f"{missing}: it installs no file of the folder {inside}", at)
 
 
 def _of_folders(target: str, elsewhere: str, at: Location, start: Location) -> tuple[Correction, ...]:

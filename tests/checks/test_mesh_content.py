@@ -30,8 +30,8 @@ def _read(data: bytes, limit: int, *, first: bool = False) -> bytes:
     ],
 )  # fmt: skip
 def test_a_mesh_of_its_format_has_no_fault(name: str, data: bytes) -> None:
-    """STL in both forms, COLLADA, OBJ, glTF, PLY; of other formats nothing is known."""
-    assert content_fault(file_with(name, data)) == ""
+    """STL in both forms, COLLADA, OBJ, glTF, PLY; of other formats nothing is known. The installed name counts."""
+    assert content_fault(file_with("a.bin", data), f"share/arm/{name}") == ""
 
 
 @pytest.mark.parametrize(
@@ -44,16 +44,16 @@ def test_a_mesh_of_its_format_has_no_fault(name: str, data: bytes) -> None:
 )  # fmt: skip
 def test_a_mesh_of_another_format_is_named(name: str, data: bytes, fault: str) -> None:
     """Also one that is empty, or cut off."""
-    assert content_fault(file_with(name, data)) == fault
+    assert content_fault(file_with("a.bin", data), f"share/arm/{name}") == fault
 
 
 def test_what_is_not_there_is_not_decided() -> None:
     """A pointer of Git LFS, and a file that cannot be read."""
     with pytest.raises(NotDecided, match="only the pointer of Git LFS"):
-        content_fault(file_with("a.stl", b"version https://git-lfs.github.com/spec/v1\n"))
+        content_fault(file_with("a.stl", b"version https://git-lfs.github.com/spec/v1\n"), "a.stl")
 
     def refuse(limit: int, *, first: bool = False) -> bytes:
         raise InputError(f"larger than {limit}, {first}")
 
     with pytest.raises(NotDecided, match="larger than"):
-        content_fault(File("a.stl", 9, refuse))
+        content_fault(File("a.stl", 9, refuse), "a.stl")

@@ -20,11 +20,11 @@ _ENDS = {"if": "endif", "foreach": "endforeach", "while": "endwhile", "function"
 
 
 class CMakeFault(Exception):
-    """What CMake cannot parse, and where."""
+    """What CMake cannot parse, and where; `sure` is False for what only this reader does not parse."""
 
-    def __init__(self, message: str, at: Position) -> None:
+    def __init__(self, message: str, at: Position, *, sure: bool = True) -> None:
         super().__init__(message)
-        self.at = at
+        self.at, self.sure = at, sure
 
 
 class Argument(NamedTuple):
@@ -74,7 +74,7 @@ def _opened(commands: list[Command], start: int, depth: int) -> tuple[Command, i
     """Return the command that begins a block, with what is in it, and the index of its end. Raises CMakeFault."""
     first, end = commands[start], _ENDS[commands[start].name]
     if depth > _MAX_DEPTH:
-        raise CMakeFault("the blocks are too deeply nested to read", first.at)
+        raise CMakeFault("the blocks are too deeply nested to read", first.at, sure=False)
     body, index = _block(commands, start + 1, end, depth + 1)
     others: list[Command] = []
     while index < len(commands) and commands[index].name in ("elseif", "else") and end == "endif":

@@ -30,7 +30,7 @@ def read_cmake(text: str, path: str, tree: Tree, name: str, budget: Budget | Non
     try:
         commands = parse_cmake(source)
     except CMakeFault as fault:
-        return Installation(source, SyntaxFault(source, str(fault), location_in(source, fault.at)))
+        return Installation(source, SyntaxFault(source, str(fault), location_in(source, fault.at), fault.sure))
     listing = PackageListing(tree, budget)
     build = Build(listing, Values(listing.budget), name)
     try:
