@@ -18,7 +18,7 @@ from grader.checks.registry import find_check
 from grader.checks.toml_types import WrongValue
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.grading.rubric import Rubric, read_rubric
-from grader.grading.subjects import named_links
+from grader.grading.subjects import without_selectors
 from grader.grading.toml_file import assignment, read_toml, toml_literal
 from grader.robot.shapes import UnknownShape
 from grader.submission.submission import Submission
@@ -158,7 +158,7 @@ def _outcome(subjects: _Subjects, fact: Fact) -> Outcome:
     assert check is not None
     _, read = read_toml(f"it = {toml_literal(fact.arguments)}".encode(), Path())
     given = {name: check.parameters[name].type.parse(value) for name, value in read["it"].items()}
-    given = named_links(given, subjects["robot"]) if "robot" in subjects else given
+    given = without_selectors(given, subjects["robot"]) if "robot" in subjects else given
     usual, _ = _USUAL.get(fact.check, ({}, ""))
     arguments = {name: str(it).lower() if isinstance(it, bool) else it for name, it in fact.args.items()}
     submission = subjects["submission"].under(arguments) if arguments else subjects["submission"]

@@ -22,7 +22,7 @@ _MAX_VALUES = 500  # in one element of <robot>: a check compares each with each
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _CONDITION = re.compile(r"\[@[^=]+='([^']*)'\]")
 _REFERENCE = re.compile(r"\[@reference='([^']*)'\]")
-_JOINT_KEY = re.compile(r"(?:^|[/_])joints?$|joint_names?$|/joint/@name$|^joint/@name$")
+_JOINT_KEY = re.compile(r"(?:^|[/_])joints?$|joint_names?$|(?:^|/)joint/@name$")
 _TRUTH = {"true": True, "false": False}
 _INTERFACE = "command_interface/@name"
 _NAMED_BY = ("reference", "name", "filename", "type")
@@ -38,11 +38,8 @@ def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
     covered = needed_interfaces(workspace_of(solution.submission))
     robot = solution.robot.robot
     joints, links = {joint.name for joint in robot.joints}, {link.name for link in robot.links}
-    selectors = {
-        it.name: f"{JOINT_OF}{it.child}" for it in robot.joints if it.name not in links and "'" not in it.child
-    }
-    if not are_joints_free(solution):
-        selectors = {}
+    free = robot.joints if are_joints_free(solution) else ()
+    selectors = {it.name: f"{JOINT_OF}{it.child}" for it in free if it.name not in links and "'" not in it.child}
     joints.update(selectors.values())
     are_compared = read_agreement(solution.submission).holds("topics")
 

@@ -74,7 +74,7 @@ def entry_is(
     root = reading.elements
     if root is None:
         raise MissingElement("robot", "", message="the file is not well-formed XML, so it has no elements")
-    steps = [_with_links(step, robot) for step in steps_of(at, is_xml=True)]
+    steps = [_with_names(step, robot) for step in steps_of(at, is_xml=True)]
     wanted = _Wanted(steps, value, one_of, has, values or {}, tolerance)
     tree = _robot_entry(reading, root)
     outcome = _judge(tree, wanted, _IN_ROBOT)
@@ -334,7 +334,7 @@ def _robot_entry(reading: Reading, root: Element) -> Entry:
     return xml_entry(root, locate)
 
 
-def _with_links(step: Step, robot: Configuration) -> Step:
+def _with_names(step: Step, robot: Configuration) -> Step:
     """Return a step whose conditions have names, not selectors."""
     found = ((key, selected_name(robot.known, robot.known_parents, value)) for key, value in step.conditions)
     return step._replace(conditions=tuple(found))

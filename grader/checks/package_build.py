@@ -174,8 +174,8 @@ def _readable_setup(package: Package) -> "Installation":
     """
     setup = package.installation
     if setup is None:
-        message = f"the package has no {package.lacking}, so a build installs nothing"
-        raise MissingElement(SETUP, package.folder, message=message, absent=package.lacking)
+        message = f"the package has no {package.missing_build_file}, so a build installs nothing"
+        raise MissingElement(SETUP, package.folder, message=message, absent=package.missing_build_file)
     if setup.fault is not None and setup.fault.sure:
         raise MissingElement(SETUP, package.folder, message=setup.fault_text, location=setup.fault.location)
     if setup.unread:

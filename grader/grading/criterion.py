@@ -52,7 +52,7 @@ class Criterion(NamedTuple):
     carried: tuple[Carried, ...] = ()
     at: Mapping[str, float] = {}  # the positions of joints in which the robot is examined, degrees or metres; else 0
     args: Mapping[str, str] = {}  # launch arguments under which the submission is examined
-    has_selectors: bool = False  # whether arguments name links by their place in the tree
+    has_selectors: bool = False  # whether arguments name links by their place in the tree, or joints by their links
     bonus: bool = False  # whether the points are extra credit, not part of the maximum
     adjustment: Adjustment | None = None  # after grading; then manual marks do not count
     package: str = ""  # the name of the package that it is about; empty for the one with the robot

@@ -93,7 +93,7 @@ class Subjects:
         """
         if self.robot is None or "reference" in check.examined:
             return arguments
-        return {key: named_links(value, self.robot) for key, value in arguments.items()}
+        return {key: without_selectors(value, self.robot) for key, value in arguments.items()}
 
     def _pose_robot(self, robot: Configuration, at: Mapping[str, float]) -> Configuration:
         key = tuple(at.items())
@@ -116,7 +116,7 @@ class Subjects:
 def check_selectors(robot: Configuration, criterion: Criterion) -> None:
     """Raise MissingElement or NotDecided if a criterion names a link by a place that no link has, or several have."""
     carried = [dict(one.arguments) for one in criterion.carried]
-    named_links([dict(criterion.arguments), *carried, [*criterion.at]], robot)
+    without_selectors([dict(criterion.arguments), *carried, [*criterion.at]], robot)
 
 
 def joints_at(robot: Configuration, at: Mapping[str, float]) -> list[tuple[Joint, float, str]]:
@@ -144,15 +144,15 @@ def _find_joint(robot: Configuration, name: str) -> Joint:
     return joint
 
 
-def named_links(value: Any, robot: Configuration) -> Any:
-    """Return a value with each selector replaced by a name; raises MissingElement and NotDecided."""
+def without_selectors(value: Any, robot: Configuration) -> Any:
+    """Return a value with names in place of selectors; raises MissingElement and NotDecided."""
     match value:
         case str():
             return selected_name(robot.known, robot.known_parents, value)
         case list() | tuple():
-            return type(value)(named_links(item, robot) for item in value)
+            return type(value)(without_selectors(item, robot) for item in value)
         case Mapping():
-            return {key: named_links(item, robot) for key, item in value.items()}
+            return {key: without_selectors(item, robot) for key, item in value.items()}
     return value
 
 

@@ -31,7 +31,7 @@ def look_up(owner: Package, target: str) -> Lookup:
     """Return what a build of a package installs at a path below the prefix, or what the package has instead."""
     setup = owner.installation
     if setup is None:
-        return Lookup("no build", text=f"its package has no {owner.lacking}")
+        return Lookup("no build", text=f"its package has no {owner.missing_build_file}")
     if setup.fault is not None:
         return Lookup("unknown", text=setup.unread) if setup.unread else Lookup("no build", text=setup.fault_text)
     if target in owner.installed:

@@ -122,7 +122,7 @@ class Package:
         return SETUP if self._build_type in ("ament_python", "") else CMAKE
 
     @property
-    def lacking(self) -> str:
+    def missing_build_file(self) -> str:
         """What a package without a build file lacks, in words: that of its build type, or either."""
         return f"{SETUP} or {CMAKE}" if self._build_type in ("catkin", "") else self.build_file
 

@@ -109,12 +109,8 @@ def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
 
 def bridge_files(workspace: Workspace) -> set[str]:
     """Return the files with rows that launch files give to bridges, by their paths in the submission."""
-    given = [
-        one.values.get("config_file")
-        for _, it in workspace.nodes
-        if it.package == BRIDGE
-        for one in it.parameters or ()
-    ]
+    bridges = [node for _, node in workspace.nodes if node.package == BRIDGE]
+    given = [it.values.get("config_file") for node in bridges for it in node.parameters or ()]
     paths = [it.value for it in given if it is not None]
     passed = [it for _, launch in workspace.roots for it in launch.passed if f"/{BRIDGE}/" in it.path]
     paths += [value for it in passed for name, value in it.values if name == "config_file"]
@@ -131,9 +127,8 @@ def _conversions(row: _BridgeRow, of_gazebo: set[str]) -> Iterator[Mismatch]:
     if fitting and row.gz_type not in fitting:
         ros = row.ros_type.replace(".", "/")
         message = f"the bridge does not convert {ros} and {row.gz_type or 'an empty type'}"
-        meant = [
-            name.replace(".", "/") for name, own in kinds.items() if row.gz_type in {f"gz.msgs.{it}" for it in own}
-        ]
+        plain = row.gz_type.removeprefix("gz.msgs.")
+        meant = [name.replace(".", "/") for name, own in kinds.items() if plain in own]
         if of_gazebo == {row.gz_type} and meant:
             wrong, at = ros, row.ros_type_location
         else:
