@@ -20,6 +20,7 @@ class Batch:
         self._results, self._writer, self._shared, self._context = results, writer, shared, context
         self._at_work: dict[str, tuple[ClassSubmission, StoredResult | None]] = {}  # with the result that is current
         self.progress = Progress(0)
+        self._being_written = 0, self.progress  # where the file ends once a write is done, and the progress then
         self._counted = set[tuple[int, tuple[str, ...]]]()
         self.written = results.unfinished  # the students whose results this run has written, or one that was stopped
 
@@ -50,10 +51,17 @@ class Batch:
                     self._counted.add(place)
                     progress = progress.with_result(result.verdict)
                 lines.append(self._line(result, submission, current))
+            self._being_written = self._writer.end + sum(map(len, lines)), progress
             self._writer.append(*lines)
-            self.progress = progress  # after the write: a run that is interrupted says how many results are kept
+            self.progress = progress
             show(self.progress)
         return self.progress
+
+    @property
+    def kept(self) -> int:
+        """The number of submissions whose results are in the file, wherever Ctrl-C arrived."""
+        end, progress = self._being_written
+        return (progress if self._writer.end >= end else self.progress).done
 
     def _task(self, one: ClassSubmission, *, force: bool) -> Task:
         newest = self._results.of(one.student.key)

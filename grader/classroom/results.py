@@ -264,6 +264,11 @@ class ResultsWriter:
         except OSError as error:
             raise InputError(f"cannot write {self._shown}: {error.strerror}") from None
 
+    @property
+    def end(self) -> int:
+        """Where the file ends."""
+        return os.fstat(self._handle).st_size
+
     def append(self, *lines: bytes) -> None:
         """Append lines in one write."""
         data = b"".join(lines)

@@ -315,7 +315,7 @@ def _batch(request: ClassRequest, inputs: _ClassInputs, batch: Batch, intake: In
         try:
             done = batch.grade(intake.submissions, executor, workers, show, force=request.force)
         except BaseException:
-            graded = f"{batch.progress.done} of {batch.progress.total} have a result, which is kept"
+            graded = f"{batch.kept} of {batch.progress.total} have a result, which is kept"
             terminal.warn(f"stopped: {graded}; rerun the same command to resume")
             raise
     errored = f" ({done.errored} errored)" if done.errored else ""

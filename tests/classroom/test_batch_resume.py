@@ -11,6 +11,7 @@ from random import Random
 
 import pytest
 
+from grader.classroom.results import ResultsWriter
 from grader.cli.app import run
 from tests.classroom.class_runs import (
     HOSTILE_RUBRIC,
@@ -96,18 +97,24 @@ def _wait(process: "subprocess.Popen[str]", seconds: float) -> None:
         process.wait(seconds)
 
 
-def test_a_result_that_is_not_written_is_not_called_kept(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize("is_written", [False, True])
+def test_only_what_is_written_is_called_kept(
+    is_written: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Where Ctrl-C comes before the write."""
+    """Where Ctrl-C arrives just before or after the write."""
+    append = ResultsWriter.append
 
-    def interrupted(*_: object) -> None:
+    def interrupted(writer: ResultsWriter, *lines: bytes) -> None:
+        if is_written:
+            append(writer, *lines)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("grader.classroom.results.ResultsWriter.append", interrupted)
-    folder = urdf_class(tmp_path / "class", 2)
-    assert run(["batch", str(folder), "--gradebook", str(tmp_path / "book"), "--jobs", "1"]) == 130
-    assert "stopped: 0 of 2 have a result, which is kept" in capsys.readouterr().err
+    monkeypatch.setattr(ResultsWriter, "append", interrupted)
+    folder, book = urdf_class(tmp_path / "class", 2), tmp_path / "book"
+    assert run(["batch", str(folder), "--gradebook", str(book), "--jobs", "1"]) == 130
+    kept = len(verdicts(book))
+    assert bool(kept) == is_written
+    assert f"stopped: {kept} of 2 have a result, which is kept" in capsys.readouterr().err
 
 
 @pytest.mark.slow
