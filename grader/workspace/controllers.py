@@ -1,12 +1,13 @@
 """Controllers of ros2_control: their YAML, the spawners that start them, and the interfaces of their joints."""
 
-import posixpath
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
 
 from grader.names import closest, near
 from grader.package.launch.model import StartedNode
+from grader.package.launch.parameters import controllers_of
 from grader.package.nodes import Endpoint
 from grader.package.yaml_nodes import YamlFault, YamlNode
 from grader.source import Location
@@ -74,23 +75,17 @@ def controller_endpoints(workspace: Workspace, launch: int, node: StartedNode) -
     if node.executable != "ros2_control_node" or node.namespace is None or node.remaps is None:
         return
     spawners = [it for number, it in workspace.launched if number == launch and it.executable in _SPAWNERS and it.when]
-    spawned = {name for it in spawners for word in it.arguments or () for name in (word or "").split()}
+    spawned = {it.node_name: it.remaps or () for spawner in spawners for it in controllers_of(spawner) or ()}
     unstamped = {keys[-1] for keys, section in _sections(workspace) if section.get("use_stamped_vel") is not None}
     for controller in defined_controllers(workspace):
         if controller.name not in spawned or controller.name in unstamped:
             continue
+        own = replace(node, node_name=controller.name, remaps=(*spawned[controller.name], *node.remaps))
         for kind, topics in known()["controller_topics"].get(controller.type.text, {}).items():
             for name, message in topics.items():
-                topic = _topic(node, controller.name, name)
-                yield topic, Endpoint(kind, message, topic, controller.location)
-
-
-def _topic(node: StartedNode, controller: str, name: str) -> str:
-    """Return the full name of a topic of a controller, after the remappings of its process."""
-    above = f"/{(node.namespace or '').strip('/')}/".replace("//", "/")
-    full = f"{above}{controller}/{name}"
-    targets = (new for old, new in node.remaps or () if old in (full, f"~/{name}"))
-    return posixpath.join(above, next(targets, full))
+                topic = own.topic(f"~/{name}")
+                if topic is not None:
+                    yield topic, Endpoint(kind, message, topic, controller.location)
 
 
 def _type_facts(workspace: Workspace, controller: _Controller) -> Iterator[Fact]:

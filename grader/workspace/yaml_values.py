@@ -1,7 +1,8 @@
 """The values in YAML parameter files, each with the keys above it."""
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 from grader.names import near
 from grader.package.yaml_nodes import YamlNode
@@ -48,9 +49,26 @@ def sections_in(node: YamlNode, keys: tuple[str, ...] = ()) -> Iterator[tuple[tu
         return
     for key, inner in node.value.items():
         if key == PARAMETERS:
-            yield keys, inner
+            yield keys, _nested(inner)
         else:
             yield from sections_in(inner, (*keys, key))
+
+
+def _nested(node: YamlNode) -> YamlNode:
+    """Return parameters with tables in place of keys with dots, as rcl reads them."""
+    if not isinstance(node.value, dict) or not any("." in key for key in node.value):
+        return node
+    tables, places = dict[str, YamlNode](), dict[str, Any]()
+    for key, inner in node.value.items():
+        outer, _, last = key.partition(".")
+        table = replace(inner, value={last: inner}, key_marks={last: node.key_marks[key]}) if last else inner
+        before = tables.get(outer)
+        if before is not None and isinstance(before.value, dict) and isinstance(table.value, dict):
+            marks = before.key_marks | table.key_marks
+            table = replace(before, value=before.value | table.value, key_marks=marks)
+        tables[outer] = table
+        places.setdefault(outer, node.key_marks[key])
+    return replace(node, value={key: _nested(it) for key, it in tables.items()}, key_marks=places)
 
 
 def is_misspelt_key(key: str, node: YamlNode) -> bool:

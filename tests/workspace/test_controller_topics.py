@@ -1,5 +1,7 @@
 """Topics of controllers: their types, remappings of their process, and publishers that nothing subscribes to."""
 
+import pytest
+
 from grader.workspace.names import Mismatch
 from tests.workspace.carts import agreement_of, edited
 
@@ -30,7 +32,15 @@ def test_a_controller_gets_messages_of_its_type() -> None:
     """Stamped velocities agree with diff_drive_controller, by its full name or by the name below its own."""
     assert topic_problems("TwistStamped") == []
     assert topic_problems("TwistStamped", old="~/cmd_vel") == []
+    assert topic_problems("TwistStamped", old="wheel_controller/cmd_vel") == []
     assert topic_problems("TwistStamped", old="/other", topic="/wheel_controller/cmd_vel") == []
+
+
+@pytest.mark.parametrize("rule", ["-r ~/cmd_vel:=/cmd_vel", "--ros-args --remap wheel_controller/cmd_vel:=cmd_vel"])
+def test_a_spawner_remaps_the_topics_of_its_controllers(rule: str) -> None:
+    """These arguments are for the nodes of the controllers alone."""
+    old, new = (f'["wheel_controller", {more}"--param-file"' for more in ("", f'"--controller-ros-args", "{rule}", '))
+    assert topic_problems("TwistStamped", (_ROBOT_LAUNCH, old, new), old="/other") == []
 
 
 def test_another_type_is_wrong_where_it_is_published() -> None:

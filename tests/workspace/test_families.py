@@ -247,6 +247,8 @@ CORRECT: list[tuple[str, list[Edit]]] = [
     ("a controller with a file of its own", [
         (_CONTROLLERS, "DiffDriveController\n", "DiffDriveController\n      params_file: /opt/wheels.yaml\n"),
         (_CONTROLLERS, "\nwheel_controller:", "\nwheels:")]),
+    ("the type of a controller in a key with dots", [
+        (_CONTROLLERS, "    wheel_controller:\n      type:", "    wheel_controller.type:")]),
     ("a controller with parameters of every node", [(_CONTROLLERS, "\nwheel_controller:", "\n/**:")]),
     ("a controller without interfaces", [
         (_CONTROLLERS, "diff_drive_controller/DiffDriveController", "joint_trajectory_controller/JointTrajectoryController"),

@@ -12,7 +12,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cache
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +27,7 @@ from grader.package.launch.model import (
     Resolved,
     StartedNode,
 )
-from grader.package.launch.parameters import controllers_of, given_parameters
+from grader.package.launch.parameters import controllers_of, given_parameters, remap_rules
 from grader.package.launch.places import PREFIX, ROS, SHARE
 from grader.package.launch.programs import is_part_of_ros
 from grader.package.launch.substitutions import PART_UNKNOWN, check_program, known_text, resolve
@@ -76,7 +75,7 @@ def _with_names(node: StartedNode, call: Call, context: Context, findings: Findi
     words = _words_of(call.kwargs.get("arguments"), context, call.at)
     own = words[words.index("--ros-args") + 1 :] if "--ros-args" in words else []
     own += _words_of(call.kwargs.get("ros_arguments"), context, call.at)
-    rules = [word.partition(":=") for before, word in pairwise(own) if before in ("-r", "--remap")]
+    rules = remap_rules(own)
     is_given = any("robot_description" in table for table in _tables_in(call.kwargs.get("parameters")))
     has_description = is_given or (bool(words) and not words[0].startswith("-") and node.executable != _RVIZ)
     parameters = given_parameters(call, own, context, node.location)

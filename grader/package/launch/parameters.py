@@ -485,11 +485,16 @@ def _matches(key: str, full: str) -> bool:
     return re.fullmatch(pattern, full) is not None
 
 
-def controllers_of(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
-    """Return the controllers that a spawner starts, as nodes with the files that it gives them; None if not all known.
+def remap_rules(words: Sequence[str]) -> list[tuple[str, str, str]]:
+    """Return the remappings among arguments for ROS, each with its separator between the names."""
+    return [word.partition(":=") for option, word in pairwise(words) if option in ("-r", "--remap")]
 
-    A controller has the namespace of its controller manager, in whose process it runs: what that is given applies to
-    it as well, and what the spawner gives counts more.
+
+def controllers_of(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
+    """Return the controllers that a spawner starts, as nodes with the files and remappings that it gives them.
+
+    None if not all are known. A controller has the namespace of its controller manager, in whose process it runs: what
+    that is given applies to it as well, and what the spawner gives counts more.
     """
     words = spawner.arguments
     if words is None or None in words or spawner.namespace is None:
@@ -509,5 +514,7 @@ def controllers_of(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
     full = manager[0] if manager[0].startswith("/") else f"/{spawner.namespace.strip('/')}/{manager[0]}"
     namespace = full.replace("//", "/").rpartition("/")[0] or "/"
     parameters = tuple(GivenParameters(spawner.location, path) for path in files)
-    started = replace(spawner, namespace=namespace, parameters=parameters, arguments=())
+    rules = remap_rules(" ".join(given.get("--controller-ros-args", ())).split())
+    remaps = tuple((name, to) for name, _, to in rules)
+    started = replace(spawner, namespace=namespace, parameters=parameters, arguments=(), remaps=remaps)
     return tuple(replace(started, node_name=name) for name in names)
