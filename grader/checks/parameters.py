@@ -1,10 +1,12 @@
 """The check of parameters: the values that nodes get, wherever they are written, also measured on the robot."""
 
 from collections.abc import Callable, Iterator, Mapping
+from math import dist
 from typing import Any, Literal
 
 from grader.checks.outcome import Outcome, failed, passed
 from grader.checks.toml_types import Content, NonNegative, Scalar
+from grader.checks.visuals import main_visual, visual_pose
 from grader.errors import MissingElement, NotDecided, RubricError
 from grader.names import did_you_mean
 from grader.package.launch.model import ParameterValue
@@ -12,6 +14,7 @@ from grader.package.package import Package
 from grader.python.values import Unknown
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Cylinder, Joint, Sphere
+from grader.robot.transforms import Vector
 from grader.submission.submission import Submission
 from grader.text import enumerated, quoted
 
@@ -45,7 +48,8 @@ def parameter_is(
         one_of: Values of which it should have one.
         has: Values that a list should have among its items.
         measure: The measure of the robot that the value should equal: the radius or length of the shape of the first
-            link, the distance between the frames of two links, or a limit of the joint that moves the first one.
+            link, the distance between two links, or a limit of the joint that moves the first one. A wheel is where
+            the centre of its shape is, any other link where its frame is.
         links: The links that are measured.
         tolerance: How far a number may be off, in the number's own unit.
         where_given: Whether a node that does not get the parameter passes, for `carried`.
@@ -151,12 +155,20 @@ def measures(robot: Configuration, links: list[str]) -> Mapping[str, Callable[[]
     return dict(_measures(robot, links))
 
 
+def _place(robot: Configuration, link: str, relative_to: str) -> Vector:
+    """Return the centre of a cylinder or sphere that a joint turns without end, or where the link's frame is."""
+    joint = robot.parent_joints.get(link)
+    if joint is not None and joint.type == "continuous" and robot.robot.link(link).visuals:
+        visual = main_visual(robot, link)
+        if isinstance(visual.geometry, Cylinder | Sphere):
+            return visual_pose(robot, link, visual, relative_to).translation
+    return robot.pose(link, relative_to=relative_to).translation
+
+
 def _measures(robot: Configuration, links: list[str]) -> Iterator[tuple[str, Callable[[], float]]]:
     first = robot.robot.link(links[0])
     if len(links) > 1:
-        pose = robot.pose(links[1], relative_to=links[0])
-        x, y, z = pose.translation
-        yield "distance", lambda: float((x * x + y * y + z * z) ** 0.5)
+        yield "distance", lambda: dist(*(_place(robot, link, links[0]) for link in links))
         return
     for visual in first.visuals:
         match visual.geometry:
