@@ -10,6 +10,7 @@ from grader.checks.visuals import main_visual, visual_pose
 from grader.errors import MissingElement, NotDecided, RubricError
 from grader.names import did_you_mean
 from grader.package.launch.model import ParameterValue
+from grader.package.launch.parameters import value_in_file
 from grader.package.package import Package
 from grader.python.values import Unknown
 from grader.robot.kinematics import Configuration
@@ -52,15 +53,20 @@ def parameter_is(
             the centre of its shape is, any other link where its frame is.
         links: The links that are measured.
         tolerance: How far a number may be off, in the number's own unit.
-        where_given: Whether a node that does not get the parameter passes, for `carried`.
+        where_given: Whether a node that does not get the parameter passes, for `carried`, if no parameter file has
+            another value.
     """
     del package  # without one, there are no parameters
     try:
         found = value_of(submission, node, parameter)
     except MissingElement:
-        if where_given:
+        if not where_given:
+            raise
+        meant = _measured_if_there(submission, measure, links) if measure is not None else value
+        other = _written_otherwise(submission, parameter, meant, tolerance)
+        if other is None:
             return passed(f"nothing gives {parameter} to {node}")
-        raise
+        found = other
     if isinstance(found.value, Unknown):
         cause = f"the parameter {parameter} of {node} cannot be determined statically"
         raise NotDecided(f"{cause}: {found.value.reason}", cause)
@@ -79,6 +85,26 @@ def parameter_is(
     if measure is not None:
         wanted += f", the {measure} of {enumerated([*map(quoted, links or [])])} in the robot"
     return passed(message) if fits else failed(f"{message}; it {wanted}", found.location)
+
+
+def _measured_if_there(submission: Submission, measure: _Measure, links: list[str] | None) -> float | None:
+    try:
+        return measured(submission, measure, links or [])
+    except MissingElement:
+        return None
+
+
+def _written_otherwise(submission: Submission, parameter: str, value: Any, tolerance: float) -> ParameterValue | None:
+    """Return what parameter files have for a parameter, of whatever node, if none of them has a certain value."""
+    from grader.workspace.workspace import workspace_of  # late: few rubrics ask for it
+    from grader.workspace.yaml_values import sections_in
+
+    sections = (section for _, tree in workspace_of(submission).trees for _, section in sections_in(tree))
+    nodes = (section.get(*parameter.split(".")) for section in sections)
+    written = [value_in_file(node) for node in nodes if node is not None]
+    known = [it for it in written if not isinstance(it.value, Unknown)]
+    has_it = value is None or any(_equal(it.value, value, tolerance) for it in known)
+    return None if has_it else next(iter(known), None)
 
 
 def value_of(submission: Submission, node: str, parameter: str) -> ParameterValue:

@@ -107,9 +107,13 @@ class _Grading:
             result = self._run_check(criterion, criterion.check, criterion.arguments)
         except MissingElement as missing:
             return self._fail_or_skip(criterion, missing)
+        return self._with_reasons(result)
+
+    def _with_reasons(self, result: Result) -> Result:
+        """Return a failure with what explains it."""
         if result.outcome.status != "failed":
             return result
-        outcome = result.outcome
+        criterion, outcome = result.criterion, result.outcome
         if not all(self._is_unbuilt(name) for name in outcome.absent if name in self._rubric.links):
             outcome = outcome._replace(absent=())
         outcome = self._explain(outcome, looks_at=criterion.check.about.looks_at)
@@ -146,7 +150,9 @@ class _Grading:
         if other.outcome.status == "passed":  # the place to look at is that of the mistake
             outcome = outcome._replace(location=cause.outcome.location)
             return Result(result.criterion, outcome, carried=cause.carried or name)
-        return other if other.outcome.status == "errored" else result
+        # What is skipped because of a failure is shown there, unless that is carried as well.
+        is_shown = result.outcome.location is not None or (result.because and not self.results[result.because].carried)
+        return result if is_shown and other.outcome.status != "errored" else self._with_reasons(other)
 
     def _is_excused(self, criterion: Criterion, cause: str) -> bool:
         """Return whether what counts instead passes, if another criterion is the cause of a failure."""

@@ -121,6 +121,14 @@ def read_yaml(data: bytes, path: str) -> YamlNode:
         raise YamlFault(_DEEP, Location(path, 1, 1)) from None
 
 
+def first_alias(source: Source) -> tuple[str, Location] | None:
+    """Return the name and the place of the first alias in a text that is YAML; None without one."""
+    for event in yaml.parse(source.text.removeprefix("\ufeff"), Loader=_LOADER) if "*" in source.text else ():
+        if isinstance(event, yaml.AliasEvent):
+            return event.anchor or "", _location_of(source, event.start_mark)
+    return None
+
+
 def _location_of(source: Source, mark: Any) -> Location:
     """Return the location of a mark by its offset: the lines of YAML also end at separators of Unicode."""
     return source.at(min(mark.index + source.text.startswith("\ufeff"), len(source.text)))

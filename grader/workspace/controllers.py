@@ -1,26 +1,22 @@
-"""Controllers of ros2_control: their YAML, the spawners that start them, and the interfaces of their joints."""
+"""Controllers of ros2_control: their YAML, their actions and topics, and the interfaces of their joints."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
 from typing import NamedTuple
 
 from grader.names import closest, near
 from grader.package.launch.model import StartedNode
 from grader.package.launch.parameters import controllers_of
 from grader.package.nodes import Endpoint
-from grader.package.yaml_nodes import YamlFault, YamlNode
+from grader.package.yaml_nodes import YamlNode
 from grader.source import Location
 from grader.workspace.known import known
-from grader.workspace.names import Correction, Definition, Fact, Mismatch, Open, Use, corrections, place_text
-from grader.workspace.workspace import Workspace
+from grader.workspace.names import Correction, Definition, Fact, Mismatch, Use, corrections, place_text
+from grader.workspace.workspace import MANAGER, SPAWNERS, Workspace
 from grader.workspace.yaml_values import PARAMETERS, is_misspelt_key, sections_in
 
-_MANAGER = "controller_manager"
-_SPAWNERS = ("spawner", "spawner.py")
 
-
-class _Controller(NamedTuple):
+class Controller(NamedTuple):
     """A controller that a parameter file defines for the controller manager."""
 
     name: str
@@ -30,19 +26,18 @@ class _Controller(NamedTuple):
 
 
 def controller_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the controllers that YAML files define, and those that spawners load; types, sections, interfaces."""
+    """Yield the controllers that YAML files define, their types, sections and interfaces, and those of actions."""
     controllers = list(defined_controllers(workspace))
     if not controllers:
         return
     yield from (Definition("controller", it.name, it.location) for it in controllers)
     # In other parameters, a section replaces the type before it: that it is there is a mistake of parameters.
-    nested = ((keys[-1], node) for keys, node in _sections(workspace) if _MANAGER in keys[:-1])
+    nested = ((keys[-1], node) for keys, node in _sections(workspace) if MANAGER in keys[:-1])
     yield from (Definition("controller", name, node.location) for name, node in nested)
     sections = {keys[-1].rpartition("/")[2]: node for keys, node in _sections(workspace)}
     for controller in controllers:
         yield from _type_facts(workspace, controller)
         yield from _section_facts(workspace, controller, sections)
-    yield from _spawner_facts(workspace)
     yield from _action_facts(workspace)
     managers = [node for _, node in workspace.nodes if node.executable == "ros2_control_node"]
     if managers and workspace.command_interfaces is None and workspace.has_all_interfaces:
@@ -59,22 +54,22 @@ def _sections(workspace: Workspace) -> Iterator[tuple[tuple[str, ...], YamlNode]
                 yield from sections_in(node, keys)
 
 
-def defined_controllers(workspace: Workspace) -> Iterator[_Controller]:
+def defined_controllers(workspace: Workspace) -> Iterator[Controller]:
     """Yield the controllers that parameter files define, with their types."""
     for keys, node in _sections(workspace):
         own = keys[-1].rpartition("/")[2]
-        is_manager = own == _MANAGER and isinstance(node.value, dict)
+        is_manager = own == MANAGER and isinstance(node.value, dict)
         for name, inner in node.value.items() if is_manager and isinstance(node.value, dict) else [(own, node)]:
             kind = inner.get("type")
             if kind is not None and kind.text is not None and "/" in kind.text:  # or in its own section, for a spawner
-                yield _Controller(name, kind, kind.location, inner.get("params_file") is not None)
+                yield Controller(name, kind, kind.location, inner.get("params_file") is not None)
 
 
 def controller_endpoints(workspace: Workspace, launch: int, node: StartedNode) -> Iterator[tuple[str, Endpoint]]:
     """Yield the topics of the controllers in the process of a node, those that its launch file spawns."""
     if node.executable != "ros2_control_node" or node.namespace is None or node.remaps is None:
         return
-    spawners = [it for number, it in workspace.launched if number == launch and it.executable in _SPAWNERS and it.when]
+    spawners = [it for number, it in workspace.launched if number == launch and it.executable in SPAWNERS and it.when]
     spawned = {it.node_name: it.remaps or () for spawner in spawners for it in controllers_of(spawner) or ()}
     unstamped = {keys[-1] for keys, section in _sections(workspace) if section.get("use_stamped_vel") is not None}
     for controller in defined_controllers(workspace):
@@ -88,7 +83,7 @@ def controller_endpoints(workspace: Workspace, launch: int, node: StartedNode) -
                     yield topic, Endpoint(kind, message, topic, controller.location)
 
 
-def _type_facts(workspace: Workspace, controller: _Controller) -> Iterator[Fact]:
+def _type_facts(workspace: Workspace, controller: Controller) -> Iterator[Fact]:
     """Yield that no package has a class of the controller's type, where all classes of its package are known."""
     types, written = known()["controllers"], controller.type.text or ""
     package = written.partition("/")[0]
@@ -105,7 +100,7 @@ def _type_facts(workspace: Workspace, controller: _Controller) -> Iterator[Fact]
         yield Mismatch("controllers", message, controller.location, is_sure=is_sure, corrections=either)
 
 
-def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapping[str, YamlNode]) -> Iterator[Fact]:
+def _section_facts(workspace: Workspace, controller: Controller, sections: Mapping[str, YamlNode]) -> Iterator[Fact]:
     """Yield that the parameters of a controller are missing, and the interfaces that its joints need."""
     needed: Mapping[str, str] = known()["controllers"].get(controller.type.text, {})
     section = sections.get(controller.name)
@@ -120,7 +115,7 @@ def _section_facts(workspace: Workspace, controller: _Controller, sections: Mapp
 
 
 def _of_sections(
-    workspace: Workspace, controller: _Controller, sections: Mapping[str, YamlNode]
+    workspace: Workspace, controller: Controller, sections: Mapping[str, YamlNode]
 ) -> tuple[Correction, ...]:
     """Return the correction of the name of a controller above its parameters, or of the key ros__parameters there."""
     meant = closest(controller.name, sections)
@@ -153,7 +148,7 @@ def needed_interfaces(workspace: Workspace) -> frozenset[str]:
 
 
 def _interface_facts(
-    workspace: Workspace, controller: _Controller, joint: YamlNode, needed: Sequence[str]
+    workspace: Workspace, controller: Controller, joint: YamlNode, needed: Sequence[str]
 ) -> Iterator[Mismatch]:
     """Yield the command interfaces that a controller needs of a joint, and <ros2_control> does not have."""
     interfaces, name = workspace.command_interfaces or {}, joint.text or ""
@@ -174,23 +169,6 @@ def _is_joint(workspace: Workspace, name: str) -> bool:
     return workspace.robot is not None and workspace.robot.has_joint(name)
 
 
-def _spawner_facts(workspace: Workspace) -> Iterator[Fact]:
-    if any(isinstance(tree, YamlFault) for tree in workspace.yaml_files.values()):
-        yield Open("controller", reason="a parameter file cannot be read")
-    if not workspace.has_controller_manager:  # the robot's driver starts one, with controllers of its own
-        yield Open("controller")
-    for _, node in workspace.nodes:
-        if node.package != _MANAGER or node.executable not in _SPAWNERS or node.arguments is None:
-            continue
-        if not _is_defined_by_files(workspace, node.arguments):
-            continue
-        for word in node.arguments:
-            if word is None or word.startswith("-"):
-                break
-            for name in word.split():
-                yield Use("controller", name, node.location, "spawner")
-
-
 def _action_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the controllers whose actions own nodes ask for."""
     for _, node in workspace.nodes:
@@ -200,10 +178,3 @@ def _action_facts(workspace: Workspace) -> Iterator[Fact]:
             controller, _, action = (topic or "").rpartition("/")
             if action in known()["controller_actions"]:
                 yield Use("controller", controller.strip("/"), endpoint.location, "ActionClient")
-
-
-def _is_defined_by_files(workspace: Workspace, words: tuple[str | None, ...]) -> bool:
-    """Return whether the controllers of a spawner are defined by files that are submitted, and not by its arguments."""
-    files = [path for option, path in pairwise(words) if option in ("-p", "--param-file")]
-    is_typed = any(word in ("-t", "--controller-type") for word in words)
-    return not is_typed and all(path is not None and workspace.source_of(path) is not None for path in files)

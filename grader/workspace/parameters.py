@@ -11,7 +11,7 @@ from grader.package.launch.model import StartedNode
 from grader.package.launch.parameters import parameters_of
 from grader.package.nodes import PythonNode
 from grader.package.package import Package
-from grader.package.yaml_nodes import YamlFault, YamlNode
+from grader.package.yaml_nodes import YamlFault, YamlNode, first_alias
 from grader.workspace.bridges import bridge_files
 from grader.workspace.known import known
 from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use, corrections
@@ -95,7 +95,13 @@ def _controllers_given(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _misplaced(tree: YamlNode) -> Iterator[Fact]:
-    """Yield values that are not below ros__parameters, and ros__parameters inside of ros__parameters."""
+    """Yield aliases, values that are not below ros__parameters, and ros__parameters inside of ros__parameters."""
+    alias = first_alias(tree.source)
+    if alias is not None:
+        name, at = alias
+        yield Mismatch(
+            "parameters", f"ROS 2 reads no aliases in parameter files: write the value in place of *{name}", at
+        )
     waiting: list[tuple[str, YamlNode, bool]] = [("", tree, False)]
     while waiting:
         name, node, is_below = waiting.pop()
@@ -151,7 +157,7 @@ def _filters(tree: YamlNode | YamlFault | None) -> Iterator[Fact]:
 
 
 def _required(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:
-    """Yield the parameters that a program of another package needs, and does not get."""
+    """Yield the parameters that a program of another package needs, and does not get as it needs them."""
     needed = known()["required_parameters"].get(f"{node.package}/{node.executable}", ())
     if needed and node.arguments == ():
         found = parameters_of(node, partial(open_meant, package), workspace.name_of(node) or "", is_python=False)
@@ -161,6 +167,10 @@ def _required(workspace: Workspace, package: Package, node: StartedNode) -> Iter
             there = f"; did you mean it by {guess!r}?" if guess is not None else ""
             message = f"{node.executable} stops without the parameter {name}, which it does not get{there}"
             yield Mismatch("parameters", message, node.location, corrections=either)
+        robot = found.values.get("robot_description")
+        if robot is not None and isinstance(robot.value, str) and not robot.value.lstrip().startswith("<"):
+            message = "robot_description is not the text of the robot, without which robot_state_publisher stops"
+            yield Mismatch("parameters", message, robot.location)
 
 
 def _plugin_lists(tree: YamlNode) -> Iterator[Fact]:

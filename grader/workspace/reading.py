@@ -16,14 +16,15 @@ from grader.workspace.moveit import moveit_facts
 from grader.workspace.names import Agreement, Fact, Family, Mismatch, agreement
 from grader.workspace.parameters import parameter_facts
 from grader.workspace.programs import program_facts
+from grader.workspace.spawners import spawner_facts
 from grader.workspace.srdf import srdf_facts
 from grader.workspace.topics import topic_facts
 from grader.workspace.unused import unused_files
 from grader.workspace.workspace import Workspace, workspace_of
 
 _READERS = (
-    file_facts, frame_facts, controller_facts, parameter_facts, argument_facts, program_facts, topic_facts,
-    gazebo_facts, bridge_facts, srdf_facts, moveit_facts, dependency_facts,
+    file_facts, frame_facts, controller_facts, spawner_facts, parameter_facts, argument_facts, program_facts,
+    topic_facts, gazebo_facts, bridge_facts, srdf_facts, moveit_facts, dependency_facts,
 )  # fmt: skip
 
 

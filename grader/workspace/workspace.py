@@ -25,7 +25,7 @@ from grader.xml.elements import readable
 from grader.xml.parsing import Element, XmlFault, XmlFile
 
 _SYSTEM = re.compile(r"<ros2_control\b")
-_MANAGER, _SPAWNERS = "controller_manager", ("spawner", "spawner.py")
+MANAGER, SPAWNERS = "controller_manager", ("spawner", "spawner.py")
 _FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
 _MAX_FILES = 60  # of one kind in a package
 _MAX_YAML = 512 * 1024  # bytes
@@ -193,7 +193,7 @@ class Workspace:
 
     def children_of(self, name: str) -> frozenset[str]:
         """Return the nodes that a node of another package makes in its process, and that read its parameters."""
-        return frozenset(known()["children"].get(name, ())) | (self.typed_sections if name == _MANAGER else frozenset())
+        return frozenset(known()["children"].get(name, ())) | (self.typed_sections if name == MANAGER else frozenset())
 
     @cached_property
     def controllers(self) -> frozenset[str]:
@@ -245,14 +245,14 @@ class Workspace:
         """The parameters that nodes and controllers are given, by their names without namespaces."""
         found: dict[str, list[NodeParameters]] = {}
         for package, launch in self.roots:
-            managers = [it for it in launch.nodes if self.name_of(it) == _MANAGER]
+            managers = [it for it in launch.nodes if self.name_of(it) == MANAGER]
             opened = partial(open_meant, package, absent_are_empty=True)
             for node in launch.nodes:
                 name, own = self.name_of(node), self.python_node(node)
-                if (name is not None and node.package != _MANAGER) or node in managers:
+                if (name is not None and node.package != MANAGER) or node in managers:
                     given = parameters_of(node, opened, name or "", is_python=own is not None or None)
                     found.setdefault(name or "", []).append(given)
-                for controller in (controllers_of(node) or ()) if node.executable in _SPAWNERS else ():
+                for controller in (controllers_of(node) or ()) if node.executable in SPAWNERS else ():
                     before = [it for manager in managers for it in manager.parameters or ()]
                     files = (*before, *self._simulated, *(controller.parameters or ()))
                     started = replace(controller, parameters=files)
@@ -271,16 +271,19 @@ class Workspace:
     @cached_property
     def controller_files(self) -> frozenset[str]:
         """The parameter files, by their paths in the submission, that Gazebo and spawners give controllers."""
-        spawned = (it for _, node in self.nodes if node.executable in _SPAWNERS for it in controllers_of(node) or ())
+        spawned = (it for _, node in self.nodes if node.executable in SPAWNERS for it in controllers_of(node) or ())
         given = (*self._simulated, *(it for controller in spawned for it in controller.parameters or ()))
         paths = (self.source_of(it.path) for it in given if it.path)
         return frozenset(path for path in paths if path is not None)
 
     @property
     def unknown_nodes(self) -> str:
-        """Why launch files may start more nodes; empty where they do not."""
+        """Why launch files may start more nodes or controllers; empty where they do not."""
         reasons = [it.message for _, launch in self.roots for it in launch.unknown]
-        return next(iter([*reasons, *(launch.unread for _, launch in self.roots if launch.unread)]), "")
+        reasons += [launch.unread for _, launch in self.roots if launch.unread]
+        if any(node.executable in SPAWNERS and controllers_of(node) is None for _, node in self.nodes):
+            reasons.append("the arguments of a spawner are not evaluated")
+        return next(iter(reasons), "")
 
     def wildcard_places(self, node: StartedNode) -> frozenset[Location]:
         """Return the places of parameters that a file gives to every node."""

@@ -430,7 +430,10 @@ def _sections(node: YamlNode, key: str, *, is_plain: bool) -> Iterator[tuple[str
     for name, value in node.value.items() if isinstance(node.value, dict) and key.count("/") < _MAX_DEPTH else ():
         if name == _KEY:
             values = _flat(value, "", 0)
-            yield key, {it: _of_file(own, is_plain=is_plain) for it, own in values if isinstance(own.value, str | list)}
+            yield (
+                key,
+                {it: value_in_file(own, is_plain=is_plain) for it, own in values if isinstance(own.value, str | list)},
+            )
         else:
             yield from _sections(value, f"{key}/{name.strip('/')}", is_plain=is_plain)
 
@@ -443,7 +446,8 @@ def _flat(node: YamlNode, name: str, depth: int) -> Iterator[tuple[str, YamlNode
         yield from _flat(value, f"{name}.{key}" if name else key, depth + 1)
 
 
-def _of_file(node: YamlNode, *, is_plain: bool) -> ParameterValue:
+def value_in_file(node: YamlNode, *, is_plain: bool = True) -> ParameterValue:
+    """Return the value that a parameter file has for a parameter; of a file that is not plain, launch replaces `$(`."""
     if not is_plain and _SUBSTITUTION in str(node.text):
         return ParameterValue(Unknown("substitutions in a parameter file are not evaluated", START), node.location)
     return ParameterValue(_value_of(node), node.location)
