@@ -81,6 +81,7 @@ class NodeParameter(NamedTuple):
     default: Value  # Unknown where it is computed, None where there is none
     location: Location
     is_declared: bool = True
+    is_plain: bool = True  # without a descriptor, which may allow values of other types
 
 
 class Timer(NamedTuple):
@@ -392,7 +393,8 @@ class _Module:
         else:
             is_declared = method == "declare_parameter"
             default = argument(1, "value") if is_declared else None
-            yield NodeParameter(_text(argument(0, "name")), _default(default), at, is_declared)
+            is_plain = argument(2, "descriptor") is None
+            yield NodeParameter(_text(argument(0, "name")), _default(default), at, is_declared, is_plain)
 
 
 def _text(value: Value) -> str | None:
@@ -414,7 +416,8 @@ def _declared(namespace: Value, parameters: Value, at: Location) -> Iterator[Nod
     for item in parameters if isinstance(parameters, list | tuple) else (parameters,):
         name, default = (*item, None)[:2] if isinstance(item, tuple) and item else (None, item)
         is_known = isinstance(name, str) and isinstance(namespace, str | None)
-        yield NodeParameter(f"{before}{name}" if is_known else None, _default(default), at)
+        is_plain = isinstance(item, tuple) and len(item) < 3
+        yield NodeParameter(f"{before}{name}" if is_known else None, _default(default), at, is_plain=is_plain)
 
 
 def _qos(value: Value) -> _Qos:

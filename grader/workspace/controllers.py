@@ -110,6 +110,11 @@ def _section_facts(workspace: Workspace, controller: Controller, sections: Mappi
             either = _of_sections(workspace, controller, sections)
             yield Mismatch("controllers", f"{message} with ros__parameters", controller.location, corrections=either)
         return
+    for key in [it for it in needed if it.endswith("s")]:
+        given = section.get(key)
+        if given is not None and given.text:
+            message = f"{controller.name}.{key} is given a string; the controller stops without a list: [{given.text}]"
+            yield Mismatch("controllers", message, given.location)
     for joint, names in _needed_in(section, needed):
         yield from _interface_facts(workspace, controller, joint, names)
 

@@ -48,9 +48,11 @@ def _used(workspace: Workspace, package: Package) -> Iterator[tuple[str, Locatio
             yield from ((node.package, node.location) for node in launch.nodes if not node.included_by)
             paths = ((passed.path.split("/"), passed.location) for passed in launch.passed)
             yield from ((parts[1], at) for parts, at in paths if parts[0] == "share" and len(parts) > 1)
-    for source in workspace.sources_of(package, (".xacro", ".urdf")):
-        yield from ((found[1] or found[2], source.at(found.start())) for found in _FIND.finditer(source.text))
     own = {it.name for it in workspace.packages}
+    for source in workspace.sources_of(package, (".xacro", ".urdf")):
+        named = ((found[1] or found[2], source.at(found.start())) for found in _FIND.finditer(source.text))
+        # A misspelt own package is a mistake of files.
+        yield from ((name, at) for name, at in named if near(name, own) is None or package.depends_on(name))
     modules = {part.removesuffix(".py") for path in package.tree.files for part in path.split("/")}
     for source in workspace.sources_of(package, (".py",)):
         for found in _IMPORT.finditer(source.text):

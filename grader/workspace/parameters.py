@@ -1,23 +1,27 @@
 """Parameters: whether parameter files have some for the node that gets them, and whether own nodes declare them."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from functools import partial
+from itertools import chain
+from typing import Any
 
 from grader.names import closest, near
 from grader.package.installed_files import open_meant
-from grader.package.launch.model import StartedNode
+from grader.package.launch.model import ParameterValue, StartedNode
 from grader.package.launch.parameters import parameters_of
 from grader.package.nodes import PythonNode
 from grader.package.package import Package
 from grader.package.yaml_nodes import YamlFault, YamlNode, first_alias
+from grader.source import Location
 from grader.workspace.bridges import bridge_files
 from grader.workspace.known import known
-from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use, corrections
+from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use, corrections, place_text
 from grader.workspace.workspace import Workspace
 from grader.workspace.yaml_values import PARAMETERS, is_misspelt_key, is_parameters, sections_in, values_in
 
+_TYPES = {bool: "a boolean", int: "an integer", float: "a double", str: "a string"}  # as ROS 2 calls them
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
 _INPUT = re.compile(r"(odom|imu|pose|twist)\d+_config")  # of robot_localization
 _SEPARATORS = re.compile(r"[:/]+")
@@ -41,6 +45,7 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
         own = workspace.python_node(node)
         if own is not None:
             yield from _declared(workspace, package, node, own)
+    yield from _without_time(workspace)
     for path in workspace.parameter_files:
         yield from _filters(workspace.yaml_files.get(path))
     for package, node in workspace.nodes:
@@ -142,6 +147,41 @@ def _declared(workspace: Workspace, package: Package, node: StartedNode, own: Py
     for name, value in found.values.items():
         if value.location not in wide and not name.startswith("qos_overrides."):
             yield Use("parameter", name, value.location, f"the node {workspace.name_of(node)!r}", owner)
+    yield from _types_given(own, found.values)
+
+
+def _types_given(own: PythonNode, values: Mapping[str, ParameterValue]) -> Iterator[Mismatch]:
+    """Yield the values of other types than a node declares."""
+    for it in [it for it in own.parameters if it.is_declared and it.is_plain]:
+        given = values.get(it.name or "")
+        if given is not None:
+            yield from _of_other_type(it.name or "", given, it.default, it.location, is_sure=not own.doubts)
+
+
+def _without_time(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield that a parameter file gives `use_sim_time`, which every node declares, no boolean."""
+    for found in chain.from_iterable(workspace.parameter_owners.values()):
+        if (given := found.values.get("use_sim_time")) is not None:
+            yield from _of_other_type("use_sim_time", given, default=True, at=None)
+
+
+def _of_other_type(
+    name: str, given: ParameterValue, default: Any, at: Location | None, *, is_sure: bool = True
+) -> Iterator[Mismatch]:
+    """Yield that a parameter file gives a parameter a value of another type than the node declares."""
+    declared, actual = _type_of(default), _type_of(given.value)
+    if declared and actual and declared != actual and given.location.path.endswith((".yaml", ".yml")):
+        there = f" ({place_text(at)})" if at is not None else ""
+        message = f"the parameter {name!r} is given {actual}; its node declares {declared}{there}, and stops"
+        yield Mismatch("parameters", message, given.location, at, is_sure)
+
+
+def _type_of(value: Any) -> str:
+    """Return the type that ROS 2 gives a value, in words; empty where it is not known."""
+    if isinstance(value, list | tuple):
+        kinds = {_type_of(it) for it in value}
+        return f"a list of {kinds.pop().partition(' ')[2]}s" if len(kinds) == 1 and kinds != {""} else ""
+    return _TYPES.get(type(value), "")
 
 
 def _filters(tree: YamlNode | YamlFault | None) -> Iterator[Fact]:

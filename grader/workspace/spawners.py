@@ -111,8 +111,9 @@ def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Ite
     names = {it.node_name for each in spawned for it in each or ()}
     files = {*workspace.parameter_files, *workspace.controller_files}
     own = [it for it in controllers if it.location.path in files]
-    if names - {it.name for it in controllers}:
-        return  # which may be misspelt
+    others = [it for it in nodes if it.package == MANAGER and not _is_manager(it) and not _is_spawner(it)]
+    if others or names - {it.name for it in controllers}:
+        return  # a name may be misspelt
     publishing = [it for it in own if (it.type.text or "").endswith("Broadcaster")]
     for kind in (publishing, [it for it in own if it not in publishing]):
         if kind and names.isdisjoint(it.name for it in kind):

@@ -80,6 +80,15 @@ WRONG: list[tuple[Family, str, list[Edit]]] = [
      [(_CONTROLLERS, "[left_wheel_joint]", "&wheels [left_wheel_joint]"), (_CONTROLLERS, "[right_wheel_joint]", "*wheels")]),
     ("parameters", "robot_description is not the text of the robot, without which robot_state_publisher stops",
      [(_ROBOT_LAUNCH, "ParameterValue(description, value_type=str)", "robot")]),
+    ("parameters", ("the parameter 'threshold' is given an integer; its node declares a double"
+     " (cart_nodes/cart_nodes/detector.py:10), and stops"), [("config/detector.yaml", "threshold: 0.5", "threshold: 1")]),
+    ("parameters", "the parameter 'use_sim_time' is given a string; its node declares a boolean, and stops",
+     [("config/detector.yaml", "threshold: 0.5", "threshold: 0.5\n    use_sim_time: 'true'")]),
+    ("controllers", "wheel_controller.left_wheel_names is given a string; the controller stops without a list: [left_wheel_joint]",
+     [(_CONTROLLERS, "[left_wheel_joint]", "left_wheel_joint")]),
+    ("files", "there is no package 'cart_descriptions'; did you mean 'cart_description'?",
+     [(_URDF, '<link name="base_link"/>', ('<link name="base_link"><visual><geometry><mesh'
+       ' filename="package://cart_descriptions/base.stl"/></geometry></visual></link>'))]),
     ("parameters", "wheel_controller: ros__parameters is inside of other ros__parameters",
      [(_CONTROLLERS, "\nwheel_controller:\n  ros__parameters:\n    left", "    wheel_controller:\n      ros__parameters:\n        left"),
       (_CONTROLLERS, "    right_wheel_names", "        right_wheel_names")]),
@@ -151,6 +160,9 @@ CORRECT: list[tuple[str, list[Edit]]] = [
         (_DETECTOR, 'super().__init__("detector")',
          'super().__init__("detector", automatically_declare_parameters_from_overrides=True)'),
         ("config/detector.yaml", "threshold", "level")]),
+    ("a parameter of any type", [
+        (_DETECTOR, 'self.declare_parameter("threshold", 0.5)', 'self.declare_parameter("threshold", 0.5, ANY)'),
+        ("config/detector.yaml", "threshold: 0.5", "threshold: 1")]),
     ("parameters of which some names are computed", [
         (_DETECTOR, 'self.declare_parameter("threshold", 0.5)', "self.declare_parameter(name_of(self), 0.5)")]),
     ("block style", [(_CONTROLLERS, "left_wheel_names: [left_wheel_joint]", "left_wheel_names:\n      - left_wheel_joint")]),
