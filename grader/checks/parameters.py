@@ -21,6 +21,7 @@ from grader.text import enumerated, quoted
 
 _Measure = Literal["radius", "length", "distance", "lower", "upper", "velocity", "effort"]
 _EXACT = 1e-6
+_DIGITS = 6  # after the point, as a measure has rounding errors
 
 
 def parameter_is(
@@ -57,6 +58,7 @@ def parameter_is(
             another value.
     """
     del package  # without one, there are no parameters
+    said = f"{node} gets"
     try:
         found = value_of(submission, node, parameter)
     except MissingElement:
@@ -66,7 +68,7 @@ def parameter_is(
         other = _written_otherwise(submission, parameter, meant, tolerance)
         if other is None:
             return passed(f"nothing gives {parameter} to {node}")
-        found = other
+        found, said = other, "a parameter file has"
     if isinstance(found.value, Unknown):
         cause = f"the parameter {parameter} of {node} cannot be determined statically"
         raise NotDecided(f"{cause}: {found.value.reason}", cause)
@@ -74,14 +76,15 @@ def parameter_is(
         value = measured(submission, measure, links or [])
     actual, wanted, fits = found.value, "", True
     if value is not None:
-        wanted, fits = f"should be {_text(value)}", _equal(actual, value, tolerance)
+        shown = round(value, _DIGITS) if isinstance(value, float) else value
+        wanted, fits = f"should be {_text(shown)}", _equal(actual, value, tolerance)
     if one_of is not None:
         wanted, fits = f"should be {enumerated([*map(_text, one_of)], word='or')}", _is_one(actual, one_of, tolerance)
     if has is not None:
         items = actual if isinstance(actual, list) else [actual]
         wanted = f"should have {enumerated([*map(_text, has)])}"
         fits = all(any(_equal(item, one, tolerance) for item in items) for one in has)
-    message = f"{node} gets {parameter} = {_text(actual)}"
+    message = f"{said} {parameter} = {_text(actual)}"
     if measure is not None:
         wanted += f", the {measure} of {enumerated([*map(quoted, links or [])])} in the robot"
     return passed(message) if fits else failed(f"{message}; it {wanted}", found.location)

@@ -85,7 +85,7 @@ def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Iterat
     try:
         value, at = value_of(submission, wanted["node"], name)
         if "measure" in wanted:
-            meant = round(measured(submission, wanted["measure"], wanted.get("links", [])), 9)
+            meant = round(measured(submission, wanted["measure"], wanted.get("links", [])), 6)
     except (MissingElement, NotDecided):
         return
     source, key = submission.source(at.path), re.escape(name.rpartition(".")[2])

@@ -15,6 +15,8 @@ from grader.workspace.names import Correction, Definition, Fact, Mismatch, Use, 
 from grader.workspace.workspace import MANAGER, SPAWNERS, Workspace
 from grader.workspace.yaml_values import PARAMETERS, is_misspelt_key, sections_in
 
+_MAX_KEYS = 2  # of joints; steering controllers have those of an older release as well
+
 
 class Controller(NamedTuple):
     """A controller that a parameter file defines for the controller manager."""
@@ -115,8 +117,14 @@ def _section_facts(workspace: Workspace, controller: Controller, sections: Mappi
         if given is not None and given.text:
             message = f"{controller.name}.{key} is given a string; the controller stops without a list: [{given.text}]"
             yield Mismatch("controllers", message, given.location)
+    claimed: dict[str, Location] = {}
     for joint, names in _needed_in(section, needed):
         yield from _interface_facts(workspace, controller, joint, names)
+        for name in [f"{joint.text}/{it}" for it in names] if len(needed) <= _MAX_KEYS else ():
+            before = claimed.setdefault(name, joint.location)
+            if before != joint.location:
+                message = f"{controller.name} claims the command interface {name} twice ({place_text(before)})"
+                yield Mismatch("controllers", message, joint.location, before)
 
 
 def _of_sections(

@@ -84,6 +84,8 @@ WRONG: list[tuple[Family, str, list[Edit]]] = [
      " (cart_nodes/cart_nodes/detector.py:10), and stops"), [("config/detector.yaml", "threshold: 0.5", "threshold: 1")]),
     ("parameters", "the parameter 'use_sim_time' is given a string; its node declares a boolean, and stops",
      [("config/detector.yaml", "threshold: 0.5", "threshold: 0.5\n    use_sim_time: 'true'")]),
+    ("controllers", ("wheel_controller claims the command interface left_wheel_joint/velocity twice"
+     " (cart_bringup/config/controllers.yaml:11)"), [(_CONTROLLERS, "[right_wheel_joint]", "[left_wheel_joint]")]),
     ("controllers", "wheel_controller.left_wheel_names is given a string; the controller stops without a list: [left_wheel_joint]",
      [(_CONTROLLERS, "[left_wheel_joint]", "left_wheel_joint")]),
     ("files", "there is no package 'cart_descriptions'; did you mean 'cart_description'?",
