@@ -208,7 +208,8 @@ def _required(workspace: Workspace, package: Package, node: StartedNode) -> Iter
             message = f"{node.executable} stops without the parameter {name}, which it does not get{there}"
             yield Mismatch("parameters", message, node.location, corrections=either)
         robot = found.values.get("robot_description")
-        if robot is not None and isinstance(robot.value, str) and not robot.value.lstrip().startswith("<"):
+        text = robot.value if robot is not None else ""
+        if robot is not None and isinstance(text, str) and text.strip() and not text.lstrip().startswith("<"):
             message = "robot_description is not the text of the robot, without which robot_state_publisher stops"
             yield Mismatch("parameters", message, robot.location)
 

@@ -87,14 +87,16 @@ def _without_type(
         return
     opened = partial(open_meant, package)
     given = parameters_of(managers[0], opened, workspace.name_of(managers[0]) or "", is_python=False)
-    spawners = [it for it in launch.nodes if _is_spawner(it) and it.when and not _is_typed(it.arguments or ())]
-    started = [it for spawner in spawners for it in controllers_of(spawner) or ()]
+    # In later releases, spawners hand on their own parameters.
+    spawners = [it for it in launch.nodes if _is_spawner(it) and it.when and it.parameters == ()]
+    plain = [it for it in spawners if not _is_typed(it.arguments or ())]
+    started = [it for spawner in plain for it in controllers_of(spawner) or ()]
     own = {it.node_name: parameters_of(it, opened, is_python=False) for it in started}
     typed = [name for name, it in own.items() if it.unknown or "type" in it.values or f"{name}.type" in given.values]
     files = [workspace.source_of(it.path) for it in managers[0].parameters or () if it.path]
     lacking = [it for it in controllers if it.name in {*own} - {*typed} and it.location.path not in files]
     if lacking and not given.unknown:
-        names = enumerated([quoted(it.name) for it in lacking], _MAX_NAMED)
+        names = enumerated(dict.fromkeys(quoted(it.name) for it in lacking), _MAX_NAMED)
         place = place_text(lacking[0].location)
         text = f"the controller manager is not given the parameters with the type of {names} ({place})"
         yield Mismatch("controllers", text, managers[0].location, lacking[0].location)
@@ -117,5 +119,5 @@ def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Ite
     publishing = [it for it in own if (it.type.text or "").endswith("Broadcaster")]
     for kind in (publishing, [it for it in own if it not in publishing]):
         if kind and names.isdisjoint(it.name for it in kind):
-            text = f"no spawner starts {enumerated([quoted(it.name) for it in kind], _MAX_NAMED, 'or')}"
+            text = f"no spawner starts {enumerated(dict.fromkeys(quoted(it.name) for it in kind), _MAX_NAMED, 'or')}"
             yield Mismatch("controllers", text, kind[0].location)
