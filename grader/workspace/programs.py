@@ -1,15 +1,20 @@
 """Programs and nodes: what launch files start, entry points, and the nodes that a lifecycle manager looks after."""
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 
+from grader.errors import InputError
 from grader.names import closest, near
 from grader.package.entry_points import entry_fault, entry_points
+from grader.package.launch.model import StartedNode
 from grader.package.launch.parameters import parameters_of
 from grader.package.package import CMAKE, SETUP, Package
 from grader.source import Location
 from grader.workspace.known import known
 from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use, corrections
 from grader.workspace.workspace import Workspace
+
+_MAX_FIRST_LINE = 100  # bytes
 
 
 def program_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -34,12 +39,28 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
             start = Location(owner.path(CMAKE if owner.is_cmake else SETUP), 1, 1)
             either = corrections(node.executable, node.location, meant, start)
             yield Mismatch("programs", reason, node.location, corrections=either)
+        elif owner is not None:
+            yield from _not_executed(owner, node)
         names = known()["programs"].get(node.package, [node.executable]) if owner is None else [node.executable]
         if node.executable not in names:
             reason, meant = _unknown_program(node.package, node.executable, names)
             either = corrections(node.executable, node.location, meant)
             yield Mismatch("programs", reason, node.location, corrections=either)
     yield from _lifecycle(workspace)
+
+
+def _not_executed(package: Package, node: StartedNode) -> Iterator[Mismatch]:
+    """Yield that Linux cannot execute a script: its first line has to name the interpreter, and end without CR."""
+    copies = package.installation.copies if package.installation is not None else ()
+    started = [it.source for it in copies if it.target == f"lib/{package.name}/{node.executable}"]
+    for source in [it for it in started if it.endswith(".py")]:
+        with suppress(InputError):
+            line, _, _ = package.tree.files[source].read(_MAX_FIRST_LINE, first=True).partition(b"\n")
+            if line.startswith(b"#!") and not line.endswith(b"\r"):
+                continue
+            wrong = "ends as on Windows, with CR LF" if line.startswith(b"#!") else "is not #!/usr/bin/env python3"
+            message = f"Linux cannot execute {node.executable}: its first line {wrong}"
+            yield Mismatch("programs", message, Location(package.path(source), 1, 1), node.location)
 
 
 def _why_no_program(package: Package, name: str) -> tuple[str, str | None]:

@@ -58,7 +58,7 @@ def generate_launch_description():
         Node(package="scout", executable="drive.py", parameters=[{"use_sim_time": True}]),
     ])
 """
-_DRIVE = """\
+_DRIVE = """#!/usr/bin/env python3
 import rclpy
 from geometry_msgs.msg import Twist
 from rclpy.node import Node
@@ -163,6 +163,10 @@ def problems(*edits: tuple[str, str, str]) -> list[str]:
          " geometry_msgs.msg.Twist (scout/bridge.yaml:5)")),
         ([("arena.sdf", "  </world>", "    <include><uri>model://shelv</uri></include>\n  </world>")],
          "there is no model 'shelv'; did you mean 'shelf'?"),
+        ([("drive.py", "#!/usr/bin/env python3\n", "")],
+         "Linux cannot execute drive.py: its first line is not #!/usr/bin/env python3"),
+        ([("drive.py", "python3\n", "python3\r\n")],
+         "Linux cannot execute drive.py: its first line ends as on Windows, with CR LF"),
         ([("CMakeLists.txt", "install(PROGRAMS drive.py", "install(FILES drive.py")],
          "a build installs 'drive.py' without the right to execute it: write install(PROGRAMS ...)"),
     ],
