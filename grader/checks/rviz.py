@@ -259,10 +259,20 @@ def _rviz_path(package: Package, name: str, opened: "Launch | None") -> str:
 
 
 def _read_rviz(package: Package, name: str, launch: str) -> "RvizFile":
-    path = _rviz_path(package, name, _read_launch(package, launch))
+    opened = _read_launch(package, launch)
+    package = _owner_of_opened(package, opened) if opened is not None else package
+    path = _rviz_path(package, name, opened)
     rviz = package.rviz(path)
     if rviz.unread:
         raise NotDecided(rviz.unread, "the RViz file cannot be read")
     if rviz.fault is not None:
         raise MissingElement("RViz file", path, message=rviz.fault.message, location=rviz.fault.location)
     return rviz
+
+
+def _owner_of_opened(package: Package, opened: "Launch") -> Package:
+    """Return the package of the submission whose RViz file a launch file opens; without one, the package itself."""
+    from grader.package.installed_files import share_parts  # late: few rubrics ask for it
+
+    owners = [package.find(share_parts(it.path)[0]) for it in opened.named("rviz") if it.path is not None]
+    return next((it for it in owners if it is not None and it.rviz_opened(opened) is not None), package)
