@@ -167,7 +167,8 @@ def message(found: FoundHint, level: HintLevel, submission: Submission, earlier:
     elif found.alternative is not None:
         each = [found._replace(proposal=it, alternative=None) for it in (found.proposal, found.alternative)]
         one, other = (message(it, level, submission, ()).removesuffix(".") for it in each)
-        text = f"{one}, or {other[0].lower()}{other[1:]}: both work, so look which one is meant"
+        both = f"{one}, or {other[0].lower()}{other[1:]}: both work, so look which one is meant"
+        text = both if one != other else one
     elif level == "edit":
         text = _changes(found.edits, submission)
     elif level == "cause":

@@ -151,6 +151,10 @@ def test_the_calls_of_a_macro_that_an_edit_is_in() -> None:
          ['name="orign"', 'params="*origin"']),
         ('<xacro:macro name="w" params="mas:=1"><a b="${mass}"/></xacro:macro><xacro:w/>',
          ['b="${mas}"', 'params="mass:=1"']),
+        # what a call lacks: the value of another call, or the one of the other side
+        ('<xacro:macro name="w" params="y p"/><xacro:w y="${r / 2}" p="0 -.1 ${r + y}"/><xacro:w/>',
+         [' y="${r / 2}" p="0 -.1 ${r + y}"', ' y="${-r / 2}" p="0 -.1 ${r + y}"', ' y="${r / 2}" p="0 .1 ${r + y}"',
+          ' y="${r / 2}" p="0 -.1 ${-(r + y)}"']),
         ('<xacro:include filename="parts/wheels.xacro"/>', ['filename="parts/wheel.xacro"']),
         ('<a b="${nothing_like_it}"/>', []),
     ],
