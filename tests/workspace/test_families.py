@@ -22,6 +22,9 @@ WRONG: list[tuple[Family, str, list[Edit]]] = [
      [("worlds/hall.yaml", "hall.pgm", "hall.png")]),
     ("files", "there is no package 'cart_bringups'; did you mean 'cart_bringup'?",
      [("navigation.yaml", "controller_plugins", "tree: $(find-pkg-share cart_bringups)/tree.xml\n    controller_plugins")]),
+    ("files", ("a build installs no share/cart_bringup/worlds/halls.yaml: the package has no file 'halls.yaml';"
+     " did you mean 'hall.yaml'?"), [("navigation.yaml", "controller_plugins",
+     "maps: [{map: $(find-pkg-share cart_bringup)/worlds/halls.yaml}]\n    controller_plugins")]),
     ("frames", ("wheel_controller.left_wheel_names: there is no joint 'wheel_left_joint'; did you mean 'left_wheel_joint'"
      " (cart_description/urdf/wheel.xacro:5)?"), [(_CONTROLLERS, "[left_wheel_joint]", "[wheel_left_joint]")]),
     ("frames", ("static_transform_publisher: there is no frame 'base'; did you mean 'base_link'"
@@ -187,6 +190,10 @@ CORRECT: list[tuple[str, list[Edit]]] = [
                              '<link name="base_link"/><!-- $(find cart_description)/urdf/old.xacro -->')]),
     ("a comment in YAML", [("navigation.yaml", "controller_plugins",
                             "# $(find-pkg-share cart_bringup)/worlds/old.yaml\n    controller_plugins")]),
+    ("paths in the flow style of YAML, and in a substitution", [("navigation.yaml", "controller_plugins",
+        """maps: [{map: $(find-pkg-share cart_bringup)/worlds/hall.yaml, scale: 1}, package://cart_bringup/worlds/hall.yaml]
+    text: $(file-content $(find-pkg-share cart_bringup)/worlds/hall.yaml)
+    controller_plugins""")]),
     ("a default that the include replaces", [
         (_LAUNCH, '{"sim_time": "true"}', '{"sim_time": "true", "gui": "false"}'),
         (_ROBOT_LAUNCH, 'DeclareLaunchArgument("sim_time"', """DeclareLaunchArgument("gui", default_value="true"),
