@@ -138,7 +138,7 @@ def _first_at(found: FoundHint, where: Location | None) -> FoundHint:
 
 
 def _hint(found: FoundHint, text: str, shown_by: str, result: Result, *, keeps_edits: bool) -> Hint:
-    places = [Location(edit.path, edit.line, edit.column) for edit in found.proposal.edits]
+    places = [Location(edit.path, edit.line, edit.column) for edit in found.edits]  # of two alternatives, none
     at = next(iter(places), result.outcome.location or Location("", 1, 1))
     shown = (found.edits, found.proposal.cause) if keeps_edits else ((), "")
     return Hint(text, at, found.gains, *shown, shown_by, found.certainty)
