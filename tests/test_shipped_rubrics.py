@@ -7,7 +7,9 @@ from decimal import Decimal
 import pytest
 
 from grader.commands.rubrics import DEFAULT_RUBRIC
+from grader.grading.grade import grade
 from grader.grading.rubric import Rubric
+from grader.submission.opening import read_submission
 from tests.samples import ROOT, RUBRICS, SAMPLES
 from tests.test_architecture import MODULES
 
@@ -76,3 +78,29 @@ def test_a_mistake_costs_what_it_is_worth() -> None:
     reports = {name: SAMPLES[name].grade() for name in SAMPLES if "/" in name and "/equivalent-" not in name}
     costs = {name: (report.max_score - report.score) / report.max_score for name, report in reports.items()}
     assert {name: cost for name, cost in costs.items() if not 0 < cost <= Decimal("0.15")} == {}
+
+
+Edit = tuple[str, str, str]
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "costs"),
+    [
+        (("joint_2", "0 0 0.1", "0 0 0.05"), ("joint_3", "0 1 0", "0 -1 0"), (4, 8, 12)),
+        (("joint_2", "0 1 0", "0 -1 0"), ("tool_joint", "0.06", "0.6"), (11, 3, 14)),
+        (("joint_1", '"0 0 1"', '"0 0 -1"'), ("joint_4", "0.25", "0.2"), (8, 3, 11)),
+    ],
+)  # fmt: skip
+def test_two_mistakes_in_the_arm_cost_their_sum(one: Edit, other: Edit, costs: tuple[int, int, int]) -> None:
+    """A joint that turns the wrong way excuses no link that is misplaced, and costs nothing in poses that do not turn it."""
+    assert tuple(int(100 - _score_of_arm(edits)) for edits in ([one], [other], [one, other])) == costs
+
+
+def _score_of_arm(edits: list[Edit]) -> Decimal:
+    """Return the score of the arm with edits, each of the first text in a joint."""
+    text = (ROOT / "rubrics/arm/arm.urdf").read_text(encoding="utf-8")
+    for joint, old, new in edits:
+        before, name, after = text.partition(f'<joint name="{joint}"')
+        assert old in after
+        text = before + name + after.replace(old, new, 1)
+    return grade(RUBRICS["arm"], read_submission(text.encode(), identity="student", path="arm.urdf")).score

@@ -110,7 +110,10 @@ def _of_reference(situation: Situation, lost: _Lost) -> Iterator[Iterable[Propos
         yield _proposals(situation, situation.exchanges)
         yield _proposals(situation, in_another_unit(difference))
         yield _proposals(situation, of_siblings(difference, links or ()))
-        yield _proposals(situation, difference.pieces, links)
+        pieces = difference.pieces
+        if links is not None:  # those of the links that criteria name come first: there may be more than can be tried
+            pieces = sorted(pieces, key=lambda it: links.index(it.link) if it.link in links else len(links))
+        yield _proposals(situation, pieces, links)
 
 
 def _of_package(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
@@ -165,9 +168,9 @@ def _proposals(
         if situation.has_reversed and piece.is_pose:
             continue
         if links is None or piece.link in links or not situation.is_known(piece.link):
-            shared = situation.draft.shared(piece.sets)
             for way, edits in enumerate(situation.draft.ways(piece.sets)):
                 if edits or piece.edits:
+                    shared = situation.draft.shared(piece.sets, edits)
                     yield Proposal((*edits, *piece.edits), piece.cause, piece.link, piece.rank, way, shared)
 
 

@@ -138,7 +138,7 @@ def _first_at(found: FoundHint, where: Location | None) -> FoundHint:
 
 
 def _hint(found: FoundHint, text: str, shown_by: str, result: Result, *, keeps_edits: bool) -> Hint:
-    places = [Location(edit.path, edit.line, edit.column) for edit in found.proposal.edits]
+    places = [Location(edit.path, edit.line, edit.column) for edit in found.edits]  # of two alternatives, none
     at = next(iter(places), result.outcome.location or Location("", 1, 1))
     shown = (found.edits, found.proposal.cause) if keeps_edits else ((), "")
     return Hint(text, at, found.gains, *shown, shown_by, found.certainty)
@@ -167,7 +167,8 @@ def message(found: FoundHint, level: HintLevel, submission: Submission, earlier:
     elif found.alternative is not None:
         each = [found._replace(proposal=it, alternative=None) for it in (found.proposal, found.alternative)]
         one, other = (message(it, level, submission, ()).removesuffix(".") for it in each)
-        text = f"{one}, or {other[0].lower()}{other[1:]}: both work, so look which one is meant"
+        both = f"{one}, or {other[0].lower()}{other[1:]}: both work, so look which one is meant"
+        text = both if one != other else one
     elif level == "edit":
         text = _changes(found.edits, submission)
     elif level == "cause":

@@ -21,6 +21,10 @@ _MAX_WRONG = 4  # names of which all combinations are tried
 _TEXTS = (".py", ".xml", ".yaml", ".yml", ".xacro", ".urdf", ".sdf", ".txt", ".cfg")
 _MAX_KEY = 400  # characters from a key to its value
 _SEPARATED = re.compile(r".*[./:]")
+_MAX_REMAPPINGS = 8  # of a file
+_REMAPPINGS = re.compile(r"\bremappings\s*=\s*\[[^]]*\]")
+_PAIR = re.compile(r"""\(\s*(["'][^"'\n]+["'])\s*,\s*(["'][^"'\n]+["'])\s*,?\s*\)""")
+_FROM_TO = re.compile(r"""\bfrom\s*[=:]\s*(["']?[\w~/]+["']?)\s*,?\s*\bto\s*[=:]\s*(["']?[\w~/]+["']?)(?![^\s},>/])""")
 _WITH_ALL = (f"/{CMAKE}", f"/{MANIFEST}")  # files in which a name stands several times for one thing
 
 
@@ -42,6 +46,8 @@ def name_proposals(submission: Submission, family: Family, reference: Package | 
     spelling = _Spelling(own, texts, pattern)
     ways = [[*_ways(submission, it.corrections, spelling)] for it in wrong_names(submission, family)]
     yield from chain.from_iterable(ways)
+    if family == "topics":
+        yield from chain.from_iterable(map(_exchanged_remappings, own))
     best = [it for one in ways for it in one if it.rank == 0]
     for count in range(2, len(ways) + 1) if len(ways) <= _MAX_WRONG else [len(ways)]:
         for chosen in combinations(best, count):
@@ -77,6 +83,15 @@ def _ways(submission: Submission, either: Sequence[Correction], spelling: _Spell
         is_only = len(made) == 1
         if is_only or preference > 0 or (preference == 0 and all(made)):
             yield Proposal(edits, f"the name `{edits[0].old}`", rank=int(preference == 0 and not is_only))
+
+
+def _exchanged_remappings(source: Source) -> Iterator[Proposal]:
+    """Yield the edits that exchange both names of a remapping in a launch file: it may be written backward."""
+    lists = [it.span() for it in _REMAPPINGS.finditer(source.text)]
+    pairs = [it for span in lists for it in _PAIR.finditer(source.text, *span)]
+    for found in [*pairs, *_FROM_TO.finditer(source.text)][:_MAX_REMAPPINGS]:
+        edits = source.edit(*found.span(1), found[2]), source.edit(*found.span(2), found[1])
+        yield Proposal(edits, "the order of names in a remapping")
 
 
 def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Iterator[Proposal]:

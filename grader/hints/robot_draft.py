@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 _ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
-_MAX_WAYS = 3
+_MAX_WAYS = 4
 _COMMENT = re.compile(r"[ \t]*<!--.*?-->", re.DOTALL)
 
 
@@ -177,12 +177,13 @@ class Draft:
         same = [self._elements[it] for it in self._expanded.siblings(self._tags[element])]
         return {it: one.value for it in same for one in sets if one.attribute == attribute and one.element is it}
 
-    def shared(self, sets: Iterable[Set]) -> frozenset[str]:
-        """Return the links whose elements come from the same text of xacro as those that are set."""
+    def shared(self, sets: Iterable[Set], edits: Edits) -> frozenset[str]:
+        """Return the links whose elements come from the same text of xacro as those that edits set."""
         if self._expanded is None:
             return frozenset()
         tags = [self._tags[one.element] for one in sets if one.element is not None]
-        return frozenset(self.link_of(self._elements[it]) for tag in tags for it in self._expanded.siblings(tag))
+        every = (it for tag in tags for it in self._expanded.changed_with(tag, edits))
+        return frozenset(self.link_of(self._elements[it]) for it in every)
 
     def ways(self, sets: Collection[Set]) -> list[Edits]:
         """Return the ways to set values; attributes and elements that are missing are added."""
@@ -202,7 +203,7 @@ class Draft:
                 is_numeric = bool(PARTS.get(one.attribute))
                 value = merged(element.get(one.attribute) or "", one.value) if is_numeric else one.value
                 ways = self._ways_of(element, one.attribute, value, others)
-                found = [(*before, *more) for before in found for more in ways]
+                found = [(*before, *more) for before in found for more in ways][:_MAX_WAYS]
             else:
                 attributes.setdefault(element, {})[one.attribute] = one.value
         added = [self.add_attributes(element, values) for element, values in attributes.items()]

@@ -320,7 +320,7 @@ class HintSearch:
         equal = self._equal_to(best, proof.together, wanted, tried)
         is_of_robot = all(edit.path.endswith((".urdf", ".xacro")) for edit in proof.proposal.edits)
         if equal is not None and (is_of_robot or _is_reverse(proof.proposal, equal.proposal)):
-            name = max((it for it in self._criteria if it in wanted), key=lambda name: self._criteria[name].points)
+            name = max((it for it in self._criteria if it in wanted), key=self._weight)
             self.missing[name] = FoundHint(proof.proposal, {}, "one of several", alternative=equal.proposal)
             self._told |= wanted
             return False
@@ -329,6 +329,11 @@ class HintSearch:
         self.results = proof.after
         self._refused = set()
         return True
+
+    def _weight(self, name: str) -> tuple[bool, bool, Decimal]:
+        """Return how well a criterion shows a hint: one that is not skipped, that the URDF loads, the costliest."""
+        criterion = self._criteria[name]
+        return self.results[name].outcome.status == "failed", criterion.check.subject == "urdf", criterion.points
 
     def _proof_of(self, proposal: Proposal, wanted: frozenset[str]) -> _Proof | None:
         """Return what edits gain alone, or else after the edits before them; None if they lose anything."""
@@ -365,14 +370,21 @@ class HintSearch:
     def _equal_to(
         self, best: _Tried, gains: Mapping[str, Decimal], wanted: frozenset[str], tried: Iterable[_Tried]
     ) -> _Tried | None:
-        """Return another edit that gains as much, at other places, and loses nothing either."""
+        """Return another edit that gains as much, at other places, and loses nothing either.
+
+        Another text that may be missing at the same place is one, too: a value of another call of a macro, or negated.
+        """
         lost, known = set(self._lost), {best.proposal.edits, *self._refused}
         added = {edit.new.strip(_AROUND) for edit in best.proposal.edits if not edit.old}  # also in the next line
         others = (it for it in tried if it.passes >= wanted and it.proposal.edits not in known)
         others = (it for it in others if not added.issuperset(edit.new.strip(_AROUND) for edit in it.proposal.edits))
-        equal = (it for it in others if self._order(it, lost) == self._order(best, lost))
-        apart = (it for it in equal if it.proposal.places.isdisjoint(best.proposal.places))
-        for one in apart:
+        order, places = self._order(best, lost), best.proposal.places
+        is_added = all(not edit.old and edit.path.endswith(ROBOT_ENDINGS) for edit in best.proposal.edits)
+        for one in others:
+            is_apart = self._order(one, lost) == order and one.proposal.places.isdisjoint(places)
+            is_other_text = self._order(one, lost)[:-1] == order[:-1] and one.proposal.places == places and is_added
+            if not is_apart and not is_other_text:
+                continue
             others_gains, _ = self._gains(self.edits, one.proposal.edits, self.results)
             if gains.keys() <= others_gains.keys():
                 return one

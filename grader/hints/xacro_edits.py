@@ -1,8 +1,9 @@
 """The edits of the texts that the elements of an expanded xacro file come from.
 
 A value is changed where it is defined, if a name alone gives it: in a property, in the argument of a macro call, in the
-default of an argument. Else it is replaced where it is used, or given in a macro call that lacks it. Nothing inside an
-expression is changed, and nothing that a YAML file gives. What xacro refuses is corrected by near names, by the prefix
+default of an argument. A number from which it is computed gets the value with which the result is the wanted one; an
+expression that defines it is negated or replaced. Else it is replaced where it is used, or given in a macro call that
+lacks it. Nothing that a YAML file gives is changed. What xacro refuses is corrected by near names, by the prefix
 xacro, and by arguments that other calls of a macro give.
 """
 
@@ -10,13 +11,16 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import islice
+from math import isclose
 from typing import NamedTuple
 
 from grader import markup
 from grader.hints.edits import Proposal, merged, with_attribute
+from grader.hints.robot_numbers import format_number
 from grader.names import near
+from grader.python.values import EvaluationSignal
 from grader.source import Edit, Edits, Location, Source
-from grader.xacro.corrections import Refusal, respellings, tags_of, values_of_other_calls
+from grader.xacro.corrections import Refusal, negated, respellings, tags_of, values_of_other_calls
 from grader.xacro.expansion import ExpandedSource
 from grader.xacro.scopes import Definition, Key, ScopePlace, XacroFails, XacroScope
 from grader.xacro.texts import Texts
@@ -39,6 +43,8 @@ _ALONE = re.compile(
     re.VERBOSE,
 )
 _LOADED = re.compile(r"\$\{\s*(?:xacro\.)?load_yaml\(")
+_NO_CALL = ("value", "default", "params")  # where a name is defined that no call of a macro gives
+_MAX_ORIGINS = 3  # of a text
 _MAX_DEPTH = 4  # definitions that lead to one another
 _MAX_DEFINITIONS = 12
 
@@ -152,8 +158,62 @@ class _Rewriter:
         by_place = {change.written[:3]: change for change in found}
         is_one = all(by_place[change.written[:3]].new == change.new for change in found)
         ways = [*self._literal(text, changed), *self._in_calls(text, changed)]
+        computed = self._computed(parts)
+        # Where it is used, it would change for other calls of a macro, too.
+        ways = [*computed, *ways] if len(changed) < len(uses) else [*ways, *computed]
         edits = _edits_of(by_place.values()) if has_definition and is_one else None
-        return [edits, *ways] if edits else ways
+        return [*dict.fromkeys([edits, *ways] if edits else ways)]
+
+    def _computed(self, parts: Iterable[tuple[_Use, _Written, str, str]]) -> list[Edits]:
+        """Return the edits of what parts of a text are computed from: of one definition for each part."""
+        each = [islice(self._origins(part, use.scope, old, new), _MAX_ORIGINS) for use, part, old, new in parts]
+        return [edits for changes in zip(*each, strict=False) if (edits := _edits_of(changes))]
+
+    def _origins(
+        self, text: _Written, scope: XacroScope, old: str, new: str, depth: int = _MAX_DEPTH
+    ) -> Iterator[_TextChange]:
+        """Yield the changes of one definition with which a text has another value: numbers, then expressions."""
+        defined = self._defined(text, scope, old, new)
+        if defined is None:
+            names = [name for name in _NAME.findall(text.text) if depth and self._of_name(name, scope) is not None]
+            for name in dict.fromkeys(names):
+                for was, value in self._solved(text, name, scope, old, new):
+                    alone = text._replace(text=f"${{{name}}}")
+                    found = self._origins(alone, scope, was, value, depth - 1)
+                    keeps_sign = was.startswith("-") == value.startswith("-") or was in ("1.0", "-1.0")
+                    yield from (change for change in found if _may_change(change.written, keeps_sign=keeps_sign))
+            return
+        own, inside, was, value = defined
+        parts = _parts(own, _Use(inside, was, value))
+        if _LOADED.match(own.text):
+            return
+        if not self.definitions(own):
+            yield self._rewritten(own, value)
+        elif len(parts) == 1 and depth:
+            part, before, after = parts[0]
+            yield from self._origins(part, inside, before, after, depth - 1)
+            if _is_equal(before, format_number(-float(after)) if _NUMBER.fullmatch(after) else ""):
+                yield _TextChange(part, negated(part.text))
+            yield _TextChange(part, after)
+
+    def _solved(self, text: _Written, name: str, scope: XacroScope, old: str, new: str) -> Iterator[tuple[str, str]]:
+        """Yield the number that a name stands for, and the one with which a linear expression has another value."""
+        inside = XacroScope(scope)
+
+        def value_with(number: float) -> float:
+            inside.bind(name, number)
+            return float(self._texts.written(self._texts.evaluate(text.text, inside)))
+
+        try:
+            at = float(self._texts.written(self._texts.find(name, scope)))
+            first, second = value_with(at), value_with(2 * at or 1.0)
+            step = (2 * at or 1.0) - at
+            found = at + (float(new) - first) * step / (second - first)
+            is_solved = _is_equal(old, repr(first)) and isclose(value_with(found), float(new), abs_tol=1e-9)
+        except (EvaluationSignal, ArithmeticError, ValueError, TypeError):
+            return
+        if is_solved:
+            yield repr(at), format_number(found)
 
     def _in_calls(self, text: _Written, changed: Sequence[_Use]) -> list[Edits]:
         """Return the edits that give a parameter, of which a text is the default, in the calls of its macro."""
@@ -185,25 +245,37 @@ class _Rewriter:
         self, text: _Written, scope: XacroScope, old: str, new: str, depth: int = _MAX_DEPTH
     ) -> list[_TextChange]:
         """Return the changes of what defines the one name in a text, with which the text has another value."""
+        defined = self._defined(text, scope, old, new) if depth else None
+        if defined is None:
+            return []
+        own, inside, was, inner = defined
+        if self.definitions(own):
+            parts = _parts(own, _Use(inside, was, inner))
+            changes = [self._definitions(part, inside, a, b, depth - 1) for part, a, b in parts]
+            return [change for several in changes for change in several] if all(changes) else []
+        return [self._rewritten(own, inner)]
+
+    def _defined(
+        self, text: _Written, scope: XacroScope, old: str, new: str
+    ) -> tuple[_Written, XacroScope, str, str] | None:
+        """Return the definition of the one name that gives a text, its scope, and what it is and should be."""
         found = _ALONE.fullmatch(text.text)
         before, after = (found["before"], found["after"]) if found else ("", "")
         is_inside = new.startswith(before) and new.endswith(after) and len(new) > len(before) + len(after)
-        if found is None or not depth or not is_inside:
-            return []
+        if found is None or not is_inside:
+            return None
         inner, was = (it[len(before) : len(it) - len(after)] for it in (new, old))
         if found["sign"]:
             inner, was = (it[1:] if it.startswith("-") else f"-{it}" for it in (inner, was))
         name = found["argument"]
         definition = self._texts.defaults.get(name) if name else self._of_name(found["name"], scope)
         own = _definition_text(definition) if definition is not None else None
-        if definition is None or own is None:
-            return []
-        if self.definitions(own):
-            parts = _parts(own, _Use(definition.scope, was, inner))
-            changes = [self._definitions(part, definition.scope, a, b, depth - 1) for part, a, b in parts]
-            return [change for several in changes for change in several] if all(changes) else []
+        return (own, definition.scope, was, inner) if definition is not None and own is not None else None
+
+    def _rewritten(self, own: _Written, value: str) -> _TextChange:
+        """Return the change of a definition to a value, which stays in quotes."""
         is_quoted = own.text[:1] == "'" == own.text[-1:]
-        return [_TextChange(own, f"'{inner}'" if is_quoted else merged(own.text, inner))]
+        return _TextChange(own, f"'{value}'" if is_quoted else merged(own.text, value))
 
     def _is_loaded(self, text: _Written) -> bool:
         """Return whether a YAML file gives a text."""
@@ -240,6 +312,12 @@ class _Rewriter:
         """Return the texts that define numbers from which an attribute is computed."""
         text = _find_text(place, attribute, scope)
         return [it for it in self.definitions(text) if _NUMBER.fullmatch(it.text)] if text is not None else []
+
+
+def _may_change(text: _Written, *, keeps_sign: bool) -> bool:
+    """Return whether a definition is an argument in a call, or a number that keeps its sign, as a length does."""
+    is_argument = text.key is not None and text.key[2] not in _NO_CALL
+    return is_argument or (keeps_sign and bool(_NUMBER.fullmatch(text.text)))
 
 
 def _parts(text: _Written, use: _Use) -> list[tuple[_Written, str, str]]:
@@ -318,6 +396,18 @@ class ExpandedEdits:
         """Return the indices of the expanded elements that come from the same place of the source."""
         place = self._source.nodes[tag].place
         return self._by_place[place.source.path, place.tag]
+
+    def changed_with(self, tag: int, edits: Edits) -> list[int]:
+        """Return those siblings that edits of an element change, too: of an argument of a call, those of this call."""
+        found = self.siblings(tag)
+        call = self._outer_call(tag)
+        if call is not None and all(call.at(it.old.partition("=")[0])[:3] == it[:3] for it in edits):
+            return [it for it in found if self._outer_call(it) == call]
+        return found
+
+    def _outer_call(self, tag: int) -> ScopePlace | None:
+        calls = self._source.nodes[tag].place.calls
+        return calls[0][1] if calls else None
 
     @cached_property
     def _by_place(self) -> dict[tuple[str, int], list[int]]:

@@ -398,8 +398,7 @@ def next_command(report: Report) -> str:
 
 
 def _explain_command(name: str, report: Report) -> str:
-    """Return the command that explains a criterion. It shows no part of the rubric's path above the current folder."""
+    """Return the command that explains a criterion, with the path of the rubric as it was given."""
     if report.rubric.is_copy_of_shipped:
         return f"grader explain {name}"
-    path = report.rubric.path
-    return f"grader explain {name} --rubric {shell_quoted(path.name if path.is_absolute() else path)}"
+    return f"grader explain {name} --rubric {shell_quoted(report.rubric.path)}"

@@ -266,7 +266,7 @@ def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iter
 def _place_to_change(result: Result) -> Location | None:
     """Return the place of a failure, or of its hint where that is in another line."""
     at, hint = result.outcome.location, result.hint
-    if hint is None or not hint.gains or (at is not None and (at.path, at.line) == (hint.at.path, hint.at.line)):
+    if hint is None or not hint.at.path or (at is not None and (at.path, at.line) == (hint.at.path, hint.at.line)):
         return at
     return hint.at
 

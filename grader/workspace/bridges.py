@@ -37,6 +37,7 @@ class _BridgeRow(NamedTuple):
     location: Location
     ros_type_location: Location
     gz_type_location: Location
+    direction_location: Location
     is_used: bool  # whether a launch file names the file of the row
 
     @property
@@ -61,7 +62,7 @@ def bridge_rows(workspace: Workspace) -> Iterator[_BridgeRow]:
             found = _ARGUMENT.fullmatch(word or "")
             if found is not None:
                 name, types, at = found["topic"].strip("/"), _types_of(found["ros"], found["gz"]), node.location
-                yield _BridgeRow(name, name, *types, _DIRECTIONS[found["direction"]], at, at, at, is_used=True)
+                yield _BridgeRow(name, name, *types, _DIRECTIONS[found["direction"]], at, at, at, at, is_used=True)
 
 
 def _types_of(ros: str, gz: str) -> tuple[str, str]:
@@ -78,7 +79,8 @@ def _row_in_yaml(row: YamlNode, *, is_used: bool) -> Iterator[_BridgeRow]:
     way = _BOTH if direction is None else direction.text or _BOTH
     names = ros.text.strip("/"), gz.text.strip("/")
     types = _types_of(ros_type.text or "", gz_type.text or "")
-    yield _BridgeRow(*names, *types, way, gz.location, ros_type.location, gz_type.location, is_used)
+    places = gz.location, ros_type.location, gz_type.location, (direction or gz).location
+    yield _BridgeRow(*names, *types, way, *places, is_used)
 
 
 def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -137,7 +139,14 @@ def _conversions(row: _BridgeRow, of_gazebo: set[str]) -> Iterator[Mismatch]:
         yield Mismatch("topics", f"{message}; write {enumerated(meant, word='or')}", at, None, row.is_used, either)
     if row.gz_type == "gz.msgs.Clock" and row.direction == _TO_GAZEBO:
         message = f"the bridge sends the time of ROS to Gazebo: the clock is Gazebo's, so write {_TO_ROS}"
-        yield Mismatch("topics", message, row.location, is_sure=row.is_used)
+        yield _in_direction(row, message, _TO_ROS)
+
+
+def _in_direction(row: _BridgeRow, message: str, right: str, at: Location | None = None) -> Mismatch:
+    """Return that a row has the wrong direction, with the right one; in an argument it is a character."""
+    where = row.direction_location
+    either = corrections(row.direction, where, right) if where != row.location else ()
+    return Mismatch("topics", message, where, at, row.is_used, either)
 
 
 def _contradictions(row: _BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mismatch]:
@@ -148,7 +157,7 @@ def _contradictions(row: _BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mism
         done = "reads it" if inputs == {True} else "publishes it"
         at = topics[0].location
         message = f"the topic {row.gz} is bridged {wrong}, but Gazebo {done} ({place_text(at)}): write {right}"
-        yield Mismatch("topics", message, row.location, at, row.is_used)
+        yield _in_direction(row, message, right, at)
     fitting = [f"gz.msgs.{it}" for it in known()["bridge_types"].get(row.ros_type, ())]
     if topics and row.gz_type in fitting and all(f"gz.msgs.{it.type}" != row.gz_type for it in topics):
         at = topics[0].location

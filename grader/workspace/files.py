@@ -15,8 +15,9 @@ from grader.source import Location
 from grader.workspace.names import Compared, Correction, Fact, Mismatch, Undecided, corrections
 from grader.workspace.workspace import Workspace
 
-_FIND = re.compile(r"\$\(find(?:-pkg-share)? ([\w-]+)\)/?([^\"'<>\s$]*)(?=[\"'<\s])")
-_PACKAGE = re.compile(r"package://([\w-]+)/([\w./-]+)(?=[\"'<\s])")
+# A path ends at a quote, a tag or a space, in YAML's flow style and in a substitution also at a comma or a bracket.
+_FIND = re.compile(r"\$\(find(?:-pkg-share)? ([\w-]+)\)/?((?:[^\"'<>\s$,()[\]{}]|,(?=\w))*)(?=[\"'<\s,)\]}])")
+_PACKAGE = re.compile(r"package://([\w-]+)/([\w./-]+)(?=[\"'<\s,\]}])")
 _PATH = re.compile(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
 
 

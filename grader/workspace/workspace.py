@@ -26,6 +26,8 @@ from grader.xml.parsing import Element, XmlFault, XmlFile
 
 _SYSTEM = re.compile(r"<ros2_control\b")
 MANAGER, SPAWNERS = "controller_manager", ("spawner", "spawner.py")
+_MACRO = re.compile(r"<xacro:macro\s[^>]*?\bname=[\"'](?:xacro:)?([\w.-]+)[\"'].*?</xacro:macro>", re.DOTALL)
+_CALLED = re.compile(r"<xacro:(?:[\w-]+\.)*([\w-]+)")
 _FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
 _MAX_FILES = 60  # of one kind in a package
 _MAX_YAML = 512 * 1024  # bytes
@@ -169,7 +171,11 @@ class Workspace:
     @property
     def has_all_interfaces(self) -> bool:
         """Return whether `command_interfaces` are those of every robot, also under other arguments of xacro."""
-        written = sum(len(_SYSTEM.findall(it.text)) for it in self.xacro_sources)
+        text = "".join(it.text for it in self.xacro_sources)
+        called = {*_CALLED.findall(text)}
+        if "call" not in called:  # <xacro:call macro="..."/> may compute the name
+            text = _MACRO.sub(lambda it: it[0] if it[1] in called else "", text)
+        written = len(_SYSTEM.findall(text))
         systems = len(list(self.robot_root.iterchildren("ros2_control"))) if self.robot_root is not None else -1
         return written <= systems and not self.has_other_robots
 

@@ -23,6 +23,9 @@ _MAX_SHOWN = 60  # characters of an edit in a sentence
 _MAX_VALUE = 10_000  # characters of an attribute that is corrected
 _EXPRESSION = re.compile(r"\$\{([^{}]*)\}")  # no brace inside: else many that open take quadratic time
 _NAME = re.compile(r"[^\W\d]\w*")
+_NUMBER = re.compile(r"-?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_PRODUCT = re.compile(r"-?\s*[\w.]+(?:\s*[*/]\s*[\w.]+)*")
+_WORD = re.compile(r"(?:\$\{[^{}]*\}|[^\s$])+")
 _DECIMAL_COMMA = re.compile(r"\s*[-+]?\d+,\d+\s*")
 # A separator between parameters, which xacro takes for a part of the name or of the default before it.
 _SEPARATOR = re.compile(r"\$\{[^{}]*\}|'[^']*'|(?P<separator>\s*[,;](?=\s|\Z|[*^\W\d]))")
@@ -289,12 +292,30 @@ def values_of_other_calls(
     for other in nodes:
         given = other.attributes
         if own is not None and other is not own and other.tag == own.tag and set(lacking) <= given.keys():
-            for values in ({name: given[name] for name in lacking}, _negated(given, lacking)):
+            copied = {name: given[name] for name in lacking}
+            mirrored = [{**copied, name: new} for name in lacking for new in _mirrored(given[name])]
+            for values in (copied, *mirrored):
                 yield _give(place, values), values
 
 
-def _negated(given: Mapping[str, str], names: Sequence[str]) -> Mapping[str, str]:
-    return {name: re.sub(r"^(-?)(?=\d)", lambda it: "" if it[1] else "-", given[name]) for name in names}
+def _mirrored(text: str) -> Iterator[str]:
+    """Yield a text with each of its numbers and expressions negated: one on the other side differs in one of them."""
+    for found in _WORD.finditer(text):
+        new = negated(found[0])
+        if new != found[0] and found[0].strip("0."):
+            yield f"{text[: found.start()]}{new}{text[found.end() :]}"
+
+
+def negated(text: str) -> str:
+    """Return a number or an expression of xacro with the other sign; any other text as it is."""
+    inner = text[2:-1].strip() if _EXPRESSION.fullmatch(text) else ""
+    value = inner or text
+    if not (inner or _NUMBER.fullmatch(text)) or TEXT_IN_QUOTES.search(value):
+        return text
+    if inner and not _PRODUCT.fullmatch(inner):
+        return f"${{-({inner})}}"
+    value = value[1:].lstrip() if value.startswith("-") else f"-{value}"
+    return f"${{{value}}}" if inner else value
 
 
 def _give(place: ScopePlace, values: Mapping[str, str]) -> Edits:

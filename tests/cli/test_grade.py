@@ -2,6 +2,7 @@
 
 import json
 import re
+import shlex
 import shutil
 import sys
 from pathlib import Path
@@ -11,6 +12,7 @@ import pytest
 
 from grader.report.formats import Format
 from tests.command_line import ROOT, run
+from tests.edits_rubric import copy_with_edits
 from tests.report.reports import CLASSROOM50
 
 PACKAGE = ROOT / "rubrics/lab6/my_robot"
@@ -73,3 +75,12 @@ def test_what_python_3_12_added_is_no_failure(path: str, code: str, tmp_path: Pa
     file.write_text(file.read_text().replace("import os\n", f"import os\n{code}", 1))
     found = {row["status"] for row in graded(tmp_path)["results"] if row["id"].startswith(("setup", "launch"))}
     assert found == ({"passed"} if sys.version_info >= (3, 12) else {"passed", "pending"})
+
+
+def test_the_next_command_runs_with_a_rubric_elsewhere(tmp_path: Path) -> None:
+    """It has the path of the rubric as it was given, quoted for a shell."""
+    rubric = copy_with_edits(tmp_path / "my labs")
+    (tmp_path / "box.urdf").write_text(BOX, encoding="utf-8")
+    report = run(("grade", tmp_path / "box.urdf", "--rubric", rubric, "--hints", "none"), COLUMNS="500").stdout.decode()
+    [command] = re.findall(r"^Next: grader (.*)", report, re.MULTILINE)
+    assert run(shlex.split(command)).returncode == 0

@@ -5,12 +5,15 @@ from functools import cache
 
 import pytest
 
+from grader.files.tree import overlaid
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import Rubric, read_rubric
 from grader.hints.hinting import hinted
+from grader.hints.name_edits import name_proposals
 from grader.source import Edits
 from tests.hints.trials import applied
+from tests.samples import RUBRICS, reference
 from tests.workspace.carts import FOLDER, cart, cart_files, edited
 
 _FAMILIES = ("files", "frames", "controllers", "parameters", "arguments", "programs", "topics", "dependencies")
@@ -128,3 +131,36 @@ def test_a_slip_that_makes_two_problems_is_one_edit() -> None:
     """A topic that is remapped under a wrong name is not published, too: with the right name, both are solved."""
     _, edits = found_for(edited(("cart.launch.py", '("image", "camera/image")', '("imag", "camera/image")')))
     assert [(edit.old, edit.new) for edit in edits] == [("imag", "image")]
+
+
+_BACKWARD = ('("/diff_drive_controller/cmd_vel", "/cmd_vel")', '("/cmd_vel", "/diff_drive_controller/cmd_vel")')
+
+
+def test_a_remapping_that_is_written_backward_is_exchanged() -> None:
+    """The publisher, whose topic nothing subscribes to then, stays as it is."""
+    correct = reference(RUBRICS["diffdrive"])
+    path = next(it for it in correct.whole_tree.files if it.endswith("diffdrive.launch.py"))
+    text = correct.whole_tree.files[path].read(1 << 20).decode()
+    assert _BACKWARD[0] in text
+    assert correct.reopen is not None
+    wrong = correct.reopen(overlaid(correct.whole_tree, {path: text.replace(*_BACKWARD).encode()}))
+    report = grade(RUBRICS["diffdrive"], wrong)
+    edits = hinted(report, wrong, "edit").edits
+    assert {edit.path for edit in edits} == {path}
+    assert applied(text.replace(*_BACKWARD).encode(), edits).decode() == text
+
+
+@pytest.mark.parametrize(
+    ("ending", "text", "expected"),
+    [
+        ("py", 'Node(remappings=[("a", "/b"), (\'~/c\', "d",)], arguments=[("e", "f")])', [('"a"', '"/b"'), ("'~/c'", '"d"')]),
+        ("xml", '<node><remap from="a" to="/b"/></node>', [('"a"', '"/b"')]),
+        ("yaml", "remap: [{from: a, to: /b}]\nparam:\n- from: c\n  to: d", [("a", "/b"), ("c", "d")]),
+    ],
+)  # fmt: skip
+def test_each_way_to_write_a_remapping_is_exchanged(ending: str, text: str, expected: list[tuple[str, str]]) -> None:
+    """In Python, XML and YAML, each of a list."""
+    path = f"cart_bringup/launch/other.launch.{ending}"
+    proposals = name_proposals(cart({**cart_files(), path: text}, rubric().lab), "topics", None)
+    found = [tuple(edit.old for edit in it.edits) for it in proposals if it.edits[0].path == path]
+    assert found == expected

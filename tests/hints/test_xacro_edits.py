@@ -23,6 +23,7 @@ WHEEL = (
     '<xacro:wheel side="left" reflect="1"><origin xyz="-0.15 ${y} 0"/></xacro:wheel>\n'
     '<xacro:wheel side="rihgt" reflect="-1"><origin xyz="-0.15 -0.2 0"/></xacro:wheel>'
 )
+MOUNT = '<xacro:macro name="mount" params="y"><origin xyz="0 ${y} 0"/></xacro:macro><xacro:mount y="${r / 2}"/>'
 SIZES = f"{named('y', '0.2')}\n{named('r', '0.1')}\n{named('height', '${2*r}')}\n{named('size', '0.6 ${y} ${height}')}"
 
 
@@ -88,6 +89,11 @@ def changes(document: Document, tag: str, attribute: str, new: str, which: int =
         (WHEEL, "joint", "name", "left_mount", ['name="${side}_mount"']),
         (WHEEL, "joint", "name", "back_joint", ['side="back"']),
         (WHEEL, "joint", "type", "continuous", ['type="continuous"']),
+        # the number from which an argument is computed; the expression in a call, with the other sign or as a value
+        (MOUNT, "origin", "xyz", "0 0.2 0", ['value="0.4"']),
+        (MOUNT, "origin", "xyz", "0 0.2 0", ['y="0.2"']),
+        (MOUNT, "origin", "xyz", "0 -0.05 0", ['y="${-r / 2}"']),
+        (f"{named('deg', '90')}<a b=\"${{-radians(deg)}}\"/>", "a", "b", "-0.785398", ['value="45"']),
         # an attribute that an argument of the file gives
         ('<xacro:arg name="n" default="0.2"/><a b="$(arg n)"/>', "a", "b", "0.3", ['default="0.3"']),
     ],
@@ -151,6 +157,10 @@ def test_the_calls_of_a_macro_that_an_edit_is_in() -> None:
          ['name="orign"', 'params="*origin"']),
         ('<xacro:macro name="w" params="mas:=1"><a b="${mass}"/></xacro:macro><xacro:w/>',
          ['b="${mas}"', 'params="mass:=1"']),
+        # what a call lacks: the value of another call, or the one of the other side
+        ('<xacro:macro name="w" params="y p"/><xacro:w y="${r / 2}" p="0 -.1 ${r + y}"/><xacro:w/>',
+         [' y="${r / 2}" p="0 -.1 ${r + y}"', ' y="${-r / 2}" p="0 -.1 ${r + y}"', ' y="${r / 2}" p="0 .1 ${r + y}"',
+          ' y="${r / 2}" p="0 -.1 ${-(r + y)}"']),
         ('<xacro:include filename="parts/wheels.xacro"/>', ['filename="parts/wheel.xacro"']),
         ('<a b="${nothing_like_it}"/>', []),
     ],

@@ -19,6 +19,7 @@ INERTIALS = SAMPLES["equivalent-xacro-inertials"].alone
 MACROS = SAMPLES["equivalent-xacro-macros"]
 WHEEL = "my_robot/urdf/wheel.xacro"
 URDF = "my_robot/urdf/my_robot.urdf"
+MACROS_WHEEL = MACROS.open().whole_tree.files[WHEEL].read(1 << 20).decode()
 PROCESSED = ["import xacro\n", "xacro.process_file(os.path.join(share, 'my_robot.urdf')).toxml()"]
 
 
@@ -77,6 +78,39 @@ def test_a_mistake_in_xacro_is_undone(path: str, old: str, new: str) -> None:
     assert names <= {path or "my_robot.urdf.xacro", WHEEL}
     for name in names & {path or "my_robot.urdf.xacro"}:
         assert edited(text, name, first.edits) is not None
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "expected"),
+    [
+        ("-1", "-1", {'outward="1"'}),
+        ("${-wheel_radius * 10}", "-1", {'outward="${wheel_radius * 10}"'}),
+        ("${-wheel_radius * 10}", "${2 - wheel_radius * 10}",
+         {'outward="${wheel_radius * 10}"', 'outward="${-(2 - wheel_radius * 10)}"'}),
+        ("${wheel_radius * 5}", "-1", {'outward="1"'}),
+    ],
+)  # fmt: skip
+def test_an_expression_in_a_call_is_corrected_there(left: str, right: str, expected: set[str]) -> None:
+    """The macro, which other calls use, stays as it is: the mistake is in the call."""
+    submission, text = mutant(URDF, 'side="left" outward="1"', f'side="left" outward="{left}"')
+    assert submission.reopen is not None
+    files = {URDF: text.replace('outward="-1"', f'outward="{right}"').encode()}
+    found = search(submission.reopen(overlaid(submission.whole_tree, files)))
+    assert not failed(found)
+    assert set(texts(found.edits)) == expected
+
+
+def test_a_value_that_a_call_lacks_on_a_side_that_nothing_tells() -> None:
+    """Both values are named and none is given, if the wheel is wrong with either: a half correct edit misleads."""
+    submission, text = mutant(URDF, 'side="right" outward="-1"', 'side="right"')
+    assert [edit.new for edit in search(submission).found[0].edits] == [' outward="-1"']
+    assert submission.reopen is not None
+    files = {URDF: text.encode(), WHEEL: MACROS_WHEEL.replace("wheel_width / 2}", "0.001}").encode()}
+    found = search(submission.reopen(overlaid(submission.whole_tree, files)))
+    [told] = [it for name, it in found.missing.items() if name == "urdf-loads"]
+    assert told.alternative is not None
+    assert texts([*told.proposal.edits, *told.alternative.edits]) == [' outward="1"', ' outward="-1"']
+    assert not [edit for edit in found.edits if "outward" in edit.new and edit.path == URDF]
 
 
 def texts(edits: Sequence[Edit]) -> list[str]:

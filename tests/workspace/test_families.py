@@ -10,6 +10,15 @@ _CONTROLLERS, _URDF = "config/controllers.yaml", "cart.urdf.xacro"
 _AT_LAUNCH = "cart_bringup/launch/cart.launch.py"
 _OWN_PROGRAM = 'Node(package="cart_bringup", executable="monitor"),'
 _DETECTOR, _ALARM = "cart_nodes/detector.py", "cart_nodes/alarm.py"
+_WITH_MANAGER: list[Edit] = [
+    (_ROBOT_LAUNCH, 'executable="robot_state_publisher",', 'executable="robot_state_publisher", arguments=[],'),
+    (_ROBOT_LAUNCH, "    return LaunchDescription([",
+     '    return LaunchDescription([Node(package="controller_manager", executable="ros2_control_node"),'),
+]  # fmt: skip
+_IN_MACRO: list[Edit] = [
+    (_URDF, '<ros2_control name="CartSystem"', '<xacro:macro name="control"><ros2_control name="CartSystem"'),
+    (_URDF, "</ros2_control>", "</ros2_control></xacro:macro>"),
+]
 
 WRONG: list[tuple[Family, str, list[Edit]]] = [
     ("files", ("a build installs no share/cart_bringup/config/detectors.yaml: the package has no file 'detectors.yaml';"
@@ -22,6 +31,9 @@ WRONG: list[tuple[Family, str, list[Edit]]] = [
      [("worlds/hall.yaml", "hall.pgm", "hall.png")]),
     ("files", "there is no package 'cart_bringups'; did you mean 'cart_bringup'?",
      [("navigation.yaml", "controller_plugins", "tree: $(find-pkg-share cart_bringups)/tree.xml\n    controller_plugins")]),
+    ("files", ("a build installs no share/cart_bringup/worlds/halls.yaml: the package has no file 'halls.yaml';"
+     " did you mean 'hall.yaml'?"), [("navigation.yaml", "controller_plugins",
+     "maps: [{map: $(find-pkg-share cart_bringup)/worlds/halls.yaml}]\n    controller_plugins")]),
     ("frames", ("wheel_controller.left_wheel_names: there is no joint 'wheel_left_joint'; did you mean 'left_wheel_joint'"
      " (cart_description/urdf/wheel.xacro:5)?"), [(_CONTROLLERS, "[left_wheel_joint]", "[wheel_left_joint]")]),
     ("frames", ("static_transform_publisher: there is no frame 'base'; did you mean 'base_link'"
@@ -55,9 +67,9 @@ WRONG: list[tuple[Family, str, list[Edit]]] = [
     </joint>""", "")]),
     ("controllers", "the controller manager is started, but the robot has no <ros2_control>",
      [(_URDF, '<ros2_control name="CartSystem" type="system">', "<control>"), (_URDF, "</ros2_control>", "</control>"),
-      (_ROBOT_LAUNCH, 'executable="robot_state_publisher",', 'executable="robot_state_publisher", arguments=[],'),
-      (_ROBOT_LAUNCH, "    return LaunchDescription([",
-       '    return LaunchDescription([Node(package="controller_manager", executable="ros2_control_node"),')]),
+      *_WITH_MANAGER]),
+    ("controllers", "the controller manager is started, but the robot has no <ros2_control>",
+     [*_IN_MACRO, *_WITH_MANAGER]),
     ("controllers", ("joint_state_broadcaster.type: there is no controller of the type"
      " 'joint_state_broadcaste/JointStateBroadcaster'; did you mean 'joint_state_broadcaster/JointStateBroadcaster'?"),
      [(_CONTROLLERS, "joint_state_broadcaster/Joint", "joint_state_broadcaste/Joint")]),
@@ -154,6 +166,9 @@ def test_a_wrong_name_is_a_sure_problem_of_one_family(family: Family, message: s
 
 
 CORRECT: list[tuple[str, list[Edit]]] = [
+    ("a macro that is called under another condition", [
+        *_IN_MACRO, (_URDF, "</ros2_control></xacro:macro>",
+                     '</ros2_control></xacro:macro><xacro:if value="${1 > 2}"><xacro:control/></xacro:if>'), *_WITH_MANAGER]),
     ("parameters of every node", [("config/detector.yaml", "detector:", "/**:")]),
     ("parameters by the full name of a node", [("config/detector.yaml", "detector:", "/detector:")]),
     ("parameters of every node are not declared by each", [
@@ -205,6 +220,10 @@ CORRECT: list[tuple[str, list[Edit]]] = [
                              '<link name="base_link"/><!-- $(find cart_description)/urdf/old.xacro -->')]),
     ("a comment in YAML", [("navigation.yaml", "controller_plugins",
                             "# $(find-pkg-share cart_bringup)/worlds/old.yaml\n    controller_plugins")]),
+    ("paths in the flow style of YAML, and in a substitution", [("navigation.yaml", "controller_plugins",
+        """maps: [{map: $(find-pkg-share cart_bringup)/worlds/hall.yaml, scale: 1}, package://cart_bringup/worlds/hall.yaml]
+    text: $(file-content $(find-pkg-share cart_bringup)/worlds/hall.yaml)
+    controller_plugins""")]),
     ("a default that the include replaces", [
         (_LAUNCH, '{"sim_time": "true"}', '{"sim_time": "true", "gui": "false"}'),
         (_ROBOT_LAUNCH, 'DeclareLaunchArgument("sim_time"', """DeclareLaunchArgument("gui", default_value="true"),

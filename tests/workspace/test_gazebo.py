@@ -2,6 +2,7 @@
 
 import pytest
 
+from grader.workspace.names import Correction
 from tests.workspace.carts import agreement_of, sure
 
 _BRIDGE = """\
@@ -205,18 +206,23 @@ def test_what_agrees_or_is_not_known_is_no_problem(edits: list[tuple[str, str, s
     assert problems(*edits) == []
 
 
-def test_a_wrong_type_is_shown_where_it_is_written() -> None:
-    """Not at the topic; a launch file may also be one by its folder."""
+@pytest.mark.parametrize(
+    ("right", "wrong", "message"),
+    [
+        ("gz.msgs.IMU", "gz.msgs.Imu", "the bridge does not convert"),
+        ("ROS_TO_GZ", "GZ_TO_ROS", "the topic cmd_vel is bridged GZ_TO_ROS"),
+    ],
+)
+def test_what_is_wrong_is_shown_where_it_is_written(right: str, wrong: str, message: str) -> None:
+    """Not at the topic, and with the right word; a launch file may also be one by its folder."""
     texts = {name: text.replace("scout.launch.py", "launch/scout.py") for name, text in _FILES.items()}
     texts["scout/launch/scout.py"] = texts.pop("scout/scout.launch.py")
-    texts["scout/bridge.yaml"] = texts["scout/bridge.yaml"].replace("gz.msgs.IMU", "gz.msgs.Imu")
+    texts["scout/bridge.yaml"] = texts["scout/bridge.yaml"].replace(right, wrong)
     [found] = sure(agreement_of(texts))
-    assert found.message.startswith("the bridge does not convert")
-    assert (
-        texts["scout/bridge.yaml"]
-        .splitlines()[found.location.line - 1][found.location.column - 1 :]
-        .startswith("gz.msgs.Imu")
-    )
+    assert found.message.startswith(message)
+    line = texts["scout/bridge.yaml"].splitlines()[found.location.line - 1]
+    assert line[found.location.column - 1 :].startswith(wrong)
+    assert found.corrections == (Correction(found.location, wrong, right),)
 
 
 @pytest.mark.parametrize(

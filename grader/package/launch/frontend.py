@@ -40,6 +40,7 @@ _SUBSTITUTIONS = {
 _ON_STDERR = (["fail"], ["ignore"], ["warn"], ["capture"])
 _MAX_DEPTH = 40
 _MAX_ENTITIES = 5_000
+_MAX_PLACES = 40  # attributes of an element in XML that are looked for
 _PROCESS = (
     "cwd name on_exit launch-prefix output respawn shell:bool emulate_tty:bool"
     " -respawn_max_retries -respawn_delay -sigkill_timeout -sigterm_timeout -env"
@@ -89,6 +90,11 @@ class _Entity:
     is_yaml: bool = False
     has_actions: bool = True  # in YAML: whether it is a list, or has the key children
     error: str = ""  # what is wrong with its form
+    places: dict[str, Position] = field(default_factory=dict)  # of its attributes
+
+    def place(self, name: str) -> Position:
+        """Return where an attribute is."""
+        return self.places.get(name, self.at)
 
 
 def read_frontend(data: bytes, source: Source, *, is_yaml: bool) -> _Entity | LaunchFault:
@@ -128,6 +134,8 @@ def _xml_root(file: XmlFile) -> _Entity:
         location = file.location(element)
         attributes = {str(name): str(value) for name, value in element.attrib.items()}
         found = _Entity(str(element.tag), Position(location.line, location.column), attributes)
+        placed = [*attributes][:_MAX_PLACES]
+        found.places = {name: _position_at(file.location(element, name)) for name in placed}
         found.actions = [entity(it, depth + 1) for it in element.iterchildren("*") if depth < _MAX_DEPTH]
         for inner in found.actions:
             found.nested.setdefault(inner.kind, []).append(inner)
@@ -182,6 +190,7 @@ class _YamlReader:
                     entity.nested[key] = [self.entity(key, item, depth + 1) for item in value.items]
                 else:
                     entity.attributes[key] = _plain_value(value)
+                    entity.places[key] = _position_at(node.key_location(key))
         return entity
 
 
@@ -200,7 +209,11 @@ def _plain_value(node: YamlNode) -> Any:
 
 
 def _position_of(node: YamlNode) -> Position:
-    return Position(node.location.line, node.location.column)
+    return _position_at(node.location)
+
+
+def _position_at(location: Location) -> Position:
+    return Position(location.line, location.column)
 
 
 def actions_of(parent: _Entity, findings: Findings) -> list[Value]:
@@ -255,7 +268,8 @@ def _attributes_of(entity: _Entity, known: str) -> dict[str, Any]:
             raise EvaluationFails(f"<{entity.kind}> contains no <{name}>{did_you_mean(name, lists)}", entity.at)
     for name in entity.attributes:
         if name not in names or name in lists or name == "children":
-            raise EvaluationFails(f"<{entity.kind}> has no attribute {name!r}{did_you_mean(name, names)}", entity.at)
+            message = f"<{entity.kind}> has no attribute {name!r}{did_you_mean(name, names)}"
+            raise EvaluationFails(message, entity.place(name))
     missing = [name for name, word in names.items() if "!" in word and name not in {*entity.attributes, *entity.nested}]
     if missing:
         raise EvaluationFails(f"<{entity.kind}> needs the attribute {missing[0]!r}", entity.at)
@@ -268,10 +282,11 @@ def _attributes_of(entity: _Entity, known: str) -> dict[str, Any]:
 def _typed_attribute(entity: _Entity, name: str, value: Any, kind: str) -> Any:
     wanted = _TYPES[kind] if kind else str
     if not entity.is_yaml:
-        return value if wanted is str else _typed_text(value, wanted, entity.at)
-    if not _is_typed(value, wanted, entity.at):
+        return value if wanted is str else _typed_text(value, wanted, entity.place(name))
+    if not _is_typed(value, wanted, entity.place(name)):
         what = f"{name} of {entity.kind} is {value!r}, which YAML reads as {type(value).__name__}"
-        raise EvaluationFails(f"{what}: {'put quotes around it' if wanted is str else f'write a {kind}'}", entity.at)
+        todo = "put quotes around it" if wanted is str else f"write a {kind}"
+        raise EvaluationFails(f"{what}: {todo}", entity.place(name))
     return value
 
 
@@ -291,27 +306,28 @@ def _condition_of(given: dict[str, Any], entity: _Entity) -> Call | None:
         raise EvaluationFails("if and unless cannot be used together", entity.at)
     for name, text in own.items():
         kind = "if_condition.IfCondition" if name == "if" else "unless_condition.UnlessCondition"
-        kwargs = {"predicate_expression": _parse_value(text, entity.at)}
+        kwargs = {"predicate_expression": _parse_value(text, entity.place(name))}
         return Call(f"launch.conditions.{kind}", [], kwargs, entity.at)
     return None
 
 
 def _argument_value(entity: _Entity, name: str, value: Any) -> Value:
+    at = entity.place(name)
     if entity.kind == "arg" and name in ("name", "description"):
         return value  # without substitutions
     if name in ("cmd", "args", "ros_args"):
-        return _command_line(value, entity.at)
+        return _command_line(value, at)
     if name == "on_exit":
         if value != "shutdown":
-            raise EvaluationFails(f"on_exit is 'shutdown', not {value!r}", entity.at)
-        return [Call(front_end("action")["shutdown"], [], {}, entity.at)]
+            raise EvaluationFails(f"on_exit is 'shutdown', not {value!r}", at)
+        return [Call(front_end("action")["shutdown"], [], {}, at)]
     if name == "respawn" or entity.kind == "set_parameter":
         text = "launch.substitutions.text_substitution.TextSubstitution"
-        parts = _parse_value(value, entity.at)
-        return [Call(text, [], {"text": it}, entity.at) if isinstance(it, str) else it for it in parts]
+        parts = _parse_value(value, at)
+        return [Call(text, [], {"text": it}, at) if isinstance(it, str) else it for it in parts]
     if name == "period":
-        return _parse_if_text(value, entity.at)
-    return _parse_value(value, entity.at) if isinstance(value, str) and name not in _RAW else value
+        return _parse_if_text(value, at)
+    return _parse_value(value, at) if isinstance(value, str) and name not in _RAW else value
 
 
 def _add_elements(entity: _Entity, kwargs: dict[str, Value]) -> None:
@@ -325,7 +341,7 @@ def _add_elements(entity: _Entity, kwargs: dict[str, Value]) -> None:
             case "remap" | "arg":
                 pair = ("from", "to") if name == "remap" else ("name", "value")
                 given = [(it, _attributes_of(it, _NESTED[name])) for it in inner]
-                found = [tuple(_parse_value(values[key], it.at) for key in pair) for it, values in given]
+                found = [tuple(_parse_value(values[key], it.place(key)) for key in pair) for it, values in given]
                 kwargs["remappings" if name == "remap" else "launch_arguments"] = found
             case "choice":
                 kwargs["choices"] = [_attributes_of(it, _NESTED[name])["value"] for it in inner]
@@ -337,8 +353,9 @@ def _parameter_of(entity: _Entity) -> Value:
     if ("from" in given) == ("name" in given):
         raise EvaluationFails("a <param> has either name or from", entity.at)
     if "from" in given:
-        return _parse_value(str(given["from"]), entity.at)
-    parts, inner, kind = _parse_value(given["name"], entity.at), entity.nested.get("param"), given.get("type")
+        return _parse_value(str(given["from"]), entity.place("from"))
+    parts = _parse_value(given["name"], entity.place("name"))
+    inner, kind = entity.nested.get("param"), given.get("type")
     name: Value = parts[0] if len(parts) == 1 and isinstance(parts[0], str) else tuple(parts)
     if inner:
         if "value" in given or "type" in given:
@@ -354,7 +371,7 @@ def _parameter_of(entity: _Entity) -> Value:
     if "value-sep" in given:
         return {name: _checked_call(Call(TYPED[0], [], {"value": _separated_values(entity, kind)}, entity.at))}
     value = entity.attributes["value"] if not entity.is_yaml and kind == "str" else given["value"]
-    kwargs: dict[str, Value] = {"value": _parse_if_text(value, entity.at)}
+    kwargs: dict[str, Value] = {"value": _parse_if_text(value, entity.place("value"))}
     if kind == "str":
         kwargs["value_type"] = Call("builtins.str", [], {}, entity.at)
     return {name: _checked_call(Call(TYPED[0], [], kwargs, entity.at))}
