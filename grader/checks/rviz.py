@@ -274,5 +274,6 @@ def _owner_of_opened(package: Package, opened: "Launch") -> Package:
     """Return the package of the submission whose RViz file a launch file opens; without one, the package itself."""
     from grader.package.installed_files import share_parts  # late: few rubrics ask for it
 
-    owners = [package.find(share_parts(it.path)[0]) for it in opened.named("rviz") if it.path is not None]
-    return next((it for it in owners if it is not None and it.rviz_opened(opened) is not None), package)
+    others = (package.find(share_parts(it.path)[0]) for it in opened.named("rviz") if it.path is not None)
+    owners = [it for it in (package, *others) if it is not None]
+    return next((it for it in owners if it.rviz_opened(opened) is not None), package)

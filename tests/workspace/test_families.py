@@ -13,7 +13,7 @@ _DETECTOR, _ALARM = "cart_nodes/detector.py", "cart_nodes/alarm.py"
 _WITH_MANAGER: list[Edit] = [
     (_ROBOT_LAUNCH, 'executable="robot_state_publisher",', 'executable="robot_state_publisher", arguments=[],'),
     (_ROBOT_LAUNCH, "    return LaunchDescription([",
-     '    return LaunchDescription([Node(package="controller_manager", executable="ros2_control_node"),'),
+     '    return LaunchDescription([Node(package="controller_manager", executable="ros2_control_node", parameters=[controllers]),'),
 ]  # fmt: skip
 _IN_MACRO: list[Edit] = [
     (_URDF, '<ros2_control name="CartSystem"', '<xacro:macro name="control"><ros2_control name="CartSystem"'),
