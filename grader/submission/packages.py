@@ -59,7 +59,7 @@ def read_packages(tree: Tree, lab: Lab) -> tuple[Package, ...]:
     """
     known: dict[str, Package] = {}
     folders = find_packages(tree, lab.package_names)
-    packages = [_read_package(tree, folder, known, lab) for folder in folders]
+    packages = [_read_package(tree, folder, folders, known, lab) for folder in folders]
     packages.sort(
         key=lambda it: (
             min(_name_distance(it, name) for name in lab.package_names),
@@ -143,8 +143,12 @@ def _name_distance(package: Package, name: str) -> int:
     return _SIMILAR if package.manifest is not None and closest(package.name, [name]) else _OTHER
 
 
-def _read_package(tree: Tree, folder: str, known: dict[str, Package], lab: Lab) -> Package:
+def _read_package(tree: Tree, folder: str, folders: Sequence[str], known: dict[str, Package], lab: Lab) -> Package:
     own = tree.below(folder)
+    prefix = f"{folder}/" if folder else ""
+    inner = tuple(f"{it.removeprefix(prefix)}/" for it in folders if it.startswith(prefix) and it != folder)
+    if inner:  # what is in a package in this one is that package's
+        own = own.only(lambda path: not path.startswith(inner))
     path = f"{folder}/{MANIFEST}" if folder else MANIFEST
     start = Location(path, 1, 1)
     manifest = None

@@ -105,8 +105,11 @@ def select(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
         graded = lab_packages.get(lab.package or _main_package(lab_packages, lab, around))
     else:
         named = best_named(packages, lab.package)
-        graded = around if named is None or (around is not None and around.name == named.name) else named
+        is_of_robot = around is not None and (not lab.package or named is None or around.name == named.name)
+        graded = around if is_of_robot else named
         lab_packages = {lab.package: graded} if graded is not None else {}
+    if around is not None:
+        around.packages[around.name] = around  # of several packages of this name, the robot's own one is meant
     unused = (it for it in packages if it not in lab_packages.values())
     others += tuple(OtherCandidate(it.path(MANIFEST), why_not(graded, it, lab.urdf)) for it in unused)
     several = ""
@@ -321,10 +324,7 @@ class UrdfSearch(NamedTuple):
         for robot in robots:
             bytes_left -= min(robot.size, opening.max_size) + _COST_OF_FILE
             around = package_around(self.packages, robot.path)
-            known = self.packages
-            if around is not None and around is not self.packages[0]:
-                known = (around, *self.packages)
-            surroundings = Surroundings(Budget(parts_left), self.tree, around, known, opening.arguments)
+            surroundings = Surroundings(Budget(parts_left), self.tree, around, self.packages, opening.arguments)
             if bytes_left < 0:
                 found[robot.path] = _ReadCandidate(surroundings, is_another=bool(lab.links))
                 continue

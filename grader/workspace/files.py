@@ -85,6 +85,9 @@ def _fault_of(workspace: Workspace, package: Package, path: str, at: Location) -
     target = f"share/{name}/{rest}"
     if not rest or target in owner.installed or any(it.startswith(f"{target}/") for it in owner.installed):
         return
+    if not workspace.means_one(package, name):
+        yield Undecided("files", f"several packages are named {name!r}")
+        return
     if not are_installs_known(owner):
         yield Undecided("files", f"whether a build installs {target} is not evaluated")
         return

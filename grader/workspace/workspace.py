@@ -17,6 +17,7 @@ from grader.package.package import MANIFEST, Package
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.robot.model import Robot
 from grader.source import LazyLocation, Location, Source
+from grader.submission.packages import is_backup
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.workspace.known import known
@@ -44,6 +45,11 @@ class Workspace:
         """The packages that a build of the workspace has: the best of each name, without those that colcon ignores."""
         known = [it for it in self.submission.packages if not it.ignored_by]
         return tuple(it for it in known if it.name in it.packages and it.packages[it.name].folder == it.folder)
+
+    def means_one(self, package: Package, name: str) -> bool:
+        """Return whether a name in a file of a package certainly means one package: its own, or the only one."""
+        others = (it for it in self.submission.packages if not it.ignored_by and not is_backup(it.folder))
+        return name in package.names or sum(it.name == name for it in others) < 2
 
     @cached_property
     def launches(self) -> tuple[tuple[Package, str, Launch], ...]:
