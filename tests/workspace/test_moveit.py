@@ -94,6 +94,15 @@ def test_a_state_beyond_a_limit_is_wrong() -> None:
     assert found == ["<group_state>: 'shoulder' is at 2.7; its limits are -1 and 1"]
 
 
+def test_a_description_of_another_robot_is_not_compared() -> None:
+    """Its name says so, if there is one of the robot as well; on its own, it may be the name that is wrong."""
+    joints = '<joint name="shoulder" value="2"/><joint name="neck" value="2"/>'
+    state = f'<group_state name="up" group="arm">{joints}</group_state></robot>'
+    other = _SRDF.replace("</robot>", state).replace('name="arm"', 'name="other"', 1)
+    assert found_in({"config/other.srdf": other}) == []
+    assert len(found_in({"config/arm.srdf": other})) == 2
+
+
 def test_neighbours_whose_collisions_are_not_disabled_are_wrong_if_others_are() -> None:
     """If few pairs are disabled, the robot may have collisions that do not touch."""
     robot = _ROBOT.replace("<ros2_control", "".join(map(_LIMB.format, "abcd", ("hand", *"abc"))) + "<ros2_control")
