@@ -130,6 +130,21 @@ def test_moveit_and_the_controller_have_the_same_joints() -> None:
     ]
 
 
+def test_a_joint_that_follows_another_is_listed_or_left_out() -> None:
+    """MoveIt sends goals for active joints only, and the gripper's controller reads `joint`, not `joints`."""
+    mimic = _LIMB.format("a", "hand").replace('type="fixed">', 'type="continuous"><mimic joint="shoulder"/>')
+    robot = {"config/arm.urdf.xacro": _ROBOT.replace("<ros2_control", mimic + "<ros2_control")}
+    both = {"config/moveit_controllers.yaml": _MOVEIT.replace("[shoulder]", "[shoulder, a_joint]")}
+    assert found_in({**robot, **both}) == []
+    kind = "joint_trajectory_controller/JointTrajectoryController"
+    gripper = _CONTROLLERS.replace(kind, "position_controllers/GripperActionController")
+    two = {"config/arm.urdf.xacro": robot["config/arm.urdf.xacro"].replace('<mimic joint="shoulder"/>', "")}
+    for wanted, is_wrong in (("shoulder", False), ("a_joint", True)):
+        own = gripper.replace("joints: [shoulder]", f"joint: {wanted}, joints: [shoulder, a_joint]")
+        found = found_in({**two, "config/ros2_controllers.yaml": own})
+        assert any("have other joints" in it for it in found) == is_wrong, found
+
+
 def test_the_robot_is_the_one_that_the_setup_assistant_names() -> None:
     """Its launch files give the arguments of xacro that the robot declares."""
     launch = (_ARM / "launch/rsp.launch.py.txt").read_text(encoding="utf-8")
