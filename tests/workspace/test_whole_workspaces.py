@@ -90,3 +90,29 @@ def test_a_name_of_several_packages_is_undecided_elsewhere() -> None:
     ]
     assert len(errors_in(arms[0], third)) == 2
     assert errors_in(*arms, third) == []
+
+
+def test_files_of_parameters_that_are_given_together_count_together() -> None:
+    """A list in one file may name sections of another one; a file that a node gets on its own needs its sections."""
+    head = "local_costmap:\n  local_costmap:\n    ros__parameters:\n      plugins: [walls]\n"
+    base = head + '      walls: {plugin: "nav2_costmap_2d::ObstacleLayer"}\n'
+    overlay = head.replace("walls", "walls, fog") + '      fog: {plugin: "fog_layer/FogLayer"}\n'
+    launch = """
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    share = get_package_share_directory("n")
+    return LaunchDescription([
+        Node(package="nav2_controller", executable="controller_server", parameters=[FILES])])
+"""
+    files = {"config/base.yaml": base, "config/overlay.yaml": overlay}
+    for given, count in ((("base", "overlay"), 0), (("base",), 0), (("overlay",), 1)):
+        text = launch.replace("FILES", ", ".join(f'share + "/config/{it}.yaml"' for it in given))
+        found = errors_in(package("n", "config", "launch", files={**files, "launch/n.launch.py": text}))
+        assert len(found) == count, found
+    assert (
+        "there is no plugin section 'walls'"
+        in errors_in(package("n", "config", files={"config/overlay.yaml": overlay}))[0]
+    )
