@@ -147,6 +147,10 @@ CORRECT: list[tuple[str, list[Edit]]] = [
         (_DETECTOR, 'super().__init__("detector")',
          'super().__init__("detector", automatically_declare_parameters_from_overrides=True)'),
         ("config/detector.yaml", "threshold", "level")]),
+    ("parameters of a node that MoveItPy makes in the process", [
+        (_DETECTOR, "import rclpy", "import rclpy\nfrom moveit.planning import MoveItPy"),
+        (_DETECTOR, 'self.declare_parameter("threshold", 0.5)', 'self.declare_parameter("threshold", 0.5); MoveItPy(node_name="arm")'),
+        ("config/detector.yaml", "    threshold: 0.5", "    threshold: 0.5\n    planning_pipelines.pipeline_names: [ompl]")]),
     ("parameters of which some names are computed", [
         (_DETECTOR, 'self.declare_parameter("threshold", 0.5)', "self.declare_parameter(name_of(self), 0.5)")]),
     ("block style", [(_CONTROLLERS, "left_wheel_names: [left_wheel_joint]", "left_wheel_names:\n      - left_wheel_joint")]),
