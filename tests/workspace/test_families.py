@@ -147,6 +147,9 @@ CORRECT: list[tuple[str, list[Edit]]] = [
         (_DETECTOR, 'super().__init__("detector")',
          'super().__init__("detector", automatically_declare_parameters_from_overrides=True)'),
         ("config/detector.yaml", "threshold", "level")]),
+    ("a file that an own node may write", [
+        (_LAUNCH, 'executable="detector",', ('executable="detector", arguments=[PathJoinSubstitution([FindPackageShare('
+         '"cart_bringup"), "config", "marks.yaml"])],'))]),
     ("parameters of a node that MoveItPy makes in the process", [
         (_DETECTOR, "import rclpy", "import rclpy\nfrom moveit.planning import MoveItPy"),
         (_DETECTOR, 'self.declare_parameter("threshold", 0.5)', 'self.declare_parameter("threshold", 0.5); MoveItPy(node_name="arm")'),
