@@ -39,7 +39,8 @@ def _controllers(workspace: Workspace, manager: YamlNode) -> Iterator[Fact]:
         if section is None:
             continue  # a list of plugins without its section
         if next(defined_controllers(workspace), None) is not None:  # else the robot's driver has them
-            yield Use("controller", name, node.location, "controller_names")
+            may_be_another = workspace.has_other_robots  # with a driver that has its controllers
+            yield Use("controller", name, node.location, "controller_names", optional=may_be_another)
         joints = section.get("joints")
         for joint in joints.items if joints is not None else ():
             yield Use("joint", joint.text or "", joint.location, f"{name}.joints")

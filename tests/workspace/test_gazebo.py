@@ -243,3 +243,10 @@ def test_frames_of_odometry_exist() -> None:
         texts = {**_FILES, "scout/scout.urdf": robot, "scout/scout.launch.py": launch}
         found = [it.message for it in sure(agreement_of(texts)) if it.family == "frames"]
         assert len(found) == count, (parent, found)
+
+
+def test_a_world_in_which_no_robot_is_created_needs_no_systems_for_it() -> None:
+    """The robot's sensors need systems only where a launch file creates the robot."""
+    world = ("arena.sdf", "Imu", "Other")
+    assert len(problems(world)) == 1
+    assert problems(world, ("scout.launch.py", 'executable="create"', 'executable="gzserver"')) == []
