@@ -12,6 +12,7 @@ from grader.package.launch.model import Launch
 from grader.package.launch.places import PREFIX, SHARE
 from grader.package.package import Package
 from grader.source import Location
+from grader.workspace.known import known
 from grader.workspace.names import Compared, Correction, Fact, Mismatch, Undecided, corrections
 from grader.workspace.workspace import Workspace
 
@@ -88,7 +89,12 @@ def _fault_of(workspace: Workspace, package: Package, path: str, at: Location, *
             yield Mismatch("files", message, at, corrections=corrections(name, at, meant))
         return
     target = f"share/{name}/{rest}"
-    if not rest or target in owner.installed or any(it.startswith(f"{target}/") for it in owner.installed):
+    if (
+        not rest
+        or rest in known()["written"]
+        or target in owner.installed
+        or any(it.startswith(f"{target}/") for it in owner.installed)
+    ):
         return
     if not workspace.means_one(package, name):
         yield Undecided("files", f"several packages are named {name!r}")

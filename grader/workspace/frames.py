@@ -83,11 +83,11 @@ def _static_transforms(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
             continue
         yield Definition("frame", child, node.location)
         yield Use("frame", parent, node.location, "static_transform_publisher")
-        if child in children:
+        own = children[child].parent if child in children else parent
+        if own != parent:
             at = _place(children[child].location)
-            own = children[child].parent
             message = f"the frame {child!r} has two parents: {own!r} in the robot, {parent!r} here"
-            yield Mismatch("frames", message, node.location, at, is_sure=own != parent and node.when is True)
+            yield Mismatch("frames", message, node.location, at, is_sure=node.when is True)
 
 
 def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:

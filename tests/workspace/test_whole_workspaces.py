@@ -116,3 +116,26 @@ def generate_launch_description():
         "there is no plugin section 'walls'"
         in errors_in(package("n", "config", files={"config/overlay.yaml": overlay}))[0]
     )
+
+
+def test_what_programs_write_and_metapackages_bring_is_no_warning() -> None:
+    """Nor is a transform that equals a joint of the robot."""
+    nodes = """
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    share = get_package_share_directory("m")
+    return LaunchDescription([
+        Node(package="gazebo_ros", executable="spawn_entity.py"),
+        Node(package="tf2_ros", executable="static_transform_publisher",
+             arguments=["--frame-id", "base", "--child-frame-id", "hand"]),
+        Node(package="warehouse_ros_mongo", executable="mongo_wrapper_ros.py",
+             parameters=[{"database_path": share + "/default_warehouse_mongo_db"}])])
+"""
+    robot = _XACRO.replace("${pi/2}", "1")
+    own = package("m", "launch", "urdf", files={"launch/m.launch.py": nodes, "urdf/arm.urdf": robot})
+    needed = "".join(f"<depend>{it}</depend>" for it in ("gazebo_ros_pkgs", "tf2_ros", "warehouse_ros_mongo"))
+    own["m/package.xml"] = own["m/package.xml"].replace("<export>", f"{needed}<export>")
+    assert [it.message for it in read_agreement(workspace(own)).mismatches] == []
