@@ -300,6 +300,11 @@ class Workspace:
         ]
         return frozenset(value.node.location for section in wide for value in values_in(section))
 
+    def has_plugin(self, name: str) -> bool:
+        """Return whether a package describes a plugin of this name for pluginlib."""
+        sources = (it for package in self.packages for it in self.sources_of(package, (".xml",)))
+        return any(f'name="{name}"' in it.text for it in sources)
+
     def sources_of(self, package: Package, endings: tuple[str, ...]) -> Iterator[Source]:
         """Yield the texts of the files of a package with these endings, without those of tests."""
         return self._sources(package, [it for it in package.tree.files if it.endswith(endings)])

@@ -286,6 +286,15 @@ def test_what_ros_accepts_is_no_sure_problem(edits: list[Edit]) -> None:
     assert sure(agreement_of(edited(*edits))) == []
 
 
+def test_a_plugin_may_be_named_unlike_its_package() -> None:
+    """A controller that a package describes for pluginlib exists, however near the name of another one is."""
+    texts = edited((_CONTROLLERS, "joint_state_broadcaster/Joint", "joint_state_broadcaste/Joint"))
+    name = "joint_state_broadcaste/JointStateBroadcaster"
+    described = f'<library path="own"><class name="{name}" type="own::Own" base_class_type="C"/></library>'
+    assert [it.family for it in sure(agreement_of(texts))] == ["controllers"]
+    assert sure(agreement_of({**texts, "cart_nodes/own.xml": described})) == []
+
+
 def test_a_module_beside_is_no_package() -> None:
     """A module of the package itself may be named like messages."""
     texts = edited((_ALARM, "import rclpy\n", "import rclpy\nimport own_msgs\n"))
