@@ -75,7 +75,7 @@ class _ReadCandidate(NamedTuple):
     surroundings: Surroundings
     is_another: bool = False
     links: int = 0
-    is_nameless: bool = False
+    is_fragment: bool = False
     read: Read | None = None
 
 
@@ -236,7 +236,7 @@ class _Tier(IntEnum):
 
 _REASONS = {
     "is_another": "it has fewer than half of the links that the rubric names",
-    "is_fragment": "its <robot> has no name",
+    "is_fragment": "its <robot> has no name or no links",
     "is_unlaunched": "the launch file does not load it",
     "is_unnamed": "its path is less like {urdf}",
     "links": "it has fewer links",
@@ -254,7 +254,7 @@ class _Candidate(NamedTuple):
 
     is_another: bool  # it has fewer than half of the links that the lab names
     place: Belonging
-    is_fragment: bool  # its robot has no name, and no launch file loads it
+    is_fragment: bool  # its robot has no name or no links, and no launch file loads it
     is_unlaunched: bool
     is_unnamed: bool  # a rubric that names its package, but no links, has another path for the URDF
     links: int  # minus how many it has
@@ -302,7 +302,7 @@ class UrdfSearch(NamedTuple):
             yield _Candidate(
                 is_another=readings[path].is_another,
                 place=labs.belonging(path),
-                is_fragment=readings[path].is_nameless and path not in launched,
+                is_fragment=readings[path].is_fragment and path not in launched,
                 is_unlaunched=path not in launched,
                 is_unnamed=any(self.lab.package_names) and not self.lab.links and tier is not _Tier.EXACT,
                 links=-readings[path].links,
@@ -358,7 +358,8 @@ def _count_links(read: Read, surroundings: Surroundings, name: str, lab: Lab) ->
         return _ReadCandidate(surroundings, bool(lab.links), 0, not name, read)
     is_another = is_another_robot(robot, lab.links)
     counted = len(robot.links) if is_another or not lab.links else known_links(robot, lab.links)
-    return _ReadCandidate(surroundings, is_another, counted, not robot.name, read)
+    is_fragment = not robot.name or (read.is_expanded and not robot.links and not robot.incomplete)  # macros only
+    return _ReadCandidate(surroundings, is_another, counted, is_fragment, read)
 
 
 def _may_be_meant(best: _Candidate, other: _Candidate, lab: Lab) -> bool:

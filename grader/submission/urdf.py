@@ -36,7 +36,7 @@ class OtherCandidate(NamedTuple):
 
     path: str
     reason: str
-    is_part: bool = False  # of a robot: another file includes it, or it has no name
+    is_part: bool = False  # of a robot: another file includes it, or it has no name or only macros
 
 
 # These are no dataclasses: making each one takes 1 ms of the start of every command.

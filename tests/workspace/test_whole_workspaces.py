@@ -139,3 +139,13 @@ def generate_launch_description():
     needed = "".join(f"<depend>{it}</depend>" for it in ("gazebo_ros_pkgs", "tf2_ros", "warehouse_ros_mongo"))
     own["m/package.xml"] = own["m/package.xml"].replace("<export>", f"{needed}<export>")
     assert [it.message for it in read_agreement(workspace(own)).mismatches] == []
+
+
+def test_a_file_of_macros_is_the_robot_only_if_there_is_no_other() -> None:
+    """A robot whose links depend on what is not submitted comes before it."""
+    start = '<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+    macros = f'{start}<xacro:macro name="m"><link name="l"/></xacro:macro></robot>'
+    robot = f'{start}<xacro:include filename="$(find other)/arm.xacro"/></robot>'
+    found = workspace(package("arm", files={"a/macros.xacro": macros, "b/robot.xacro": robot}))
+    assert found.path == "arm/b/robot.xacro"
+    assert [it.is_part for it in found.other_candidates] == [True]
