@@ -10,7 +10,7 @@ from grader.errors import InputError
 from grader.files.tree import Tree
 from grader.names import closest, folded
 from grader.package.manifest import Manifest, read_manifest
-from grader.package.package import MANIFEST, NO_PACKAGE, SETUP, Package
+from grader.package.package import CMAKE, MANIFEST, NO_PACKAGE, SETUP, Package
 from grader.source import Location, Source
 from grader.submission.submission import Lab
 from grader.text import enumerated, quoted
@@ -146,8 +146,9 @@ def _name_distance(package: Package, name: str) -> int:
 def _read_package(tree: Tree, folder: str, folders: Sequence[str], known: dict[str, Package], lab: Lab) -> Package:
     own = tree.below(folder)
     prefix = f"{folder}/" if folder else ""
-    inner = tuple(f"{it.removeprefix(prefix)}/" for it in folders if it.startswith(prefix) and it != folder)
-    if inner:  # what is in a package in this one is that package's
+    nested = (it.removeprefix(prefix) for it in folders if it.startswith(prefix) and it != folder)
+    inner = tuple(f"{it}/" for it in nested if not own.files.keys().isdisjoint((f"{it}/{SETUP}", f"{it}/{CMAKE}")))
+    if inner:  # what is in a package in this one is that package's; a stray package.xml makes none
         own = own.only(lambda path: not path.startswith(inner))
     path = f"{folder}/{MANIFEST}" if folder else MANIFEST
     start = Location(path, 1, 1)

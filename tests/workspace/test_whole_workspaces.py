@@ -77,6 +77,10 @@ def test_a_package_in_another_one_has_its_own_files() -> None:
     """A launch file of the inner package is judged by what the inner package installs."""
     inner = package("arm/src/arm", "urdf", "launch", files={"urdf/arm.urdf": _XACRO, "launch/a.launch.py": _RUNS_XACRO})
     assert errors_in(package("arm"), inner) == []
+    stray = {"arm/urdf/package.xml": "<package format='3'><name>stray</name></package>"}
+    own = package("arm", "urdf", "launch", files={"urdf/arm.urdf": _XACRO, "launch/a.launch.py": _RUNS_XACRO})
+    [arm] = [it for it in workspace(own, stray).packages if it.name == "arm"]
+    assert "share/arm/urdf/arm.urdf" in arm.installed
 
 
 def test_a_name_of_several_packages_is_undecided_elsewhere() -> None:
