@@ -123,8 +123,9 @@ class Surroundings(NamedTuple):
         if self.graded.robot_references(name):
             return [self.graded]
         own = next((it for it in self.packages if it.holds(path)), self.graded)
-        others = (it for it in self.packages if any(own.source_of(at.path or "") for at in it.robot_references(name)))
-        return [*others] or [self.graded]
+        others = [it for it in self.packages if it is own or it.name != own.name]
+        launched = (it for it in others if any(own.source_of(at.path or "") for at in it.robot_references(name)))
+        return [*launched] or [self.graded]
 
     @property
     def paths(self) -> Collection[str]:

@@ -60,7 +60,9 @@ def test_a_launch_file_of_any_package_runs_xacro() -> None:
         [first, package("arm", "urdf", files=robot), package("arm_bringup", "launch", files=launch)],
     ):
         assert workspace(*packages).verdict == "clean"
-    assert workspace(first, package("arm", "urdf", files=robot)).verdict == "rejected"
+    alone = package("arm", "urdf", files=robot)
+    copy = package("old/arm", "urdf", "launch", files=launch)
+    assert workspace(first, alone).verdict == workspace(first, alone, copy).verdict == "rejected"
 
 
 def test_a_file_means_its_own_package_of_several_of_one_name() -> None:
