@@ -1,6 +1,7 @@
 """Read a URDF as ROS 2 does, with its joints at given positions, and the names in the packages around it."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import isfinite, nan
 
 from grader.checks.meshes import mesh_problems
@@ -12,9 +13,10 @@ from grader.problems import Problem, in_order
 from grader.report.inspection import Inspection, main_root
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading
+from grader.robot.urdf_problems import NO_LINKS, ROBOT_WITHOUT_NAME
 from grader.submission.opening import open_submission
 from grader.submission.submission import Lab, Opening, Submission
-from grader.submission.urdf import Absent, Unreadable
+from grader.submission.urdf import Absent, Read, Unreadable
 from grader.text import printable_path
 
 _MAX_NAMED = 20
@@ -26,6 +28,7 @@ def inspect(
     """Return the inspection of the URDF and the packages at a path. Raises GraderError."""
     given = read_arguments(arguments)
     submission = open_submission(path, Lab("robot.urdf"), Opening(max_size, given), with_neighbours=True)
+    submission = _without_part(submission)
     base = base_of(path, folder_of(path, submission.path) if submission.is_single else None)
     match urdf := submission.urdf:
         case Unreadable(reason=reason):
@@ -54,6 +57,18 @@ def inspect(
     problems = in_order((*urdf.loaded.problems, *mesh_problems(submission, urdf)))
     reading = urdf.loaded._replace(problems=problems)
     return Inspection(urdf.path, reading, robot, relative_to, _name_problems(submission), submission.source, base)
+
+
+def _without_part(submission: Submission) -> Submission:
+    """Return packages as such without a robot, where the best candidate is xacro without links that nothing loads."""
+    urdf = submission.urdf
+    if submission.is_single or not submission.packages or not isinstance(urdf, Read) or not urdf.is_expanded:
+        return submission
+    errors = {problem.kind for problem in urdf.problems if problem.severity == "error"}
+    name = urdf.path.rpartition("/")[2]
+    is_part = NO_LINKS in errors and errors <= {NO_LINKS, ROBOT_WITHOUT_NAME}
+    is_loaded = any(package.robot_references(name) for package in submission.packages)
+    return replace(submission, urdf=Absent()) if is_part and not is_loaded else submission
 
 
 def _name_problems(submission: Submission) -> tuple[Problem, ...]:

@@ -40,6 +40,8 @@ _HARMLESS = frozenset(
      "hasattr", "getattr", "ActionServer", "TransformListener", "TransformBroadcaster",
      "StaticTransformBroadcaster"}
 )  # fmt: skip
+# Makes a node in the same process by itself, for which launch gives parameters: moveit_py of moveit2.
+_MAKES_A_NODE = ("moveit.planning.MoveItPy", "moveit.MoveItPy")
 # By rclpy/qos.py of Jazzy, as qos_profile_NAME and as QoSPresetProfiles.NAME.value: depth, reliability, durability.
 _PROFILES = {
     "sensor_data": (5, "best_effort", "volatile"), "services_default": (10, "reliable", "volatile"),
@@ -290,6 +292,9 @@ class _Module:
                 self._facts[self._at(call)] = [_Name(_text(self._argument(part, call, 0, "node_name")))]
         for part, call in calls:
             self._read_call(part, call)
+            if self._called(part, call) in _MAKES_A_NODE:
+                for facts in self._facts.values():
+                    facts.append(_Doubt("another node takes the parameters of the process", self._at(call)))
         if self._constants.budget.left < 0:
             self.doubts.append(_Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1)))
         return [self._node(at, facts) for at, facts in self._facts.items()]

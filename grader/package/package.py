@@ -89,7 +89,9 @@ class Package:
         return (self.installation and self.installation.name) or PurePosixPath(self.folder or self.tree.name).name
 
     def find(self, name: str) -> "Package | None":
-        """Return the package of the submission that ROS 2 finds by a name."""
+        """Return the package of the submission that ROS 2 finds by a name: this one, if it has the name."""
+        if name == self.name:
+            return self
         return self.packages.get(name) or next((it for it in self.packages.values() if name in it.names), None)
 
     def depends_on(self, name: str) -> bool:

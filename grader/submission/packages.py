@@ -10,7 +10,7 @@ from grader.errors import InputError
 from grader.files.tree import Tree
 from grader.names import closest, folded
 from grader.package.manifest import Manifest, read_manifest
-from grader.package.package import MANIFEST, NO_PACKAGE, SETUP, Package
+from grader.package.package import CMAKE, MANIFEST, NO_PACKAGE, SETUP, Package
 from grader.source import Location, Source
 from grader.submission.submission import Lab
 from grader.text import enumerated, quoted
@@ -59,7 +59,7 @@ def read_packages(tree: Tree, lab: Lab) -> tuple[Package, ...]:
     """
     known: dict[str, Package] = {}
     folders = find_packages(tree, lab.package_names)
-    packages = [_read_package(tree, folder, known, lab) for folder in folders]
+    packages = [_read_package(tree, folder, folders, known, lab) for folder in folders]
     packages.sort(
         key=lambda it: (
             min(_name_distance(it, name) for name in lab.package_names),
@@ -143,8 +143,13 @@ def _name_distance(package: Package, name: str) -> int:
     return _SIMILAR if package.manifest is not None and closest(package.name, [name]) else _OTHER
 
 
-def _read_package(tree: Tree, folder: str, known: dict[str, Package], lab: Lab) -> Package:
+def _read_package(tree: Tree, folder: str, folders: Sequence[str], known: dict[str, Package], lab: Lab) -> Package:
     own = tree.below(folder)
+    prefix = f"{folder}/" if folder else ""
+    nested = (it.removeprefix(prefix) for it in folders if it.startswith(prefix) and it != folder)
+    inner = tuple(f"{it}/" for it in nested if not own.files.keys().isdisjoint((f"{it}/{SETUP}", f"{it}/{CMAKE}")))
+    if inner:  # what is in a package in this one is that package's; a stray package.xml makes none
+        own = own.only(lambda path: not path.startswith(inner))
     path = f"{folder}/{MANIFEST}" if folder else MANIFEST
     start = Location(path, 1, 1)
     manifest = None

@@ -75,7 +75,7 @@ class _ReadCandidate(NamedTuple):
     surroundings: Surroundings
     is_another: bool = False
     links: int = 0
-    is_nameless: bool = False
+    is_fragment: bool = False
     read: Read | None = None
 
 
@@ -105,8 +105,11 @@ def select(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
         graded = lab_packages.get(lab.package or _main_package(lab_packages, lab, around))
     else:
         named = best_named(packages, lab.package)
-        graded = around if named is None or (around is not None and around.name == named.name) else named
+        is_of_robot = around is not None and (not lab.package or named is None or around.name == named.name)
+        graded = around if is_of_robot else named
         lab_packages = {lab.package: graded} if graded is not None else {}
+    if around is not None:
+        around.packages[around.name] = around  # of several packages of this name, the robot's own one is meant
     unused = (it for it in packages if it not in lab_packages.values())
     others += tuple(OtherCandidate(it.path(MANIFEST), why_not(graded, it, lab.urdf)) for it in unused)
     several = ""
@@ -233,7 +236,7 @@ class _Tier(IntEnum):
 
 _REASONS = {
     "is_another": "it has fewer than half of the links that the rubric names",
-    "is_fragment": "its <robot> has no name",
+    "is_fragment": "its <robot> has no name or no links",
     "is_unlaunched": "the launch file does not load it",
     "is_unnamed": "its path is less like {urdf}",
     "links": "it has fewer links",
@@ -251,7 +254,7 @@ class _Candidate(NamedTuple):
 
     is_another: bool  # it has fewer than half of the links that the lab names
     place: Belonging
-    is_fragment: bool  # its robot has no name, and no launch file loads it
+    is_fragment: bool  # its robot has no name or no links, and no launch file loads it
     is_unlaunched: bool
     is_unnamed: bool  # a rubric that names its package, but no links, has another path for the URDF
     links: int  # minus how many it has
@@ -299,7 +302,7 @@ class UrdfSearch(NamedTuple):
             yield _Candidate(
                 is_another=readings[path].is_another,
                 place=labs.belonging(path),
-                is_fragment=readings[path].is_nameless and path not in launched,
+                is_fragment=readings[path].is_fragment and path not in launched,
                 is_unlaunched=path not in launched,
                 is_unnamed=any(self.lab.package_names) and not self.lab.links and tier is not _Tier.EXACT,
                 links=-readings[path].links,
@@ -321,10 +324,7 @@ class UrdfSearch(NamedTuple):
         for robot in robots:
             bytes_left -= min(robot.size, opening.max_size) + _COST_OF_FILE
             around = package_around(self.packages, robot.path)
-            known = self.packages
-            if around is not None and around is not self.packages[0]:
-                known = (around, *self.packages)
-            surroundings = Surroundings(Budget(parts_left), self.tree, around, known, opening.arguments)
+            surroundings = Surroundings(Budget(parts_left), self.tree, around, self.packages, opening.arguments)
             if bytes_left < 0:
                 found[robot.path] = _ReadCandidate(surroundings, is_another=bool(lab.links))
                 continue
@@ -358,7 +358,8 @@ def _count_links(read: Read, surroundings: Surroundings, name: str, lab: Lab) ->
         return _ReadCandidate(surroundings, bool(lab.links), 0, not name, read)
     is_another = is_another_robot(robot, lab.links)
     counted = len(robot.links) if is_another or not lab.links else known_links(robot, lab.links)
-    return _ReadCandidate(surroundings, is_another, counted, not robot.name, read)
+    is_fragment = not robot.name or (read.is_expanded and not robot.links and not robot.incomplete)  # macros only
+    return _ReadCandidate(surroundings, is_another, counted, is_fragment, read)
 
 
 def _may_be_meant(best: _Candidate, other: _Candidate, lab: Lab) -> bool:

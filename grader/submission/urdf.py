@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
 from functools import partial
 from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple, cast
@@ -35,7 +36,7 @@ class OtherCandidate(NamedTuple):
 
     path: str
     reason: str
-    is_part: bool = False  # of a robot: another file includes it, or it has no name
+    is_part: bool = False  # of a robot: another file includes it, or it has no name or only macros
 
 
 # These are no dataclasses: making each one takes 1 ms of the start of every command.
@@ -103,7 +104,7 @@ class Surroundings(NamedTuple):
     ask: Callable[[str], object] = lambda _: None  # is called with the name of each other file that xacro reads
 
     def robot_references(self, path: str) -> "list[NamedFile]":
-        """Return where the launch files of the graded package read a URDF; without one, those in a folder around it."""
+        """Return where launch files of the graded package, else of others, read a URDF; or those in a folder around."""
         around = self._launched_packages(path)
         return [found for package in around for found in package.robot_references(path.rpartition("/")[2])]
 
@@ -115,9 +116,16 @@ class Surroundings(NamedTuple):
         return "none" if references and not self.arguments else "default"
 
     def _launched_packages(self, path: str) -> list[Package]:
-        paths = [path] if self.graded is None and not self.is_single else []
-        loose = launch_folders(self.tree, self.packages, paths) if self.graded is None else ()
-        return [self.graded] if self.graded is not None else [it.under(self.launch_arguments) for it in loose]
+        if self.graded is None:
+            loose = launch_folders(self.tree, self.packages, [path] if not self.is_single else [])
+            return [it.under(self.launch_arguments) for it in loose]
+        name = path.rpartition("/")[2]
+        if self.graded.robot_references(name):
+            return [self.graded]
+        own = next((it for it in self.packages if it.holds(path)), self.graded)
+        others = [it for it in self.packages if it is own or it.name != own.name]
+        launched = (it for it in others if any(own.source_of(at.path or "") for at in it.robot_references(name)))
+        return [*launched] or [self.graded]
 
     @property
     def paths(self) -> Collection[str]:
@@ -131,7 +139,11 @@ class Surroundings(NamedTuple):
 
     def package(self, name: str) -> str | None:
         """Return the folder of a package."""
-        return next((package.folder for package in self.packages if package.name == name), None)
+        return next((package.folder for package in self._named(name)), None)
+
+    def _named(self, name: str) -> list[Package]:
+        """Return the packages of a name, of several that of the URDF first."""
+        return sorted((it for it in self.packages if it.name == name), key=lambda it: it is not self.graded)
 
     def read(self, path: str) -> bytes:
         """Return the bytes of a file. Raises InputError, NotDecided."""
@@ -152,13 +164,12 @@ class Surroundings(NamedTuple):
 
     def installed(self, package: str, inside: str) -> str | None:
         """Return the file at a path in a package once it is built; without any package, the most similar path."""
-        for own in self.packages:
-            if own.name == package:
-                similar = any(f"/{path}".endswith(f"/{inside}") for path in own.tree.files)
-                source, setup = own.installed.get(f"share/{package}/{inside}"), own.installation
-                if source is None and similar and setup is not None and setup.is_cmake and setup.unknown:
-                    raise Undetermined(f"cannot determine statically whether CMakeLists.txt installs {inside}")
-                return own.path(source) if source is not None else None
+        for own in self._named(package):
+            similar = any(f"/{path}".endswith(f"/{inside}") for path in own.tree.files)
+            source, setup = own.installed.get(f"share/{package}/{inside}"), own.installation
+            if source is None and similar and setup is not None and setup.is_cmake and setup.unknown:
+                raise Undetermined(f"cannot determine statically whether CMakeLists.txt installs {inside}")
+            return own.path(source) if source is not None else None
         if self.packages:
             return None
         steps = inside.split("/")
@@ -267,7 +278,10 @@ def _expand_xacro(data: bytes, path: str, surroundings: Surroundings, references
         if shared is None:
             continue
         package, inside = shared.groups()
-        if not inside or surroundings.package(package) is None or surroundings.installed(package, inside) is not None:
+        is_known = not inside or surroundings.package(package) is None
+        with suppress(Undetermined):
+            is_known = is_known or surroundings.installed(package, inside) is not None
+        if is_known:
             given[name] = f"{INSTALLED}/{package}/share/{package}/{inside}".rstrip("/")
     arguments = {**surroundings.launch_arguments, **given, **surroundings.arguments}
     others = surroundings.other_arguments(path, references)

@@ -89,7 +89,7 @@ def _type_facts(workspace: Workspace, controller: Controller) -> Iterator[Fact]:
     """Yield that no package has a class of the controller's type, where all classes of its package are known."""
     types, written = known()["controllers"], controller.type.text or ""
     package = written.partition("/")[0]
-    if written in types or any(it.name == package for it in workspace.packages):
+    if written in types or any(it.name == package for it in workspace.packages) or workspace.has_plugin(written):
         return
     same = [it for it in types if it.partition("/")[2] == written.partition("/")[2]]
     similar = closest(written, same) or (same[0] if len(same) == 1 else closest(written, types))

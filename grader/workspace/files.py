@@ -12,6 +12,7 @@ from grader.package.launch.model import Launch
 from grader.package.launch.places import PREFIX, SHARE
 from grader.package.package import Package
 from grader.source import Location
+from grader.workspace.known import known
 from grader.workspace.names import Compared, Correction, Fact, Mismatch, Undecided, corrections
 from grader.workspace.workspace import Workspace
 
@@ -24,23 +25,27 @@ _PATH = re.compile(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
 def file_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the paths at which a build of the workspace installs no file."""
     seen: set[tuple[str, Location]] = set()
-    for package, path, at, is_read in _named(workspace):
+    for package, path, at, is_read, is_output in _named(workspace):
         yield Compared("files", posixpath.normpath(path).removeprefix(f"{PREFIX}/"))
         if (path, at) not in seen:
             seen.add((path, at))
-            for fact in _fault_of(workspace, package, path, at):
+            for fact in _fault_of(workspace, package, path, at, is_output=is_output):
                 yield fact._replace(is_sure=fact.is_sure and is_read) if isinstance(fact, Mismatch) else fact
     yield from _map_images(workspace)
     yield from _models(workspace)
 
 
 class _Named(NamedTuple):
-    """A path below the prefix, with the package whose file names it, and whether it is certainly looked for."""
+    """A path below the prefix, with the package whose file names it, and whether it is certainly looked for.
+
+    `is_output`: whether an own node, which is given the path, may write the file.
+    """
 
     package: Package
     path: str
     location: Location
     is_read: bool
+    is_output: bool = False
 
 
 def _named(workspace: Workspace) -> Iterator[_Named]:
@@ -48,10 +53,10 @@ def _named(workspace: Workspace) -> Iterator[_Named]:
     for package, own, launch in workspace.launches:
         # From the folder of the sources, a launch file finds what is beside it.
         beside = "" if own in package.installed.values() else f"{package.share}{posixpath.dirname(own)}/"
-        for text, at, is_read in _texts_of(launch):
+        for text, at, is_read, is_output in _texts_of(workspace, launch):
             for path in _PATH.findall(text or ""):
                 is_beside = bool(beside) and path.startswith(f"{PREFIX}/{beside}")
-                yield _Named(package, path, at, is_read and not is_beside)
+                yield _Named(package, path, at, is_read and not is_beside, is_output)
     for package in workspace.packages:
         for source in workspace.sources_of(package, (".xacro", ".urdf", ".yaml")):
             of_robot = source.path.endswith(".yaml") or source.path in (workspace.robot_files or (source.path,))
@@ -59,21 +64,22 @@ def _named(workspace: Workspace) -> Iterator[_Named]:
                 yield _Named(package, f"{SHARE}/{found[1]}/{found[2]}", source.at(found.start()), of_robot)
 
 
-def _texts_of(launch: Launch) -> Iterator[tuple[str | None, Location, bool]]:
-    """Yield the texts of a launch file that may name files, and whether they are used."""
-    yield from ((value, passed.location, True) for passed in launch.passed for _, value in passed.values)
+def _texts_of(workspace: Workspace, launch: Launch) -> Iterator[tuple[str | None, Location, bool, bool]]:
+    """Yield the texts of a launch file that may name files, whether they are used, and whether own nodes get them."""
+    yield from ((value, passed.location, True, False) for passed in launch.passed for _, value in passed.values)
     for node in launch.nodes:
         # The launch file that includes it may never start it, whatever the arguments.
         is_read = node.when is not False or not node.included_by
-        yield from ((word, node.location, is_read) for word in node.arguments or ())
+        is_own = workspace.package_of(node) is not None
+        yield from ((word, node.location, is_read, is_own) for word in node.arguments or ())
         for given in node.parameters or ():
-            yield given.path, given.location, is_read
+            yield given.path, given.location, is_read, False
             values = (it for it in given.values.values() if isinstance(it.value, str))
-            yield from ((it.value, it.location, is_read) for it in values)
-    yield from ((reference.path, reference.location, True) for reference in launch.references)
+            yield from ((it.value, it.location, is_read, is_own) for it in values)
+    yield from ((reference.path, reference.location, True, False) for reference in launch.references)
 
 
-def _fault_of(workspace: Workspace, package: Package, path: str, at: Location) -> Iterator[Fact]:
+def _fault_of(workspace: Workspace, package: Package, path: str, at: Location, *, is_output: bool) -> Iterator[Fact]:
     """Yield that no file is installed at a path, if this is certain."""
     name, rest = share_parts(path)
     owner = package.find(name)
@@ -84,7 +90,15 @@ def _fault_of(workspace: Workspace, package: Package, path: str, at: Location) -
             yield Mismatch("files", message, at, corrections=corrections(name, at, meant))
         return
     target = f"share/{name}/{rest}"
-    if not rest or target in owner.installed or any(it.startswith(f"{target}/") for it in owner.installed):
+    if (
+        not rest
+        or rest in known()["written"]
+        or target in owner.installed
+        or any(it.startswith(f"{target}/") for it in owner.installed)
+    ):
+        return
+    if not workspace.means_one(package, name):
+        yield Undecided("files", f"several packages are named {name!r}")
         return
     if not are_installs_known(owner):
         yield Undecided("files", f"whether a build installs {target} is not evaluated")
@@ -93,10 +107,10 @@ def _fault_of(workspace: Workspace, package: Package, path: str, at: Location) -
     if inside in owner.tree.folders:
         yield from _no_folder(owner, inside, f"a build installs no {target}", at)
     else:
-        yield _not_there(owner, target, at)
+        yield _not_there(owner, target, at, is_output=is_output)
 
 
-def _not_there(owner: Package, target: str, at: Location) -> Mismatch:
+def _not_there(owner: Package, target: str, at: Location, *, is_output: bool) -> Mismatch:
     """Return where else a build installs a file, or what the package has instead of it."""
     setup, name = owner.installation, posixpath.basename(target)
     assert setup is not None
@@ -111,7 +125,8 @@ def _not_there(owner: Package, target: str, at: Location) -> Mismatch:
     meant = closest(name, map(posixpath.basename, owner.tree.files))
     guess = f"; did you mean {meant!r}?" if meant else ""
     message = f"{missing}: the package has no file {name!r}{guess}"
-    return Mismatch("files", message, at, None, is_surely_absent(owner, target), corrections(name, at, meant))
+    is_sure = is_surely_absent(owner, target) and not is_output
+    return Mismatch("files", message, at, None, is_sure, corrections(name, at, meant))
 
 
 def _no_folder(owner: Package, inside: str, missing: str, at: Location) -> Iterator[Mismatch]:

@@ -2,10 +2,12 @@
 
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 
 from grader.robot.model import Robot
 from grader.source import LazyLocation, Location
 from grader.submission.static_transforms import STATIC_PUBLISHER, frames_named
+from grader.workspace.gazebo import roots, system_of
 from grader.workspace.known import known
 from grader.workspace.names import Definition, Fact, Mismatch, Open, Use
 from grader.workspace.workspace import Workspace
@@ -18,6 +20,11 @@ _FRAMES = re.compile(r"(^|_)(frame|frame_id)$")
 _OWN_FRAMES = re.compile(r"^(odom|map|world|global|fixed|parent|target)_frame(_id)?$|^frame_prefix$")
 _GAZEBO_FRAMES = ("gz_frame_id", "ignition_frame_id", "frame_id", "frame_name", "frameName")
 _GAZEBO_JOINTS = ("left_joint", "right_joint", "joint_name", "left_steering_joint", "right_steering_joint")
+
+# Systems of gz-sim that publish odometry, the elements that name its frames, and the default beside the robot's links.
+_ODOMETRY = ("AckermannSteering", "DiffDrive", "MecanumDrive", "OdometryPublisher", "TrackedVehicle")
+_ODOMETRY_FRAMES = ("frame_id", "child_frame_id", "odom_frame", "robot_base_frame")
+_DEFAULT_FRAMES = ("odom", "base_footprint")
 
 
 def frame_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -39,6 +46,7 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
             for value in values_in(tree):
                 yield from _in_yaml(value, is_of_controller=not controllers.isdisjoint(value.keys))
     yield from _in_robot(workspace)
+    yield from _of_odometry(workspace, robot)
 
 
 def _place(location: LazyLocation | None) -> Location:
@@ -75,11 +83,11 @@ def _static_transforms(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
             continue
         yield Definition("frame", child, node.location)
         yield Use("frame", parent, node.location, "static_transform_publisher")
-        if child in children:
+        own = children[child].parent if child in children else parent
+        if own != parent:
             at = _place(children[child].location)
-            own = children[child].parent
             message = f"the frame {child!r} has two parents: {own!r} in the robot, {parent!r} here"
-            yield Mismatch("frames", message, node.location, at, is_sure=own != parent and node.when is True)
+            yield Mismatch("frames", message, node.location, at, is_sure=node.when is True)
 
 
 def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:
@@ -116,6 +124,19 @@ def _in_robot(workspace: Workspace) -> Iterator[Fact]:
                 yield Use("frame", text, workspace.place(inner), f"<{inner.tag}>")
     for system in root.iterchildren("ros2_control"):
         yield from _in_system(workspace, system)
+
+
+def _of_odometry(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
+    """Yield the frames that systems of Gazebo publish: those that they name, and by default those below the model's."""
+    words = [pairwise(node.arguments or ()) for _, node in workspace.nodes if node.executable == "create"]
+    created = {name for pairs in words for option, name in pairs if option == "-name" and name}
+    links = [link.name for link in robot.links]
+    for root, place in roots(workspace):
+        for plugin in [it for it in root.iter("plugin") if system_of(it) in _ODOMETRY]:
+            named = [(it.text or "").strip() for it in plugin.iterchildren(*_ODOMETRY_FRAMES)]
+            around = {it.get("name", "") for it in plugin.iterancestors("robot", "model")}
+            below = [f"{model}/{name}" for model in sorted(around | created) for name in (*_DEFAULT_FRAMES, *links)]
+            yield from (Definition("frame", name, place(plugin)) for name in (*named, *below))
 
 
 def _in_system(workspace: Workspace, system: Element) -> Iterator[Fact]:

@@ -45,12 +45,12 @@ def _topic_elements(element: Element) -> Iterator[tuple[Mapping[str, str], bool]
         kind = known()["gazebo_sensors"].get(element.get("type", ""))
         yield ({"topic": kind} if kind is not None else {}), False
     else:
-        system = known()["gazebo_systems"].get(_system(element), {})
+        system = known()["gazebo_systems"].get(system_of(element), {})
         yield system.get("in", {}), True
         yield system.get("out", {}), False
 
 
-def _system(plugin: Element) -> str:
+def system_of(plugin: Element) -> str:
     """Return the name of the class of a system, such as DiffDrive."""
     return plugin.get("name", "").rpartition("::")[2]
 
@@ -77,14 +77,15 @@ def gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
 
 def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Iterator[Mismatch]:
     """Yield the systems that a world of its own systems lacks for sensors in it and in the robot."""
-    own = {_system(plugin) for root, _ in roots(workspace) for plugin in root.iter("plugin")}
+    own = {system_of(plugin) for root, _ in roots(workspace) for plugin in root.iter("plugin")}
+    is_created = any(node.package == _SIMULATION and node.executable == "create" for _, node in workspace.nodes)
     if next(world.iterchildren("plugin"), None) is None or workspace.robot is None:
         return  # Gazebo loads its default systems
     sensors = [
         (sensor, place(sensor))
         for root, place in roots(workspace)
         for sensor in root.iter("sensor")
-        if root is file.root or root is workspace.robot_root
+        if root is file.root or (root is workspace.robot_root and is_created)
     ]
     for sensor, at in sensors:
         system = known()["sensor_systems"].get(sensor.get("type", ""))

@@ -39,7 +39,8 @@ def _controllers(workspace: Workspace, manager: YamlNode) -> Iterator[Fact]:
         if section is None:
             continue  # a list of plugins without its section
         if next(defined_controllers(workspace), None) is not None:  # else the robot's driver has them
-            yield Use("controller", name, node.location, "controller_names")
+            may_be_another = workspace.has_other_robots  # with a driver that has its controllers
+            yield Use("controller", name, node.location, "controller_names", optional=may_be_another)
         joints = section.get("joints")
         for joint in joints.items if joints is not None else ():
             yield Use("joint", joint.text or "", joint.location, f"{name}.joints")
@@ -55,11 +56,14 @@ def _controllers(workspace: Workspace, manager: YamlNode) -> Iterator[Fact]:
 def _other_joints(workspace: Workspace, name: str, joints: YamlNode | None) -> Iterator[Mismatch]:
     """Yield that MoveIt gives a controller other joints than it has, all of which are in the robot."""
     sections = [section for _, tree in workspace.trees for keys, section in sections_in(tree) if keys[-1:] == (name,)]
-    theirs = sections[0].get("joints") if len(sections) == 1 else None
+    types = [it.type.text or "" for it in defined_controllers(workspace) if it.name == name]
+    key = "joint" if any(it.endswith("/GripperActionController") for it in types) else "joints"
+    theirs = sections[0].get(key) if len(sections) == 1 else None
     if joints is None or theirs is None or workspace.robot is None:
         return
-    own, other = ({it.text or "" for it in node.items} for node in (joints, theirs))
-    differing = sorted(own ^ other)
+    own, other = ({it.text or "" for it in node.items or [node]} for node in (joints, theirs))
+    following = {it.name for it in workspace.robot.joints if it.mimic is not None}  # MoveIt sends no goals for them
+    differing = sorted((own ^ other) - following)
     if own and other and differing and all(map(workspace.robot.has_joint, differing)):
         message = f"{name}.joints: MoveIt and the controller ({place_text(theirs.location)}) have other joints"
         yield Mismatch("controllers", f"{message}: {', '.join(differing)}", joints.location, theirs.location)

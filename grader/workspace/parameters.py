@@ -50,10 +50,26 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from _filters(workspace.yaml_files.get(path))
     for package, node in workspace.nodes:
         yield from _required(workspace, package, node)
-    for _, tree in workspace.trees:
+    sections = {path: frozenset(_sections(tree)) for path, tree in workspace.trees if is_parameters(tree)}
+    for path, tree in workspace.trees:
         if is_parameters(tree) or "controller_names" in tree.source.text:
-            yield from _plugin_lists(tree)
+            # A file that may be given along with others may leave sections to them.
+            others = (it for other, it in sections.items() if other != path and not _is_given_alone(workspace, path))
+            yield from _plugin_lists(tree, frozenset().union(*others))
             yield from _plugin_names(tree)
+
+
+def _sections(node: YamlNode, above: str = "") -> Iterator[tuple[str, str]]:
+    """Yield the names of the mappings in a file, each with the keys above it."""
+    for key, inner in node.value.items() if isinstance(node.value, dict) else ():
+        if isinstance(inner.value, dict):
+            yield above, key
+            yield from _sections(inner, f"{above}/{key.strip('/')}")
+
+
+def _is_given_alone(workspace: Workspace, path: str) -> bool:
+    nodes = workspace.parameter_files.get(path, ())
+    return any(sum(bool(it.path or it.unknown) for it in node.parameters or ()) == 1 for node in nodes)
 
 
 def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -> Iterator[Fact]:
@@ -214,14 +230,14 @@ def _required(workspace: Workspace, package: Package, node: StartedNode) -> Iter
             yield Mismatch("parameters", message, robot.location)
 
 
-def _plugin_lists(tree: YamlNode) -> Iterator[Fact]:
-    """Yield the entries of lists of plugins that have no section beside them."""
-    waiting = [tree]
+def _plugin_lists(tree: YamlNode, elsewhere: frozenset[tuple[str, str]]) -> Iterator[Fact]:
+    """Yield the entries of lists of plugins that have no section beside them, and none at the same place elsewhere."""
+    waiting = [("", tree)]
     while waiting:
-        node = waiting.pop()
+        above, node = waiting.pop()
         if not isinstance(node.value, dict):
             continue
-        waiting += node.value.values()
+        waiting += [(f"{above}/{key.strip('/')}", inner) for key, inner in node.value.items()]
         sections = {key: inner.location for key, inner in node.value.items() if isinstance(inner.value, dict)}
         for key, inner in node.value.items():
             if not sections or key in _NOT_LISTS or not (key in _LISTS or key.endswith("_plugins")):
@@ -232,7 +248,7 @@ def _plugin_lists(tree: YamlNode) -> Iterator[Fact]:
             owner = f"{tree.source.path}:{inner.location.line}"
             yield from (Definition("plugin section", name, at, owner) for name, at in sections.items())
             for text, at in texts:
-                if text and "/" not in text and "::" not in text:
+                if text and "/" not in text and "::" not in text and (above, text) not in elsewhere:
                     yield Use("plugin section", text, at, key, owner)
 
 

@@ -28,6 +28,9 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
                 either = corrections(fault.written, fault.location, fault.meant)
                 yield Mismatch("programs", message, fault.location, corrections=either)
     for package, node in workspace.nodes:
+        if not workspace.means_one(package, node.package):
+            yield Undecided("programs", f"several packages are named {node.package!r}")
+            continue
         owner = package.find(node.package)
         if owner is not None:
             yield Compared("programs")

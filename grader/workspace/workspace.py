@@ -17,6 +17,7 @@ from grader.package.package import MANIFEST, Package
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.robot.model import Robot
 from grader.source import LazyLocation, Location, Source
+from grader.submission.packages import is_backup
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.workspace.known import known
@@ -46,6 +47,11 @@ class Workspace:
         """The packages that a build of the workspace has: the best of each name, without those that colcon ignores."""
         known = [it for it in self.submission.packages if not it.ignored_by]
         return tuple(it for it in known if it.name in it.packages and it.packages[it.name].folder == it.folder)
+
+    def means_one(self, package: Package, name: str) -> bool:
+        """Return whether a name in a file of a package certainly means one package: its own, or the only one."""
+        others = (it for it in self.submission.packages if not it.ignored_by and not is_backup(it.folder))
+        return name in package.names or sum(it.name == name for it in others) < 2
 
     @cached_property
     def launches(self) -> tuple[tuple[Package, str, Launch], ...]:
@@ -302,6 +308,11 @@ class Workspace:
             if not keys or any(key.strip("/") in ("*", "**") for key in keys)
         ]
         return frozenset(value.node.location for section in wide for value in values_in(section))
+
+    def has_plugin(self, name: str) -> bool:
+        """Return whether a package describes a plugin of this name for pluginlib."""
+        sources = (it for package in self.packages for it in self.sources_of(package, (".xml",)))
+        return any(f'name="{name}"' in it.text for it in sources)
 
     def sources_of(self, package: Package, endings: tuple[str, ...]) -> Iterator[Source]:
         """Yield the texts of the files of a package with these endings, without those of tests."""

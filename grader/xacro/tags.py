@@ -18,7 +18,7 @@ from grader.xacro.macros import (
     read_parameters,
 )
 from grader.xacro.scopes import BOOLEANS, Definition, IncludedNames, Reported, UnknownName, XacroScope
-from grader.xacro.xacro_nodes import XacroNode
+from grader.xacro.xacro_nodes import XacroNode, walk
 
 _MAX_CALLS = 100  # macros that call each other
 
@@ -200,9 +200,24 @@ def _target(scope: str | None, name: str, symbols: XacroScope) -> XacroScope:
 
 def _if(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
     text = _needed(node, "value")
-    keep = _boolean(expander.texts.evaluate(text, scopes.symbols), text)
+    try:
+        keep = _boolean(expander.texts.evaluate(text, scopes.symbols), text)
+    except Undetermined as error:
+        _leave_names_open(expander, node, scopes.symbols, error)
+        raise
     if keep == (node.tag == "xacro:if"):
         expander.insert(node, out, scopes)
+
+
+def _leave_names_open(expander: Expander, node: XacroNode, symbols: XacroScope, error: Undetermined) -> None:
+    """Note that what an element would define, if it were kept, may have any value."""
+    for inner in walk(node):
+        name = inner.attributes.get("name", "")
+        if inner.tag == "xacro:property" and "value" in inner.attributes and "scope" not in inner.attributes:
+            symbols.bind(name, "")
+            symbols.properties[name].failure = error
+        elif inner.tag.startswith("xacro:") and inner.tag not in ("xacro:if", "xacro:unless"):
+            expander.texts.names_open = error
 
 
 def _arg(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes) -> None:

@@ -171,6 +171,21 @@ def test_an_environment_variable_leaves_only_its_element_undecided() -> None:
     assert "failed" not in found.values()
 
 
+def test_what_an_undecided_condition_defines_is_undecided() -> None:
+    """A property or macro in it may exist, and one that existed before may have another value."""
+    condition = '<xacro:if value="$(env REAL)">{}</xacro:if>'
+    size = '<box size="0.6 0.4 0.2"/>'
+    text = PLAIN.replace(size, '<box size="${long} 0.4 0.2"/>')
+    before, inside = '<xacro:property name="long" value="9"/>', '<xacro:property name="long" value="0.6"/>'
+    for start in ("", before):
+        found = statuses(single(text.replace("<link", start + condition.format(inside) + "<link", 1)))
+        assert found["base-box"] == found["urdf-loads"] == "pending"
+        assert "failed" not in found.values()
+    macro = condition.format(f'<xacro:macro name="m">{size}</xacro:macro>')
+    text = PLAIN.replace(size, "<xacro:m/>").replace("<link", macro + "<link", 1)
+    assert "failed" not in statuses(single(text)).values()
+
+
 def test_xml_that_xacro_refuses_hides_nothing_else() -> None:
     """A blank line before the declaration, or no xmlns:xacro, fails urdf-loads, and all else is graded."""
     assert PLAIN.startswith("<?xml")

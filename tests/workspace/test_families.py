@@ -180,6 +180,13 @@ CORRECT: list[tuple[str, list[Edit]]] = [
     ("a parameter of any type", [
         (_DETECTOR, 'self.declare_parameter("threshold", 0.5)', 'self.declare_parameter("threshold", 0.5, ANY)'),
         ("config/detector.yaml", "threshold: 0.5", "threshold: 1")]),
+    ("a file that an own node may write", [
+        (_LAUNCH, 'executable="detector",', ('executable="detector", arguments=[PathJoinSubstitution([FindPackageShare('
+         '"cart_bringup"), "config", "marks.yaml"])],'))]),
+    ("parameters of a node that MoveItPy makes in the process", [
+        (_DETECTOR, "import rclpy", "import rclpy\nfrom moveit.planning import MoveItPy"),
+        (_DETECTOR, 'self.declare_parameter("threshold", 0.5)', 'self.declare_parameter("threshold", 0.5); MoveItPy(node_name="arm")'),
+        ("config/detector.yaml", "    threshold: 0.5", "    threshold: 0.5\n    planning_pipelines.pipeline_names: [ompl]")]),
     ("parameters of which some names are computed", [
         (_DETECTOR, 'self.declare_parameter("threshold", 0.5)', "self.declare_parameter(name_of(self), 0.5)")]),
     ("block style", [(_CONTROLLERS, "left_wheel_names: [left_wheel_joint]", "left_wheel_names:\n      - left_wheel_joint")]),
@@ -316,6 +323,15 @@ CORRECT: list[tuple[str, list[Edit]]] = [
 def test_what_ros_accepts_is_no_sure_problem(edits: list[Edit]) -> None:
     """Other ways to write the same, and names that something which is not submitted may define, are not wrong."""
     assert sure(agreement_of(edited(*edits))) == []
+
+
+def test_a_plugin_may_be_named_unlike_its_package() -> None:
+    """A controller that a package describes for pluginlib exists, however near the name of another one is."""
+    texts = edited((_CONTROLLERS, "joint_state_broadcaster/Joint", "joint_state_broadcaste/Joint"))
+    name = "joint_state_broadcaste/JointStateBroadcaster"
+    described = f'<library path="own"><class name="{name}" type="own::Own" base_class_type="C"/></library>'
+    assert [it.family for it in sure(agreement_of(texts))] == ["controllers"]
+    assert sure(agreement_of({**texts, "cart_nodes/own.xml": described})) == []
 
 
 def test_a_module_beside_is_no_package() -> None:

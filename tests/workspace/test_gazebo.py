@@ -239,3 +239,24 @@ def test_the_type_that_is_wrong_is_corrected(old: str, new: str, meant: list[tup
     texts["scout/bridge.yaml"] = texts["scout/bridge.yaml"].replace(old, new)
     [found] = sure(agreement_of(texts))
     assert [(it.old, it.new) for it in found.corrections] == meant
+
+
+def test_frames_of_odometry_exist() -> None:
+    """A system publishes those that it names, or those below the name of the model that the robot is created as."""
+    publisher = """Node(package="tf2_ros", executable="static_transform_publisher",
+        arguments=["--frame-id", "PARENT", "--child-frame-id", "laser"]),"""
+    named = _ROBOT.replace("<tf_topic/>", "<child_frame_id>carriage</child_frame_id>")
+    cases = [("scout/odom", _ROBOT, 0), ("scout/base_link", _ROBOT, 0), ("carriage", named, 0), ("carriage", _ROBOT, 1)]
+    for parent, robot, count in (*cases, ("rover/odom", _ROBOT, 1)):
+        at = _LAUNCH.rindex("]")
+        launch = _LAUNCH[:at] + publisher.replace("PARENT", parent) + _LAUNCH[at:]
+        texts = {**_FILES, "scout/scout.urdf": robot, "scout/scout.launch.py": launch}
+        found = [it.message for it in sure(agreement_of(texts)) if it.family == "frames"]
+        assert len(found) == count, (parent, found)
+
+
+def test_a_world_in_which_no_robot_is_created_needs_no_systems_for_it() -> None:
+    """The robot's sensors need systems only where a launch file creates the robot."""
+    world = ("arena.sdf", "Imu", "Other")
+    assert len(problems(world)) == 1
+    assert problems(world, ("scout.launch.py", 'executable="create"', 'executable="gzserver"')) == []

@@ -46,14 +46,14 @@ _FILES = {
 }  # fmt: skip
 
 
-def found_in(changed: dict[str, str], urdf: str = "config/arm.urdf.xacro") -> list[str]:
-    """Return the messages of what certainly is wrong in the package with changed files."""
+def found_in(changed: dict[str, str], urdf: str = "config/arm.urdf.xacro", *, is_sure: bool = True) -> list[str]:
+    """Return the messages of what certainly is wrong in the package with changed files, or of what may be."""
     paths = [path for path in sorted(_ARM.rglob("*")) if path.is_file()]
     files = {path.relative_to(_ARM).as_posix().removesuffix(".txt"): path.read_bytes() for path in paths}
     texts = {path: text.encode() for path, text in {**_FILES, **changed}.items() if text}
     tree = overlaid(make_tree("arm", (), ()), {**files, **texts})
     found = read_agreement(submission_of(tree, "arm", Lab(urdf)))
-    return [it.message for it in found.mismatches if it.is_sure and it.family != "dependencies"]
+    return [it.message for it in found.mismatches if it.is_sure == is_sure and it.family != "dependencies"]
 
 
 def test_a_configuration_agrees() -> None:
@@ -94,16 +94,24 @@ def test_a_state_beyond_a_limit_is_wrong() -> None:
     assert found == ["<group_state>: 'shoulder' is at 2.7; its limits are -1 and 1"]
 
 
-def test_neighbours_whose_collisions_are_not_disabled_are_wrong_if_others_are() -> None:
-    """If few pairs are disabled, the robot may have collisions that do not touch."""
+def test_a_description_of_another_robot_is_not_compared() -> None:
+    """Its name says so, if there is one of the robot as well; on its own, it may be the name that is wrong."""
+    joints = '<joint name="shoulder" value="2"/><joint name="neck" value="2"/>'
+    state = f'<group_state name="up" group="arm">{joints}</group_state></robot>'
+    other = _SRDF.replace("</robot>", state).replace('name="arm"', 'name="other"', 1)
+    assert found_in({"config/other.srdf": other}) == []
+    assert len(found_in({"config/arm.srdf": other})) == 2
+
+
+def test_neighbours_whose_collisions_are_not_disabled_may_be_wrong_if_others_are() -> None:
+    """It is a warning: they may not touch. If few pairs are disabled, it is not even that."""
     robot = _ROBOT.replace("<ros2_control", "".join(map(_LIMB.format, "abcd", ("hand", *"abc"))) + "<ros2_control")
     pairs = [("a", "b"), ("b", "c"), ("c", "d")]
 
     def found(disabled: list[tuple[str, str]]) -> list[str]:
         rows = "".join(f'<disable_collisions link1="{two}" link2="{one}"/>' for one, two in disabled)
-        return found_in(
-            {"config/arm.urdf.xacro": robot, "config/arm.srdf": _SRDF.replace("</robot>", f"{rows}</robot>")}
-        )
+        srdf = {"config/arm.srdf": _SRDF.replace("</robot>", f"{rows}</robot>")}
+        return found_in({"config/arm.urdf.xacro": robot, **srdf}, is_sure=False)
 
     assert found(pairs) == found(pairs[:1]) == found([]) == []
     assert found(pairs[:2]) == ["a joint connects 'c' and 'd', but <disable_collisions> does not name them"]
@@ -119,6 +127,29 @@ def test_moveit_and_the_controller_have_the_same_joints() -> None:
     assert found_in(own) == [
         "arm_controller.joints: MoveIt and the controller (config/ros2_controllers.yaml:6) have other joints: a_joint"
     ]
+
+
+def test_a_joint_that_follows_another_is_listed_or_left_out() -> None:
+    """MoveIt sends goals for active joints only, and the gripper's controller reads `joint`, not `joints`."""
+    mimic = _LIMB.format("a", "hand").replace('type="fixed">', 'type="continuous"><mimic joint="shoulder"/>')
+    robot = {"config/arm.urdf.xacro": _ROBOT.replace("<ros2_control", mimic + "<ros2_control")}
+    both = {"config/moveit_controllers.yaml": _MOVEIT.replace("[shoulder]", "[shoulder, a_joint]")}
+    assert found_in({**robot, **both}) == []
+    kind = "joint_trajectory_controller/JointTrajectoryController"
+    gripper = _CONTROLLERS.replace(kind, "position_controllers/GripperActionController")
+    two = {"config/arm.urdf.xacro": robot["config/arm.urdf.xacro"].replace('<mimic joint="shoulder"/>', "")}
+    for wanted, is_wrong in (("shoulder", False), ("a_joint", True)):
+        own = gripper.replace("joints: [shoulder]", f"joint: {wanted}, joints: [shoulder, a_joint]")
+        found = found_in({**two, "config/ros2_controllers.yaml": own})
+        assert any("have other joints" in it for it in found) == is_wrong, found
+
+
+def test_a_controller_of_another_robot_is_not_missing() -> None:
+    """Where there are several robots, the driver of another one may have the controllers that MoveIt names."""
+    moveit = {"config/moveit_controllers.yaml": _MOVEIT.replace("arm_controller", "limb")}
+    other = {"urdf/limb.urdf": '<robot name="limb"><link name="l"/></robot>'}
+    assert found_in(moveit) == ["controller_names: there is no controller 'limb'"]
+    assert found_in({**moveit, **other}) == []
 
 
 def test_the_robot_is_the_one_that_the_setup_assistant_names() -> None:
