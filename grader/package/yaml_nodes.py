@@ -38,6 +38,7 @@ class YamlNode:
     quoted: bool = False  # a text in quotes, which is a string even if it is true or 1
     end_mark: Any = None  # of a text
     key_marks: dict[str, Any] = field(default_factory=dict)  # of a mapping
+    replaced: list[tuple[str, "YamlNode"]] = field(default_factory=list)  # values of keys that are written again
 
     @property
     def location(self) -> Location:
@@ -68,6 +69,11 @@ class YamlNode:
     def text(self) -> str | None:
         """The text of a scalar; None for lists and mappings."""
         return self.value if isinstance(self.value, str) else None
+
+    @property
+    def pairs(self) -> "list[tuple[str, YamlNode]]":
+        """The keys of a mapping with their values, also those that are written again, as rcl reads them."""
+        return [*self.replaced, *self.value.items()] if isinstance(self.value, dict) else []
 
     @property
     def items(self) -> "list[YamlNode]":
@@ -196,5 +202,7 @@ def _attach_node(parent: YamlNode, key: list[YamlNode], node: YamlNode) -> None:
     elif isinstance(parent.value, dict):
         named = key.pop()
         name = named.text if named.text is not None else f"\0{len(parent.value)}"
+        if name in parent.value:
+            parent.replaced.append((name, parent.value[name]))
         parent.value[name] = node  # the last key counts, in PyYAML as in RViz
         parent.key_marks[name] = named.mark

@@ -20,13 +20,7 @@ _MAX_FIRST_LINE = 100  # bytes
 def program_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the programs that launch files start and no package has, and nodes that nothing starts."""
     for package in workspace.packages:
-        for entry in entry_points(package):
-            yield Compared("programs")
-            fault = entry_fault(package, entry.name)
-            if fault is not None:
-                message = f"the entry point of {entry.name!r} names no function: {fault.message}"
-                either = corrections(fault.written, fault.location, fault.meant)
-                yield Mismatch("programs", message, fault.location, corrections=either)
+        yield from _entry_points(package)
     for package, node in workspace.nodes:
         if not workspace.means_one(package, node.package):
             yield Undecided("programs", f"several packages are named {node.package!r}")
@@ -50,6 +44,17 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
             either = corrections(node.executable, node.location, meant)
             yield Mismatch("programs", reason, node.location, corrections=either)
     yield from _lifecycle(workspace)
+
+
+def _entry_points(package: Package) -> Iterator[Fact]:
+    """Yield the entry points of a package that name no function."""
+    for entry in entry_points(package):
+        yield Compared("programs")
+        fault = entry_fault(package, entry.name)
+        if fault is not None:
+            message = f"the entry point of {entry.name!r} names no function: {fault.message}"
+            either = corrections(fault.written, fault.location, fault.meant)
+            yield Mismatch("programs", message, fault.location, corrections=either)
 
 
 def _not_executed(package: Package, node: StartedNode) -> Iterator[Mismatch]:

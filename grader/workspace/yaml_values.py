@@ -45,9 +45,7 @@ def values_in(node: YamlNode, keys: tuple[str, ...] = ()) -> Iterator[YamlValue]
 
 def sections_in(node: YamlNode, keys: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], YamlNode]]:
     """Yield the parameters of each node in a parameter file: the keys of the node, and the mapping below."""
-    if not isinstance(node.value, dict) or len(keys) > _MAX_DEPTH:
-        return
-    for key, inner in node.value.items():
+    for key, inner in node.pairs if len(keys) <= _MAX_DEPTH else ():
         if key == PARAMETERS:
             yield keys, _nested(inner)
         else:

@@ -291,6 +291,13 @@ CORRECT: list[tuple[str, list[Edit]]] = [
     ("a controller with a file of its own", [
         (_CONTROLLERS, "DiffDriveController\n", "DiffDriveController\n      params_file: /opt/wheels.yaml\n"),
         (_CONTROLLERS, "\nwheel_controller:", "\nwheels:")]),
+    ("a key that is written twice", [
+        (_CONTROLLERS, "controller_manager:\n", "/**:\n  controller_manager:\n"),
+        (_CONTROLLERS, "  ros__parameters:\n    update_rate: 100\n    joint_state_broadcaster:\n      type:",
+         "    ros__parameters:\n      update_rate: 100\n      joint_state_broadcaster:\n        type:"),
+        (_CONTROLLERS, "    wheel_controller:\n      type: ", "      wheel_controller:\n        type: "),
+        (_CONTROLLERS, "\nwheel_controller:\n  ros__parameters:\n    left", "\n/**:\n  wheel_controller:\n   ros__parameters:\n    left"),
+        *_WITH_MANAGER]),
     ("the type of a controller in a key with dots", [
         (_CONTROLLERS, "    wheel_controller:\n      type:", "    wheel_controller.type:")]),
     ("a controller with parameters of every node", [(_CONTROLLERS, "\nwheel_controller:", "\n/**:")]),

@@ -427,7 +427,7 @@ def _key_of(given: GivenParameters, own: str | None) -> str:
 
 def _sections(node: YamlNode, key: str, *, is_plain: bool) -> Iterator[tuple[str, dict[str, ParameterValue]]]:
     """Yield the sections of a parameter file, each with its key, which begins with a slash."""
-    for name, value in node.value.items() if isinstance(node.value, dict) and key.count("/") < _MAX_DEPTH else ():
+    for name, value in node.pairs if key.count("/") < _MAX_DEPTH else ():
         if name == _KEY:
             values = _flat(value, "", 0)
             yield (
