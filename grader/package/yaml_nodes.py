@@ -60,10 +60,16 @@ class YamlNode:
 
     def key_location(self, *keys: str) -> Location:
         """Return where the last of some keys, which are there, begins."""
-        *outer, last = keys
-        mapping = self.get(*outer)
+        mapping = self.mapping_of(keys)
         assert mapping is not None
-        return _location_of(mapping.source, mapping.key_marks[last])
+        return _location_of(mapping.source, mapping.key_marks[keys[-1]])
+
+    def mapping_of(self, keys: "tuple[str, ...]") -> "YamlNode | None":
+        """Return the mapping that has the last of some keys."""
+        if len(keys) == 1:
+            return self if keys[0] in self.key_marks else None
+        found = (inner.mapping_of(keys[1:]) for key, inner in self.pairs if key == keys[0])
+        return next((it for it in found if it is not None), None)
 
     @property
     def text(self) -> str | None:
