@@ -210,9 +210,8 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
     yield _link_fact(link, "held_by", parent=parent, joint_type=joint.type)._replace(title=title)
     pose = robot.pose(link, relative_to=parent)
     xyz, rpy = _rounded(pose.translation), _rounded(pose.rpy, 4)
-    title = f"the frame {link!r} is at {point((*xyz,))} m in {parent!r}"
-    if any(rpy):
-        title += f", with rpy = {point((*_rounded([*map(degrees, rpy)], 1),))} (degrees)"
+    turned = f"with rpy = {point((*_rounded([*map(degrees, rpy)], 1),))} (degrees)" if any(rpy) else "not rotated"
+    title = f"the frame {link!r} is at {point((*xyz,))} m in {parent!r}, {turned}"
     frame = _link_fact(link, "frame_at", relative_to=parent, xyz=xyz, **({"rpy": rpy} if any(rpy) else {}))
     yield frame._replace(title=title)
     of_type = Carried((f"{link} held_by",), "frame_at", frame.arguments)  # a joint of another type has no such range

@@ -168,9 +168,9 @@ def _proposals(
         if situation.has_reversed and piece.is_pose:
             continue
         if links is None or piece.link in links or not situation.is_known(piece.link):
+            shared = situation.draft.shared(piece.sets)
             for way, edits in enumerate(situation.draft.ways(piece.sets)):
                 if edits or piece.edits:
-                    shared = situation.draft.shared(piece.sets, edits)
                     yield Proposal((*edits, *piece.edits), piece.cause, piece.link, piece.rank, way, shared)
 
 

@@ -177,13 +177,12 @@ class Draft:
         same = [self._elements[it] for it in self._expanded.siblings(self._tags[element])]
         return {it: one.value for it in same for one in sets if one.attribute == attribute and one.element is it}
 
-    def shared(self, sets: Iterable[Set], edits: Edits) -> frozenset[str]:
-        """Return the links whose elements come from the same text of xacro as those that edits set."""
+    def shared(self, sets: Iterable[Set]) -> frozenset[str]:
+        """Return the links whose elements come from the same text of xacro as those that are set."""
         if self._expanded is None:
             return frozenset()
         tags = [self._tags[one.element] for one in sets if one.element is not None]
-        every = (it for tag in tags for it in self._expanded.changed_with(tag, edits))
-        return frozenset(self.link_of(self._elements[it]) for it in every)
+        return frozenset(self.link_of(self._elements[it]) for tag in tags for it in self._expanded.siblings(tag))
 
     def ways(self, sets: Collection[Set]) -> list[Edits]:
         """Return the ways to set values; attributes and elements that are missing are added."""

@@ -176,7 +176,7 @@ class _Rewriter:
         defined = self._defined(text, scope, old, new)
         if defined is None:
             names = [name for name in _NAME.findall(text.text) if depth and self._of_name(name, scope) is not None]
-            for name in dict.fromkeys(names):
+            for name in [*dict.fromkeys(names)][:_MAX_ORIGINS]:
                 for was, value in self._solved(text, name, scope, old, new):
                     alone = text._replace(text=f"${{{name}}}")
                     found = self._origins(alone, scope, was, value, depth - 1)
@@ -206,9 +206,8 @@ class _Rewriter:
 
         try:
             at = float(self._texts.written(self._texts.find(name, scope)))
-            first, second = value_with(at), value_with(2 * at or 1.0)
-            step = (2 * at or 1.0) - at
-            found = at + (float(new) - first) * step / (second - first)
+            first = value_with(at)
+            found = at + (float(new) - first) / (value_with(at + 1) - first)
             is_solved = _is_equal(old, repr(first)) and isclose(value_with(found), float(new), abs_tol=1e-9)
         except (EvaluationSignal, ArithmeticError, ValueError, TypeError):
             return
@@ -396,18 +395,6 @@ class ExpandedEdits:
         """Return the indices of the expanded elements that come from the same place of the source."""
         place = self._source.nodes[tag].place
         return self._by_place[place.source.path, place.tag]
-
-    def changed_with(self, tag: int, edits: Edits) -> list[int]:
-        """Return those siblings that edits of an element change, too: of an argument of a call, those of this call."""
-        found = self.siblings(tag)
-        call = self._outer_call(tag)
-        if call is not None and all(call.at(it.old.partition("=")[0])[:3] == it[:3] for it in edits):
-            return [it for it in found if self._outer_call(it) == call]
-        return found
-
-    def _outer_call(self, tag: int) -> ScopePlace | None:
-        calls = self._source.nodes[tag].place.calls
-        return calls[0][1] if calls else None
 
     @cached_property
     def _by_place(self) -> dict[tuple[str, int], list[int]]:

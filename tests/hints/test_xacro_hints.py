@@ -1,6 +1,7 @@
 """Mistakes in xacro robots: the edit of the xacro with which everything passes again is found and proven."""
 
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import pytest
@@ -13,7 +14,7 @@ from grader.source import Edit
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from tests.hints.trials import graded, search_for
-from tests.samples import LAB6, SAMPLES
+from tests.samples import LAB6, RUBRICS, SAMPLES, reference
 
 INERTIALS = SAMPLES["equivalent-xacro-inertials"].alone
 MACROS = SAMPLES["equivalent-xacro-macros"]
@@ -85,8 +86,6 @@ def test_a_mistake_in_xacro_is_undone(path: str, old: str, new: str) -> None:
     [
         ("-1", "-1", {'outward="1"'}),
         ("${-wheel_radius * 10}", "-1", {'outward="${wheel_radius * 10}"'}),
-        ("${-wheel_radius * 10}", "${2 - wheel_radius * 10}",
-         {'outward="${wheel_radius * 10}"', 'outward="${-(2 - wheel_radius * 10)}"'}),
         ("${wheel_radius * 5}", "-1", {'outward="1"'}),
     ],
 )  # fmt: skip
@@ -98,6 +97,39 @@ def test_an_expression_in_a_call_is_corrected_there(left: str, right: str, expec
     found = search(submission.reopen(overlaid(submission.whole_tree, files)))
     assert not failed(found)
     assert set(texts(found.edits)) == expected
+
+
+_LEFT, _RIGHT = 'y="${wheel_separation / 2}"', 'y="${-wheel_separation / 2}"'
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ({_LEFT: 'y="${wheel_separation}"'}, {'y="0.12"'}),
+        ({_LEFT: _RIGHT, _RIGHT: _LEFT}, {_LEFT, _RIGHT}),
+        ({'"wheel_separation" value="0.24"': '"wheel_separation" value="0.42"'}, {'value="0.24"'}),
+    ],
+)
+def test_a_value_that_a_macro_gets_computed_is_corrected_where_it_is_given(
+    changes: Mapping[str, str], expected: set[str]
+) -> None:
+    """In the call or in the property that the call uses; if both wheels are wrong for it, by one hint."""
+    correct = reference(RUBRICS["diffdrive"])
+    [path] = [it for it in correct.whole_tree.files if it.endswith("diffdrive.urdf.xacro")]
+    text = correct.whole_tree.files[path].read(1 << 20).decode()
+    wrong = re.sub("|".join(map(re.escape, changes)), lambda it: changes[it[0]], text)
+    assert wrong != text
+    assert correct.reopen is not None
+    submission = correct.reopen(overlaid(correct.whole_tree, {path: wrong.encode()}))
+    [found] = search_for(submission, graded(submission, RUBRICS["diffdrive"]), RUBRICS["diffdrive"]).found
+    assert set(texts(found.edits)) == expected
+
+
+def test_a_mistake_in_a_macro_is_not_corrected_in_its_calls() -> None:
+    """Each call could get another value, but all of them are wrong for what the macro does with it."""
+    submission, _ = mutant(WHEEL, "wheel_width / 2}", "wheel_width}")
+    found = search(submission)
+    assert not [edit for edit in found.edits if edit.path == URDF]
 
 
 def test_a_value_that_a_call_lacks_on_a_side_that_nothing_tells() -> None:
