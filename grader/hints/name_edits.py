@@ -22,7 +22,7 @@ _TEXTS = (".py", ".xml", ".yaml", ".yml", ".xacro", ".urdf", ".sdf", ".txt", ".c
 _MAX_KEY = 400  # characters from a key to its value
 _SEPARATED = re.compile(r".*[./:]")
 _MAX_REMAPPINGS = 8  # of a file
-_REMAPPINGS = re.compile(r"\bremappings\s*=\s*\[[^]]*\]")
+_REMAPPINGS = re.compile(r"\bremappings\s*=\s*\[[^][]*\]")
 _PAIR = re.compile(r"""\(\s*(["'][^"'\n]+["'])\s*,\s*(["'][^"'\n]+["'])\s*,?\s*\)""")
 _FROM_TO = re.compile(r"""\bfrom\s*[=:]\s*(["']?[\w~/]+["']?)\s*,?\s*\bto\s*[=:]\s*(["']?[\w~/]+["']?)(?![^\s},>/])""")
 _WITH_ALL = (f"/{CMAKE}", f"/{MANIFEST}")  # files in which a name stands several times for one thing

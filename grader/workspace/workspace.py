@@ -2,7 +2,7 @@
 
 import posixpath
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
@@ -27,7 +27,7 @@ from grader.xml.parsing import Element, XmlFault, XmlFile
 
 _SYSTEM = re.compile(r"<ros2_control\b")
 MANAGER, SPAWNERS = "controller_manager", ("spawner", "spawner.py")
-_MACRO = re.compile(r"<xacro:macro\s[^>]*?\bname=[\"'](?:xacro:)?([\w.-]+)[\"'].*?</xacro:macro>", re.DOTALL)
+_NAME = re.compile(r"\bname=[\"'](?:xacro:)?([\w.-]+)[\"']")
 _CALLED = re.compile(r"<xacro:(?:[\w-]+\.)*([\w-]+)")
 _FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
 _MAX_FILES = 60  # of one kind in a package
@@ -180,7 +180,8 @@ class Workspace:
         text = "".join(it.text for it in self.xacro_sources)
         called = {*_CALLED.findall(text)}
         if "call" not in called:  # <xacro:call macro="..."/> may compute the name
-            text = _MACRO.sub(lambda it: it[0] if it[1] in called else "", text)
+            *macros, rest = text.split("</xacro:macro>")
+            text = "".join([*(_without_macro(it, called) for it in macros), rest])
         written = len(_SYSTEM.findall(text))
         systems = len(list(self.robot_root.iterchildren("ros2_control"))) if self.robot_root is not None else -1
         return written <= systems and not self.has_other_robots
@@ -355,6 +356,13 @@ class Workspace:
 def workspace_of(submission: Submission) -> Workspace:
     """Return the workspace of a submission, which is read once."""
     return Workspace(submission)
+
+
+def _without_macro(text: str, called: Collection[str]) -> str:
+    """Return a text, which ends where a macro ends, without the macro if nothing calls it."""
+    before, _, macro = text.partition("<xacro:macro")
+    name = _NAME.search(macro.partition(">")[0])
+    return before if name is not None and name[1] not in called else text
 
 
 def _blank(found: re.Match[str]) -> str:

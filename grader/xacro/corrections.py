@@ -25,6 +25,7 @@ _EXPRESSION = re.compile(r"\$\{([^{}]*)\}")  # no brace inside: else many that o
 _NAME = re.compile(r"[^\W\d]\w*")
 _NUMBER = re.compile(r"-?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _PRODUCT = re.compile(r"-?\s*[\w.]+(?:\s*[*/]\s*[\w.]+)*")
+_MAX_MIRRORED = 6  # ways to negate a number of what another call gives
 _WORD = re.compile(r"(?:\$\{[^{}]*\}|[^\s$])+")
 _DECIMAL_COMMA = re.compile(r"\s*[-+]?\d+,\d+\s*")
 # A separator between parameters, which xacro takes for a part of the name or of the default before it.
@@ -293,8 +294,8 @@ def values_of_other_calls(
         given = other.attributes
         if own is not None and other is not own and other.tag == own.tag and set(lacking) <= given.keys():
             copied = {name: given[name] for name in lacking}
-            mirrored = [{**copied, name: new} for name in lacking for new in _mirrored(given[name])]
-            for values in (copied, *mirrored):
+            mirrored = ({**copied, name: new} for name in lacking for new in _mirrored(given[name]))
+            for values in (copied, *islice(mirrored, _MAX_MIRRORED)):
                 yield _give(place, values), values
 
 
