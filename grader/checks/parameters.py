@@ -50,8 +50,8 @@ def parameter_is(
         one_of: Values of which it should have one.
         has: Values that a list should have among its items.
         measure: The measure of the robot that the value should equal: the radius or length of the shape of the first
-            link, the distance between two links, or a limit of the joint that moves the first one. A wheel is where
-            the centre of its shape is, any other link where its frame is.
+            link, the distance between two links, or a limit of the joint that moves the first one. Of a wheel, the
+            centre of its shape counts; of any other link, its frame.
         links: The links that are measured.
         tolerance: How far a number may be off, in the number's own unit.
         where_given: Whether a node that does not get the parameter passes, for `carried`, if no parameter file has

@@ -1,5 +1,6 @@
 """YAML with the location of each value, read by event: neither depth nor aliases use unlimited time or memory."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
@@ -10,6 +11,7 @@ from grader.source import Location, Source
 
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _MAX_EVENTS = 25_000
+_LIKE_AN_ALIAS = re.compile(r"(?<![\w/*])\*\w")  # not the key /**
 _MAX_ALIASES = 1000
 _MAX_DEPTH = 200  # the parser gets slower with each open bracket
 _TAGS = frozenset(
@@ -135,7 +137,8 @@ def read_yaml(data: bytes, path: str) -> YamlNode:
 
 def first_alias(source: Source) -> tuple[str, Location] | None:
     """Return the name and the place of the first alias in a text that is YAML; None without one."""
-    for event in yaml.parse(source.text.removeprefix("\ufeff"), Loader=_LOADER) if "*" in source.text else ():
+    may_have_one = _LIKE_AN_ALIAS.search(source.text) is not None
+    for event in yaml.parse(source.text.removeprefix("\ufeff"), Loader=_LOADER) if may_have_one else ():
         if isinstance(event, yaml.AliasEvent):
             return event.anchor or "", _location_of(source, event.start_mark)
     return None

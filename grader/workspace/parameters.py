@@ -224,9 +224,10 @@ def _required(workspace: Workspace, package: Package, node: StartedNode) -> Iter
             message = f"{node.executable} stops without the parameter {name}, which it does not get{there}"
             yield Mismatch("parameters", message, node.location, corrections=either)
         robot = found.values.get("robot_description")
-        text = robot.value if robot is not None else ""
-        if robot is not None and isinstance(text, str) and text.strip() and not text.lstrip().startswith("<"):
-            message = "robot_description is not the text of the robot, without which robot_state_publisher stops"
+        text = robot.value.strip() if robot is not None and isinstance(robot.value, str) else ""
+        if robot is not None and text and not text.startswith("<"):
+            advice = "give it the content of the file, not the path"
+            message = f"robot_description is no XML, so {node.executable} stops: {advice}"
             yield Mismatch("parameters", message, robot.location)
 
 

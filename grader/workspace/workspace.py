@@ -289,7 +289,7 @@ class Workspace:
         paths = (self.source_of(it.path) for it in given if it.path)
         return frozenset(path for path in paths if path is not None)
 
-    @property
+    @cached_property
     def unknown_nodes(self) -> str:
         """Why launch files may start more nodes or controllers; empty where they do not."""
         reasons = [it.message for _, launch in self.roots for it in launch.unknown]

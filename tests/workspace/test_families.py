@@ -90,7 +90,8 @@ WRONG: list[tuple[Family, str, list[Edit]]] = [
        "  threshold: 0.5")]),
     ("parameters", "ROS 2 reads no aliases in parameter files: write the value in place of *wheels",
      [(_CONTROLLERS, "[left_wheel_joint]", "&wheels [left_wheel_joint]"), (_CONTROLLERS, "[right_wheel_joint]", "*wheels")]),
-    ("parameters", "robot_description is not the text of the robot, without which robot_state_publisher stops",
+    ("parameters", ("robot_description is no XML, so robot_state_publisher stops: give it the content of the file, not the"
+     " path"),
      [(_ROBOT_LAUNCH, "ParameterValue(description, value_type=str)", "robot")]),
     ("parameters", ("the parameter 'threshold' is given an integer; its node declares a double"
      " (cart_nodes/cart_nodes/detector.py:10), and stops"), [("config/detector.yaml", "threshold: 0.5", "threshold: 1")]),
