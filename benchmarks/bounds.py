@@ -66,7 +66,9 @@ def inputs(folder: Path) -> Iterator[Row]:
 
 def measured(arguments: tuple[str | Path, ...]) -> tuple[float, int]:
     """Return how many seconds and megabytes a command takes."""
-    done = subprocess.run([sys.executable, "-c", _MEASURE, *arguments], capture_output=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", _MEASURE, *arguments], capture_output=True, check=True
+    )
     seconds, megabytes = json.loads(done.stdout)
     return seconds, megabytes
 
@@ -86,7 +88,10 @@ def main() -> None:
                 is_above = seconds - bare > row.times * SECONDS or megabytes > row.times * MEGABYTES
                 if not is_above:
                     break
-            print(f"{seconds:6.2f} s {megabytes:5} MB  {row.name}{' ABOVE' * is_above * (row.times > 0)}", flush=True)
+            print(
+                f"{seconds:6.2f} s {megabytes:5} MB  {row.name}{' ABOVE' * is_above * (row.times > 0)}",
+                flush=True,
+            )
             code |= is_above and row.times > 0
     sys.exit(code)
 

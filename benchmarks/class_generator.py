@@ -122,9 +122,17 @@ def _quarter_turns() -> Iterator[Variant]:
     rolls = ("-1.5708", "-1.5705", "-1.570796326794897", "4.712389", "-7.853982")
     for side, joint in (("left", _LEFT), ("right", _RIGHT)):
         for rpy in (*(f"{roll} 0 0" for roll in rolls), "1.57159265 3.14159265 3.14159265"):
-            yield Variant(f"{side}-turned-by-{rpy}", 1, f"{side}-angle", "", (Edit(joint, "-1.57 0 0", rpy),))
+            yield Variant(
+                f"{side}-turned-by-{rpy}", 1, f"{side}-angle", "", (Edit(joint, "-1.57 0 0", rpy),)
+            )
         for length in ("2", "0.5", "10"):
-            yield Variant(f"{side}-axis-{length}", 1, f"{side}-axis", "", (Edit(joint, "0 0 1", f"0 0 {length}"),))
+            yield Variant(
+                f"{side}-axis-{length}",
+                1,
+                f"{side}-axis",
+                "",
+                (Edit(joint, "0 0 1", f"0 0 {length}"),),
+            )
 
 
 # fmt: off
@@ -267,7 +275,9 @@ _ORIGIN = re.compile(r'(xyz="[^"]*") (rpy="[^"]*")')
 def elements() -> dict[str, str]:
     """Return the elements of the reference below <robot>, by name, without comments."""
     text = re.sub(r"<!--.*?-->", "", (PACKAGE / URDF).read_text(encoding="utf-8"), flags=re.DOTALL)
-    found = re.finditer(r'<(material|link|joint) name="([^"]+)"[^>]*?(?:/>|>.*?</\1>)', text, re.DOTALL)
+    found = re.finditer(
+        r'<(material|link|joint) name="([^"]+)"[^>]*?(?:/>|>.*?</\1>)', text, re.DOTALL
+    )
     return {match[2]: re.sub(r" +\n", "\n", match[0]) for match in found}
 
 
@@ -275,7 +285,9 @@ def elements() -> dict[str, str]:
 def criteria() -> tuple[str, ...]:
     """Return the criteria of a URDF, in the order of the rubric."""
     rubric = tomllib.loads(RUBRIC.read_text(encoding="utf-8"))
-    return tuple(criterion["id"] for criterion in rubric["criterion"] if criterion["part"] == "task1")
+    return tuple(
+        criterion["id"] for criterion in rubric["criterion"] if criterion["part"] == "task1"
+    )
 
 
 def make_urdf(dice: Dice, author: str) -> GeneratedUrdf:
@@ -288,11 +300,18 @@ def make_urdf(dice: Dice, author: str) -> GeneratedUrdf:
     if throw < 0.94:
         count = 1 + (dice.random() < 0.5) + (dice.random() < 0.25)
         mistakes = chosen(dice, _MISTAKES, count)
-        return built(dice, author, "mistaken", (*mistakes, *chosen(dice, _EQUIVALENTS, dice.below(3), mistakes)))
+        return built(
+            dice,
+            author,
+            "mistaken",
+            (*mistakes, *chosen(dice, _EQUIVALENTS, dice.below(3), mistakes)),
+        )
     return built(dice, author, "broken", (dice.pick(_BROKEN),))
 
 
-def chosen(dice: Dice, bag: Sequence[Variant], count: int, beside: Iterable[Variant] = ()) -> tuple[Variant, ...]:
+def chosen(
+    dice: Dice, bag: Sequence[Variant], count: int, beside: Iterable[Variant] = ()
+) -> tuple[Variant, ...]:
     """Return so many variants, or fewer, of which no two touch the same elements, nor those of `beside`."""
     taken = {part for variant in beside for part in variant.touches.split()}
     found: list[Variant] = []
@@ -309,7 +328,9 @@ def built(dice: Dice, author: str, sort: str, variants: Sequence[Variant]) -> Ge
     parts = dict(elements())
     for variant in variants:
         for edit in variant.edits:
-            parts[edit.element] = parts[edit.element].replace(edit.old, edit.new, 1) if edit.old else ""
+            parts[edit.element] = (
+                parts[edit.element].replace(edit.old, edit.new, 1) if edit.old else ""
+            )
     lost = {criterion for variant in variants for criterion in variant.lost.split()}
     named = tuple(criterion for criterion in criteria() if criterion in lost or _EVERYTHING in lost)
     text = _spoilt(dice, _written(dice, author, parts), variants)
@@ -320,8 +341,13 @@ def _written(dice: Dice, author: str, parts: dict[str, str]) -> str:
     """Return the text of a robot; no two styles change its meaning."""
     texts = _in_order(dice, [part for part in parts.values() if part])
     share = dice.pick((0.0, 0.1, 0.4))
-    blocks = (f"  {dice.pick(_COMMENTS)}\n  {part}" if dice.chance(share) else f"  {part}" for part in texts)
-    body = f'<robot name="my_robot">\n\n{dice.pick((chr(10), chr(10) * 2)).join(blocks)}\n\n</robot>\n'
+    blocks = (
+        f"  {dice.pick(_COMMENTS)}\n  {part}" if dice.chance(share) else f"  {part}"
+        for part in texts
+    )
+    body = (
+        f'<robot name="my_robot">\n\n{dice.pick((chr(10), chr(10) * 2)).join(blocks)}\n\n</robot>\n'
+    )
     body = body.replace("  ", dice.pick(("  ", "  ", "    ", "\t", "")))
     share = dice.pick((0.0, 0.0, 0.2, 0.6))
     if share:
@@ -345,14 +371,21 @@ def _in_order(dice: Dice, texts: list[str]) -> list[str]:
 
 def _other_digits(dice: Dice, numbers: str, share: float) -> str:
     """Return the same numbers, some of them in other digits."""
-    pieces = [_other_form(dice, piece) if dice.chance(share) else piece for piece in numbers.split()]
+    pieces = [
+        _other_form(dice, piece) if dice.chance(share) else piece for piece in numbers.split()
+    ]
     return ("  " if dice.chance(0.1) else " ").join(pieces)
 
 
 def _other_form(dice: Dice, number: str) -> str:
     if "." not in number:
         return number + dice.pick((".", ".0", ".00", "e0"))
-    forms = (number + "0", number + "00", number + "e0", number.replace("0.", ".", 1) if "0." in number[:3] else number)
+    forms = (
+        number + "0",
+        number + "00",
+        number + "e0",
+        number.replace("0.", ".", 1) if "0." in number[:3] else number,
+    )
     return dice.pick(forms)
 
 
@@ -460,9 +493,13 @@ def zipped(items: Iterable[Item]) -> bytes:
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
         for item in items:
-            info = zipfile.ZipInfo(item.path if item.data is not None or item.link else f"{item.path}/")
+            info = zipfile.ZipInfo(
+                item.path if item.data is not None or item.link else f"{item.path}/"
+            )
             info.create_system, mode = 3, 0o120777 if item.link else 0o100644
-            info.external_attr = mode << 16 if item.data is not None or item.link else 0o40755 << 16 | 0x10
+            info.external_attr = (
+                mode << 16 if item.data is not None or item.link else 0o40755 << 16 | 0x10
+            )
             archive.writestr(info, item.link or item.data or b"")
     return buffer.getvalue()
 
@@ -473,7 +510,13 @@ def tarred(items: Iterable[Item]) -> bytes:
     with tarfile.open(fileobj=buffer, mode="w", format=tarfile.PAX_FORMAT) as archive:
         for item in items:
             info = tarfile.TarInfo(item.path)
-            info.type = tarfile.SYMTYPE if item.link else tarfile.REGTYPE if item.data is not None else tarfile.DIRTYPE
+            info.type = (
+                tarfile.SYMTYPE
+                if item.link
+                else tarfile.REGTYPE
+                if item.data is not None
+                else tarfile.DIRTYPE
+            )
             info.linkname, info.size = item.link, len(item.data or b"")
             archive.addfile(info, io.BytesIO(item.data or b""))
     data = buffer.getvalue()
@@ -485,7 +528,10 @@ def stored(data: bytes) -> bytes:
     """Return an uncompressed deflate stream: zlib's output differs between versions."""
     pieces = [data[start : start + 65535] for start in range(0, len(data), 65535)] or [b""]
     last = len(pieces) - 1
-    heads = (struct.pack("<B2H", index == last, len(piece), 65535 - len(piece)) for index, piece in enumerate(pieces))
+    heads = (
+        struct.pack("<B2H", index == last, len(piece), 65535 - len(piece))
+        for index, piece in enumerate(pieces)
+    )
     return b"".join(head + piece for head, piece in zip(heads, pieces, strict=True))
 
 
@@ -495,22 +541,30 @@ def bomb() -> bytes:
     head, tail = bytes.fromhex("edc101010000008220ffaf6e484001"), bytes.fromhex("f706")
     data = head + bytes(65_000) + tail
     zeros = zlib.decompressobj(-15).decompress(data)
-    common = struct.pack("<5H3I2H", 20, 0, 8, 0, 0x21, zlib.crc32(zeros), len(data), len(zeros), 13, 0)
+    common = struct.pack(
+        "<5H3I2H", 20, 0, 8, 0, 0x21, zlib.crc32(zeros), len(data), len(zeros), 13, 0
+    )
     local = b"PK\3\4" + common + b"my_robot.urdf" + data
     central = b"PK\1\2\x14\0" + common + struct.pack("<3H2I", 0, 0, 0, 0, 0) + b"my_robot.urdf"
-    return local + central + b"PK\5\6" + struct.pack("<4H2IH", 0, 0, 1, 1, len(central), len(local), 0)
+    return (
+        local + central + b"PK\5\6" + struct.pack("<4H2IH", 0, 0, 1, 1, len(central), len(local), 0)
+    )
 
 
 def picture(dice: Dice) -> bytes:
     """Return a PNG of one pixel."""
 
     def chunk(name: bytes, data: bytes) -> bytes:
-        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+        return (
+            struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+        )
 
     pixel = bytes([0, dice.below(256), dice.below(256), dice.below(256)])
     packed = b"\x78\x01" + stored(pixel) + struct.pack(">I", zlib.adler32(pixel))
     size = struct.pack(">2I5B", 1, 1, 8, 2, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", size) + chunk(b"IDAT", packed) + chunk(b"IEND", b"")
+    return (
+        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", size) + chunk(b"IDAT", packed) + chunk(b"IEND", b"")
+    )
 
 
 # --- What is submitted ------------------------------------------------------------------------------------------------
@@ -540,14 +594,18 @@ class ItemFactory:
 
 @cache
 def _package() -> tuple[Item, ...]:
-    files = sorted(path for path in PACKAGE.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
+    files = sorted(
+        path for path in PACKAGE.rglob("*") if path.is_file() and "__pycache__" not in path.parts
+    )
     return tuple(Item(path.relative_to(PACKAGE).as_posix(), path.read_bytes()) for path in files)
 
 
 def package(desk: ItemFactory, top: str = "my_robot") -> list[Item]:
     """Return the package with the student's URDF."""
     urdf = desk.urdf()
-    return [Item(f"{top}/{item.path}", urdf if item.path == URDF else item.data) for item in _package()]
+    return [
+        Item(f"{top}/{item.path}", urdf if item.path == URDF else item.data) for item in _package()
+    ]
 
 
 def workspace(desk: ItemFactory) -> list[Item]:
@@ -589,16 +647,30 @@ def _nested(count: int, data: bytes) -> bytes:
 def _wrapped(desk: ItemFactory) -> list[Item]:
     """Return a zip as macOS makes it."""
     inside = [Item(f"Lab 6/{item.path}", item.data) for item in package(desk)]
-    return [Item("lab6.zip", zipped([*inside, Item("__MACOSX/Lab 6/._my_robot", desk.garbage(100))]))]
+    return [
+        Item("lab6.zip", zipped([*inside, Item("__MACOSX/Lab 6/._my_robot", desk.garbage(100))]))
+    ]
 
 
 def _escaping(desk: ItemFactory) -> list[Item]:
-    variants = ("../../escaped.urdf", "/escaped.urdf", "C:\\escaped.urdf", "a/../../../escaped.urdf")
-    return [*(Item(path, desk.uncertain(desk.urdf())) for path in variants), Item("notes.txt", b"nothing")]
+    variants = (
+        "../../escaped.urdf",
+        "/escaped.urdf",
+        "C:\\escaped.urdf",
+        "a/../../../escaped.urdf",
+    )
+    return [
+        *(Item(path, desk.uncertain(desk.urdf())) for path in variants),
+        Item("notes.txt", b"nothing"),
+    ]
 
 
 def _links_out(_: ItemFactory) -> list[Item]:
-    return [Item("my_robot", link="../../.."), Item("my_robot.urdf", link="/etc/hostname"), Item("again", link=".")]
+    return [
+        Item("my_robot", link="../../.."),
+        Item("my_robot.urdf", link="/etc/hostname"),
+        Item("again", link="."),
+    ]
 
 
 def _cut(data: bytes) -> bytes:
@@ -637,10 +709,16 @@ KINDS: dict[str, tuple[int, Kind]] = {
     "package-zip": (14, _once(lambda desk: [Item("my_robot.zip", zipped(package(desk)))])),
     "wrapped-zip": (4, _once(_wrapped)),
     "workspace": (6, _once(workspace)),
-    "workspace-zip": (4, _once(lambda desk: [Item("roscourse_sim_ws.zip", zipped(workspace(desk)))])),
+    "workspace-zip": (
+        4,
+        _once(lambda desk: [Item("roscourse_sim_ws.zip", zipped(workspace(desk)))]),
+    ),
     "tar-gz": (4, _once(lambda desk: [Item("my_robot.tar.gz", tarred(package(desk)))])),
     "loose-files": (5, _once(lambda desk: [*single(desk), *loose_files(desk)])),
-    "odd-folder": (3, _once(lambda desk: [Item("Neuer Ordner (2)/end gültig/robot final.urdf", desk.urdf())])),
+    "odd-folder": (
+        3,
+        _once(lambda desk: [Item("Neuer Ordner (2)/end gültig/robot final.urdf", desk.urdf())]),
+    ),
     "pictures-only": (4, _folder(loose_files)),
     "two-attempts": (3, lambda desk: [single(desk), single(desk)]),
     "three-zips": (2, lambda desk: [[Item("lab6.zip", zipped(package(desk)))] for _ in range(3)]),
@@ -659,14 +737,22 @@ KINDS: dict[str, tuple[int, Kind]] = {
     "links-out-zip": (1, _raw("lab6.zip", lambda desk: zipped(_links_out(desk)))),
     "links-out-tar": (1, _raw("lab6.tar.gz", lambda desk: tarred(_links_out(desk)))),
     "deep-folders": (1, _folder(lambda desk: [Item("d/" * 80 + "my_robot.urdf", desk.urdf())])),
-    "deep-zip": (1, _raw("lab6.zip", lambda desk: zipped([Item("d/" * 400 + "my_robot.urdf", desk.urdf())]))),
+    "deep-zip": (
+        1,
+        _raw("lab6.zip", lambda desk: zipped([Item("d/" * 400 + "my_robot.urdf", desk.urdf())])),
+    ),
     "garbage": (1, _raw("my_robot.urdf", lambda desk: desk.garbage(1024 * 1024))),
     "too-large": (1, _raw("my_robot.urdf", lambda desk: desk.urdf() + b" " * (1024 * 1024))),
     "deep-xml": (1, _raw("my_robot.urdf", lambda _: b'<robot name="a">' + b"<link>" * 150_000)),
     "billion-laughs": (1, _raw("my_robot.urdf", lambda _: _laughs())),
     "nul-bytes": (1, _raw("my_robot.urdf", lambda desk: desk.urdf().replace(b"<link", b"\0<link"))),
     "utf-16": (1, _raw("my_robot.urdf", lambda desk: desk.urdf().decode().encode("utf-16-le"))),
-    "latin-text": (1, _raw("my_robot.urdf", lambda desk: desk.urdf().replace(b"<robot", b"<!-- \xfc -->\n<robot"))),
+    "latin-text": (
+        1,
+        _raw(
+            "my_robot.urdf", lambda desk: desk.urdf().replace(b"<robot", b"<!-- \xfc -->\n<robot")
+        ),
+    ),
     "latin-name": (1, _folder(lambda desk: [Item("\udcfcbung/m\udcf6ller.urdf", desk.urdf())])),
 }
 
@@ -731,7 +817,9 @@ def in_canvas(submission: GeneratedSubmission) -> Iterator[Item]:
             name = f"{stem}-{number}{dot}{ending}" if number else item.path
             attachment = 10 * (10 * who.number + number) + position + 1_000_000
             late = "_LATE" if who.is_late else ""
-            yield item._replace(path=f"{canvas_name(who)}{late}_{canvas_id(who)}_{attachment}_{name}")
+            yield item._replace(
+                path=f"{canvas_name(who)}{late}_{canvas_id(who)}_{attachment}_{name}"
+            )
 
 
 def in_moodle(submission: GeneratedSubmission) -> Iterator[Item]:
@@ -759,7 +847,11 @@ def moodle_id(who: Person) -> int:
 def canvas_name(who: Person) -> str:
     """Return the sortable name as Canvas writes it into file names: lower-case letters with their accents, and digits only."""
     name = re.sub(r"_(\d+)_", r"\1", f"{who.last}, {who.first}")
-    kept = (letter for letter in name if letter.isalnum() or letter == "_" or unicodedata.category(letter)[0] == "M")
+    kept = (
+        letter
+        for letter in name
+        if letter.isalnum() or letter == "_" or unicodedata.category(letter)[0] == "M"
+    )
     return "".join(kept).lower()
 
 
@@ -831,7 +923,15 @@ def roster(people: Iterable[Person]) -> str:
     """Return an instructor's roster."""
     header = ["id", "name", "email", "login", "canvas id", "moodle id", "late"]
     rows = (
-        [_sis(who), who.name, _email(who), who.login, canvas_id(who), moodle_id(who), "yes" if who.is_late else ""]
+        [
+            _sis(who),
+            who.name,
+            _email(who),
+            who.login,
+            canvas_id(who),
+            moodle_id(who),
+            "yes" if who.is_late else "",
+        ]
         for who in people
     )
     return _csv(header, rows, "\n")
@@ -841,24 +941,42 @@ def canvas_gradebook(people: Iterable[Person]) -> str:
     """Return a gradebook as Canvas exports it, with one assignment and no grades."""
     header = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "Lab 6 (98765)"]
     points = ["    Points Possible", "", "", "", "", "100.00"]
-    rows = ([f"{who.last}, {who.first}", canvas_id(who), _sis(who), who.login, "Lab group 1", ""] for who in people)
+    rows = (
+        [f"{who.last}, {who.first}", canvas_id(who), _sis(who), who.login, "Lab group 1", ""]
+        for who in people
+    )
     return _csv(header, [points, *rows], "\n")
 
 
 def moodle_worksheet(people: Iterable[Person], submitted: set[Person]) -> str:
     """Return a Moodle grading worksheet without grades."""
     header = [
-        "Identifier", "Full name", "Email address", "Status", "Grade", "Maximum grade", "Grade can be changed",
-        "Last modified (submission)", "Last modified (grade)", "Feedback comments",
-    ]  # fmt: skip
+        "Identifier",
+        "Full name",
+        "Email address",
+        "Status",
+        "Grade",
+        "Maximum grade",
+        "Grade can be changed",
+        "Last modified (submission)",
+        "Last modified (grade)",
+        "Feedback comments",
+    ]
     rows = (
         [
-            f"Participant {moodle_id(who)}", who.name, _email(who),
-            "Submitted for grading" if who in submitted else "No submission", "", "100.00", "Yes",
-            "Tuesday, 1 September 2026, 10:00 AM" if who in submitted else "-", "-", "",
+            f"Participant {moodle_id(who)}",
+            who.name,
+            _email(who),
+            "Submitted for grading" if who in submitted else "No submission",
+            "",
+            "100.00",
+            "Yes",
+            "Tuesday, 1 September 2026, 10:00 AM" if who in submitted else "-",
+            "-",
+            "",
         ]
         for who in people
-    )  # fmt: skip
+    )
     return "\ufeff" + _csv(header, rows, "\n")
 
 
@@ -892,20 +1010,35 @@ def expectation(written: WrittenSubmission) -> dict[str, Any]:
 
 def main() -> None:
     """Write a class, and the files of an LMS and of a test next to it."""
-    parser = argparse.ArgumentParser(description="Generate a class of invented submissions of Lab 6.")
-    parser.add_argument("folder", type=Path, help="the class folder to write")
-    parser.add_argument("--count", type=int, default=1000, help="number of students (default: 1000)")
-    parser.add_argument("--seed", type=int, default=1, help="seed of the random choices (default: 1)")
-    parser.add_argument(
-        "--kind", choices=("urdf", "mixed"), default="urdf", help="URDFs only, or packages and damaged files as well"
+    parser = argparse.ArgumentParser(
+        description="Generate a class of invented submissions of Lab 6."
     )
-    parser.add_argument("--layout", choices=LAYOUTS, default="folders", help="layout of the class folder")
+    parser.add_argument("folder", type=Path, help="the class folder to write")
     parser.add_argument(
-        "--expected", type=Path, help="write the expected lost criteria of each submission to this JSON file"
+        "--count", type=int, default=1000, help="number of students (default: 1000)"
+    )
+    parser.add_argument(
+        "--seed", type=int, default=1, help="seed of the random choices (default: 1)"
+    )
+    parser.add_argument(
+        "--kind",
+        choices=("urdf", "mixed"),
+        default="urdf",
+        help="URDFs only, or packages and damaged files as well",
+    )
+    parser.add_argument(
+        "--layout", choices=LAYOUTS, default="folders", help="layout of the class folder"
+    )
+    parser.add_argument(
+        "--expected",
+        type=Path,
+        help="write the expected lost criteria of each submission to this JSON file",
     )
     parser.add_argument("--roster", type=Path, help="write a roster to this CSV file")
     parser.add_argument(
-        "--lms", type=Path, help="write a Canvas gradebook or Moodle grading worksheet to this CSV file"
+        "--lms",
+        type=Path,
+        help="write a Canvas gradebook or Moodle grading worksheet to this CSV file",
     )
     given = parser.parse_args()
     made = make_class(given.folder, given.count, given.seed, given.kind, given.layout)
@@ -929,12 +1062,18 @@ def write_beside(
     students = [submission.person for submission in written[:count]]
     if expected:
         known = {submission.person.key: expectation(submission) for submission in written}
-        expected.write_text(json.dumps(known, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+        expected.write_text(
+            json.dumps(known, indent=1, ensure_ascii=False) + "\n", encoding="utf-8"
+        )
     if people:
         people.write_bytes(roster(students).encode())
     if lms:
         submitted = {submission.person for submission in written if submission.paths}
-        text = moodle_worksheet(students, submitted) if layout == "moodle" else canvas_gradebook(students)
+        text = (
+            moodle_worksheet(students, submitted)
+            if layout == "moodle"
+            else canvas_gradebook(students)
+        )
         lms.write_bytes(text.encode())
 
 

@@ -40,9 +40,11 @@ def chain(links: int) -> str:
 
 def _segment(number: int) -> str:
     parent = "base_link" if number < 4 else f"segment_{number - 3}"
-    shape = ('<box size="0.1 0.08 0.2"/>', '<cylinder radius="0.05" length="0.2"/>', '<sphere radius="0.07"/>')[
-        number % 3
-    ]
+    shape = (
+        '<box size="0.1 0.08 0.2"/>',
+        '<cylinder radius="0.05" length="0.2"/>',
+        '<sphere radius="0.07"/>',
+    )[number % 3]
     kind = ("revolute", "continuous", "prismatic")[number // 3 % 3]
     red, green = number % 7 / 7, number % 11 / 11
     return f"""
@@ -68,7 +70,12 @@ def pages() -> Iterator[tuple[str, str, float]]:
         yield name, *_timed(grade(rubric, submission))
     yield (
         f"{LINKS} links",
-        *_timed(grade(rubric, read_submission(chain(LINKS).encode(), identity="chain", path="my_robot.urdf"))),
+        *_timed(
+            grade(
+                rubric,
+                read_submission(chain(LINKS).encode(), identity="chain", path="my_robot.urdf"),
+            )
+        ),
     )
 
 

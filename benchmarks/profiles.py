@@ -79,7 +79,10 @@ def case(name: str, folder: Path) -> Counter[str]:
         from grader.classroom.batch_worker import ClassContext, Task, grade_all
         from grader.grading.rubric import load_rubric
 
-        rubric, tasks = load_rubric("lab6"), [Task(path.stem, 0, (path.name,)) for path in sorted(folder.iterdir())]
+        rubric, tasks = (
+            load_rubric("lab6"),
+            [Task(path.stem, 0, (path.name,)) for path in sorted(folder.iterdir())],
+        )
         work = partial(grade_all, ClassContext((str(folder),), rubric.data, str(rubric.path)))
         work(tasks[:30])
         return sampled(lambda: [work(tasks) for _ in range(3)])
@@ -87,7 +90,9 @@ def case(name: str, folder: Path) -> Counter[str]:
         return sampled(lambda: command("grade", str(URDF)))
     jobs = "1" if name == "batch-1" else "2"
     return sampled(
-        lambda: command("batch", str(folder), "--gradebook", str(folder.with_suffix(".book")), "--jobs", jobs)
+        lambda: command(
+            "batch", str(folder), "--gradebook", str(folder.with_suffix(".book")), "--jobs", jobs
+        )
     )
 
 
@@ -97,14 +102,18 @@ CASES = ("cold", *_WARM, "worker", "batch-1", "batch-2")
 def main() -> None:
     """Print the shares of each case as a table."""
     parser = argparse.ArgumentParser(description="Print where the time goes.")
-    parser.add_argument("cases", nargs="*", metavar="CASE", help=f"any of: {', '.join(CASES)}; default: all")
+    parser.add_argument(
+        "cases", nargs="*", metavar="CASE", help=f"any of: {', '.join(CASES)}; default: all"
+    )
     parser.add_argument("--root", type=Path, default=ROOT, help="the checkout to look at")
     parser.add_argument("--folder", type=Path, help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.folder is not None:  # in a process of its own
         print(json.dumps(case(given.cases[0], given.folder)), file=sys.__stdout__)
         return
-    from class_generator import make_class  # late, like all that loads the grader: a case starts without it
+    from class_generator import (
+        make_class,
+    )  # late, like all that loads the grader: a case starts without it
 
     with tempfile.TemporaryDirectory() as top:
         folder = Path(top, "class")
@@ -114,13 +123,19 @@ def main() -> None:
             for _ in range(_ROUNDS.get(name.partition("-")[0], 1)):
                 shutil.rmtree(folder.with_suffix(".book"), ignore_errors=True)
                 words = (sys.executable, "-P", __file__, name, "--folder", folder)
-                environment = {**os.environ, "PYTHONPATH": f"{given.root}{os.pathsep}{Path(__file__).parent}"}
-                done = subprocess.run(words, check=True, capture_output=True, text=True, env=environment)
+                environment = {
+                    **os.environ,
+                    "PYTHONPATH": f"{given.root}{os.pathsep}{Path(__file__).parent}",
+                }
+                done = subprocess.run(
+                    words, check=True, capture_output=True, text=True, env=environment
+                )
                 seen.update(json.loads(done.stdout))
             total = seen.total()
             shares = (f"{part} {100 * count / total:.0f}" for part, count in seen.most_common())
             print(
-                f"| {name} | {', '.join(share for share in shares if float(share.split()[-1]) >= _LEAST)} |", flush=True
+                f"| {name} | {', '.join(share for share in shares if float(share.split()[-1]) >= _LEAST)} |",
+                flush=True,
             )
 
 

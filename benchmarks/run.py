@@ -77,13 +77,18 @@ class Bench:
         runs = dict(commands)
         if self.before is not None:
             for name, command in commands.items():
-                if "grader" in command.words and name != "again":  # its gradebook is of this version
-                    runs[f"{name} before"] = command._replace(environment={"PYTHONPATH": str(self.before)})
+                if (
+                    "grader" in command.words and name != "again"
+                ):  # its gradebook is of this version
+                    runs[f"{name} before"] = command._replace(
+                        environment={"PYTHONPATH": str(self.before)}
+                    )
         times = in_turn({name: command.seconds for name, command in runs.items()}, self.rounds)
         for name in commands:
             if f"{name} before" in times:
                 print(
-                    f"  {name}: {ratio(times[f'{name} before'], times[name]):.2f} times as fast as before", flush=True
+                    f"  {name}: {ratio(times[f'{name} before'], times[name]):.2f} times as fast as before",
+                    flush=True,
                 )
         return times
 
@@ -95,17 +100,23 @@ class Bench:
                 pass
         return folder
 
-    def batch(self, count: int, *options: str | Path, book: Path | None = None, word: str = "graded") -> Command:
+    def batch(
+        self, count: int, *options: str | Path, book: Path | None = None, word: str = "graded"
+    ) -> Command:
         """Return the grading of a class, into a new gradebook by default."""
         path = book or self.top / "book"
         prepare = (lambda: forget(path)) if book is None else bool
-        return self.grader("batch", self.class_of(count), "--gradebook", path, *options, word=word, prepare=prepare)
+        return self.grader(
+            "batch", self.class_of(count), "--gradebook", path, *options, word=word, prepare=prepare
+        )
 
     @cached_property
     def warm(self) -> dict[str, list[float]]:
         """The times of gradings in a running process, of several such processes."""
         times: dict[str, list[float]] = {}
-        script = Command((sys.executable, _HERE / "warm.py", "5"), environment={"PYTHONPATH": str(ROOT)})
+        script = Command(
+            (sys.executable, _HERE / "warm.py", "5"), environment={"PYTHONPATH": str(ROOT)}
+        )
         for _ in range(max(1, self.rounds // 5)):
             for name, values in json.loads(script.output()).items():
                 times.setdefault(name, []).extend(values)
@@ -120,7 +131,10 @@ def cold(bench: Bench) -> Iterator[Row]:
     (folder / "pytest.ini").write_text("[pytest]\n")
     asserts = {
         name: Command(
-            (python, "-m", "pytest", "-q", "-p", "no:cacheprovider", folder / f"test_{name}.py"), 0, "6 passed", urdf
+            (python, "-m", "pytest", "-q", "-p", "no:cacheprovider", folder / f"test_{name}.py"),
+            0,
+            "6 passed",
+            urdf,
         )
         for name in ("urdf_parser_py", "yourdfpy")
     }
@@ -134,16 +148,23 @@ def cold(bench: Bench) -> Iterator[Row]:
     for name in ("urdf_parser_py", "yourdfpy"):
         figure = f"cold `grade`, times as fast as pytest with six asserts on {name}"
         yield Row(figure, ratio(times[name], times["grade"]))
-    yield Row("cold `grade` against bare imports of its libraries", ratio(times["grade"], times["imports"]))
+    yield Row(
+        "cold `grade` against bare imports of its libraries",
+        ratio(times["grade"], times["imports"]),
+    )
     yield Row("cold `grade --format json` against the same", ratio(times["json"], times["imports"]))
-    yield Row("cold `grade` against an interpreter that starts and ends", ratio(times["grade"], times["bare"]))
+    yield Row(
+        "cold `grade` against an interpreter that starts and ends",
+        ratio(times["grade"], times["bare"]),
+    )
 
 
 def readers(bench: Bench) -> Iterator[Row]:
     """Compare a whole `inspect` with other programs that read the same URDF."""
     commands = {
         name: Command(
-            (sys.executable, "-W", "ignore", "-c", text.format(str(URDF))), word="6" if name != "pinocchio" else "1"
+            (sys.executable, "-W", "ignore", "-c", text.format(str(URDF))),
+            word="6" if name != "pinocchio" else "1",
         )
         for name, text in _READERS.items()
     }
@@ -162,7 +183,11 @@ def warm(bench: Bench) -> Iterator[Row]:
     for figure, above, below in (
         ("warm, bytes to report, against lxml's parse", "bytes to report", "lxml"),
         ("package, warm, against its URDF", "package", "path to report"),
-        ("packages without equal files, warm, against the URDF", "distinct packages", "path to report"),
+        (
+            "packages without equal files, warm, against the URDF",
+            "distinct packages",
+            "path to report",
+        ),
         ("zip, warm, against its URDF", "zip", "path to report"),
         ("xacro, warm, against its expanded URDF", "xacro", "expanded"),
         ("xacro without equal files, warm, against the same", "distinct xacro", "expanded"),
@@ -177,7 +202,9 @@ def hints(bench: Bench) -> Iterator[Row]:
         hints=bench.grader(*arguments, "edit", code=1, word="Change `"),
         none=bench.grader(*arguments, "none", code=1, word="42/70"),
     )
-    yield Row("several mistakes with hints, cold, against without", ratio(times["hints"], times["none"]))
+    yield Row(
+        "several mistakes with hints, cold, against without", ratio(times["hints"], times["none"])
+    )
 
 
 def batch(bench: Bench) -> Iterator[Row]:
@@ -189,7 +216,11 @@ def batch(bench: Bench) -> Iterator[Row]:
         one=bench.batch(count, "--jobs", "1"),
         again=bench.batch(count, book=done, word="unchanged"),
         reports=bench.batch(count, "--reports", bench.top / "reports"),
-        loop=Command(("sh", "-c", _LOOP, _check_urdf(), _readable(bench, count)), word="all", environment=_LIBRARIES),
+        loop=Command(
+            ("sh", "-c", _LOOP, _check_urdf(), _readable(bench, count)),
+            word="all",
+            environment=_LIBRARIES,
+        ),
     )
     figure = f"`batch` of {count}, two workers, times as fast as a loop over check_urdf"
     yield Row(figure, ratio(times["loop"], times["two"]))
@@ -240,7 +271,9 @@ def growth(bench: Bench) -> Iterator[Row]:
     }
     base = min(bench.grader("grade", URDF).processor_seconds() for _ in range(5))
     for kind, (small, large) in sizes.items():
-        low, high = (_INPUTS[kind](bench, size).processor_seconds() - base for size in (small, large))
+        low, high = (
+            _INPUTS[kind](bench, size).processor_seconds() - base for size in (small, large)
+        )
         exponent = math.log(high / max(low, base / 10)) / math.log(large / small)
         yield Row(f"exponent of the time for {kind}, {small:,} to {large:,}", exponent)
 
@@ -248,7 +281,9 @@ def growth(bench: Bench) -> Iterator[Row]:
 def _links(bench: Bench, count: int) -> Command:
     path = bench.top / f"chain-{count}.urdf"
     path.write_text(arm(count))
-    return bench.grader("grade", path, "--max-size", "100000000", "--hints", "none", code=1, word="3/70")
+    return bench.grader(
+        "grade", path, "--max-size", "100000000", "--hints", "none", code=1, word="3/70"
+    )
 
 
 def _files(bench: Bench, count: int) -> Command:
@@ -276,8 +311,11 @@ def _submissions(bench: Bench, count: int) -> Command:
 
 
 _INPUTS: dict[str, Callable[[Bench, int], Command]] = {
-    "submissions": _submissions, "links": _links, "files": _files, "criteria": _criteria,
-}  # fmt: skip
+    "submissions": _submissions,
+    "links": _links,
+    "files": _files,
+    "criteria": _criteria,
+}
 
 
 def arm(links: int) -> str:
@@ -315,17 +353,28 @@ def _check_urdf() -> Path:
 
 _LIBRARIES = {"LD_LIBRARY_PATH": str(_check_urdf().parent.parent / "lib")}
 FIGURES: dict[str, Callable[[Bench], Iterator[Row]]] = {
-    "cold": cold, "readers": readers, "warm": warm, "hints": hints, "batch": batch, "a-thousand": a_thousand, "rubric-test": rubric_test,
-    "memory": memory, "growth": growth,
-}  # fmt: skip
+    "cold": cold,
+    "readers": readers,
+    "warm": warm,
+    "hints": hints,
+    "batch": batch,
+    "a-thousand": a_thousand,
+    "rubric-test": rubric_test,
+    "memory": memory,
+    "growth": growth,
+}
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description="Print every speed that the project claims.")
-    parser.add_argument("figures", nargs="*", metavar="FIGURE", help=f"any of: {', '.join(FIGURES)}; default: all")
+    parser.add_argument(
+        "figures", nargs="*", metavar="FIGURE", help=f"any of: {', '.join(FIGURES)}; default: all"
+    )
     parser.add_argument("--rounds", type=int, default=11)
-    parser.add_argument("--against", type=Path, metavar="FOLDER", help="another checkout to compare with")
+    parser.add_argument(
+        "--against", type=Path, metavar="FOLDER", help="another checkout to compare with"
+    )
     parser.add_argument("--all", action="store_true", help="classes of 100,000 too")
     given = parser.parse_args(arguments)
     unknown = sorted(set(given.figures) - set(FIGURES))

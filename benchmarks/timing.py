@@ -63,13 +63,18 @@ class Command(NamedTuple):
     def check(self, code: int, output: str) -> None:
         """Refuse another exit code, and output without the word."""
         if code != self.code or self.word not in output:
-            raise WrongOutputError(f"{self.words} ended with {code}, expected {self.code} and {self.word!r}:\n{output}")
+            raise WrongOutputError(
+                f"{self.words} ended with {code}, expected {self.code} and {self.word!r}:\n{output}"
+            )
 
     def peak_memory(self) -> int:
         """Run it, and return the most bytes that it and all processes below it use; a shared page counts once."""
         with tempfile.TemporaryFile("w+", encoding="utf-8") as output:
             process = subprocess.Popen(
-                self.words, stdout=output, stderr=output, env=process_environment() | self.environment
+                self.words,
+                stdout=output,
+                stderr=output,
+                env=process_environment() | self.environment,
             )
             peak = 0
             while process.poll() is None:
@@ -82,7 +87,9 @@ class Command(NamedTuple):
 
 def _wait_for_orphans() -> None:
     """Wait for processes that outlive their parents, as worker processes do, so that their time counts, too."""
-    ctypes.CDLL(None).prctl(_SET_CHILD_SUBREAPER, 1, 0, 0, 0)  # from now on they are children of this process
+    ctypes.CDLL(None).prctl(
+        _SET_CHILD_SUBREAPER, 1, 0, 0, 0
+    )  # from now on they are children of this process
     with suppress(ChildProcessError):
         while True:
             os.waitpid(-1, 0)
@@ -90,7 +97,10 @@ def _wait_for_orphans() -> None:
 
 def process_environment() -> dict[str, str]:
     """Return the environment of a process that finds its bytecode ready, as an installed package does."""
-    environment = {**os.environ, "PYTHONPYCACHEPREFIX": str(Path(tempfile.gettempdir()) / "grader-benchmark")}
+    environment = {
+        **os.environ,
+        "PYTHONPYCACHEPREFIX": str(Path(tempfile.gettempdir()) / "grader-benchmark"),
+    }
     environment.pop("PYTHONDONTWRITEBYTECODE", None)
     return environment
 

@@ -87,7 +87,10 @@ CASES = {
     "xacro": Case(from_bytes(XACRO.read_bytes(), XACRO.name), 70, 50),
     "distinct packages": Case(in_rotation(distinct_packages()), 90, 10),
     "distinct xacro": Case(
-        in_rotation(from_bytes(XACRO.read_bytes() + b"<!-- %d -->" % number, XACRO.name) for number in range(_COPIES)),
+        in_rotation(
+            from_bytes(XACRO.read_bytes() + b"<!-- %d -->" % number, XACRO.name)
+            for number in range(_COPIES)
+        ),
         70,
         50,
     ),
@@ -102,7 +105,11 @@ def main(rounds: int) -> None:
         assert points == case.points, f"{name} has {points} points, expected {case.points}"
     data = URDF.read_bytes()
     runs = {name: repeated(case.run, case.times) for name, case in CASES.items()}
-    print(json.dumps(in_turn({"lxml": repeated(lambda: etree.fromstring(data), 1_000), **runs}, rounds)))
+    print(
+        json.dumps(
+            in_turn({"lxml": repeated(lambda: etree.fromstring(data), 1_000), **runs}, rounds)
+        )
+    )
 
 
 if __name__ == "__main__":

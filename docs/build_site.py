@@ -1,6 +1,7 @@
 """Build the site of the documentation: `python docs/build_site.py [FOLDER]`. A warning is an error.
 
-The pages are written for GitHub. Here, what they link to outside of the site leads to the repository.
+The pages are written for GitHub. Here, what they link to outside of the site leads to the
+repository.
 """
 
 import re
@@ -25,7 +26,10 @@ PAGES = {page: page.name for page in [*DOCS.glob("*.md"), *OUTSIDE] if page != O
 PAGES[DOCS / "schemas/README.md"] = "json.md"
 FOLDERS = [DOCS, DOCS / "screenshots", ROOT / "tests/corpus/reports/drawings/expected/files"]
 PICTURES = {
-    picture: picture.name for folder in FOLDERS for picture in folder.iterdir() if picture.suffix in (".svg", ".png")
+    picture: picture.name
+    for folder in FOLDERS
+    for picture in folder.iterdir()
+    if picture.suffix in (".svg", ".png")
 }
 SETTINGS = {
     "project": "grader",
@@ -49,7 +53,8 @@ def build(output: Path) -> None:
     """Build the site into a folder.
 
     Raises:
-        sphinx.errors.SphinxError: There is a warning, such as a link without a target or a page in no section.
+        sphinx.errors.SphinxError: There is a warning, such as a link without a target or a page in
+        no section.
     """
     with TemporaryDirectory() as work:
         source = Path(work, "source")
@@ -82,17 +87,32 @@ def with_links(page: Path, text: str) -> str:
 
 
 def target(page: Path, link: str) -> str:
-    """Return where a relative link of a page leads to: a page or a picture of the site, or a file of the repository."""
+    """Return where a relative link of a page leads to: a page or a picture of the site, or a file
+    of the repository.
+    """
     path = (page.parent / link).resolve(strict=True)
     kind = "tree" if path.is_dir() else "blob"
-    return {**PAGES, **PICTURES}.get(path) or f"{REPOSITORY}/{kind}/main/{path.relative_to(ROOT).as_posix()}"
+    return {**PAGES, **PICTURES}.get(
+        path
+    ) or f"{REPOSITORY}/{kind}/main/{path.relative_to(ROOT).as_posix()}"
 
 
 def with_contents(text: str) -> str:
-    """Return the start page with its sections, and the pages that they link to, as the table of contents."""
+    """Return the start page with its sections, and the pages that they link to, as the table of
+    contents.
+    """
     for section in re.split(r"^## ", text, flags=re.MULTILINE)[1:]:
         pages = dict.fromkeys(re.findall(r"\]\(([\w-]+)\.md\)", section))
-        lines = ["", "```{toctree}", ":hidden:", f":caption: {section.splitlines()[0]}", "", *pages, "```", ""]
+        lines = [
+            "",
+            "```{toctree}",
+            ":hidden:",
+            f":caption: {section.splitlines()[0]}",
+            "",
+            *pages,
+            "```",
+            "",
+        ]
         text += "\n".join(lines)
     return text
 

@@ -1,4 +1,6 @@
-"""Write what is generated into the pages: `python docs/make.py`. The tests fail if a page is out of date."""
+"""Write what is generated into the pages: `python docs/make.py`. The tests fail if a page is out of
+date.
+"""
 
 import re
 from collections.abc import Iterator
@@ -12,11 +14,28 @@ from rich.text import Text
 from grader.checks.registry import own_checks
 from grader.cli.explain import SchemaName
 from grader.grading.grade import grade
-from grader.grading.keys import ADJUSTMENT, CARRIED, CRITERION, DEFAULTS, EVIDENCE, IGNORE, LATE, PART, RUBRIC, TEST
+from grader.grading.keys import (
+    ADJUSTMENT,
+    CARRIED,
+    CRITERION,
+    DEFAULTS,
+    EVIDENCE,
+    IGNORE,
+    LATE,
+    PART,
+    RUBRIC,
+    TEST,
+)
 from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
 from grader.hints.hinting import hinted
-from grader.report.explanations import EFFECTS, EVERY_KIND, default_text, example_blocks, explanation_of
+from grader.report.explanations import (
+    EFFECTS,
+    EVERY_KIND,
+    default_text,
+    example_blocks,
+    explanation_of,
+)
 from grader.report.formats import json_schema
 from grader.report.json_data import to_json
 from grader.report.terminal import render_terminal
@@ -56,7 +75,9 @@ def pages() -> dict[str, str]:
         "problems.md": filled("problems.md", problems()),
         "checks.md": filled("checks.md", checks()),
         "rubric-reference.md": filled("rubric-reference.md", keys()),
-        "grade-one-submission.md": filled("grade-one-submission.md", ["```", terminal(report).rstrip(), "```"]),
+        "grade-one-submission.md": filled(
+            "grade-one-submission.md", ["```", terminal(report).rstrip(), "```"]
+        ),
         "report.svg": picture(report),
         **{f"schemas/{name}.json": to_json(json_schema(name)) for name in get_args(SchemaName)},
     }
@@ -67,7 +88,10 @@ def filled(name: str, lines: Iterator[str] | list[str]) -> str:
     text = (DOCS / name).read_text(encoding="utf-8")
     content = "\n".join(lines)
     return re.sub(
-        r"(<!-- generated .*?-->\n).*?(?=<!-- end)", lambda found: f"{found[1]}\n{content}\n\n", text, flags=re.DOTALL
+        r"(<!-- generated .*?-->\n).*?(?=<!-- end)",
+        lambda found: f"{found[1]}\n{content}\n\n",
+        text,
+        flags=re.DOTALL,
     )
 
 
@@ -108,7 +132,10 @@ def keys() -> Iterator[str]:
         yield from (f"### {title}", "")
         for name, kind in table.keys.items():
             needed = ", required" if name in table.required else ""
-            yield f"- `{name}` ({kind.name.removeprefix('a ')}{needed}): {escaped(kind.schema['description'])}"
+            yield (
+                f"- `{name}` ({kind.name.removeprefix('a ')}{needed}): "
+                f"{escaped(kind.schema['description'])}"
+            )
         yield ""
 
 
@@ -135,18 +162,24 @@ def terminal(report: Report) -> str:
 def picture(report: Report) -> str:
     """Return a report as a drawing of a terminal, in SVG."""
     output = StringIO()
-    render_terminal(report, Console(width=80, file=output, force_terminal=True, color_system="truecolor"))
+    render_terminal(
+        report, Console(width=80, file=output, force_terminal=True, color_system="truecolor")
+    )
     console = Console(record=True, width=80, file=StringIO())
     console.print(Text.from_ansi(output.getvalue()), end="")
     drawing = console.export_svg(title="grader grade my_robot", unique_id="grader-report")
-    return re.sub(r"\s*@font-face \{.*?\}", "", drawing, flags=re.DOTALL)  # a viewer fetches no fonts
+    return re.sub(
+        r"\s*@font-face \{.*?\}", "", drawing, flags=re.DOTALL
+    )  # a viewer fetches no fonts
 
 
 def escaped(text: str) -> str:
-    """Return text in which tags are not HTML, asterisks are no emphasis, and bars do not end a table cell."""
-    return re.sub(r"(`[^`]*`)|([<*])", lambda found: found[1] or {"<": "&lt;", "*": r"\*"}[found[2]], text).replace(
-        "|", "\\|"
-    )
+    """Return text in which tags are not HTML, asterisks are no emphasis, and bars do not end a
+    table cell.
+    """
+    return re.sub(
+        r"(`[^`]*`)|([<*])", lambda found: found[1] or {"<": "&lt;", "*": r"\*"}[found[2]], text
+    ).replace("|", "\\|")
 
 
 if __name__ == "__main__":

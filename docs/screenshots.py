@@ -1,4 +1,6 @@
-"""Take the screenshots of the documentation: `python docs/screenshots.py`, with Chromium and the extra `browser`."""
+"""Take the screenshots of the documentation: `python docs/screenshots.py`, with Chromium and the
+extra `browser`.
+"""
 
 import shutil
 import subprocess
@@ -34,7 +36,9 @@ def browser() -> Iterator["Browser"]:
 def grader(*arguments: str | Path) -> None:
     """Run the command line; a report with failures ends with exit code 1."""
     done = subprocess.run(
-        [sys.executable, "-m", "grader", *map(str, arguments)], stdout=subprocess.DEVNULL, check=False
+        [sys.executable, "-m", "grader", *map(str, arguments)],
+        stdout=subprocess.DEVNULL,
+        check=False,
     )
     if done.returncode > 1:
         raise SystemExit(f"grader {' '.join(map(str, arguments))}: exit code {done.returncode}")

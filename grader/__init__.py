@@ -1,7 +1,8 @@
 """Grade robotics lab submissions by what the robot does.
 
-The names below are the Python API, which docs/python.md describes; all others are private. Lengths are in metres,
-angles in radians about fixed axes x, y, z (REP 103), and each pose is that of a named frame in another one.
+The names below are the Python API, which docs/python.md describes; all others are private. Lengths
+are in metres, angles in radians about fixed axes x, y, z (REP 103), and each pose is that of a
+named frame in another one.
 """
 
 from importlib import import_module
@@ -9,16 +10,29 @@ from importlib import import_module
 __version__ = "0.9.0"
 
 _MODULES = {
-    "Configuration": "robot.kinematics", "GraderError": "errors", "Joint": "robot.model", "Link": "robot.model",
-    "MissingElement": "errors", "Reading": "robot.reader", "Report": "grading.report", "Result": "grading.report",
-    "Robot": "robot.model", "Rubric": "grading.rubric", "RubricError": "errors", "Transform": "robot.transforms",
-    "grade": "api", "load_rubric": "grading.rubric", "read_urdf": "robot.reader",
-}  # fmt: skip
+    "Configuration": "robot.kinematics",
+    "GraderError": "errors",
+    "Joint": "robot.model",
+    "Link": "robot.model",
+    "MissingElement": "errors",
+    "Reading": "robot.reader",
+    "Report": "grading.report",
+    "Result": "grading.report",
+    "Robot": "robot.model",
+    "Rubric": "grading.rubric",
+    "RubricError": "errors",
+    "Transform": "robot.transforms",
+    "grade": "api",
+    "load_rubric": "grading.rubric",
+    "read_urdf": "robot.reader",
+}
 __all__ = list(_MODULES)
 
 
 def __getattr__(name: str) -> object:
-    """Return a public name; its module is imported when it is used, because most commands need few of them."""
+    """Return a public name; its module is imported when it is used, because most commands need few
+    of them.
+    """
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)

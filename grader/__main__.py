@@ -3,7 +3,10 @@
 import gc
 import sys
 
-_NOT_GRADED, _INTERRUPTED = 2, 130  # as in grader.commands.invocation, which is not imported for --version
+_NOT_GRADED, _INTERRUPTED = (
+    2,
+    130,
+)  # as in grader.commands.invocation, which is not imported for --version
 
 
 def main() -> None:
@@ -28,7 +31,8 @@ def _run(arguments: list[str]) -> int:
             print(f"grader: cannot write: {error.strerror}", file=sys.stderr)
             return _NOT_GRADED
         return 0
-    # One command makes little garbage and ends soon; collecting it while modules load takes some 7 % of a run.
+    # One command makes little garbage and ends soon; collecting it while modules load takes some 7
+    # % of a run.
     gc.disable()
     from grader.cli.app import run
 

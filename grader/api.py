@@ -12,12 +12,16 @@ from grader.grading.rubric import Rubric, load_rubric
 from grader.submission.opening import open_submission
 
 
-def grade(path: str | Path, rubric: str | Path | Rubric = DEFAULT_RUBRIC, *, parts: Iterable[str] = ()) -> Report:
-    """Grade one submission: a URDF, a package, a workspace, a repository or an archive. Nothing of it is executed.
+def grade(
+    path: str | Path, rubric: str | Path | Rubric = DEFAULT_RUBRIC, *, parts: Iterable[str] = ()
+) -> Report:
+    """Grade one submission: a URDF, a package, a workspace, a repository or an archive. Nothing of
+    it is executed.
 
     Args:
         path: The file or folder; `-` for a URDF on standard input.
-        rubric: The id of a rubric that comes with the grader, the path of a rubric, or a loaded one.
+        rubric: The id of a rubric that comes with the grader, the path of a rubric, or a loaded
+            one.
         parts: The id or ids of the parts to grade; default: all that the submission can meet.
 
     Returns:

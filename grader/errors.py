@@ -2,11 +2,23 @@
 
 import errno
 
-# Why a file itself cannot be opened. Other errors, such as EIO, EMFILE and ESTALE, are faults of the machine.
+# Why a file itself cannot be opened. Other errors, such as EIO, EMFILE and ESTALE, are faults of
+# the machine.
 _OF_FILES = (
-    None, errno.EACCES, errno.EINVAL, errno.EISDIR, errno.ELOOP, errno.ENAMETOOLONG, errno.ENODEV, errno.ENOENT,
-    errno.ENOTDIR, errno.ENXIO, errno.EILSEQ, errno.EOPNOTSUPP, errno.EPERM,
-)  # fmt: skip
+    None,
+    errno.EACCES,
+    errno.EINVAL,
+    errno.EISDIR,
+    errno.ELOOP,
+    errno.ENAMETOOLONG,
+    errno.ENODEV,
+    errno.ENOENT,
+    errno.ENOTDIR,
+    errno.ENXIO,
+    errno.EILSEQ,
+    errno.EOPNOTSUPP,
+    errno.EPERM,
+)
 _ADVICE = "a fault of this machine's disk or network: try again"
 
 
@@ -25,7 +37,9 @@ class InputError(GraderError):
 
 
 class FileError(InputError):
-    """A file that cannot be read; the message is its path and the reason: `a.zip` and `is encrypted`."""
+    """A file that cannot be read; the message is its path and the reason: `a.zip` and `is
+    encrypted`.
+    """
 
     def __init__(self, path: str, reason: str) -> None:
         super().__init__(path, reason)
@@ -37,7 +51,9 @@ class FileError(InputError):
 
 
 class MachineError(GraderError):
-    """A fault of the machine while a submission is read, as of its disk: it says nothing about the submission."""
+    """A fault of the machine while a submission is read, as of its disk: it says nothing about the
+    submission.
+    """
 
     @staticmethod
     def is_cause(error: BaseException) -> bool:
@@ -46,7 +62,9 @@ class MachineError(GraderError):
 
     @classmethod
     def check(cls, error: BaseException | None, shown: str) -> None:
-        """Raise MachineError for the error of a file, or of an archive, if the file is not the cause."""
+        """Raise MachineError for the error of a file, or of an archive, if the file is not the
+        cause.
+        """
         while error is not None:
             if isinstance(error, OSError) and cls.is_cause(error):
                 raise cls(f"cannot read {shown}: {error.strerror} ({_ADVICE})") from None
@@ -68,13 +86,17 @@ class RubricError(GraderError):
 
 
 class OutOfTime(BaseException):
-    """The processor time of a command is used up. Like Ctrl-C it passes the handlers of faults in files and checks."""
+    """The processor time of a command is used up. Like Ctrl-C it passes the handlers of faults in
+    files and checks.
+    """
 
 
 class NotDecided(LookupError):
-    """Something that cannot be determined statically, and needs manual grading. The message says why.
+    """Something that cannot be determined statically, and needs manual grading. The message says
+    why.
 
-    `cause` is the reason without what differs between students, such as the names of their files; default: the message.
+    `cause` is the reason without what differs between students, such as the names of their files;
+    default: the message.
     """
 
     def __init__(self, message: str, cause: str = "") -> None:
@@ -83,13 +105,15 @@ class NotDecided(LookupError):
 
 
 class MissingElement(LookupError):
-    """Something that a check needs does not exist: a link, a shape, a chain of joints, a defined pose.
+    """Something that a check needs does not exist: a link, a shape, a chain of joints, a defined
+    pose.
 
-    `kind` and `name` are equal for checks that fail for the same reason; the kinds `URDF` and `package` are those of
-    work that a submission lacks, where evidence may take its place. `known` lists the names that exist; `location`
-    is a Location or LazyLocation in the file, or None. The text is the message and the detail, which is what differs
-    between students who made the same mistake; `mistake` is the message alone. `problem` and `absent` are those of an
-    Outcome. What fails for the same reason later is skipped, or with `costs_once` not deducted.
+    `kind` and `name` are equal for checks that fail for the same reason; the kinds `URDF` and
+    `package` are those of work that a submission lacks, where evidence may take its place. `known`
+    lists the names that exist; `location` is a Location or LazyLocation in the file, or None. The
+    text is the message and the detail, which is what differs between students who made the same
+    mistake; `mistake` is the message alone. `problem` and `absent` are those of an Outcome. What
+    fails for the same reason later is skipped, or with `costs_once` not deducted.
 
     >>> MissingElement("link", "lidra", ("base_link", "lidar"))
     MissingElement("there is no link 'lidra'; the file has: 'base_link', 'lidar'")

@@ -17,12 +17,47 @@ _AXES_AND_SIDES = frozenset("xyzlrfb")
 # Words of side, place, axis and measure: none is a misspelling of another one.
 _DISTINCT = frozenset(
     {
-        "left", "right", "front", "rear", "back", "fore", "top", "bottom", "upper", "lower", "inner", "outer", "middle",
-        "side", "first", "second", "third", "last", "start", "end", "forward", "backward", "minimum", "maximum", "min",
-        "max", "roll", "pitch", "yaw", "width", "length", "height", "depth", "thickness", "radius", "diameter", "size",
-        "mass", "weight",
+        "left",
+        "right",
+        "front",
+        "rear",
+        "back",
+        "fore",
+        "top",
+        "bottom",
+        "upper",
+        "lower",
+        "inner",
+        "outer",
+        "middle",
+        "side",
+        "first",
+        "second",
+        "third",
+        "last",
+        "start",
+        "end",
+        "forward",
+        "backward",
+        "minimum",
+        "maximum",
+        "min",
+        "max",
+        "roll",
+        "pitch",
+        "yaw",
+        "width",
+        "length",
+        "height",
+        "depth",
+        "thickness",
+        "radius",
+        "diameter",
+        "size",
+        "mass",
+        "weight",
     }
-)  # fmt: skip
+)
 
 
 def closest(name: str, known: Iterable[str]) -> str | None:
@@ -32,10 +67,14 @@ def closest(name: str, known: Iterable[str]) -> str | None:
     if len(name) > MAX_LENGTH:
         return None
     lower = name.lower()
-    others = (other for other in sorted(known, reverse=True) if other != name and len(other) <= MAX_LENGTH)
+    others = (
+        other for other in sorted(known, reverse=True) if other != name and len(other) <= MAX_LENGTH
+    )
     candidates = {other.lower(): other for other in others}
     if len(candidates) > _MAX_CANDIDATES:  # comparing is slow: keep those that begin or end alike
-        alike = (other for other in candidates if other[:3] == lower[:3] or other[-3:] == lower[-3:])
+        alike = (
+            other for other in candidates if other[:3] == lower[:3] or other[-3:] == lower[-3:]
+        )
         candidates = {other: candidates[other] for other in islice(alike, _MAX_CANDIDATES)}
     matches = get_close_matches(lower, candidates, n=1, cutoff=0.7)
     if not matches:  # difflib rates swapped letters in short names too low, such as xzy for xyz
@@ -57,21 +96,27 @@ def clearly_closest(name: str, known: Iterable[str]) -> str | None:
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """Return `; did you mean 'x'?` for the end of a message, or nothing if no known name is close."""
+    """Return `; did you mean 'x'?` for the end of a message, or nothing if no known name is
+    close.
+    """
     match = closest(name, known)
     return f"; did you mean {quoted(match)}?" if match else ""
 
 
 def folded(name: str) -> str:
-    """Return the letters and digits of a name in lower case: my_robot, My-Robot and MYROBOT are one name."""
+    """Return the letters and digits of a name in lower case: my_robot, My-Robot and MYROBOT are
+    one name.
+    """
     return "".join(filter(str.isalnum, name.casefold()))
 
 
 def near(name: str, known: Iterable[str], suffix: str = "") -> str | None:
-    """Return the known name that another one surely stands for; None if none is near, or several are equally near.
+    """Return the known name that another one surely stands for; None if none is near, or several
+    are equally near.
 
-    Words are compared one by one, whatever their case: one letter, or one exchanged pair, may differ in a known word of
-    four letters or more, two in seven or more. `suffix`, the kind of thing that is named, may be missing at the end.
+    Words are compared one by one, whatever their case: one letter, or one exchanged pair, may
+    differ in a known word of four letters or more, two in seven or more. `suffix`, the kind of
+    thing that is named, may be missing at the end.
     """
     own, others = _words(name), set(islice(known, _MAX_KNOWN + 1)) - {name}
     if len(others) > _MAX_KNOWN:
@@ -87,11 +132,19 @@ def near(name: str, known: Iterable[str], suffix: str = "") -> str | None:
 
 
 def are_of_one_side(name: str, other: str) -> bool:
-    """Return whether two names have the same numbers and words of side, place and measure, in any order."""
+    """Return whether two names have the same numbers and words of side, place and measure, in
+    any order.
+    """
     words = _words(name), _words(other)
     first, second = (sorted(it for it in each if it.isdigit() or it in _DISTINCT) for each in words)
-    pairs = zip(*words, strict=True) if len(words[0]) == len(words[1]) and sorted(words[0]) != sorted(words[1]) else ()
-    return first == second and not any(one != known and _are_distinct(one, known) for one, known in pairs)
+    pairs = (
+        zip(*words, strict=True)
+        if len(words[0]) == len(words[1]) and sorted(words[0]) != sorted(words[1])
+        else ()
+    )
+    return first == second and not any(
+        one != known and _are_distinct(one, known) for one, known in pairs
+    )
 
 
 def _words(name: str) -> list[str]:
@@ -99,7 +152,9 @@ def _words(name: str) -> list[str]:
 
 
 def _distance(name: list[str], known: list[str], suffix: str) -> tuple[int, bool] | None:
-    """Return how many letters differ, and whether the suffix is missing; None for names that are not near."""
+    """Return how many letters differ, and whether the suffix is missing; None for names that are
+    not near.
+    """
     texts = [_LETTER_BORDER.sub("", " ".join(words)) for words in (name, known)]
     if not all(texts) or max(map(len, texts)) > MAX_LENGTH:
         return None
@@ -119,7 +174,9 @@ def _distance(name: list[str], known: list[str], suffix: str) -> tuple[int, bool
 
 
 def _differing_letters(word: str, known: str) -> int | None:
-    """Return how many letters or exchanged pairs differ in two words; None if these are too many."""
+    """Return how many letters or exchanged pairs differ in two words; None if these are too
+    many.
+    """
     if word == known:
         return 0
     most = _most_differing(word, known)
@@ -144,10 +201,18 @@ def _most_differing(word: str, known: str) -> int:
 
 
 def _are_distinct(word: str, known: str) -> bool:
-    """Return whether two words differ in a side, axis or measure that is, or may be, joined to another word."""
+    """Return whether two words differ in a side, axis or measure that is, or may be, joined to
+    another word.
+    """
     if {word, known} <= _DISTINCT or word[1:] == known[1:]:  # posx and posy, lwheel and rwheel
         return True
-    if len(word) == len(known) and word[:-1] == known[:-1] and {word[-1], known[-1]} <= _AXES_AND_SIDES:
+    if (
+        len(word) == len(known)
+        and word[:-1] == known[:-1]
+        and {word[-1], known[-1]} <= _AXES_AND_SIDES
+    ):
         return True
-    ends = [(one for one in _DISTINCT if it.startswith(one) or it.endswith(one)) for it in (word, known)]
+    ends = [
+        (one for one in _DISTINCT if it.startswith(one) or it.endswith(one)) for it in (word, known)
+    ]
     return any(one != other for one, other in product(*map(list, ends)))

@@ -1,4 +1,6 @@
-"""As many pairs as possible of two sides, if each item fits some items of the other side: Kuhn's algorithm."""
+"""As many pairs as possible of two sides, if each item fits some items of the other side: Kuhn's
+algorithm.
+"""
 
 from collections.abc import Sequence
 
@@ -7,7 +9,8 @@ def most_pairs(fitting: Sequence[Sequence[int]]) -> dict[int, int]:
     """Return pairs by index: an item of the second side, and its partner of the first one.
 
     Args:
-        fitting: For each item of the first side, the indices of those of the second one that fit it.
+        fitting: For each item of the first side, the indices of those of the second one that fit
+            it.
     """
     partners: dict[int, int] = {}
 

@@ -13,8 +13,8 @@ Effect = Literal["rejects", "undetermined", "drops", "loads", "other"]
 class Kind(NamedTuple):
     """One kind of problem. docs/examples/ says how to fix the file.
 
-    The effect of a URDF's problems decides the verdict: ROS 2 rejects the file, drops content of it, or loads all of
-    it. The effect of a problem of another file is `other`.
+    The effect of a URDF's problems decides the verdict: ROS 2 rejects the file, drops content of
+    it, or loads all of it. The effect of a problem of another file is `other`.
     """
 
     code: str  # which never changes
@@ -32,7 +32,8 @@ class Problem(NamedTuple):
     kind: Kind
     message: str  # a sentence
     location: Location
-    subject: str = ""  # what it is about: the link that loses content with it, a tag, or a few words
+    # what it is about: the link that loses content with it, a tag, or a few words
+    subject: str = ""
 
     @property
     def code(self) -> str:
@@ -46,23 +47,38 @@ class Problem(NamedTuple):
 
 
 rejects = partial(Kind, severity="error", effect="rejects")  # ROS 2 loads nothing of the file
-drops = partial(Kind, severity="warning", effect="drops")  # ROS 2 loads the file without part of its content
-warns = partial(Kind, severity="warning", effect="loads")  # ROS 2 loads everything, but it deserves a warning
+drops = partial(
+    Kind, severity="warning", effect="drops"
+)  # ROS 2 loads the file without part of its content
+warns = partial(
+    Kind, severity="warning", effect="loads"
+)  # ROS 2 loads everything, but it deserves a warning
 notes = partial(Kind, severity="note", effect="loads")
 
 
 def kinds_in(namespace: Iterable[object]) -> tuple[Kind, ...]:
     """Return the kinds among the values of a module, sorted by code."""
-    return tuple(sorted((value for value in namespace if isinstance(value, Kind)), key=lambda kind: kind.code))
+    return tuple(
+        sorted(
+            (value for value in namespace if isinstance(value, Kind)), key=lambda kind: kind.code
+        )
+    )
 
 
 def in_order(problems: Iterable[Problem]) -> tuple[Problem, ...]:
     """Return problems in the order of their locations."""
-    return tuple(sorted(problems, key=lambda problem: (problem.location.line, problem.location.column, problem.code)))
+    return tuple(
+        sorted(
+            problems,
+            key=lambda problem: (problem.location.line, problem.location.column, problem.code),
+        )
+    )
 
 
 def causes(problems: Iterable[Problem]) -> list[Problem]:
-    """Return the problems for which ROS 2 rejects a file; only those of xacro if that stops before."""
+    """Return the problems for which ROS 2 rejects a file; only those of xacro if that stops
+    before.
+    """
     found = [problem for problem in problems if problem.kind.effect == "rejects"]
     own = [problem for problem in found if not problem.kind.is_consequence]
     return [problem for problem in own if problem.kind.is_before_ros] or own or found

@@ -14,8 +14,8 @@ _START_TAG = r"(?s)<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<(?![/!?])"
 class Location(NamedTuple):
     """A location in a file of the submission; line and column count from 1, columns in characters.
 
-    `calls` are the macro calls of xacro that led to it, outermost first: the name of each macro, and where it is
-    called.
+    `calls` are the macro calls of xacro that led to it, outermost first: the name of each macro,
+    and where it is called.
     """
 
     path: str
@@ -25,7 +25,8 @@ class Location(NamedTuple):
 
 
 class Edit(NamedTuple):
-    """A change of the text of one file: `old`, which stands at a place, becomes `new`, and nothing else changes.
+    """A change of the text of one file: `old`, which stands at a place, becomes `new`, and nothing
+    else changes.
 
     Line and column count from 1, as in a Location. With `renamed`, the file
     gets this path instead.
@@ -41,8 +42,8 @@ class Edit(NamedTuple):
 
 Edits = tuple[Edit, ...]
 
-# How sure a proven edit is. "one of several": an edit of another place gains as much, is as plausible and not larger.
-# "preferred": the best of those that were tried.
+# How sure a proven edit is. "one of several": an edit of another place gains as much, is as
+# plausible and not larger. "preferred": the best of those that were tried.
 Certainty = Literal["preferred", "one of several"]
 
 
@@ -52,7 +53,9 @@ class Source:
     is_expanded = False  # whether xacro made its elements of other texts
 
     def __init__(self, path: str, text: str, tags: list[int] | None = None) -> None:
-        """`tags` holds the offset of each start tag in document order; without it the text must be well-formed XML."""
+        """`tags` holds the offset of each start tag in document order; without it the text must be
+        well-formed XML.
+        """
         self.path, self.text, self._given_tags = path, text, tags
 
     @cached_property
@@ -73,21 +76,31 @@ class Source:
         return Location(self.path, line, offset - start + 1)
 
     def tag(self, index: int, attribute: str | None = None) -> Location:
-        """Return the location of the start tag with this index in document order, or of an attribute if it has it."""
+        """Return the location of the start tag with this index in document order, or of an
+        attribute if it has it.
+        """
         start = self._tags[index]
         return self.at(start if attribute is None else self._attribute(start, attribute))
 
     def next_tag(self, index: int, name: str) -> int:
-        """Return the index of the first start tag of this name after another one; that one if there is none."""
+        """Return the index of the first start tag of this name after another one; that one if there
+        is none.
+        """
         opening = re.compile(rf"<\s*{re.escape(name)}(?![^\s=/>])")
         others = range(index + 1, len(self._tags))
-        return next((other for other in others if opening.match(self.text, self._tags[other])), index)
+        return next(
+            (other for other in others if opening.match(self.text, self._tags[other])), index
+        )
 
     def line(self, number: int) -> str:
         """Return the text of a line, counted from 1, without its line break."""
         if not 0 < number < len(self._lines):
             return ""
-        return self.text[self._lines[number - 1] : self._lines[number] - 1].rstrip("\r").removeprefix("\ufeff")
+        return (
+            self.text[self._lines[number - 1] : self._lines[number] - 1]
+            .rstrip("\r")
+            .removeprefix("\ufeff")
+        )
 
     def _attribute(self, start: int, name: str) -> int:
         from grader import markup  # late: its patterns are for a fault
@@ -113,12 +126,15 @@ class Source:
         return Edit(place.path, place.line, place.column, self.text[start:end], new)
 
     def element(self, tag: int) -> "tuple[Source, int]":
-        """Return the text that the element with this index was written in, and the offset of its start tag."""
+        """Return the text that the element with this index was written in, and the offset of its
+        start tag.
+        """
         return self, self._tags[tag]
 
 
 class Base(NamedTuple):
-    """The location of a submission in a repository: the folder of its paths with a slash, or the archive around them.
+    """The location of a submission in a repository: the folder of its paths with a slash, or the
+    archive around them.
 
     With `is_outside` it is in no repository.
     """
@@ -129,10 +145,12 @@ class Base(NamedTuple):
 
 
 class LazyLocation(NamedTuple):
-    """The place of an element or of one of its attributes, which is computed on demand: most never are.
+    """The place of an element or of one of its attributes, which is computed on demand: most never
+    are.
 
-    `tag` counts the element's start tag in document order, from 0. With `inside` the first element of this name in it
-    is meant. Where an element holds one, it takes no part in comparison: elements are compared by what they are.
+    `tag` counts the element's start tag in document order, from 0. With `inside` the first element
+    of this name in it is meant. Where an element holds one, it takes no part in comparison:
+    elements are compared by what they are.
     """
 
     source: Source

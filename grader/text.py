@@ -7,30 +7,37 @@ from decimal import Decimal
 from functools import lru_cache
 from pathlib import Path
 
-# The runner of GitHub Actions treats a line as a command if it begins with `::`, after white space as well, or contains
-# `##[`; the agent of Azure Pipelines, if it contains `##vso[`.
+# The runner of GitHub Actions treats a line as a command if it begins with `::`, after white space
+# as well, or contains `##[`; the agent of Azure Pipelines, if it contains `##vso[`.
 _LINE_COMMAND = re.compile(r"^(\s*):(?=:)", re.MULTILINE)
 _TAG_COMMAND = re.compile(r"##(vso)?\[", re.IGNORECASE)
 _MAX_NAME = 60  # characters of a name that are shown
 
 
 def printable(text: str) -> str:
-    """Return a text with escapes for all that is neither a visible character nor a plain space; a tab becomes a space.
+    """Return a text with escapes for all that is neither a visible character nor a plain space; a
+    tab becomes a space.
 
     These are control characters, bidirectional marks, other spaces, and bytes that are not UTF-8.
     """
     if text.isprintable():
         return text
-    return "".join(character if character.isprintable() else _escape(character) for character in text)
+    return "".join(
+        character if character.isprintable() else _escape(character) for character in text
+    )
 
 
 def without_commands(text: str) -> str:
-    """Return a text with a space wherever the runner of a CI system would treat a line as a command."""
+    """Return a text with a space wherever the runner of a CI system would treat a line as a
+    command.
+    """
     return without_tag_commands(_LINE_COMMAND.sub(r"\1: ", text))
 
 
 def without_tag_commands(text: str, bracket: str = " [") -> str:
-    """Return a text with another bracket in the commands that may be anywhere in a line, such as ##vso[."""
+    """Return a text with another bracket in the commands that may be anywhere in a line, such as
+    ##vso[.
+    """
     return _TAG_COMMAND.sub(lambda found: found[0][:-1] + bracket, text)
 
 
@@ -44,7 +51,9 @@ def _escape(character: str) -> str:
 
 
 def printable_path(path: Path | str) -> str:
-    """Return a path for a message: bytes that are not UTF-8 are replaced, control characters escaped."""
+    """Return a path for a message: bytes that are not UTF-8 are replaced, control characters
+    escaped.
+    """
     text = os.fsencode(path).decode("utf-8", "replace")
     if text.isprintable():
         return text
@@ -52,7 +61,9 @@ def printable_path(path: Path | str) -> str:
 
 
 def shell_quoted(path: Path | str) -> str:
-    """Return a path as a word of a command that a message suggests: with quotes where a shell needs them."""
+    """Return a path as a word of a command that a message suggests: with quotes where a shell needs
+    them.
+    """
     from shlex import quote  # late: most messages suggest no command
 
     return quote(printable_path(path))
@@ -64,7 +75,9 @@ def quoted(name: str) -> str:
 
 
 def cut(text: str, most: int) -> str:
-    """Return a text of at most so many characters, the last three of which are points if it was longer."""
+    """Return a text of at most so many characters, the last three of which are points if it was
+    longer.
+    """
     return text if len(text) <= most else f"{text[: most - 3]}..."
 
 
@@ -74,11 +87,15 @@ def named(key: str, name: str) -> str:
 
 
 def capitalised(text: str) -> str:
-    """Return a text with a capital, unless it begins with a quote, a file or an attribute, such as xyz="0 0"."""
+    """Return a text with a capital, unless it begins with a quote, a file or an attribute, such as
+    xyz="0 0".
+    """
     return text[:1].upper() + text[1:] if text.split(" ", 1)[0].isalpha() else text
 
 
-def enumerated(items: Collection[str], most: int | None = None, word: str = "and", separator: str = ", ") -> str:
+def enumerated(
+    items: Collection[str], most: int | None = None, word: str = "and", separator: str = ", "
+) -> str:
     """Return "a, b and c"; of more than `most` items the first ones: "a, b and 3 more"."""
     names = list(items)
     if most is not None and len(names) > most:

@@ -43,7 +43,10 @@ def run_with_input(
     inside: AbstractContextManager[object] | None = None,
 ) -> Done:
     """Run the command line like `run`, with standard input, from another folder or inside of a context."""
-    words = [os.fsdecode(argument) if isinstance(argument, bytes) else str(argument) for argument in arguments]
+    words = [
+        os.fsdecode(argument) if isinstance(argument, bytes) else str(argument)
+        for argument in arguments
+    ]
     if _needs_own_process(words, variables):
         return run_process(words, stdin, variables, folder)
     with TemporaryFile() as given, TemporaryFile() as out, TemporaryFile() as err:
@@ -65,14 +68,18 @@ def run_with_input(
 def _needs_own_process(words: Sequence[str], variables: Mapping[str, str]) -> bool:
     """Return whether a command gives another result in this process."""
     return (
-        current_thread() is not main_thread()  # streams, variables and the current folder belong to the process
+        current_thread()
+        is not main_thread()  # streams, variables and the current folder belong to the process
         or any(option in words for option in _OWN_PROCESS)
         or any(variable.startswith(_READ_AT_START) for variable in variables)
     )
 
 
 def run_process(
-    arguments: Sequence[str], stdin: bytes = b"", variables: Mapping[str, str] = {}, folder: Path = ROOT
+    arguments: Sequence[str],
+    stdin: bytes = b"",
+    variables: Mapping[str, str] = {},
+    folder: Path = ROOT,
 ) -> Done:
     """Run the command line as a user does, in a process of its own."""
     return subprocess.run(
@@ -109,7 +116,11 @@ class _Pool:
         """Take what a pool takes."""
 
     def schedule(
-        self, function: Callable[..., Any], arguments: tuple[Any, ...], named: dict[str, Any], _timeout: float
+        self,
+        function: Callable[..., Any],
+        arguments: tuple[Any, ...],
+        named: dict[str, Any],
+        _timeout: float,
     ) -> "Future[Any]":
         """Call a function; its future is done."""
         future: Future[Any] = Future()
@@ -126,7 +137,9 @@ class _Pool:
 
 
 @contextmanager
-def _process_state(words: list[str], variables: Mapping[str, str], files: tuple[IO[bytes], ...]) -> Iterator[None]:
+def _process_state(
+    words: list[str], variables: Mapping[str, str], files: tuple[IO[bytes], ...]
+) -> Iterator[None]:
     """Set arguments, variables and standard streams as at the start of a process, and restore them."""
     with (
         patch.dict(os.environ, variables, clear=True),
@@ -136,13 +149,17 @@ def _process_state(words: list[str], variables: Mapping[str, str], files: tuple[
         patch("grader.classroom.workers.pool.ProcessPool", _Pool),
         patch("grader.classroom.workers.forks.start_server", bool),
         patch("os.fsync", os.fsync if is_preloaded() else bool),
-        patch("grader.cli.streams._LINE_SECONDS", inf),  # no line depends on how busy the machine is
+        patch(
+            "grader.cli.streams._LINE_SECONDS", inf
+        ),  # no line depends on how busy the machine is
         _redirected(0, files[0]),
         _redirected(1, files[1]),
         _redirected(2, files[2]),
         open(0, encoding="utf-8", errors="surrogateescape", closefd=False) as given,
         open(1, "w", encoding=variables["PYTHONIOENCODING"], closefd=False) as out,
-        open(2, "w", encoding=variables["PYTHONIOENCODING"], errors="backslashreplace", closefd=False) as err,
+        open(
+            2, "w", encoding=variables["PYTHONIOENCODING"], errors="backslashreplace", closefd=False
+        ) as err,
         patch.multiple(sys, stdin=given, stdout=out, stderr=err),
         patch.object(gc, "freeze"),  # what a command leaves is garbage here
     ):

@@ -13,8 +13,12 @@ from tests.edits_rubric import copy_with_edits
 
 # Examples have no time limit of their own. They are the same in every run: `--hypothesis-profile=random` searches for others.
 # There are few of them where a test does not say how many; see tests/examples.py.
-settings.register_profile("repeatable", deadline=None, derandomize=True, database=None, max_examples=20)
-settings.register_profile("random", deadline=None, derandomize=False, database=None, max_examples=100, print_blob=True)
+settings.register_profile(
+    "repeatable", deadline=None, derandomize=True, database=None, max_examples=20
+)
+settings.register_profile(
+    "random", deadline=None, derandomize=False, database=None, max_examples=100, print_blob=True
+)
 settings.load_profile("repeatable")
 
 # A command that a shell starts with `&` ignores Ctrl-C, one that `nohup` starts a closed terminal, and so would the
@@ -27,9 +31,19 @@ if sys.platform != "win32" and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
 # On a CI system the grader annotates, and takes the checkout for the repository; a git hook sets variables for another
 # repository; colours and widths change the output; pip may have another target. Tests that need a variable set it.
 _NAMES = (
-    "CI", "CI_PROJECT_DIR", "CLICOLOR_FORCE", "COLUMNS", "FORCE_COLOR", "NO_COLOR", "PYTHONDONTWRITEBYTECODE",
-    "PYTHONHASHSEED", "PYTHONOPTIMIZE", "PYTHONWARNINGS", "TTY_COMPATIBLE", "TTY_INTERACTIVE",
-)  # fmt: skip
+    "CI",
+    "CI_PROJECT_DIR",
+    "CLICOLOR_FORCE",
+    "COLUMNS",
+    "FORCE_COLOR",
+    "NO_COLOR",
+    "PYTHONDONTWRITEBYTECODE",
+    "PYTHONHASHSEED",
+    "PYTHONOPTIMIZE",
+    "PYTHONWARNINGS",
+    "TTY_COMPATIBLE",
+    "TTY_INTERACTIVE",
+)
 _BEGINNINGS = ("GITHUB_", "GIT_", "GRADER_", "PIP_", "_TYPER_")
 for name in [name for name in os.environ if name in _NAMES or name.startswith(_BEGINNINGS)]:
     del os.environ[name]
@@ -69,4 +83,6 @@ def pytest_collection_finish() -> None:
 @pytest.fixture
 def shows_edits(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
     """Grade by a copy of lab6 whose hints may show edits, unless another rubric is named."""
-    monkeypatch.setenv("GRADER_RUBRIC", str(copy_with_edits(tmp_path_factory.mktemp("edits") / "lab6")))
+    monkeypatch.setenv(
+        "GRADER_RUBRIC", str(copy_with_edits(tmp_path_factory.mktemp("edits") / "lab6"))
+    )

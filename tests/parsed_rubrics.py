@@ -15,7 +15,11 @@ def validated_once(data: bytes, path: Path) -> validation.Validation:
     """Return the valid content of a rubric; raise RubricError."""
     if len(data) not in _LONG:
         return _read(data, path)
-    key = data, vars(validation)["find_check"], *sys.path  # plug-ins that a test installs, and checks that it replaces
+    key = (
+        data,
+        vars(validation)["find_check"],
+        *sys.path,
+    )  # plug-ins that a test installs, and checks that it replaces
     if key not in _VALIDATED:
         _VALIDATED[key] = _read(data, path)
     return _VALIDATED[key]

@@ -43,14 +43,20 @@ class Review(NamedTuple):
     port: int
     token: str
 
-    def ask(self, method: str, path: str, headers: Mapping[str, str] = {}, body: bytes | None = None) -> Answer:
+    def ask(
+        self, method: str, path: str, headers: Mapping[str, str] = {}, body: bytes | None = None
+    ) -> Answer:
         """Send one request, with the path as it is given; an underscore in a header's name is a hyphen."""
         connection = HTTPConnection(HOST, self.port, timeout=_TIMEOUT)
         try:
             given = {name.replace("_", "-"): value for name, value in headers.items()}
             connection.request(method, path, body, given)
             answer: HTTPResponse = connection.getresponse()
-            return Answer(answer.status, answer.read(), {name.lower(): value for name, value in answer.headers.items()})
+            return Answer(
+                answer.status,
+                answer.read(),
+                {name.lower(): value for name, value in answer.headers.items()},
+            )
         finally:
             connection.close()
 
@@ -65,7 +71,9 @@ class Review(NamedTuple):
 
     def mark(self, path: str, points: str, comment: str = "", **sent: str) -> dict[str, Any]:
         """Mark an item as its page does, and return the answer."""
-        return self.post(path, {"do": "mark", "points": points, "comment": comment, **self.seen(path), **sent}).json
+        return self.post(
+            path, {"do": "mark", "points": points, "comment": comment, **self.seen(path), **sent}
+        ).json
 
     def seen(self, path: str) -> dict[str, str]:
         """Return what the page of an item sends back to say what it shows; nothing for an address without an item."""
@@ -73,7 +81,9 @@ class Review(NamedTuple):
 
 
 @contextmanager
-def running(gradebook: Path, criterion: str = "", by: str = "Kim", **options: Any) -> Iterator[Review]:
+def running(
+    gradebook: Path, criterion: str = "", by: str = "Kim", **options: Any
+) -> Iterator[Review]:
     """Yield a review that runs in another thread."""
     session = ReviewSession(gradebook, ReviewFilter(criterion), by, **options)
     with LocalServer(ReviewPage(session)) as server:
@@ -88,10 +98,15 @@ def running(gradebook: Path, criterion: str = "", by: str = "Kim", **options: An
 
 def marks_in(gradebook: Path) -> list[tuple[str, str, str, str]]:
     """Return the marks that count: student, criterion, value, comment."""
-    return sorted((*key, mark.value, mark.comment) for key, mark in Gradebook(gradebook).marks.counting.items())
+    return sorted(
+        (*key, mark.value, mark.comment)
+        for key, mark in Gradebook(gradebook).marks.counting.items()
+    )
 
 
 def rows_of(gradebook: Path, by: str = "kim") -> list[str]:
     """Return the points in the rows of a grader's file, in its order."""
     path = gradebook / "marks" / f"{by}.csv"
-    return [line.split(",")[4] for line in path.read_text().splitlines()[1:]] if path.exists() else []
+    return (
+        [line.split(",")[4] for line in path.read_text().splitlines()[1:]] if path.exists() else []
+    )

@@ -61,10 +61,14 @@ _turns = st.sampled_from((0.0, pi / 2, -pi / 2, pi, 1.57, 0.3)) | st.floats(-3.1
     lambda value: round(value, 6)
 )
 _rotations = st.builds(origin, st.just((0.0, 0.0, 0.0)), st.tuples(_turns, _turns, _turns))
-_poses = st.builds(origin, st.tuples(_lengths, _lengths, _lengths), st.tuples(_turns, _turns, _turns))
+_poses = st.builds(
+    origin, st.tuples(_lengths, _lengths, _lengths), st.tuples(_turns, _turns, _turns)
+)
 _about_z = st.builds(lambda turn: origin((0, 0, 0), (0, 0, turn)), _turns)
 _along_z = st.builds(lambda slide, turn: origin((0, 0, slide), (0, 0, turn)), _lengths, _turns)
-_QUARTERS = tuple(origin((0, 0, 0), (pi / 2 * turn for turn in turns)) for turns in product(range(4), repeat=3))
+_QUARTERS = tuple(
+    origin((0, 0, 0), (pi / 2 * turn for turn in turns)) for turns in product(range(4), repeat=3)
+)
 
 
 def _one_of(draw: st.DrawFn, elements: Iterable[Element]) -> Element | None:
@@ -85,7 +89,9 @@ def split_joint(draw: st.DrawFn, tree: Element) -> None:
 
 def add_hub(draw: st.DrawFn, tree: Element) -> None:
     """Let a wheel's joint turn a hub to which the wheel is fixed, somewhere along the joint's axis."""
-    joint = _one_of(draw, (joint for joint in tree.iterchildren("joint") if joint.get("type") == "continuous"))
+    joint = _one_of(
+        draw, (joint for joint in tree.iterchildren("joint") if joint.get("type") == "continuous")
+    )
     if joint is None or not _turns_about_z(joint):
         return
     hub, child, shift = fresh(tree, "link"), end(joint, "child"), draw(_along_z)
@@ -142,14 +148,21 @@ def other_angles(draw: st.DrawFn, tree: Element) -> None:
         roll, pitch, yaw = attribute_numbers(found, "rpy")
         if draw(st.booleans()):
             roll, pitch, yaw = roll + pi, pi - pitch, yaw + pi
-        found.set("rpy", attribute_text(angle + 2 * pi * draw(st.integers(-3, 3)) for angle in (roll, pitch, yaw)))
+        found.set(
+            "rpy",
+            attribute_text(
+                angle + 2 * pi * draw(st.integers(-3, 3)) for angle in (roll, pitch, yaw)
+            ),
+        )
 
 
 def scale_axis(draw: st.DrawFn, tree: Element) -> None:
     """Scale axes of joints."""
     for axis in _some(draw, own_elements(tree, "axis")):
         factor = 10 ** draw(st.floats(-2, 2))
-        axis.set("xyz", attribute_text(factor * number for number in attribute_numbers(axis, "xyz")))
+        axis.set(
+            "xyz", attribute_text(factor * number for number in attribute_numbers(axis, "xyz"))
+        )
 
 
 def shuffle(draw: st.DrawFn, tree: Element) -> None:
@@ -159,8 +172,12 @@ def shuffle(draw: st.DrawFn, tree: Element) -> None:
     is_shared = any(materials.count(name) > 1 for name in materials if not _is_defined(tree, name))
     free = ("joint", "material", "collision") + (() if is_shared else ("link", "visual"))
     for owner in [tree, *own_elements(tree, "link", "joint", "visual", "collision", "inertial")]:
-        ranks = {child.tag: random.random() for child in owner}  # of several origins the first counts
-        order = {child: random.random() if child.tag in free else ranks[child.tag] for child in owner}
+        ranks = {
+            child.tag: random.random() for child in owner
+        }  # of several origins the first counts
+        order = {
+            child: random.random() if child.tag in free else ranks[child.tag] for child in owner
+        }
         owner[:] = sorted(owner, key=order.__getitem__)
 
 
@@ -171,7 +188,9 @@ def _is_defined(tree: Element, material: str | None) -> bool:
 def _some(draw: st.DrawFn, elements: Iterable[Element]) -> list[Element]:
     """Draw one to three elements, or none where there are none."""
     found = list(elements)
-    return draw(st.lists(st.sampled_from(found), min_size=1, max_size=3, unique=True)) if found else []
+    return (
+        draw(st.lists(st.sampled_from(found), min_size=1, max_size=3, unique=True)) if found else []
+    )
 
 
 def nudge(draw: st.DrawFn, tree: Element) -> None:
@@ -190,7 +209,9 @@ def nudge(draw: st.DrawFn, tree: Element) -> None:
     off = st.floats(-0.001 / count, 0.001 / count)
     for _ in range(count):
         element, name = draw(st.sampled_from(locations + sizes))
-        element.set(name, attribute_text(value + draw(off) for value in attribute_numbers(element, name)))
+        element.set(
+            name, attribute_text(value + draw(off) for value in attribute_numbers(element, name))
+        )
 
 
 def shade(draw: st.DrawFn, tree: Element) -> None:
@@ -228,7 +249,11 @@ def attach_link(draw: st.DrawFn, tree: Element) -> None:
 
 def add_invisible(draw: st.DrawFn, tree: Element) -> None:
     """Give the footprint, or any other link, a visual without size; or the footprint a transparent one."""
-    shapes = (("box", {"size": "0 0 0"}), ("sphere", {"radius": "0"}), ("cylinder", {"radius": "0", "length": "1"}))
+    shapes = (
+        ("box", {"size": "0 0 0"}),
+        ("sphere", {"radius": "0"}),
+        ("cylinder", {"radius": "0", "length": "1"}),
+    )
     tag, sizes = draw(st.sampled_from(shapes))
     footprint = link_named(tree, "base_footprint")
     link = footprint if draw(st.booleans()) else _one_of(draw, tree.iterchildren("link"))
@@ -236,7 +261,9 @@ def add_invisible(draw: st.DrawFn, tree: Element) -> None:
         return
     if link is footprint and draw(st.booleans()):
         visual = _add_shape(link, "visual", "box", {"size": "1 1 1"})
-        material = etree.SubElement(visual, "material", {"name": fresh(tree, f"material_{len(link)}")})
+        material = etree.SubElement(
+            visual, "material", {"name": fresh(tree, f"material_{len(link)}")}
+        )
         etree.SubElement(material, "color", {"rgba": "1 0 0 0"})
     else:
         _add_shape(link, "visual", tag, sizes)
@@ -244,7 +271,10 @@ def add_invisible(draw: st.DrawFn, tree: Element) -> None:
 
 def add_physics(draw: st.DrawFn, tree: Element) -> None:
     """Give a link a collision shape or an inertia, or a joint damping and effort limits."""
-    link, joint = _one_of(draw, tree.iterchildren("link")), _one_of(draw, tree.iterchildren("joint"))
+    link, joint = (
+        _one_of(draw, tree.iterchildren("link")),
+        _one_of(draw, tree.iterchildren("joint")),
+    )
     assert link is not None
     assert joint is not None
     match draw(st.sampled_from(("collision", "inertial", "dynamics", "limit"))):
@@ -257,7 +287,10 @@ def add_physics(draw: st.DrawFn, tree: Element) -> None:
             etree.SubElement(inertial, "inertia", moments)
         case "dynamics" if joint.find("dynamics") is None:
             etree.SubElement(joint, "dynamics", {"damping": "0.1"})
-        case "limit" if joint.find("limit") is None and joint.get("type") in ("fixed", "continuous"):
+        case "limit" if joint.find("limit") is None and joint.get("type") in (
+            "fixed",
+            "continuous",
+        ):
             etree.SubElement(joint, "limit", {"effort": "10", "velocity": "1"})
 
 
@@ -286,7 +319,12 @@ def materials_into_links(draw: st.DrawFn, tree: Element) -> None:
     if material is None:
         return
     user = next(
-        (other for other in tree.iterfind("link/visual/material") if other.get("name") == material.get("name")), None
+        (
+            other
+            for other in tree.iterfind("link/visual/material")
+            if other.get("name") == material.get("name")
+        ),
+        None,
     )
     if user is not None and not len(user):
         user.extend(list(material))
@@ -322,7 +360,13 @@ BEHAVING: tuple[Step, ...] = (
     add_physics,
     add_unknown_elements,
 )
-LAST: tuple[Step, ...] = (shuffle, materials_into_links, materials_into_links, rename_materials, repeat_origin)
+LAST: tuple[Step, ...] = (
+    shuffle,
+    materials_into_links,
+    materials_into_links,
+    rename_materials,
+    repeat_origin,
+)
 
 
 # --- Text -------------------------------------------------------------------------------------------------------------
@@ -357,5 +401,9 @@ def rewritten(draw: st.DrawFn, tree: Element, steps: Sequence[Step]) -> bytes:
 def rewritings(tree: Element) -> st.SearchStrategy[bytes]:
     """Draw other texts for the robot in the tree, after up to twelve random steps, and some of those that come last."""
     first = st.lists(st.sampled_from(BEHAVING), max_size=12)
-    last = st.sets(st.integers(0, len(LAST) - 1)).map(lambda chosen: [LAST[index] for index in sorted(chosen)])
-    return st.builds(lambda one, other: one + other, first, last).flatmap(lambda steps: rewritten(tree, steps))
+    last = st.sets(st.integers(0, len(LAST) - 1)).map(
+        lambda chosen: [LAST[index] for index in sorted(chosen)]
+    )
+    return st.builds(lambda one, other: one + other, first, last).flatmap(
+        lambda steps: rewritten(tree, steps)
+    )

@@ -9,7 +9,9 @@ from grader.files.zip_writing import zip_of
 from tests.samples import ROOT, SAMPLES
 
 FOLDER = ROOT / "submissions/class"
-STUDENTS: list[dict[str, Any]] = tomllib.loads((FOLDER / "students.toml").read_text(encoding="utf-8"))["student"]
+STUDENTS: list[dict[str, Any]] = tomllib.loads(
+    (FOLDER / "students.toml").read_text(encoding="utf-8")
+)["student"]
 _EVIDENCE = ROOT / "submissions/lab6/reference/evidence"
 _FIRST_USER, _FIRST_UPLOAD = 101, 5001  # Canvas numbers users and uploads
 _BROKEN_AFTER = 3000  # bytes
@@ -32,16 +34,29 @@ grader batch submissions/class/files --roster submissions/class/roster.csv --due
 
 def package_files(folder: Path) -> dict[str, bytes]:
     """Return the files of a package, except those in its folder `urdf`."""
-    files = {path.relative_to(folder): path for path in folder.rglob("*") if path.is_file() and path.suffix != ".pyc"}
-    return {path.as_posix(): file.read_bytes() for path, file in files.items() if path.parts[0] != "urdf"}
+    files = {
+        path.relative_to(folder): path
+        for path in folder.rglob("*")
+        if path.is_file() and path.suffix != ".pyc"
+    }
+    return {
+        path.as_posix(): file.read_bytes()
+        for path, file in files.items()
+        if path.parts[0] != "urdf"
+    }
 
 
 def class_files() -> Iterator[tuple[Path, bytes]]:
     """Yield the path of each file that is made from students.toml, and its content."""
     ids = range(_FIRST_USER, _FIRST_USER + len(STUDENTS))
-    rows = (f"{row['name'].split()[1].lower()},{row['name']},{user}\n" for user, row in zip(ids, STUDENTS, strict=True))
+    rows = (
+        f"{row['name'].split()[1].lower()},{row['name']},{user}\n"
+        for user, row in zip(ids, STUDENTS, strict=True)
+    )
     yield FOLDER / "roster.csv", "".join(("id,name,canvas id\n", *rows)).encode()
-    about = (f"| {row['name']} | {row['about']} | {row.get('points', 'none')} |\n" for row in STUDENTS)
+    about = (
+        f"| {row['name']} | {row['about']} | {row.get('points', 'none')} |\n" for row in STUDENTS
+    )
     yield FOLDER / "README.md", "".join((TOP, *about)).encode()
     for number, student in enumerate(STUDENTS):
         first, last = student["name"].lower().split()
@@ -62,10 +77,15 @@ def _uploads(student: dict[str, Any]) -> Iterator[tuple[str, bytes]]:
     if not package:
         yield from {robot.name: robot.read_bytes(), **pictures}.items()
         return
-    files = {f"my_robot/{path}": data for path, data in package_files(_urdf(package).parent.parent).items()} | pictures
+    files = {
+        f"my_robot/{path}": data
+        for path, data in package_files(_urdf(package).parent.parent).items()
+    } | pictures
     if "answers" in student:
         answers = zip(("Task 1, Step 15", "Task 2, Step 2"), student["answers"], strict=True)
-        files["answers.md"] = "\n".join(f"## {step}\n\n{answer}\n" for step, answer in answers).encode()
+        files["answers.md"] = "\n".join(
+            f"## {step}\n\n{answer}\n" for step, answer in answers
+        ).encode()
     robots = [*map(_urdf, filter(None, [student.get("first")])), robot]
     for number, urdf in enumerate(robots):
         data = zip_of({**files, "my_robot/urdf/my_robot.urdf": urdf.read_bytes()})

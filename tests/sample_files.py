@@ -16,11 +16,17 @@ from tests.samples import ROOT, RUBRICS, SAMPLES, Sample
 
 # Samples that lose nothing in their package, but whose package is their point.
 OWN_PACKAGES = {
-    *(f"equivalent-{name}" for name in ("f-strings-and-pathlib", "launch-file-in-xml", "literal-lists")),
+    *(
+        f"equivalent-{name}"
+        for name in ("f-strings-and-pathlib", "launch-file-in-xml", "literal-lists")
+    ),
     *(f"equivalent-{name}" for name in ("nested-install-paths", "urdf-launch")),
     *(f"equivalent-xacro-{name}" for name in ("command", "inertials", "macros", "numbers")),
     "diffdrive/equivalent-other-names",
-    *(f"sensors/equivalent-{name}" for name in ("find-in-include", "flat-install", "macro-included")),
+    *(
+        f"sensors/equivalent-{name}"
+        for name in ("find-in-include", "flat-install", "macro-included")
+    ),
     "xacro-from-another-package",
 }
 
@@ -54,7 +60,10 @@ def _readme(rubric: Rubric, samples: list[Sample]) -> str:
     groups: dict[str, list[Sample]] = {key: [] for key in titles}
     for sample in samples:
         groups[
-            next(iter(sample.expected.lost), "?" if rubric.criteria[0].id in sample.expected.pending else "")
+            next(
+                iter(sample.expected.lost),
+                "?" if rubric.criteria[0].id in sample.expected.pending else "",
+            )
         ].append(sample)
     text = _TOP.format(id=rubric.id, title=rubric.title, count=len(samples))
     for key, found in groups.items():
@@ -62,7 +71,11 @@ def _readme(rubric: Rubric, samples: list[Sample]) -> str:
             f"| [{it.expected.folder.name}]({it.expected.folder.name}/) | {it.expected.about} | {_others(it, rubric)} |\n"
             for it in found
         )
-        text += f"\n## {titles[key]}\n\n| sample | what is in it | points lost |\n|---|---|---|\n{rows}" if rows else ""
+        text += (
+            f"\n## {titles[key]}\n\n| sample | what is in it | points lost |\n|---|---|---|\n{rows}"
+            if rows
+            else ""
+        )
     return text
 
 

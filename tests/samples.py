@@ -27,7 +27,9 @@ class Sample:
     def name(self) -> str:
         """Return the name of the folder, after the name of its rubric if that is not lab6."""
         folder = self.expected.folder
-        return folder.name if folder.parent.name == "lab6" else f"{folder.parent.name}/{folder.name}"
+        return (
+            folder.name if folder.parent.name == "lab6" else f"{folder.parent.name}/{folder.name}"
+        )
 
     @property
     def path(self) -> Path:
@@ -38,7 +40,9 @@ class Sample:
     def alone(self) -> "Sample":
         """Return the sample that consists of the URDF of this one, without its package."""
         (urdf,) = self.expected.folder.glob("*/urdf/*_robot.urdf*")
-        return Sample(replace(self.expected, path=urdf.relative_to(self.expected.folder).as_posix()))
+        return Sample(
+            replace(self.expected, path=urdf.relative_to(self.expected.folder).as_posix())
+        )
 
     @property
     def rubric(self) -> Rubric:
@@ -71,18 +75,38 @@ def reference(rubric: Rubric = LAB6) -> Submission:
 
 
 _FOLDERS = [ROOT / "submissions" / name for name in RUBRICS]
-_READ = [Sample(sample) for folder in _FOLDERS if folder.exists() for sample in read_samples(folder)]
+_READ = [
+    Sample(sample) for folder in _FOLDERS if folder.exists() for sample in read_samples(folder)
+]
 SAMPLES = {sample.name: sample for sample in _READ}
 LAB6_SAMPLES = {name: sample for name, sample in SAMPLES.items() if sample.rubric is LAB6}
 # What every format of reports is tested on: together these reports reach every branch of the formats, and have each status with
 # and without a place, a hint, points that are kept and an answer, each kind of problem, and each kind of submission.
 REPORTED = (
-    "reference", "several-mistakes", "axis-for-the-z-up-wheel", "truncated-file", "empty-urdf",
-        "sensors/launch-home-path",
-    "wheel-axes-along-x", "cmake-package", "arm/masses-in-grams", "commas-in-vectors", "equivalent-zero-size-footprint",
-    "minus-sign-from-a-pdf", "xacro-from-another-package", "cylinder-height", "equivalent-box-on-its-side",
-        "empty-urdf",
-    "rviz-not-installed", "zero-axis", "caster-misnamed", "folder-misspelt-in-setup", "joint-without-child",
-        "package-misnamed",
-    "rviz-of-ros1", "sensors/gazebo-reference-misspelt", "raw-xacro", "equivalent-other-urdfs-nearby",
-)  # fmt: skip
+    "reference",
+    "several-mistakes",
+    "axis-for-the-z-up-wheel",
+    "truncated-file",
+    "empty-urdf",
+    "sensors/launch-home-path",
+    "wheel-axes-along-x",
+    "cmake-package",
+    "arm/masses-in-grams",
+    "commas-in-vectors",
+    "equivalent-zero-size-footprint",
+    "minus-sign-from-a-pdf",
+    "xacro-from-another-package",
+    "cylinder-height",
+    "equivalent-box-on-its-side",
+    "empty-urdf",
+    "rviz-not-installed",
+    "zero-axis",
+    "caster-misnamed",
+    "folder-misspelt-in-setup",
+    "joint-without-child",
+    "package-misnamed",
+    "rviz-of-ros1",
+    "sensors/gazebo-reference-misspelt",
+    "raw-xacro",
+    "equivalent-other-urdfs-nearby",
+)

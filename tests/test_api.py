@@ -20,7 +20,9 @@ from tests.command_line import ROOT, run
 
 PAGE = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", PAGE, re.DOTALL)
-COURSE_TESTS = [code for code in re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL) if "import pytest" in code]
+COURSE_TESTS = [
+    code for code in re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL) if "import pytest" in code
+]
 SAMPLES = ROOT / "submissions/lab6"
 
 
@@ -28,8 +30,14 @@ def test_the_stub_and_the_page_name_what_there_is() -> None:
     """Every public name can be used, is typed in the stub, and is on the page, and these have no other name."""
     public = {name for name in vars(grader)["_MODULES"] if getattr(grader, name)}
     stub = ast.parse((ROOT / "grader" / "__init__.pyi").read_text(encoding="utf-8"))
-    typed = {alias.name for node in stub.body if isinstance(node, ast.ImportFrom) for alias in node.names}
-    assert typed == public == {name for name in public if re.search(rf"`{name}\b", PAGE)} | {"Reading", "Rubric"}
+    typed = {
+        alias.name for node in stub.body if isinstance(node, ast.ImportFrom) for alias in node.names
+    }
+    assert (
+        typed
+        == public
+        == {name for name in public if re.search(rf"`{name}\b", PAGE)} | {"Reading", "Rubric"}
+    )
     assert public <= set(dir(grader))
     assert public == set(grader.__all__)
     with pytest.raises(AttributeError, match="has no attribute 'grad'"):
@@ -46,7 +54,13 @@ def test_the_examples_print_what_the_page_shows(code: str, shown: str, tmp_path:
 
 
 @pytest.mark.parametrize(
-    "path", ["several-mistakes", "reference", "pictures-only", "lidar-over-the-edge/my_robot/urdf/my_robot.urdf"]
+    "path",
+    [
+        "several-mistakes",
+        "reference",
+        "pictures-only",
+        "lidar-over-the-edge/my_robot/urdf/my_robot.urdf",
+    ],
 )
 def test_a_report_is_that_of_the_command(path: str) -> None:
     """Points, messages and hints, with a rubric by id, by path, and loaded."""
@@ -83,14 +97,20 @@ def test_what_cannot_be_graded_raises_one_error(tmp_path: Path) -> None:
         (1, "SUBMISSION", "lidar-offset-in-visual", ["test_criterion[lidar-frame]"]),
     ],
 )
-def test_the_tests_of_a_course_run(number: int, variable: str, sample: str, failed: list[str], tmp_path: Path) -> None:
+def test_the_tests_of_a_course_run(
+    number: int, variable: str, sample: str, failed: list[str], tmp_path: Path
+) -> None:
     """The files to copy pass on the reference, and fail where a robot is wrong."""
     (tmp_path / "test_lab.py").write_text(COURSE_TESTS[number], encoding="utf-8")
     (urdf,) = (SAMPLES / sample).rglob("my_robot.urdf")
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_lab.py"]
     environment = {**os.environ, variable: str(urdf)}
-    done = subprocess.run(command, cwd=tmp_path, env=environment, check=False, capture_output=True, text=True)
-    assert re.findall(r"^FAILED test_lab.py::(\S+)", done.stdout, re.MULTILINE) == failed, done.stdout + done.stderr
+    done = subprocess.run(
+        command, cwd=tmp_path, env=environment, check=False, capture_output=True, text=True
+    )
+    assert re.findall(r"^FAILED test_lab.py::(\S+)", done.stdout, re.MULTILINE) == failed, (
+        done.stdout + done.stderr
+    )
     assert done.returncode == (1 if failed else 0)
 
 
@@ -112,14 +132,21 @@ def test_help_and_star_import_give_the_public_names() -> None:
     exec("from grader import *", names)
     assert set(grader.__all__) == names.keys() - {"__builtins__"}
     shown = pydoc.plain(pydoc.render_doc(grader))
-    documented = {*re.findall(r"^    class (\w+)\(", shown, re.M), *re.findall(r"^    (\w+)\(.*?\) ->", shown, re.M)}
+    documented = {
+        *re.findall(r"^    class (\w+)\(", shown, re.M),
+        *re.findall(r"^    (\w+)\(.*?\) ->", shown, re.M),
+    }
     assert documented == set(grader.__all__)
     for name in ("Configuration", "Joint", "Link", "Robot", "Transform"):
-        members = re.findall(r"^ \|  (_\w+)", pydoc.plain(pydoc.render_doc(getattr(grader, name))), re.MULTILINE)
+        members = re.findall(
+            r"^ \|  (_\w+)", pydoc.plain(pydoc.render_doc(getattr(grader, name))), re.MULTILINE
+        )
         assert [it for it in members if not it.startswith("__")] == [], name
 
 
-@pytest.mark.parametrize("text", ["", "<robot", "\ud800", '<robot name="a"><link name="b"/></robot>'])
+@pytest.mark.parametrize(
+    "text", ["", "<robot", "\ud800", '<robot name="a"><link name="b"/></robot>']
+)
 def test_a_urdf_is_read_from_text(text: str) -> None:
     """As from its bytes, whatever is in it."""
     read, same = grader.read_urdf(text), grader.read_urdf(text.encode("utf-8", "surrogatepass"))
@@ -138,8 +165,12 @@ def test_a_urdf_is_read_from_text(text: str) -> None:
 )
 def test_the_import_is_light(code: str, modules: tuple[str, ...]) -> None:
     """`import grader` loads no other module of the grader and no library; a URDF is graded without numpy."""
-    listed = f"import sys; {code}; print([name for name in sys.modules if name.startswith({modules})])"
-    done = subprocess.run([sys.executable, "-c", listed], cwd=ROOT, check=True, capture_output=True, text=True)
+    listed = (
+        f"import sys; {code}; print([name for name in sys.modules if name.startswith({modules})])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", listed], cwd=ROOT, check=True, capture_output=True, text=True
+    )
     assert done.stdout == "[]\n"
 
 
@@ -151,9 +182,22 @@ def test_a_type_checker_accepts_the_examples(tmp_path: Path) -> None:
         (tmp_path / f"example_{number}.py").write_text(code, encoding="utf-8")
     wrong = 'import grader\ngrader.grade(3)\ngrader.grade("a").scor\nscore: str = grader.grade("a").score\n'
     (tmp_path / "wrong.py").write_text(wrong, encoding="utf-8")
-    checked = [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", "--cache-dir", os.devnull, "."]
+    checked = [
+        sys.executable,
+        "-m",
+        "mypy",
+        "--strict",
+        "--no-error-summary",
+        "--cache-dir",
+        os.devnull,
+        ".",
+    ]
     done = subprocess.run(checked, cwd=tmp_path, check=False, capture_output=True, text=True)
-    lines = [re.match(r"(\S+?:\d+): error.*\[([\w-]+)\]$", line) for line in done.stdout.splitlines()]
+    lines = [
+        re.match(r"(\S+?:\d+): error.*\[([\w-]+)\]$", line) for line in done.stdout.splitlines()
+    ]
     assert [line and line.groups() for line in lines] == [
-        ("wrong.py:2", "arg-type"), ("wrong.py:3", "attr-defined"), ("wrong.py:4", "assignment"),
-    ], done.stdout + done.stderr  # fmt: skip
+        ("wrong.py:2", "arg-type"),
+        ("wrong.py:3", "attr-defined"),
+        ("wrong.py:4", "assignment"),
+    ], done.stdout + done.stderr

@@ -34,7 +34,12 @@ LAYERS = (
 LIBRARIES = {
     "typer": {"cli"},
     "rich": {"cli", "report", "commands"},
-    "lxml": {"documents", "xml", "report", "authoring"},  # of Word; a report may be XML; a robot is rewritten as a tree
+    "lxml": {
+        "documents",
+        "xml",
+        "report",
+        "authoring",
+    },  # of Word; a report may be XML; a robot is rewritten as a tree
     "jinja2": {"report"},
     "markupsafe": {"report"},
     "yaml": {"package", "xacro"},
@@ -97,7 +102,10 @@ def test_imports_point_down() -> None:
 
 def test_no_import_cycle() -> None:
     """No module imports itself by way of others, not even in a function or for type checkers."""
-    graph = {module: {name for name in imports(module) if name in MODULES} - {module} for module in MODULES}
+    graph = {
+        module: {name for name in imports(module) if name in MODULES} - {module}
+        for module in MODULES
+    }
     try:
         TopologicalSorter(graph).prepare()
     except CycleError as error:
@@ -115,7 +123,8 @@ def test_every_package_has_a_layer() -> None:
     """Every package and top-level module is in exactly one layer."""
     named = list(chain.from_iterable(LAYERS))
     assert sorted(named) == sorted(
-        {path.relative_to(ROOT).with_suffix("").parts[0] for path in MODULES.values()} - {"__init__"}
+        {path.relative_to(ROOT).with_suffix("").parts[0] for path in MODULES.values()}
+        - {"__init__"}
     )
 
 
@@ -126,17 +135,26 @@ NAMED_BY_OTHERS = ("grader.checks.", "grader.cli.", "grader.api", "grader.__main
 @pytest.mark.slow
 def test_names_of_one_module_are_private() -> None:
     """A function, class or constant that no other module imports, of the grader or of its tests, starts with an underscore."""
-    others = chain.from_iterable((ROOT.parent / folder).rglob("*.py") for folder in ("tests", "benchmarks", "docs"))
+    others = chain.from_iterable(
+        (ROOT.parent / folder).rglob("*.py") for folder in ("tests", "benchmarks", "docs")
+    )
     readable = [path for path in others if "setup_samples" not in path.parts]
     used = {name for path in (*MODULES.values(), *readable) for name in used_names(path)}
-    own = [(module, name) for module in MODULES for name in defined_names(module) if not name.startswith("_")]
+    own = [
+        (module, name)
+        for module in MODULES
+        for name in defined_names(module)
+        if not name.startswith("_")
+    ]
     assert [f"{module}.{name}" for module, name in own if f"{module}.{name}" not in used] == []
 
 
 def defined_names(module: str) -> Iterator[str]:
     """Yield the functions, classes and constants that a module defines at its top, of those that only modules import."""
     for node in (
-        ast.parse(MODULES[module].read_text(encoding="utf-8")).body if not module.startswith(NAMED_BY_OTHERS) else ()
+        ast.parse(MODULES[module].read_text(encoding="utf-8")).body
+        if not module.startswith(NAMED_BY_OTHERS)
+        else ()
     ):
         match node:
             case ast.FunctionDef() | ast.ClassDef():
@@ -167,5 +185,9 @@ def used_names(path: Path) -> Iterator[str]:
         match node:
             case ast.Attribute(value=ast.Name(id=name), attr=attribute) if name in modules:
                 yield f"{modules[name]}.{attribute}"
-            case ast.Constant(value=str(text)) if ":" in text:  # "module:function", which is imported late
-                yield from (f"{package}.{text.replace(':', '.')}" for package in ("grader", "grader.report"))
+            case ast.Constant(value=str(text)) if (
+                ":" in text
+            ):  # "module:function", which is imported late
+                yield from (
+                    f"{package}.{text.replace(':', '.')}" for package in ("grader", "grader.report")
+                )

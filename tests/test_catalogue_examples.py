@@ -25,18 +25,35 @@ from tests.checks.submissions import png
 from tests.command_line import ROOT
 from tests.oracles.check_urdf import check_urdf
 
-FILES = {path.stem: tomllib.loads(path.read_text(encoding="utf-8")) for path in (ROOT / "docs/examples").glob("*.toml")}
+FILES = {
+    path.stem: tomllib.loads(path.read_text(encoding="utf-8"))
+    for path in (ROOT / "docs/examples").glob("*.toml")
+}
 FRAMES = {name: file["frames"] for file in FILES.values() for name in file if name != "frames"}
-ENTRIES: dict[str, Any] = {name: entry for file in FILES.values() for name, entry in file.items() if name != "frames"}
+ENTRIES: dict[str, Any] = {
+    name: entry for file in FILES.values() for name, entry in file.items() if name != "frames"
+}
 CODES = {kind.code: kind for kind in EVERY_KIND}
 CHECKS = {check.name: check for check in own_checks()}
 SIDES = pytest.mark.parametrize("side", ["wrong", "right"])
 # What comes with a problem: an assumption, a consequence, another rule that the same mistake breaks.
 ALSO = {
-    "URDF001": "URDF015", "URDF002": "URDF015", "URDF010": "URDF041", "URDF011": "URDF009", "URDF015": "URDF002",
-    "URDF031": "URDF071 URDF015", "URDF061": "URDF015", "URDF071": "URDF015", "URDF041": "URDF091", "URDF043": "URDF062", "URDF070": "URDF080", "URDF082": "URDF084",
-    "URDF085": "URDF084", "URDF095": "URDF009", "URDF099": "URDF031",
-}  # fmt: skip
+    "URDF001": "URDF015",
+    "URDF002": "URDF015",
+    "URDF010": "URDF041",
+    "URDF011": "URDF009",
+    "URDF015": "URDF002",
+    "URDF031": "URDF071 URDF015",
+    "URDF061": "URDF015",
+    "URDF071": "URDF015",
+    "URDF041": "URDF091",
+    "URDF043": "URDF062",
+    "URDF070": "URDF080",
+    "URDF082": "URDF084",
+    "URDF085": "URDF084",
+    "URDF095": "URDF009",
+    "URDF099": "URDF031",
+}
 FOLDERS = {".urdf": "urdf", ".xacro": "urdf", ".rviz": "rviz", ".yaml": "config"}
 WHEEL = """\
 <robot xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -54,7 +71,9 @@ INSTALLED = """\
 def framed(name: str, text: str, frame: str = "") -> tuple[str, range]:
     """Return a file with a text in a frame of this example, and the lines of the text."""
     inside = "\n\n".join(map(repeated, text.strip("\n").split("\n\n")))
-    before, space, after = re.split(r"(?m)^( *)EXAMPLE$", FRAMES[name][frame or frame_of(name)].rstrip("\n"))
+    before, space, after = re.split(
+        r"(?m)^( *)EXAMPLE$", FRAMES[name][frame or frame_of(name)].rstrip("\n")
+    )
     first = before.count("\n") + 1
     return before + indent(inside, space) + after, range(first, first + inside.count("\n") + 1)
 
@@ -69,7 +88,9 @@ def repeated(paragraph: str) -> str:
     *block, times = re.split(r"\n *<!-- \.\.\. (\d+) times -->$", paragraph)[:2]
     if not block:
         return paragraph
-    return "\n".join(re.sub(r"\d+", lambda it: str(int(it[0]) + copy), block[0]) for copy in range(int(times)))
+    return "\n".join(
+        re.sub(r"\d+", lambda it: str(int(it[0]) + copy), block[0]) for copy in range(int(times))
+    )
 
 
 PACKAGE = {
@@ -89,16 +110,24 @@ def files_of(name: str, side: str) -> tuple[dict[str, bytes], range]:
     text, lines = framed(name, ENTRIES[name][side])
     file = frame_of(name).rpartition("/")[2]
     if file == "files.txt":
-        contents = {PurePath(path).suffix: content.encode() for path, content in PACKAGE.items()} | {".png": png()}
+        contents = {
+            PurePath(path).suffix: content.encode() for path, content in PACKAGE.items()
+        } | {".png": png()}
         return {path: contents[PurePath(path).suffix] for path in text.split("\n") if path}, lines
     encoding = re.match(r'<\?xml .*encoding="([^"]*)"', text)
     own = text.encode(encoding[1] if encoding else "utf-8")
     if file.endswith((".urdf", ".md")):
         return {file: own}, lines
     folder = "launch" if file.endswith(".launch.py") else FOLDERS.get(PurePath(file).suffix, "")
-    others = {path: content.encode() for path, content in PACKAGE.items() if not (folder == "urdf" == path[:4])}
+    others = {
+        path: content.encode()
+        for path, content in PACKAGE.items()
+        if not (folder == "urdf" == path[:4])
+    }
     return {str(PurePath("rover", folder, file)): own} | {
-        f"rover/{path}": content for path, content in others.items() if path != str(PurePath(folder, file))
+        f"rover/{path}": content
+        for path, content in others.items()
+        if path != str(PurePath(folder, file))
     } | ({"rover/urdf/wheel.xacro": WHEEL.encode()} if folder == "urdf" else {}), lines
 
 
@@ -128,16 +157,27 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(code: str, tmp_pa
         files, lines = files_of(code, side)
         submission = opened(tmp_path / side, files)
         found = list(submission.urdf.problems) if isinstance(submission.urdf, Read) else []
-        found += mesh_problems(submission, submission.urdf) if isinstance(submission.urdf, Read) else []
+        found += (
+            mesh_problems(submission, submission.urdf) if isinstance(submission.urdf, Read) else []
+        )
         found += package_problems(submission.package) if submission.package else []
         if code.startswith("REF"):
             names = name_problems(read_agreement(submission))
-            found = [it for it in names if it.code == code or it.severity == "error" == CODES[code].severity]
+            found = [
+                it
+                for it in names
+                if it.code == code or it.severity == "error" == CODES[code].severity
+            ]
         if side == "right":
             assert found == []
         else:
-            lines = range(1, 2) if code == "REF010" else lines  # of the file that no other one names
-            assert any(it.code == code and it.location.line in lines for it in found), (found, lines)
+            lines = (
+                range(1, 2) if code == "REF010" else lines
+            )  # of the file that no other one names
+            assert any(it.code == code and it.location.line in lines for it in found), (
+                found,
+                lines,
+            )
             assert {it.code for it in found} == {code, *ALSO.get(code, code).split()}
 
 

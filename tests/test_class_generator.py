@@ -69,20 +69,31 @@ def test_random_choices_are_the_same_on_every_python() -> None:
 
 def test_all_urdfs_differ() -> None:
     """A cache by content cannot help with the next one."""
-    texts = {submission.made.text for submission in made_up.submissions(500, SEED, "urdf") if submission.made}
+    texts = {
+        submission.made.text
+        for submission in made_up.submissions(500, SEED, "urdf")
+        if submission.made
+    }
     assert len(texts) == 500
 
 
 def test_the_proportions_are_those_of_real_classes() -> None:
     """Some 37 in 100 are correct, half of them with other numbers; 6 are broken; the most frequent mistakes come first."""
-    made = [submission.made for submission in made_up.submissions(2_000, SEED, "urdf") if submission.made]
+    made = [
+        submission.made
+        for submission in made_up.submissions(2_000, SEED, "urdf")
+        if submission.made
+    ]
     share = {
         sort: sum(submission.sort == sort for submission in made) / len(made)
         for sort in {submission.sort for submission in made}
     }
     expected = {"as told": 0.185, "equivalent": 0.185, "mistaken": 0.57, "broken": 0.06}
     assert share == pytest.approx(expected, abs=0.03)
-    met = {variant.name: sum(variant.name in submission.variants for submission in made) for variant in ALL_VARIANTS}
+    met = {
+        variant.name: sum(variant.name in submission.variants for submission in made)
+        for variant in ALL_VARIANTS
+    }
     assert all(met.values())
     assert {"right-mirrored", "lidar-buried"} == set(sorted(met, key=lambda name: met[name])[-2:])
 
@@ -100,7 +111,9 @@ def test_a_variant_loses_the_expected_criteria(variant: made_up.Variant) -> None
     for edit in variant.edits:
         assert not edit.old or made_up.elements()[edit.element].count(edit.old) == 1, edit
     for number in range(2):
-        made = made_up.built(made_up.Dice(f"{variant.name}/{number}"), "a student", "alone", (variant,))
+        made = made_up.built(
+            made_up.Dice(f"{variant.name}/{number}"), "a student", "alone", (variant,)
+        )
         assert lost(made.text) == set(made.lost), made.text
 
 
@@ -122,7 +135,9 @@ def test_all_kinds_and_names_occur(tmp_path: Path) -> None:
     assert {submission.kind for submission in written} == set(made_up.KINDS)
     names = {submission.person.name for submission in written}
     assert {f"{first} {last}" for first, last in made_up.AWKWARD} <= names
-    assert all(os.path.lexists(tmp_path / path) for submission in written for path in submission.paths)
+    assert all(
+        os.path.lexists(tmp_path / path) for submission in written for path in submission.paths
+    )
     assert any(path.endswith(" (1).urdf") for submission in written for path in submission.paths)
     assert [submission.kind for submission in written if not submission.paths] == ["nothing"] * sum(
         submission.kind == "nothing" for submission in written
@@ -142,11 +157,18 @@ def test_every_mixed_submission_is_opened(layout: str, tmp_path: Path) -> None:
     assert len(graded) == sum(bool(submission.paths) for submission in written)
     for path, submission in graded.items():
         made = by_path[path].made
-        assert made is None or (submission.verdict, _lost(submission)) == ("graded", set(made.lost)), (
+        assert made is None or (submission.verdict, _lost(submission)) == (
+            "graded",
+            set(made.lost),
+        ), (
             by_path[path].kind,
             made,
         )
-    refused = {by_path[path].kind for path, submission in graded.items() if submission.verdict == "unreadable"}
+    refused = {
+        by_path[path].kind
+        for path, submission in graded.items()
+        if submission.verdict == "unreadable"
+    }
     assert layout == "moodle" or refused >= {"broken-zip", "garbage-zip", "zip-bomb"}
 
 
@@ -160,7 +182,9 @@ def _graded(folder: Path) -> Iterable[tuple[str, StoredResult]]:
 
 def _lost(graded: StoredResult) -> set[str]:
     """Return the criteria of the URDF that failed or were skipped."""
-    lost = {name for name, (_, status, *_) in graded.results.items() if status in ("failed", "skipped")}
+    lost = {
+        name for name, (_, status, *_) in graded.results.items() if status in ("failed", "skipped")
+    }
     return lost & set(made_up.criteria())
 
 
@@ -170,13 +194,17 @@ def test_the_lists_match_the_class(layout: str, list_name: str, tmp_path: Path) 
     """With a roster or the LMS's own file, one submission is unmatched, and students without one are absent."""
     folder = tmp_path / "class"
     written = every(made_up.make_class(folder, MIXED, SEED, "mixed", layout))
-    made_up.write_beside(written, MIXED, layout, None, tmp_path / "roster.csv", tmp_path / "lms.csv")
+    made_up.write_beside(
+        written, MIXED, layout, None, tmp_path / "roster.csv", tmp_path / "lms.csv"
+    )
     roster = read_roster((tmp_path / list_name).read_bytes(), list_name)
     intake = read_class([folder], roster, rubric_id="lab6")
     assert intake.layout == layout
     assert len(intake.unmatched) == 1 and not intake.unclear
     present = {one.student.key for one in intake.submissions}
-    assert sum(one.key not in present for one in roster.students) == sum(not one.paths for one in written)
+    assert sum(one.key not in present for one in roster.students) == sum(
+        not one.paths for one in written
+    )
 
 
 def test_expectations_are_written_beside_the_class(tmp_path: Path) -> None:

@@ -28,9 +28,15 @@ RAW = REPOSITORY.replace("github.com", "raw.githubusercontent.com")
 def do(words: Sequence[object], folder: Path, **variables: str) -> subprocess.CompletedProcess[str]:
     """Run a program in a folder."""
     return subprocess.run(
-        [str(word) for word in words], cwd=folder, env={**clean_environment(), **variables}, capture_output=True,
-        text=True, encoding="utf-8", check=False, timeout=HANG_TIMEOUT,
-    )  # fmt: skip
+        [str(word) for word in words],
+        cwd=folder,
+        env={**clean_environment(), **variables},
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        check=False,
+        timeout=HANG_TIMEOUT,
+    )
 
 
 def build(source: Path, target: Path, *kinds: str) -> Path:
@@ -59,14 +65,22 @@ def test_the_wheel_has_no_model_answers_and_no_samples(built: Path) -> None:
     (wheel,), (sdist,) = built.glob("*.whl"), built.glob("*.tar.gz")
     files = contents(wheel)
     answers = [path for path in (ROOT / "rubrics").rglob("*") if path.name.endswith(ANSWERS)]
-    secrets = [text.encode() for path in answers for text in tomllib.loads(path.read_text(encoding="utf-8")).values()]
+    secrets = [
+        text.encode()
+        for path in answers
+        for text in tomllib.loads(path.read_text(encoding="utf-8")).values()
+    ]
     assert secrets
     assert not [name for name, data in files.items() if any(text in data for text in secrets)]
     assert {Path(name).parts[0] for name in files} == {
         "grader",
         next(name for name in files if "METADATA" in name)[:-9],
     }
-    rubrics = {f"grader/{path.relative_to(ROOT)}" for path in (ROOT / "rubrics").rglob("*") if path.is_file()}
+    rubrics = {
+        f"grader/{path.relative_to(ROOT)}"
+        for path in (ROOT / "rubrics").rglob("*")
+        if path.is_file()
+    }
     assert {name for name in files if name.startswith("grader/rubrics/")} == {
         name for name in rubrics if not name.endswith((ANSWERS, ".pyc"))
     }
@@ -82,7 +96,8 @@ def test_the_wheel_has_no_model_answers_and_no_samples(built: Path) -> None:
     assert not [
         name
         for name in names
-        if name.endswith(ANSWERS) or re.match(r"tests|benchmarks|submissions/(?!lab6/lidar-buried/)", name)
+        if name.endswith(ANSWERS)
+        or re.match(r"tests|benchmarks|submissions/(?!lab6/lidar-buried/)", name)
     ]
 
 
@@ -119,17 +134,23 @@ def is_there(link: str) -> bool:
     if link.startswith(SITE):
         name = re.sub(r"(\.html)?(#.*)?$", "", link.removeprefix(SITE))
         return (ROOT / "docs" / f"{name or 'index'}.md").exists()
-    found = re.match(rf"(?:{re.escape(REPOSITORY)}/(?:blob|tree)|{re.escape(RAW)})/main/([^#]+)", link)
+    found = re.match(
+        rf"(?:{re.escape(REPOSITORY)}/(?:blob|tree)|{re.escape(RAW)})/main/([^#]+)", link
+    )
     if found:
         return (ROOT / found[1]).exists()
-    own = re.fullmatch(rf"{re.escape(REPOSITORY)}/(security/(policy|advisories/new)|releases/tag/v[0-9.]+)", link)
+    own = re.fullmatch(
+        rf"{re.escape(REPOSITORY)}/(security/(policy|advisories/new)|releases/tag/v[0-9.]+)", link
+    )
     return own is not None or link in URLS.values() or not link.startswith((REPOSITORY, RAW))
 
 
 def test_addresses_of_the_project_exist() -> None:
     """What the code and the pages cite is a page of the site or a file of the repository."""
     pages = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *(ROOT / "grader").rglob("*.py")]
-    found = {link for page in pages for link in re.findall(_ADDRESS, page.read_text(encoding="utf-8"))}
+    found = {
+        link for page in pages for link in re.findall(_ADDRESS, page.read_text(encoding="utf-8"))
+    }
     assert found
     assert [link for link in found if not is_there(link.rstrip("."))] == []
 

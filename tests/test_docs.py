@@ -41,7 +41,9 @@ GENERATED = runpy.run_path(str(ROOT / "docs" / "make.py"))["pages"]()
 @pytest.mark.parametrize("name", GENERATED)
 def test_a_generated_page_is_current(name: str) -> None:
     """The page is what docs/make.py writes now."""
-    assert (ROOT / "docs" / name).read_text(encoding="utf-8") == GENERATED[name], "run python docs/make.py"
+    assert (ROOT / "docs" / name).read_text(encoding="utf-8") == GENERATED[name], (
+        "run python docs/make.py"
+    )
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
@@ -54,7 +56,9 @@ def test_links_are_files(page: Path) -> None:
 
 def anchors(page: Path) -> set[str]:
     """Return the anchors that GitHub gives the headings of a page."""
-    text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
+    text = re.sub(
+        r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE
+    )
     headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
@@ -64,13 +68,17 @@ def test_anchors_are_headings(page: Path) -> None:
     """Every link to a section of a page leads to a heading of that page."""
     for target, anchor in re.findall(r"\]\(([^)#]*)#([^)]+)\)", page.read_text(encoding="utf-8")):
         if not target.startswith("http"):
-            assert anchor in anchors(page.parent / target if target else page), f"{page.name}: {target}#{anchor}"
+            assert anchor in anchors(page.parent / target if target else page), (
+                f"{page.name}: {target}#{anchor}"
+            )
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_codes_and_criteria_exist(page: Path) -> None:
     """Every problem code on a page is in the catalogue."""
-    codes = set(re.findall(r"(?:URDF|XACRO|PKG|LCH|RVZ|REF)\d{3}", page.read_text(encoding="utf-8")))
+    codes = set(
+        re.findall(r"(?:URDF|XACRO|PKG|LCH|RVZ|REF)\d{3}", page.read_text(encoding="utf-8"))
+    )
     assert all(f"\n## {code}\n" in GENERATED["problems.md"] for code in codes)
 
 
@@ -79,7 +87,9 @@ def test_code_blocks_can_be_parsed(page: Path) -> None:
     """Every block of YAML or TOML is valid, so it was not wrapped like prose; some generated ones are wrong on purpose."""
     if page.name == "problems.md":
         return
-    for kind, block in re.findall(r"^ *```(yaml|toml)\n(.*?)^ *```", page.read_text(encoding="utf-8"), re.S | re.M):
+    for kind, block in re.findall(
+        r"^ *```(yaml|toml)\n(.*?)^ *```", page.read_text(encoding="utf-8"), re.S | re.M
+    ):
         (yaml.safe_load if kind == "yaml" else tomllib.loads)(block)
 
 
@@ -88,7 +98,8 @@ def test_programs_of_the_project_exist(page: Path) -> None:
     """Each module and file that `python` or `pytest` is to run is one of the project."""
     text = page.read_text(encoding="utf-8")
     found = re.findall(
-        r"-m ((?:tests|benchmarks)[\w.]*)|(?:python|pytest)[^`\n]* ((?:tests|benchmarks|docs)/[\w/.]+)", text
+        r"-m ((?:tests|benchmarks)[\w.]*)|(?:python|pytest)[^`\n]* ((?:tests|benchmarks|docs)/[\w/.]+)",
+        text,
     )
     for module, file in found:
         path = file.removesuffix("/") or module.rstrip(".").replace(".", "/")
@@ -101,7 +112,15 @@ def commands(command: Any, name: str) -> Iterator[tuple[str, set[str]]]:
     for word, subcommand in below.items():
         yield from commands(subcommand, f"{name} {word}")
     if not below:
-        yield name, {option for parameter in command.params for option in parameter.opts if option.startswith("--")}
+        yield (
+            name,
+            {
+                option
+                for parameter in command.params
+                for option in parameter.opts
+                if option.startswith("--")
+            },
+        )
 
 
 def test_every_command_and_option_is_in_the_reference() -> None:
@@ -129,7 +148,9 @@ def keys(schema: Any) -> Iterator[str]:
     """Yield the names of all properties in a JSON Schema."""
     if isinstance(schema, dict):
         yield from schema.get("properties", {})
-    for part in schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ():
+    for part in (
+        schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ()
+    ):
         yield from keys(part)
 
 
@@ -139,10 +160,14 @@ def test_every_dependency_has_a_reason_and_a_licence() -> None:
     project, extras = whole["project"], whole["project"]["optional-dependencies"]
     of_users = [*project["dependencies"], *extras["documents"], *extras["cluster"]]
     of_developers = chain(*extras.values(), *whole["dependency-groups"].values())
-    reasons, licences = (ROOT / "docs" / "installation.md").read_text(encoding="utf-8").split("## Licences")
+    reasons, licences = (
+        (ROOT / "docs" / "installation.md").read_text(encoding="utf-8").split("## Licences")
+    )
     for text, needed in ((reasons, [*of_users, *of_developers]), (licences, of_users)):
         names = {re.split(r"[<>=,;\[]", requirement)[0] for requirement in needed}
-        assert [name for name in sorted(names) if not re.search(rf"\| .*\b{name}\b.*\|", text)] == []
+        assert [
+            name for name in sorted(names) if not re.search(rf"\| .*\b{name}\b.*\|", text)
+        ] == []
 
 
 LIMITS: dict[str, dict[str, tuple[float, ...]]] = {
@@ -164,8 +189,13 @@ LIMITS: dict[str, dict[str, tuple[float, ...]]] = {
             packages._MAX_MANIFEST_SIZE / 1024,
             package._RVIZ_LIMIT / 1024,
         ),
-        "| {} s of processor time; {} GiB of memory |": (ending._SECONDS, ending._MEMORY / MIB / 1024),
-        "| problems of a URDF; links that `inspect` prints | {:,}; 500 |": (diagnostics._MAX_PROBLEMS,),
+        "| {} s of processor time; {} GiB of memory |": (
+            ending._SECONDS,
+            ending._MEMORY / MIB / 1024,
+        ),
+        "| problems of a URDF; links that `inspect` prints | {:,}; 500 |": (
+            diagnostics._MAX_PROBLEMS,
+        ),
         "{} GiB of memory | graded again": (pool.MAX_MEMORY / MIB / 1024,),
     },
     "xacro.md": {
@@ -183,7 +213,9 @@ LIMITS: dict[str, dict[str, tuple[float, ...]]] = {
 }
 
 
-@pytest.mark.parametrize(("page", "phrase"), [(page, phrase) for page, phrases in LIMITS.items() for phrase in phrases])
+@pytest.mark.parametrize(
+    ("page", "phrase"), [(page, phrase) for page, phrases in LIMITS.items() for phrase in phrases]
+)
 def test_limits_are_those_of_the_code(page: str, phrase: str) -> None:
     """The figures on the pages are the constants of the code."""
     figures = (int(figure) for figure in LIMITS[page][phrase])
@@ -196,8 +228,12 @@ def test_points_are_those_of_the_rubrics() -> None:
         rubric = load_rubric(str(path))
         page = path.with_name("README.md").read_text(encoding="utf-8")
         for part in rubric.parts:
-            points = sum(criterion.points for criterion in rubric.criteria if criterion.part == part.id)
-            assert re.search(rf"^\| `{part.id}` \|.*\| {points}(, manual)? \|$", page, re.MULTILINE), part
+            points = sum(
+                criterion.points for criterion in rubric.criteria if criterion.part == part.id
+            )
+            assert re.search(
+                rf"^\| `{part.id}` \|.*\| {points}(, manual)? \|$", page, re.MULTILINE
+            ), part
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     assert "all 90 automatic points; 10 more need manual grading" in readme
     assert "62 of 70 points" in readme
@@ -215,7 +251,9 @@ def test_the_lab_page_names_every_criterion() -> None:
 
 def test_the_readme_has_two_commands_first() -> None:
     """The first code blocks are the command that grades a sample and the one that runs the tests."""
-    blocks = re.findall(r"```sh\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
+    blocks = re.findall(
+        r"```sh\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL
+    )
     assert [block.count("\n") for block in blocks[:2]] == [1, 1]
     assert "grader grade submissions/" in blocks[0]
     assert "-m pytest" in blocks[1]
@@ -247,4 +285,7 @@ def test_the_pages_stay_short() -> None:
         for page in [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
     }
     assert words[ROOT / "README.md"] <= 650
-    assert sum(words[page] for page in words if page.name not in ("problems.md", "checks.md")) <= 24_000
+    assert (
+        sum(words[page] for page in words if page.name not in ("problems.md", "checks.md"))
+        <= 24_000
+    )

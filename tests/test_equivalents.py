@@ -141,10 +141,20 @@ robot-of-version-2 |  | version | 2.0 | urdf-loads
 def mistakes() -> Iterator[Break]:
     """Yield the rows of the table."""
     for line in MISTAKES.splitlines():
-        name, path, attribute, value, lost, carried = [*(cell.strip() for cell in line.split("|")), ""][:6]
+        name, path, attribute, value, lost, carried = [
+            *(cell.strip() for cell in line.split("|")),
+            "",
+        ][:6]
         first, slash, rest = path.partition("/")
         path = f"{PLACES.get(first, first)}{slash}{rest}"
-        yield Break(name, path, attribute, None if value == "-" else value, spelt_out(lost), spelt_out(carried))
+        yield Break(
+            name,
+            path,
+            attribute,
+            None if value == "-" else value,
+            spelt_out(lost),
+            spelt_out(carried),
+        )
 
 
 def spelt_out(criteria: str) -> str:
@@ -169,7 +179,9 @@ def graded(data: bytes) -> Report:
 def lost(report: Report) -> set[str]:
     """Return the criteria that cost points; none may be errored."""
     assert not report.fault, [result.traceback for result in report.results if result.traceback]
-    return {result.criterion.id for result in report.results if result.points < result.criterion.points}
+    return {
+        result.criterion.id for result in report.results if result.points < result.criterion.points
+    }
 
 
 def carried(report: Report) -> set[str]:
@@ -183,7 +195,11 @@ def test_every_equivalent_of_the_reference_gets_full_marks(data: bytes) -> None:
     """Nothing is lost by any composition of equivalent rewritings."""
     note(data.decode())
     report = graded(data)
-    assert {result.criterion.id: result.outcome.message for result in report.results if result.points == 0} == {}
+    assert {
+        result.criterion.id: result.outcome.message
+        for result in report.results
+        if result.points == 0
+    } == {}
     assert report.score == report.max_score == Decimal(70)
     assert report.submission.verdict == "clean"
 
@@ -217,7 +233,10 @@ def test_a_mistake_is_recognised_in_every_form(mistake: Break, draw: st.DataObje
     """The same criteria are lost, and the same carried, after any composition of equivalent rewritings."""
     report = graded(data := draw.draw(rewritings(mistake.applied())))
     note(data.decode())
-    assert (lost(report), carried(report)) == (set(mistake.lost.split()), set(mistake.carried.split()))
+    assert (lost(report), carried(report)) == (
+        set(mistake.lost.split()),
+        set(mistake.carried.split()),
+    )
 
 
 _NUMBERS = "|0|0 0 0|-1|-1 -1 -1|1e308 1e308 1e308|1.7e308 -1.7e308 0|1e308|1e-308|1e-308 0 0|0 0 0 0|1 1 1 1|nan|1,2,3"
@@ -268,7 +287,9 @@ def mimicking(*rules: tuple[str, str]) -> bytes:
 @pytest.mark.parametrize("offset", ["0", "0.5", "-3"])
 def test_a_wheel_that_follows_the_other_rolls_like_it(offset: str) -> None:
     """A small positive rotation starts from the joint's position, which a mimic's offset may have moved."""
-    report = graded(mimicking((PLACES["RIGHT"], f"joint='base_left_wheel_joint' offset='{offset}'")))
+    report = graded(
+        mimicking((PLACES["RIGHT"], f"joint='base_left_wheel_joint' offset='{offset}'"))
+    )
     assert lost(report) == {"right-wheel-continuous"}  # which should move by itself
 
 
@@ -284,13 +305,17 @@ def test_a_planar_or_floating_wheel_does_not_roll(kind: str) -> None:
     """A planar or floating joint is no wheel's joint, and has no small positive angle to turn by; a planar one has an axis."""
     report = graded(etree.tostring(Break(kind, PLACES["LEFT"], "type", kind, "").applied()))
     wheel = {f"left-wheel-{name}" for name in ("continuous", "forward", "spins")}
-    assert {"left-wheel-continuous", "left-wheel-forward"} <= lost(report) | carried(report) <= wheel
+    assert (
+        {"left-wheel-continuous", "left-wheel-forward"} <= lost(report) | carried(report) <= wheel
+    )
     assert ("left-wheel-forward" in lost(report)) == (kind == "floating")
     assert "left-wheel-continuous" in lost(report)
 
 
 def test_every_criterion_is_lost_by_some_mistake() -> None:
     """The mistakes cover the rubric, except the footprint's visibility, which is no attribute."""
-    covered = {criterion for mistake in BREAKS for criterion in f"{mistake.lost} {mistake.carried}".split()}
+    covered = {
+        criterion for mistake in BREAKS for criterion in f"{mistake.lost} {mistake.carried}".split()
+    }
     urdf = {criterion.id for criterion in RUBRIC.criteria if criterion.part == "task1"}
     assert urdf - covered == {"footprint-virtual"}

@@ -131,10 +131,17 @@ def add_to_changelog(project: Path, line: str) -> None:
 
 def test_a_new_check(project: Path) -> None:
     """A check is a function, a line of the registry, a sample, an example and a line of the changelog; the catalogue is generated."""
-    for file, text in (("grader/checks/appearance.py", CHECK), ("docs/examples/checks.toml", EXAMPLE)):
+    for file, text in (
+        ("grader/checks/appearance.py", CHECK),
+        ("docs/examples/checks.toml", EXAMPLE),
+    ):
         with (project / file).open("a", encoding="utf-8") as family:
             family.write(text)
-    replace(project / "grader/checks/registry.py", "CHECKS = (\n", 'CHECKS = (\n    "appearance.shows_cube",\n')
+    replace(
+        project / "grader/checks/registry.py",
+        "CHECKS = (\n",
+        'CHECKS = (\n    "appearance.shows_cube",\n',
+    )
     (project / "tests/corpus/checks/shows_cube.toml").write_text(ROWS, encoding="utf-8")
     python(project, "-m", "tests.checks", "shows_cube")
     python(project, "docs/make.py")
@@ -171,13 +178,32 @@ def test_a_new_format(project: Path) -> None:
     (project / "grader/report/line.py").write_text(FORMAT, encoding="utf-8")
     row, last = '    LINE = "line", "line:render_line"', '"svg:render_svg"\n'
     replace(project / "grader/report/formats.py", last, f"{last}{row}\n")
-    replace(project / "docs/command-line.md", "| `markdown` |", "| `line` | logs | one line |\n| `markdown` |")
+    replace(
+        project / "docs/command-line.md",
+        "| `markdown` |",
+        "| `line` | logs | one line |\n| `markdown` |",
+    )
     add_to_changelog(project, "The format `line`.")
     python(
-        project, "-m", "grader", "grade", "submissions/lab6/several-mistakes", "--format", "line", "--fail-under", "0"
+        project,
+        "-m",
+        "grader",
+        "grade",
+        "submissions/lab6/several-mistakes",
+        "--format",
+        "line",
+        "--fail-under",
+        "0",
     )
-    passes(project, "tests/report", "tests/cli/test_save.py", "tests/submission",
-           "tests/test_architecture.py", "tests/test_docs.py", new="line")  # fmt: skip
+    passes(
+        project,
+        "tests/report",
+        "tests/cli/test_save.py",
+        "tests/submission",
+        "tests/test_architecture.py",
+        "tests/test_docs.py",
+        new="line",
+    )
 
 
 def test_a_new_lms(project: Path) -> None:
@@ -186,11 +212,25 @@ def test_a_new_lms(project: Path) -> None:
     replace(forms, "FORMS = {", f"{LMS}FORMS = {{")
     replace(forms, "BRIGHTSPACE)}", "BRIGHTSPACE, SAKAI)}")
     replace(project / "docs/command-line.md", "|brightspace|", "|brightspace|sakai|")
-    book, exported, filled = (str(project / name) for name in ("class-grades", "sakai.csv", "upload.csv"))
+    book, exported, filled = (
+        str(project / name) for name in ("class-grades", "sakai.csv", "upload.csv")
+    )
     Path(exported).write_text("Student ID,Name,Lab 6 [100]\nash,Ash,\n", encoding="utf-8")
     shutil.copytree(project / "submissions/lab6/reference", project / "class/ash")
     python(project, "-m", "grader", "batch", "class", "--gradebook", book)
-    export = ("export", "sakai", "--gradebook", book, "--into", exported, "--output", filled, "--pending-as-zero")
+    export = (
+        "export",
+        "sakai",
+        "--gradebook",
+        book,
+        "--into",
+        exported,
+        "--output",
+        filled,
+        "--pending-as-zero",
+    )
     python(project, "-m", "grader", *export)
-    assert Path(filled).read_text(encoding="utf-8") == "Student ID,Name,Lab 6 [100]\nash,Ash,90.00\n"
+    assert (
+        Path(filled).read_text(encoding="utf-8") == "Student ID,Name,Lab 6 [100]\nash,Ash,90.00\n"
+    )
     passes(project, "tests/classroom/lms", "tests/test_docs.py")

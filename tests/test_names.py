@@ -8,15 +8,30 @@ from grader.names import near
 from tests.examples import examples
 
 SAME = [
-    ("wheel_lenght", "wheel_length", ""), ("Left_wheel", "left_wheel", ""), ("leftWheel", "left_wheel", ""),
-    ("baselink", "base_link", ""), ("base", "base_link", "link"), ("lidr", "lidar_link", "link"),
-    ("lidar_jiont", "lidar_joint", "joint"), ("rigth_wheel", "right_wheel", ""), ("fotoprnit", "footprint", ""),
-]  # fmt: skip
+    ("wheel_lenght", "wheel_length", ""),
+    ("Left_wheel", "left_wheel", ""),
+    ("leftWheel", "left_wheel", ""),
+    ("baselink", "base_link", ""),
+    ("base", "base_link", "link"),
+    ("lidr", "lidar_link", "link"),
+    ("lidar_jiont", "lidar_joint", "joint"),
+    ("rigth_wheel", "right_wheel", ""),
+    ("fotoprnit", "footprint", ""),
+]
 OTHER = [
-    ("y_offset", "x_offset", ""), ("link_4", "link_0", ""), ("link_11", "link_1_1", ""), ("right_wheel", "front_wheel", ""),
-    ("lower_arm", "upper_arm", ""), ("wheel_width", "wheel_height", ""), ("arm_l", "arm_r", ""), ("art", "arm", ""),
-    ("whl", "wheel", ""), ("base", "base_link", ""), ("base_wheel", "base", "link"), ("max_speed", "min_speed", ""),
-]  # fmt: skip
+    ("y_offset", "x_offset", ""),
+    ("link_4", "link_0", ""),
+    ("link_11", "link_1_1", ""),
+    ("right_wheel", "front_wheel", ""),
+    ("lower_arm", "upper_arm", ""),
+    ("wheel_width", "wheel_height", ""),
+    ("arm_l", "arm_r", ""),
+    ("art", "arm", ""),
+    ("whl", "wheel", ""),
+    ("base", "base_link", ""),
+    ("base_wheel", "base", "link"),
+    ("max_speed", "min_speed", ""),
+]
 
 
 @pytest.mark.parametrize("row", SAME)
@@ -37,4 +52,6 @@ def test_the_nearest_is_another_known_name(name: str, known: set[str]) -> None:
     """What a name stands for is one of the known ones, does not depend on their order, and has the same numbers."""
     found = near(name, sorted(known))
     assert found == near(name, sorted(known, reverse=True))
-    assert found is None or (found in known - {name} and [*filter(str.isdigit, found)] == [*filter(str.isdigit, name)])
+    assert found is None or (
+        found in known - {name} and [*filter(str.isdigit, found)] == [*filter(str.isdigit, name)]
+    )

@@ -38,7 +38,10 @@ OTHER_FILES = {  # what only these pages presume, and what it is
     "grade-one-submission.md": {"arm.urdf": "rubrics/arm/arm.urdf"},
     "gradescope.md": {"my_lab.toml": "rubrics/arm/rubric.toml"},
     "rubric-test.md": {"my_lab.toml": "rubrics/arm/rubric.toml"},
-    "grade-a-class.md": {"my_lab.toml": "rubrics/lab6/rubric.toml", "my_robot": "rubrics/lab6/my_robot"},
+    "grade-a-class.md": {
+        "my_lab.toml": "rubrics/lab6/rubric.toml",
+        "my_robot": "rubrics/lab6/my_robot",
+    },
 }
 ELSEWHERE = {  # beginnings of command lines that another test runs
     "python3 -m venv .venv && .venv/bin/pip install": ".ci/run",
@@ -71,9 +74,22 @@ FOLDERS = dict.fromkeys(
     ("grader grade . ", "grader grade  ", "grader grade`"), "src/my_robot"
 )  # a student's repository
 PLACEHOLDERS = {
-    "COMMAND": "grade", "EXPORTED": "canvas.csv", "FOLDER": "copied", "LEVEL": "place", "LMS": "canvas", "NEWPATH": "submissions", "PATH": "my_robot.urdf", "STUDENT": "alice", "TIME": "2026-11-20T23:59+01:00", "<id>": "lab6",
-    "arm/NAME": "arm/axis-sign", "lab6/NAME": "lab6/reference", "sensors/NAME": "sensors/no-xacro", "diffdrive/NAME": "diffdrive/gui-always", "schema NAME": "schema report",
-}  # fmt: skip
+    "COMMAND": "grade",
+    "EXPORTED": "canvas.csv",
+    "FOLDER": "copied",
+    "LEVEL": "place",
+    "LMS": "canvas",
+    "NEWPATH": "submissions",
+    "PATH": "my_robot.urdf",
+    "STUDENT": "alice",
+    "TIME": "2026-11-20T23:59+01:00",
+    "<id>": "lab6",
+    "arm/NAME": "arm/axis-sign",
+    "lab6/NAME": "lab6/reference",
+    "sensors/NAME": "sensors/no-xacro",
+    "diffdrive/NAME": "diffdrive/gui-always",
+    "schema NAME": "schema report",
+}
 IN_TEXT = {  # commands in the text that are not run here: a test that does, or the reason
     "grader grade src/my_robot --watch": "cli/test_watch.py",
     "grader --install-completion": "changes the files of the shell; corpus/refusals.toml",
@@ -118,7 +134,9 @@ echo "gh $*" >> "$GH_HOST_FOLDER/calls"
 def presumed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder with a robot, a package, a rubric and a class of four students with a gradebook."""
     folder = tmp_path_factory.mktemp("presumed")
-    shutil.copy(ROOT / "submissions/lab6/lidar-offset-in-visual/my_robot/urdf/my_robot.urdf", folder)
+    shutil.copy(
+        ROOT / "submissions/lab6/lidar-offset-in-visual/my_robot/urdf/my_robot.urdf", folder
+    )
     shutil.copytree(ROOT / "rubrics/lab6/my_robot", folder / "src/my_robot")
     for path in folder.glob("src/my_robot/urdf/*.urdf"):
         shutil.copy(folder / "my_robot.urdf", path)
@@ -128,7 +146,9 @@ def presumed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "submissions").mkdir()
     for number, student in ((1, "alice"), (2, "bob"), (4, "dave")):  # as Canvas names them
         shutil.make_archive(
-            str(folder / f"submissions/example{student}_{number}_50{number}_lab6"), "zip", folder / "src"
+            str(folder / f"submissions/example{student}_{number}_50{number}_lab6"),
+            "zip",
+            folder / "src",
         )
     roster = "id,name,canvas id,participant id,section,marker\n"
     rows = CANVAS
@@ -142,7 +162,9 @@ def presumed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "marks.txt").write_text("0\n", encoding="utf-8")
     shutil.make_archive(str(folder / "submissions"), "zip", folder / "submissions")
     for _ in range(2):  # `diff` compares two runs
-        done = run_with_input(("batch", "submissions", "--roster", "roster.csv", "--force"), b"", folder=folder)
+        done = run_with_input(
+            ("batch", "submissions", "--roster", "roster.csv", "--force"), b"", folder=folder
+        )
         assert done.returncode == 0, done.stderr
     return folder
 
@@ -155,7 +177,9 @@ def lines_of(page: Path) -> Iterator[str]:
 
 def blocks(page: Path) -> list[str]:
     """Return the `sh` blocks of a page."""
-    return re.findall(r"^ *```sh\n(.*?)^ *```", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    return re.findall(
+        r"^ *```sh\n(.*?)^ *```", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE
+    )
 
 
 WITH_COMMANDS = [page for page in PAGES if page.name not in FOLLOWED and blocks(page)]
@@ -175,7 +199,9 @@ def test_every_command_line_of_a_page_works(page: Path, presumed: Path, tmp_path
     for line in lines_of(page):
         if line.startswith((*ELSEWHERE, *NOT_RUN)):
             continue
-        inside = next((inside for beginning, inside in FOLDERS.items() if line.startswith(beginning)), "")
+        inside = next(
+            (inside for beginning, inside in FOLDERS.items() if line.startswith(beginning)), ""
+        )
         printed, code = run_commands(line, folder / inside)
         expected = [code for beginning, code in CODES.items() if line.startswith(beginning)]
         assert code == (expected or [0])[-1], (line, printed)
@@ -183,7 +209,9 @@ def test_every_command_line_of_a_page_works(page: Path, presumed: Path, tmp_path
 
 def codes(page: Path) -> list[str]:
     """Return what is in backticks in the text of a page."""
-    text = re.sub(r"^ *```.*?^ *```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
+    text = re.sub(
+        r"^ *```.*?^ *```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE
+    )
     return [" ".join(code.split()) for code in re.findall(r"`([^`]+)`", text)]
 
 
@@ -191,7 +219,10 @@ def commands_in_text(page: Path) -> list[str]:
     """Return the commands of the grader in the text of a page, with values for what is written in capitals."""
     found = [code for code in codes(page) if code.startswith("grader ")]
     names = "|".join(sorted(map(re.escape, PLACEHOLDERS), key=len, reverse=True))
-    return [re.sub(rf"(?<![\w-])({names})(?!\w)", lambda name: PLACEHOLDERS[name[1]], command) for command in found]
+    return [
+        re.sub(rf"(?<![\w-])({names})(?!\w)", lambda name: PLACEHOLDERS[name[1]], command)
+        for command in found
+    ]
 
 
 def is_name(command: str) -> bool:
@@ -208,10 +239,14 @@ def test_every_command_in_the_text_works(presumed: Path, tmp_path: Path) -> None
     shutil.copytree(ROOT / "rubrics/lab6/my_robot", folder / "my_robot")
     shutil.copy(ROOT / "rubrics/lab6/rubric.toml", folder / "my_lab.toml")
     pages = [*PAGES, ROOT / "docs/schemas/README.md"]
-    for command, page in {command: one for one in pages for command in commands_in_text(one)}.items():
+    for command, page in {
+        command: one for one in pages for command in commands_in_text(one)
+    }.items():
         line = f"{command} --help" if is_name(command) else command
         if command not in IN_TEXT:
-            printed, code = run_commands(line, ROOT if page.parent.parent.name == "submissions" else folder)
+            printed, code = run_commands(
+                line, ROOT if page.parent.parent.name == "submissions" else folder
+            )
             assert code in (0, 1), (line, printed)
 
 
@@ -227,9 +262,15 @@ def test_every_exception_is_on_a_page() -> None:
 def test_every_command_of_another_program_is_listed() -> None:
     """Each with its arguments in the text is run by a test, or the table says why it is not."""
     programs = re.compile(r"([A-Z]+=\S+|sudo|pipx|uvx?|wsl|gh|git|ssh|python3?|pip|docker) .*")
-    pages = [page for page in PAGES if page.parent in (ROOT, ROOT / "docs") and page.name != "CONTRIBUTING.md"]
+    pages = [
+        page
+        for page in PAGES
+        if page.parent in (ROOT, ROOT / "docs") and page.name != "CONTRIBUTING.md"
+    ]
     found = {code for page in pages for code in codes(page) if programs.fullmatch(code)}
-    assert found - {"gh api", "pip install", "pip download", "pip list", "pip --group"} == set(OTHER_PROGRAMS)
+    assert found - {"gh api", "pip install", "pip download", "pip list", "pip --group"} == set(
+        OTHER_PROGRAMS
+    )
 
 
 def test_the_page_on_dimensions(tmp_path: Path) -> None:
@@ -243,9 +284,15 @@ def test_the_page_on_dimensions(tmp_path: Path) -> None:
 def script(text: str, folder: Path, **variables: str) -> None:
     """Run lines of a page in one shell, which stops at the first that fails."""
     done = subprocess.run(
-        ["bash", "-euo", "pipefail", "-c", text], cwd=folder, env={**clean_environment(), **variables},
-        stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False, timeout=HANG_TIMEOUT,
-    )  # fmt: skip
+        ["bash", "-euo", "pipefail", "-c", text],
+        cwd=folder,
+        env={**clean_environment(), **variables},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=HANG_TIMEOUT,
+    )
     assert done.returncode == 0, done.stdout + done.stderr
 
 
@@ -257,21 +304,38 @@ def test_the_set_up_of_ci(tmp_path: Path) -> None:
     for name, text in (("gh", GH), ("sleep", "#!/bin/sh\n")):
         (programs / name).write_text(text, encoding="utf-8")
         (programs / name).chmod(0o755)
-    named = {f"GIT_{who}_{what}": "a@example.org" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")}
-    variables = {**named, "GH_HOST_FOLDER": str(host), "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}"}
+    named = {
+        f"GIT_{who}_{what}": "a@example.org"
+        for who in ("AUTHOR", "COMMITTER")
+        for what in ("NAME", "EMAIL")
+    }
+    variables = {
+        **named,
+        "GH_HOST_FOLDER": str(host),
+        "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}",
+    }
     project = checkout(tmp_path / "work" / "grader")
-    script("git init --quiet --initial-branch main && git add --all && git commit --quiet -m All", project, **variables)
+    script(
+        "git init --quiet --initial-branch main && git add --all && git commit --quiet -m All",
+        project,
+        **variables,
+    )
     steps = [block for block in blocks(ROOT / "docs/ci.md") if "git " in block]
     script("\n".join(steps).replace("YOUR-ORG", "my-org"), project, **variables)
     for name in ("grader", "lab6-template", "grading"):
         script(f"git clone --quiet {host}/my-org/{name} {tmp_path}/{name}", tmp_path, **variables)
     assert (tmp_path / "grader/action.yml").exists()
-    assert not [*(tmp_path / "grader").rglob("*answers.toml"), *(tmp_path / "grader").glob("submissions")]
+    assert not [
+        *(tmp_path / "grader").rglob("*answers.toml"),
+        *(tmp_path / "grader").glob("submissions"),
+    ]
     workflow = (tmp_path / "lab6-template/.github/workflows/lab6.yml").read_text(encoding="utf-8")
     assert "my-org/grader@v1" in workflow
     reference = (ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_bytes()
     assert (tmp_path / "lab6-template/my_robot/urdf/my_robot.urdf").read_bytes() == reference
-    assert "my-org" in (tmp_path / "grading/.github/workflows/class.yml").read_text(encoding="utf-8")
+    assert "my-org" in (tmp_path / "grading/.github/workflows/class.yml").read_text(
+        encoding="utf-8"
+    )
     assert "gh run watch --exit-status" in (host / "calls").read_text(encoding="utf-8")
 
 
@@ -281,5 +345,9 @@ def test_the_installation(tmp_path: Path) -> None:
     wheels = tmp_path / "wheels"
     wheels.mkdir()
     variables = offline(wheels)
-    lines = [line for line in lines_of(ROOT / "docs/installation.md") if not line.startswith(tuple(NOT_RUN))]
+    lines = [
+        line
+        for line in lines_of(ROOT / "docs/installation.md")
+        if not line.startswith(tuple(NOT_RUN))
+    ]
     script("\n".join(lines), project, **variables)

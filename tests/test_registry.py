@@ -50,12 +50,16 @@ def test_the_signature_is_a_schema(check: Check) -> None:
     assert {parameter.kind for parameter in examined} == {inspect.Parameter.POSITIONAL_OR_KEYWORD}
     assert [parameter.kind for parameter in rest] == [inspect.Parameter.KEYWORD_ONLY] * len(rest)
     names = {"not_": "not"}  # a keyword of Python
-    assert list(check.parameters) == [names.get(parameter.name, parameter.name) for parameter in rest]
+    assert list(check.parameters) == [
+        names.get(parameter.name, parameter.name) for parameter in rest
+    ]
     for parameter in check.parameters.values():
         assert is_supported(parameter.annotation), parameter
         assert parameter.type.name
         assert parameter.type.parse(sample(parameter.annotation)) is not None
-        is_unset = parameter.default is None  # either it is required, or it is not checked unless it is given
+        is_unset = (
+            parameter.default is None
+        )  # either it is required, or it is not checked unless it is given
         assert (parameter.required or NoneType in get_args(parameter.annotation)) == is_unset
         assert is_unset or parameter.type.parse(as_toml(parameter.default)) == parameter.default
 
@@ -151,7 +155,9 @@ def shows_box(robot: Configuration) -> Outcome:
 def installed(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Return a function that registers checks as if another distribution did; the requested groups are recorded."""
     requested: list[str] = []
-    points = [EntryPoint(name, f"{__name__}:{name}", ENTRY_POINTS) for name in ("has_links", "shows_box")]
+    points = [
+        EntryPoint(name, f"{__name__}:{name}", ENTRY_POINTS) for name in ("has_links", "shows_box")
+    ]
 
     def entry_points(*, group: str) -> EntryPoints:
         requested.append(group)
@@ -195,7 +201,9 @@ def test_a_rubric_can_name_a_plugin_check(installed: list[str], tmp_path: Path) 
     assert criterion.check.function is has_links
     assert criterion.arguments == {"at_least": 2.0}
     path.write_text(text.format("has_links", "at_lest = 2"), encoding="utf-8")
-    with pytest.raises(RubricError, match="the check has_links takes no 'at_lest'; did you mean 'at_least'"):
+    with pytest.raises(
+        RubricError, match="the check has_links takes no 'at_lest'; did you mean 'at_least'"
+    ):
         load_rubric(str(path))
     path.write_text(text.format("has_link", ""), encoding="utf-8")
     with pytest.raises(RubricError, match="there is no check 'has_link'; did you mean 'has_links'"):
@@ -210,7 +218,9 @@ def families() -> list[Path]:
 def checks_in(path: Path) -> list[str]:
     """Return the public functions of a module that return an outcome."""
     body = ast.parse(path.read_text(encoding="utf-8")).body
-    functions = [node for node in body if isinstance(node, ast.FunctionDef) and not node.name.startswith("_")]
+    functions = [
+        node for node in body if isinstance(node, ast.FunctionDef) and not node.name.startswith("_")
+    ]
     return [
         function.name
         for function in functions
@@ -232,7 +242,9 @@ def is_supported(annotation: Any) -> bool:
     if origin is tuple:
         return all(item in (float, Ellipsis) for item in inner) or inner == (str, Ellipsis)
     if origin is not None:
-        return issubclass(origin, Mapping) and inner[0] is str and inner[1] in (str, SCALAR, CONTENT)
+        return (
+            issubclass(origin, Mapping) and inner[0] is str and inner[1] in (str, SCALAR, CONTENT)
+        )
     return annotation in SAMPLES
 
 

@@ -14,5 +14,10 @@ def test_equal_small_files_are_read_once() -> None:
 
     small, large = b"<package/>", bytes(20_000)
     assert read(small, "a") is read(small, "a") == ["a"]
-    assert [read(small, "b"), read(b"", "a"), read(large, "a"), read(large, "a")] == [["b"], ["a"], ["a"], ["a"]]
+    assert [read(small, "b"), read(b"", "a"), read(large, "a"), read(large, "a")] == [
+        ["b"],
+        ["a"],
+        ["a"],
+        ["a"],
+    ]
     assert given == [(small, "a"), (small, "b"), (b"", "a"), (large, "a"), (large, "a")]

@@ -15,7 +15,14 @@ from tests.test_architecture import MODULES
 
 every_rubric = pytest.mark.parametrize("rubric", RUBRICS.values(), ids=RUBRICS)
 # Names of ROS 2 and of REP 105, which no lab made up.
-STANDARD = {"/robot_description", "robot_state_publisher", "rviz2", "ament_python", "base_link", "base_footprint"}
+STANDARD = {
+    "/robot_description",
+    "robot_state_publisher",
+    "rviz2",
+    "ament_python",
+    "base_link",
+    "base_footprint",
+}
 
 
 def names(rubric: Rubric) -> Iterator[str]:
@@ -32,7 +39,11 @@ def constants(tree: ast.AST) -> Iterator[str]:
     """Yield the strings of a module, without docstrings."""
     docstrings = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
     for node in ast.walk(tree):
-        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docstrings:
+        if (
+            isinstance(node, ast.Constant)
+            and isinstance(node.value, str)
+            and id(node) not in docstrings
+        ):
             yield node.value
 
 
@@ -42,7 +53,9 @@ def test_the_code_knows_no_lab() -> None:
 
     Names of one plain word, such as `lidar`, are words of the field, too.
     """
-    made_up = {name for rubric in RUBRICS.values() for name in names(rubric) if name and not name.isalpha()} - STANDARD
+    made_up = {
+        name for rubric in RUBRICS.values() for name in names(rubric) if name and not name.isalpha()
+    } - STANDARD
     assert {"lab6", "joint_4", "camera_optical_frame", "arm.urdf", "left-wheel-forward"} <= made_up
     found = [
         (module, text)
@@ -61,13 +74,18 @@ _FEWER = {"diffdrive": (1, 13)}
 def test_a_lab_has_samples_and_a_page(rubric: Rubric) -> None:
     """It has correct robots and mistakes, and a page, which names parts and links, in the README's list."""
     own = [name for name, sample in SAMPLES.items() if sample.rubric is rubric]
-    correct = [name for name in own if name.rpartition("/")[2].startswith(("equivalent-", "reference"))]
+    correct = [
+        name for name in own if name.rpartition("/")[2].startswith(("equivalent-", "reference"))
+    ]
     least_correct, least_wrong = _FEWER.get(rubric.id, (8, 25))
     assert len(correct) >= least_correct
     assert len(own) - len(correct) >= least_wrong
     page = (ROOT / f"rubrics/{rubric.id}/README.md").read_text(encoding="utf-8")
     assert rubric.solution is not None
-    needed = [*(part.id for part in rubric.parts), *(link.name for link in rubric.solution.robot.robot.links)]
+    needed = [
+        *(part.id for part in rubric.parts),
+        *(link.name for link in rubric.solution.robot.robot.links),
+    ]
     assert [name for name in needed if f"`{name}`" not in page] == []
     assert f"rubrics/{rubric.id}/README.md" in (ROOT / "README.md").read_text(encoding="utf-8")
 
@@ -75,8 +93,15 @@ def test_a_lab_has_samples_and_a_page(rubric: Rubric) -> None:
 @pytest.mark.slow
 def test_a_mistake_costs_what_it_is_worth() -> None:
     """One mistake costs at most 15 % of all points, although it moves, turns or weighs what other criteria measure."""
-    reports = {name: SAMPLES[name].grade() for name in SAMPLES if "/" in name and "/equivalent-" not in name}
-    costs = {name: (report.max_score - report.score) / report.max_score for name, report in reports.items()}
+    reports = {
+        name: SAMPLES[name].grade()
+        for name in SAMPLES
+        if "/" in name and "/equivalent-" not in name
+    }
+    costs = {
+        name: (report.max_score - report.score) / report.max_score
+        for name, report in reports.items()
+    }
     assert {name: cost for name, cost in costs.items() if not 0 < cost <= Decimal("0.15")} == {}
 
 
@@ -90,10 +115,14 @@ Edit = tuple[str, str, str]
         (("joint_2", "0 1 0", "0 -1 0"), ("tool_joint", "0.06", "0.6"), (11, 3, 14)),
         (("joint_1", '"0 0 1"', '"0 0 -1"'), ("joint_4", "0.25", "0.2"), (8, 3, 11)),
     ],
-)  # fmt: skip
-def test_two_mistakes_in_the_arm_cost_their_sum(one: Edit, other: Edit, costs: tuple[int, int, int]) -> None:
+)
+def test_two_mistakes_in_the_arm_cost_their_sum(
+    one: Edit, other: Edit, costs: tuple[int, int, int]
+) -> None:
     """A joint that turns the wrong way excuses no link that is misplaced, and costs nothing in poses that do not turn it."""
-    assert tuple(int(100 - _score_of_arm(edits)) for edits in ([one], [other], [one, other])) == costs
+    assert (
+        tuple(int(100 - _score_of_arm(edits)) for edits in ([one], [other], [one, other])) == costs
+    )
 
 
 def _score_of_arm(edits: list[Edit]) -> Decimal:
@@ -103,4 +132,6 @@ def _score_of_arm(edits: list[Edit]) -> Decimal:
         before, name, after = text.partition(f'<joint name="{joint}"')
         assert old in after
         text = before + name + after.replace(old, new, 1)
-    return grade(RUBRICS["arm"], read_submission(text.encode(), identity="student", path="arm.urdf")).score
+    return grade(
+        RUBRICS["arm"], read_submission(text.encode(), identity="student", path="arm.urdf")
+    ).score

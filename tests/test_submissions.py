@@ -24,8 +24,16 @@ def differences(sample: Sample) -> Iterator[tuple[str, object]]:
     report, expected, urdf = sample.grade(), sample.expected, sample.open().urdf
     statuses = {result.criterion.id: result.outcome.status for result in report.results}
     carried = [result.criterion.id for result in report.results if result.carried]
-    lost = [name for name, status in statuses.items() if status in ("failed", "skipped") and name not in carried]
-    costly = [result.criterion.points for result in report.results if result.criterion.id in (*lost, *expected.pending)]
+    lost = [
+        name
+        for name, status in statuses.items()
+        if status in ("failed", "skipped") and name not in carried
+    ]
+    costly = [
+        result.criterion.points
+        for result in report.results
+        if result.criterion.id in (*lost, *expected.pending)
+    ]
     failed: set[str] = set()
     for result in report.results:
         if result.outcome.status == "skipped" and result.because not in failed:
@@ -37,7 +45,11 @@ def differences(sample: Sample) -> Iterator[tuple[str, object]]:
         ("lost", lost, list(expected.lost)),
         ("carried", carried, list(expected.carried)),
         ("points", report.max_score - report.score, sum(costly)),
-        ("pending", [name for name, status in statuses.items() if status == "pending"], list(expected.pending)),
+        (
+            "pending",
+            [name for name, status in statuses.items() if status == "pending"],
+            list(expected.pending),
+        ),
         ("errored", [name for name, status in statuses.items() if status == "errored"], []),
     ):
         if found != wanted:
@@ -52,8 +64,14 @@ def test_every_sample_loses_the_expected_criteria() -> None:
 
 def test_there_are_enough_samples() -> None:
     """At least five equivalents and fifteen mistakes; only the reference and the equivalents lose nothing."""
-    full = {name for name, sample in SAMPLES.items() if not sample.expected.lost and len(sample.expected.pending) < 4}
-    assert full == {name for name in SAMPLES if name.rpartition("/")[2].startswith(("reference", "equivalent-"))}
+    full = {
+        name
+        for name, sample in SAMPLES.items()
+        if not sample.expected.lost and len(sample.expected.pending) < 4
+    }
+    assert full == {
+        name for name in SAMPLES if name.rpartition("/")[2].startswith(("reference", "equivalent-"))
+    }
     assert len(full) >= 6
     assert len(SAMPLES) - len(full) >= 15
 
@@ -71,7 +89,9 @@ def test_a_reference_gets_full_marks(name: str) -> None:
 
 def test_the_rubric_contains_the_reference() -> None:
     """The rubric's reference solution equals the package of the sample of that name, byte for byte."""
-    compared = filecmp.dircmp(LAB6.path.parent / LAB6.reference, ROOT / REFERENCE, ignore=["__pycache__"])
+    compared = filecmp.dircmp(
+        LAB6.path.parent / LAB6.reference, ROOT / REFERENCE, ignore=["__pycache__"]
+    )
     waiting = [compared]
     while waiting:
         folders = waiting.pop()
@@ -82,21 +102,31 @@ def test_the_rubric_contains_the_reference() -> None:
 def test_the_files_that_follow_from_others_are_current() -> None:
     """READMEs, packages and the class are those that `python tests/sample_files.py` writes, and nothing is beside them."""
     expected = dict(generated())
-    assert [path for path, data in expected.items() if not path.is_file() or path.read_bytes() != data] == []
+    assert [
+        path for path, data in expected.items() if not path.is_file() or path.read_bytes() != data
+    ] == []
     for folder, files in packages():
         assert package_files(folder).keys() == files.keys(), folder
-    assert {path for path in (FOLDER / "files").iterdir()} == {path for path in expected if path.parent.name == "files"}
+    assert {path for path in (FOLDER / "files").iterdir()} == {
+        path for path in expected if path.parent.name == "files"
+    }
 
 
 def test_the_class_is_graded_by_the_command_of_its_readme(tmp_path: Path) -> None:
     """Two are perfect, most lose something; a file is missing, another broken, one is late, one was submitted again."""
-    command = next(line for line in TOP.splitlines() if line.startswith("grader ")).removeprefix("grader ")
+    command = next(line for line in TOP.splitlines() if line.startswith("grader ")).removeprefix(
+        "grader "
+    )
     book = str(tmp_path / "grades")
     done = run((*command.split(), "--gradebook", book))
     assert (done.returncode, done.stderr.count(b"\n")) == (0, 4), done.stderr
-    rows = [*csv.DictReader(run(("export", "csv", "--gradebook", book)).stdout.decode().splitlines())]
+    rows = [
+        *csv.DictReader(run(("export", "csv", "--gradebook", book)).stdout.decode().splitlines())
+    ]
     assert [row["name"] for row in rows] == [student["name"] for student in STUDENTS]
     graded = {row["name"]: int(row["score"]) for row in rows if row["status"] == "graded"}
-    assert graded == {student["name"]: student["points"] for student in STUDENTS if "points" in student}
+    assert graded == {
+        student["name"]: student["points"] for student in STUDENTS if "points" in student
+    }
     assert [row["name"] for row in rows if row["late_days"] not in ("", "0")] == ["Jon Juniper"]
     assert [row["status"] for row in rows if row["name"] not in graded] == ["missing", "unreadable"]

@@ -39,14 +39,18 @@ def test_every_command_prints_what_the_page_shows(followed: tuple[str, list[Step
     """The outputs on the page are current, and every command that is on it was run."""
     page, steps = followed
     assert page == PAGE.read_text(encoding="utf-8"), "run python -m tests.tutorial"
-    assert "".join(step.commands for step in steps).count("grader ") == len(re.findall("^grader [a-z]", page, re.M))
+    assert "".join(step.commands for step in steps).count("grader ") == len(
+        re.findall("^grader [a-z]", page, re.M)
+    )
     for step in steps:
         expected = 0 if not (step.shown or "").startswith("grader: ") else 2
         lost = "✗" in step.printed or "differ from their expected.toml" in step.printed
         assert step.code == (1 if lost else expected), step
 
 
-def test_the_rubric_of_the_tutorial_is_valid(folder: Path, followed: tuple[str, list[Step]]) -> None:
+def test_the_rubric_of_the_tutorial_is_valid(
+    folder: Path, followed: tuple[str, list[Step]]
+) -> None:
     """It loads, and an editor finds nothing to complain of."""
     text = (folder / "my_lab.toml").read_text(encoding="utf-8")
     assert len(load_rubric(str(folder / "my_lab.toml")).criteria) > 10
@@ -55,7 +59,9 @@ def test_the_rubric_of_the_tutorial_is_valid(folder: Path, followed: tuple[str, 
     jsonschema.Draft202012Validator(schema).validate(tomllib.loads(text))
 
 
-@pytest.mark.parametrize("block", [block for block in BLOCKS if "criterion" in block or "defaults" in block])
+@pytest.mark.parametrize(
+    "block", [block for block in BLOCKS if "criterion" in block or "defaults" in block]
+)
 def test_examples_of_the_reference_are_criteria(block: dict[str, Any]) -> None:
     """Each has keys that exist, a check that exists, and arguments that it takes, with all that it needs."""
     assert set(block) <= set(RUBRIC.keys)
@@ -71,7 +77,9 @@ def test_examples_of_the_reference_are_criteria(block: dict[str, Any]) -> None:
         given = {**defaults.get("with", {}).get(check.name, {}), **row["with"]}
         for name, value in given.items():
             check.parameters[name].type.parse(value)
-        assert {name for name, parameter in check.parameters.items() if parameter.required} <= set(given)
+        assert {name for name, parameter in check.parameters.items() if parameter.required} <= set(
+            given
+        )
 
 
 def test_every_key_is_on_the_reference() -> None:

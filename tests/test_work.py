@@ -14,7 +14,9 @@ PACKAGE = ROOT / "submissions/lab6/reference" / "roscourse_sim_ws" / "src" / "my
 URDF = PACKAGE / "urdf" / "my_robot.urdf"
 
 
-@pytest.mark.parametrize(("path", "limit"), [(URDF, 35_000), (PACKAGE, 160_000)], ids=["URDF", "package"])
+@pytest.mark.parametrize(
+    ("path", "limit"), [(URDF, 35_000), (PACKAGE, 160_000)], ids=["URDF", "package"]
+)
 def test_calls_of_a_grading(path: Path, limit: int) -> None:
     """The second grading with a rubric: what is done once for all submissions is not counted."""
     rubric = load_rubric("lab6")

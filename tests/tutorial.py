@@ -35,7 +35,11 @@ def run_commands(commands: str, folder: Path) -> tuple[str, int]:
             subprocess.run(command, shell=True, check=True, cwd=folder, timeout=HANG_TIMEOUT)
             continue
         words, target = (words[:-2], words[-1]) if words[-2:-1] == [">"] else (words, "")
-        words, source = (words[:-2], (folder / words[-1]).read_bytes()) if words[-2:-1] == ["<"] else (words, b"")
+        words, source = (
+            (words[:-2], (folder / words[-1]).read_bytes())
+            if words[-2:-1] == ["<"]
+            else (words, b"")
+        )
         done = run_with_input(words[1:], source, folder=folder)
         code = done.returncode
         if target:

@@ -37,7 +37,9 @@ def _write_wheel(package: str, folder: Path) -> None:
         f"{about}/METADATA": f"Metadata-Version: 2.1\nName: {package}\nVersion: {number}\n",
         f"{about}/WHEEL": "Wheel-Version: 1.0\nGenerator: tests\nRoot-Is-Purelib: true\nTag: py3-none-any\n",
     }
-    record = "".join(f"{path},sha256={_digest(text)},{len(text.encode())}\n" for path, text in files.items())
+    record = "".join(
+        f"{path},sha256={_digest(text)},{len(text.encode())}\n" for path, text in files.items()
+    )
     with zipfile.ZipFile(folder / f"{name}-{number}-py3-none-any.whl", "w") as wheel:
         for path, text in {**files, f"{about}/RECORD": f"{record}{about}/RECORD,,\n"}.items():
             wheel.writestr(path, text)

@@ -32,7 +32,9 @@ def limited_work(limit: int = sys.maxsize, of: Collection[str] = ()) -> Iterator
     work = Work()
 
     def count(_frame: FrameType, event: str, function: Any) -> None:
-        if event in ("call", "c_call") and (not of or (event == "c_call" and function.__name__ in of)):
+        if event in ("call", "c_call") and (
+            not of or (event == "c_call" and function.__name__ in of)
+        ):
             work.calls += 1
             if work.calls > limit:
                 raise TooMuchWork(f"more than {limit} calls were made")

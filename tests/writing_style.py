@@ -11,7 +11,13 @@ from grader.xml.elements import FOREIGN
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import PARTS
 
-_COMMENTS = ("<!---->", "<!-- a robot -->", '<!-- <link name="ghost"/> -->', "<!--\n  0.6 / 4\n  -->", "<!-- $ & % -->")
+_COMMENTS = (
+    "<!---->",
+    "<!-- a robot -->",
+    '<!-- <link name="ghost"/> -->',
+    "<!--\n  0.6 / 4\n  -->",
+    "<!-- $ & % -->",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +39,9 @@ class Style:
         loose = [space for space in tight if space] or [" "]
         if element.tag in FOREIGN:  # a simulator may read anything in it
             return etree.tostring(element, encoding="unicode", with_tail=False)
-        attributes = [(name, value) for name, value in element.attrib.items() if "}" not in str(name)]
+        attributes = [
+            (name, value) for name, value in element.attrib.items() if "}" not in str(name)
+        ]
         if self.orders:
             self.random.shuffle(attributes)
         inside = [self.attribute(str(name), str(value)) for name, value in attributes]
@@ -51,7 +59,9 @@ class Style:
 
     def blank_space(self) -> str:
         """Return the text between two elements."""
-        comment = self.random.choice(_COMMENTS) if self.comments and self.random.random() < 0.2 else ""
+        comment = (
+            self.random.choice(_COMMENTS) if self.comments and self.random.random() < 0.2 else ""
+        )
         return f"{self.random.choice(self.blanks)}{comment}{self.random.choice(self.blanks)}"
 
     def attribute(self, name: str, value: str) -> str:
@@ -66,7 +76,11 @@ class Style:
         value = value.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
         if self.references and value and value[0].isalnum():
             value = f"&#{ord(value[0])};{value[1:]}"
-        equals = f"{self.random.choice(self.blanks)}={self.random.choice(self.blanks)}" if self.orders else "="
+        equals = (
+            f"{self.random.choice(self.blanks)}={self.random.choice(self.blanks)}"
+            if self.orders
+            else "="
+        )
         return f"{name}{equals}{quote}{value}{quote}"
 
     def number(self, text: str) -> str:

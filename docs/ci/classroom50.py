@@ -1,4 +1,5 @@
-"""CLASSROOM/autograders/ASSIGNMENT/autograder.py of a Classroom 50 repository: grades a submission with grader.
+"""CLASSROOM/autograders/ASSIGNMENT/autograder.py of a Classroom 50 repository: grades a submission
+with grader.
 
 Exits with 0 whatever the score: the runner treats any other exit code as a broken autograder.
 """
@@ -26,8 +27,12 @@ with tempfile.TemporaryDirectory() as home:
     subprocess.run([sys.executable, "-I", "-m", "venv", home], check=True)
     python = [str(Path(home, "bin", "python")), "-I", "-m"]
     subprocess.run([*python, "pip", "install", "--quiet", GRADER], check=True)
-    saves = [part for name, kind in RESULTS.items() for part in ("--save", f"{kind}={Path(home, name)}")]
-    code = subprocess.run([*python, "grader", "grade", ".", *OPTIONS, *saves], check=False).returncode
+    saves = [
+        part for name, kind in RESULTS.items() for part in ("--save", f"{kind}={Path(home, name)}")
+    ]
+    code = subprocess.run(
+        [*python, "grader", "grade", ".", *OPTIONS, *saves], check=False
+    ).returncode
     for name in RESULTS:
         if Path(home, name).exists():
             shutil.move(Path(home, name), name)

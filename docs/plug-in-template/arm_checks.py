@@ -8,7 +8,12 @@ from grader.robot.kinematics import Configuration
 
 
 def distance_between(
-    robot: Configuration, *, link: str, relative_to: str, distance: NonNegative, tolerance: NonNegative
+    robot: Configuration,
+    *,
+    link: str,
+    relative_to: str,
+    distance: NonNegative,
+    tolerance: NonNegative,
 ) -> Outcome:
     """The origins of the frames of two links are at a given distance from each other.
 

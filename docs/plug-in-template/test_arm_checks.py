@@ -10,7 +10,8 @@ from grader.robot.reader import read_urdf
 ARM = """<robot name="arm">
   <link name="base"/>
   <link name="tip"/>
-  <joint name="shoulder" type="fixed"><parent link="base"/><child link="tip"/><origin xyz="{}"/></joint>
+  <joint name="shoulder" type="fixed">
+    <parent link="base"/><child link="tip"/><origin xyz="{}"/></joint>
 </robot>
 """
 
@@ -34,17 +35,26 @@ def arm(xyz: str) -> Configuration:
 )
 def test_the_distance_is_measured(xyz: str, status: str) -> None:
     """The check passes within its tolerance, and fails just outside."""
-    outcome = distance_between(arm(xyz), link="tip", relative_to="base", distance=0.5, tolerance=0.002)
+    outcome = distance_between(
+        arm(xyz), link="tip", relative_to="base", distance=0.5, tolerance=0.002
+    )
     assert outcome.status == status
 
 
 def test_the_message_says_what_was_measured() -> None:
     """A student reads what was measured, and what was expected."""
-    outcome = distance_between(arm("0 0 0.4"), link="tip", relative_to="base", distance=0.5, tolerance=0.002)
-    assert outcome.message == "the distance of 'tip' from 'base' is 0.4 m; it should be 0.5 m (100 mm too small)"
+    outcome = distance_between(
+        arm("0 0 0.4"), link="tip", relative_to="base", distance=0.5, tolerance=0.002
+    )
+    assert (
+        outcome.message
+        == "the distance of 'tip' from 'base' is 0.4 m; it should be 0.5 m (100 mm too small)"
+    )
 
 
 def test_a_missing_link_is_not_the_checks_concern() -> None:
     """The grader fails the criterion, and says which links there are."""
     with pytest.raises(MissingElement, match="there is no link 'hand'"):
-        distance_between(arm("0 0 0.5"), link="hand", relative_to="base", distance=0.5, tolerance=0.002)
+        distance_between(
+            arm("0 0 0.5"), link="hand", relative_to="base", distance=0.5, tolerance=0.002
+        )

@@ -1,6 +1,8 @@
-"""Write a rubric: try the facts of a reference on it, and write those that it passes in TOML, as a person would.
+"""Write a rubric: try the facts of a reference on it, and write those that it passes in TOML, as a
+person would.
 
-Each criterion has the usual tolerances of its check; those about one link follow each other under its heading.
+Each criterion has the usual tolerances of its check; those about one link follow each other under
+its heading.
 """
 
 import re
@@ -12,7 +14,13 @@ from typing import Any, NamedTuple
 
 from grader.authoring.element_facts import element_facts
 from grader.authoring.facts import Carried, Fact, Omission, Solution, robot_facts
-from grader.authoring.package_facts import measure_facts, name_facts, package_facts, value_facts, words_of_launches
+from grader.authoring.package_facts import (
+    measure_facts,
+    name_facts,
+    package_facts,
+    value_facts,
+    words_of_launches,
+)
 from grader.checks.outcome import Outcome
 from grader.checks.registry import find_check
 from grader.checks.toml_types import WrongValue
@@ -27,7 +35,8 @@ from grader.text import capitalised, printable
 _WIDTH = 120  # columns
 
 
-# The arguments that all criteria of a check get, with their unit: room for rounding, but not for mistakes.
+# The arguments that all criteria of a check get, with their unit: room for rounding, but not for
+# mistakes.
 _METRES, _DEGREES = ({"tolerance": 0.002}, "metres"), ({"tolerance": 1.0}, "degrees")
 _USUAL: Mapping[str, tuple[Mapping[str, float], str]] = {
     **dict.fromkeys(("shows_box", "shows_cylinder", "shows_sphere"), _METRES),
@@ -39,13 +48,22 @@ _USUAL: Mapping[str, tuple[Mapping[str, float], str]] = {
     "inertia_plausible": ({"tolerance": 2.0}, "percent"),
     "collision_matches_visual": _METRES,
     "collides_as": ({"tolerance": 0.002}, "metres; rpy is in radians"),
-    "kinematics_match_reference": ({"samples": 20}, "random positions, besides the ends of each range"),
+    "kinematics_match_reference": (
+        {"samples": 20},
+        "random positions, besides the ends of each range",
+    ),
 }
 _ROBOT, _PACKAGE = "robot", "package"
 _OF_ROBOT, _OF_PACKAGE = 70, 30  # points
 # Checks of what matters most, and of what matters less, or others are about as well.
 _HEAVY = ("frame_at", "joint_axis", "mimics", "names_agree", "node_runs", "parameter_is")
-_LIGHT = ("shows_colour", "kinematics_match_reference", "package_found", "package_type", "rviz_display_on")
+_LIGHT = (
+    "shows_colour",
+    "kinematics_match_reference",
+    "package_found",
+    "package_type",
+    "rviz_display_on",
+)
 _MAX_COMMENT = 10_000  # columns
 _MAX_VALUES = 40  # of a node, that are written as comments
 _MAX_ID = 60
@@ -68,7 +86,9 @@ class Head(NamedTuple):
 
 
 class _DraftCriterion(NamedTuple):
-    """A criterion of a new rubric: a fact that the reference passes, and what the check says of it."""
+    """A criterion of a new rubric: a fact that the reference passes, and what the check says of
+    it.
+    """
 
     fact: Fact
     title: str
@@ -90,16 +110,22 @@ class RubricDraft(NamedTuple):
 def draft(submission: Submission, solution: Solution | None, head: Head, path: Path) -> RubricDraft:
     """Return a rubric for a file at `path` with a criterion for each fact that a check can test.
 
-    Other values of parameters are in it as comments. Without a robot it has no `solution`. Raises InputError.
+    Other values of parameters are in it as comments. Without a robot it has no `solution`. Raises
+    InputError.
     """
     started = [*words_of_launches(submission)]
-    of_robot = chain(robot_facts(solution), element_facts(solution, started)) if solution is not None else ()
+    of_robot = (
+        chain(robot_facts(solution), element_facts(solution, started))
+        if solution is not None
+        else ()
+    )
     measured = measure_facts(solution) if solution is not None else ()
     of_packages = chain(package_facts(submission), name_facts(submission), measured)
     found = list(islice(chain(of_robot, of_packages), _MAX_FACTS + 1))
     if len(found) > _MAX_FACTS:
         raise InputError(
-            f"the reference has more than {_MAX_FACTS} facts, which is too long for a rubric: name a smaller one"
+            f"the reference has more than {_MAX_FACTS} facts, which is too long for a "
+            "rubric: name a smaller one"
         )
     subjects: dict[str, Any] = {"submission": submission}
     if solution is not None:
@@ -107,15 +133,28 @@ def draft(submission: Submission, solution: Solution | None, head: Head, path: P
     tried = [it if isinstance(it, Omission) else _tried(subjects, it) for it in found]
     facts = ((it.fact, it) for it in tried if isinstance(it, _DraftCriterion))
     rows = [
-        *{(fact.check, fact.package, toml_literal([fact.args, fact.arguments])): row for fact, row in facts}.values()
+        *{
+            (fact.check, fact.package, toml_literal([fact.args, fact.arguments])): row
+            for fact, row in facts
+        }.values()
     ]
-    values = _values(subjects, submission, {row.fact.words for row in rows}) if submission.packages else {}
+    values = (
+        _values(subjects, submission, {row.fact.words for row in rows})
+        if submission.packages
+        else {}
+    )
     data = _rubric_text(head, rows, values).encode()
-    return RubricDraft(data, read_rubric(data, path), tuple(it for it in tried if isinstance(it, Omission)))
+    return RubricDraft(
+        data, read_rubric(data, path), tuple(it for it in tried if isinstance(it, Omission))
+    )
 
 
-def _values(subjects: _Subjects, submission: Submission, known: Collection[str]) -> Mapping[str, list[_DraftCriterion]]:
-    """Return the values of parameters that the reference certainly gets, by the names of the nodes."""
+def _values(
+    subjects: _Subjects, submission: Submission, known: Collection[str]
+) -> Mapping[str, list[_DraftCriterion]]:
+    """Return the values of parameters that the reference certainly gets, by the names of the
+    nodes.
+    """
     found: dict[str, list[_DraftCriterion]] = {}
     facts = (it for it in value_facts(submission) if it.words not in known)
     for row in (_tried(subjects, it) for it in islice(facts, _MAX_FACTS)):
@@ -125,7 +164,9 @@ def _values(subjects: _Subjects, submission: Submission, known: Collection[str])
 
 
 def _tried(subjects: _Subjects, fact: Fact) -> _DraftCriterion | Omission:
-    """Return the first of the facts that the reference passes; or what it does not pass, and why."""
+    """Return the first of the facts that the reference passes; or what it does not pass, and
+    why.
+    """
     reasons = []
     for one in (fact, *fact.otherwise):
         try:
@@ -138,7 +179,9 @@ def _tried(subjects: _Subjects, fact: Fact) -> _DraftCriterion | Omission:
             continue
         if outcome.status == "passed":
             carried = tuple(it for it in one.carried if _holds(subjects, one, it))
-            return _DraftCriterion(one._replace(carried=carried), capitalised(one.title or outcome.message))
+            return _DraftCriterion(
+                one._replace(carried=carried), capitalised(one.title or outcome.message)
+            )
         reasons.append(outcome.mistake if outcome.status == "pending" else outcome.message)
     return Omission(fact.words, reasons[0])
 
@@ -153,14 +196,18 @@ def _holds(subjects: _Subjects, fact: Fact, carried: Carried) -> bool:
 
 
 def _outcome(subjects: _Subjects, fact: Fact) -> Outcome:
-    """Return what a check says of the reference; raise WrongValue for an argument that it does not take."""
+    """Return what a check says of the reference; raise WrongValue for an argument that it does
+    not take.
+    """
     check = find_check(fact.check)
     assert check is not None
     _, read = read_toml(f"it = {toml_literal(fact.arguments)}".encode(), Path())
     given = {name: check.parameters[name].type.parse(value) for name, value in read["it"].items()}
     given = without_selectors(given, subjects["robot"]) if "robot" in subjects else given
     usual, _ = _USUAL.get(fact.check, ({}, ""))
-    arguments = {name: str(it).lower() if isinstance(it, bool) else it for name, it in fact.args.items()}
+    arguments = {
+        name: str(it).lower() if isinstance(it, bool) else it for name, it in fact.args.items()
+    }
     submission = subjects["submission"].under(arguments) if arguments else subjects["submission"]
     if fact.package:
         submission = submission.with_package(fact.package)
@@ -168,12 +215,16 @@ def _outcome(subjects: _Subjects, fact: Fact) -> Outcome:
     return check.outcome((known[name] for name in check.examined), {**usual, **given})
 
 
-def _rubric_text(head: Head, rows: Sequence[_DraftCriterion], values: Mapping[str, Sequence[_DraftCriterion]]) -> str:
+def _rubric_text(
+    head: Head, rows: Sequence[_DraftCriterion], values: Mapping[str, Sequence[_DraftCriterion]]
+) -> str:
     """Return a rubric with a criterion for each row; those with one heading follow each other."""
     of_robot = [row for row in rows if not row.is_of_package]
     of_package = [row for row in rows if row.is_of_package]
     points = _points(of_robot, of_package)
-    checks = {row.fact.check for row in rows} | {it.check for row in rows for it in row.fact.carried}
+    checks = {row.fact.check for row in rows} | {
+        it.check for row in rows for it in row.fact.carried
+    }
     part, usual = (_ROBOT if of_robot else _PACKAGE), Counter(points).most_common(1)[0][0]
     lines = [*_head_lines(head, sum(points)), *_default_lines(part, usual, checks)]
     if of_robot:
@@ -195,8 +246,12 @@ def _rubric_text(head: Head, rows: Sequence[_DraftCriterion], values: Mapping[st
     return "\n".join(lines) + "\n"
 
 
-def _points(of_robot: Sequence[_DraftCriterion], of_package: Sequence[_DraftCriterion]) -> list[int]:
-    """Return the points of criteria, whole numbers: those of the robot share 70 of 100, or of a multiple of it."""
+def _points(
+    of_robot: Sequence[_DraftCriterion], of_package: Sequence[_DraftCriterion]
+) -> list[int]:
+    """Return the points of criteria, whole numbers: those of the robot share 70 of 100, or of a
+    multiple of it.
+    """
     if not (of_robot and of_package):
         return [1] * (len(of_robot) + len(of_package))
     multiple = max(-(-len(of_robot) // _OF_ROBOT), -(-len(of_package) // _OF_PACKAGE))
@@ -204,18 +259,26 @@ def _points(of_robot: Sequence[_DraftCriterion], of_package: Sequence[_DraftCrit
 
 
 def _shared(points: int, rows: Sequence[_DraftCriterion]) -> list[int]:
-    """Return points in equal shares; where these are no whole numbers, what matters most gets more."""
+    """Return points in equal shares; where these are no whole numbers, what matters most gets
+    more.
+    """
     share, more = divmod(points, len(rows))
     checks = [row.fact.check for row in rows]
-    order = sorted(range(len(rows)), key=lambda it: (checks[it] not in _HEAVY, checks[it] in _LIGHT))
+    order = sorted(
+        range(len(rows)), key=lambda it: (checks[it] not in _HEAVY, checks[it] in _LIGHT)
+    )
     return [share + (index in order[:more]) for index in range(len(rows))]
 
 
-def _value_lines(layout: "_Layout", values: Mapping[str, Sequence[_DraftCriterion]]) -> Iterator[str]:
+def _value_lines(
+    layout: "_Layout", values: Mapping[str, Sequence[_DraftCriterion]]
+) -> Iterator[str]:
     """Yield comments with criteria for values of parameters, and how many more there are."""
     yield from (
         "",
-        "# --- Other values: remove the first # of all lines of one, and give it points ".ljust(_WIDTH, "-"),
+        "# --- Other values: remove the first # of all lines of one, and give it points ".ljust(
+            _WIDTH, "-"
+        ),
     )
     for node, rows in values.items():
         for row in rows[:_MAX_VALUES]:
@@ -230,7 +293,9 @@ def _with_ids(rows: Sequence[_DraftCriterion]) -> dict[str, _DraftCriterion]:
     found: dict[str, _DraftCriterion] = {}
     numbers: dict[str, int] = {}  # the last that each name got
     for row in rows:
-        name = words = re.sub(r"[\W_]+", "-", row.fact.words.lower()).strip("-")[:_MAX_ID].strip("-")
+        name = words = (
+            re.sub(r"[\W_]+", "-", row.fact.words.lower()).strip("-")[:_MAX_ID].strip("-")
+        )
         while name in found:
             numbers[words] = numbers.get(words, 1) + 1
             name = f"{words}-{numbers[words]}"
@@ -249,7 +314,10 @@ def _head_lines(head: Head, points: int) -> Iterator[str]:
     if len(head.packages) == 1:
         yield f"{assignment('package', head.packages[0])}  # the name of the package that is graded"
     elif head.packages:
-        yield f"{assignment('packages', list(head.packages))}  # the names of the packages that are graded"
+        yield (
+            f"{assignment('packages', list(head.packages))}  # the names of the packages that "
+            "are graded"
+        )
     yield assignment("points", points)
 
 
@@ -258,7 +326,9 @@ def _default_lines(part: str, points: int, checks: set[str]) -> Iterator[str]:
     usual = {name: given for name, given in _USUAL.items() if name in checks}
     if usual:
         yield from ("", "[defaults.with]")
-    yield from (f"{assignment(name, arguments)}  # {unit}" for name, (arguments, unit) in usual.items())
+    yield from (
+        f"{assignment(name, arguments)}  # {unit}" for name, (arguments, unit) in usual.items()
+    )
 
 
 def _part_lines(name: str, title: str, needs: str, points: int) -> Iterator[str]:
@@ -273,7 +343,9 @@ class _Layout(NamedTuple):
     points: int
     ids: Mapping[str, str]
 
-    def criterion(self, name: str, row: _DraftCriterion, points: int, width: int = _WIDTH) -> Iterator[str]:
+    def criterion(
+        self, name: str, row: _DraftCriterion, points: int, width: int = _WIDTH
+    ) -> Iterator[str]:
         """Yield the lines of a criterion."""
         fact = row.fact
         yield from ("", "[[criterion]]", assignment("id", name))
@@ -295,10 +367,15 @@ class _Layout(NamedTuple):
         yield from _with_lines("criterion", fact.arguments, width)
         for table in () if is_line else tables:
             yield from ("", "[[criterion.carried]]", *_toml_lines("from", table["from"]))
-            yield from (assignment("check", table["check"]), *_with_lines("criterion.carried", table["with"]))
+            yield from (
+                assignment("check", table["check"]),
+                *_with_lines("criterion.carried", table["with"]),
+            )
 
     def _carried(self, fact: Fact) -> Iterator[Mapping[str, Any]]:
-        """Yield what counts instead of a fact, and after which mistakes, if criteria are about these."""
+        """Yield what counts instead of a fact, and after which mistakes, if criteria are about
+        these.
+        """
         for it in fact.carried:
             causes = [self.ids[words] for words in dict.fromkeys(it.causes) if words in self.ids]
             if causes:
@@ -322,7 +399,9 @@ def _with_lines(table: str, arguments: Mapping[str, Any], width: int = _WIDTH) -
 
 
 def _toml_lines(key: str, value: Any) -> Iterator[str]:
-    """Yield a line that sets a key, or, of a list that is too long for one, a line for each item."""
+    """Yield a line that sets a key, or, of a list that is too long for one, a line for each
+    item.
+    """
     line = assignment(key, value)
     if len(line) <= _WIDTH or not isinstance(value, list):
         yield line

@@ -31,7 +31,8 @@ _Values = dict[str, Any]
 
 
 def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
-    """Yield the values in each element for simulators and controllers; `causes` change the arguments of xacro.
+    """Yield the values in each element for simulators and controllers; `causes` change the
+    arguments of xacro.
 
     What a controller needs of a joint is left to the names of controllers.
     """
@@ -39,7 +40,11 @@ def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
     robot = solution.robot.robot
     joints, links = {joint.name for joint in robot.joints}, {link.name for link in robot.links}
     free = robot.joints if are_joints_free(solution) else ()
-    selectors = {it.name: f"{JOINT_OF}{it.child}" for it in free if it.name not in links and "'" not in it.child}
+    selectors = {
+        it.name: f"{JOINT_OF}{it.child}"
+        for it in free
+        if it.name not in links and "'" not in it.child
+    }
     joints.update(selectors.values())
     are_compared = read_agreement(solution.submission).holds("topics")
 
@@ -58,7 +63,9 @@ def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
         met[it.words] += 1
         carried = [*_carried_from_names(it, joints, links)]
         if without is not None:
-            others = [one.arguments for one in without if isinstance(one, Fact) and one.words == it.words]
+            others = [
+                one.arguments for one in without if isinstance(one, Fact) and one.words == it.words
+            ]
             other = others[met[it.words] - 1] if len(others) >= met[it.words] else None
             carried += _carried_from_launch(it, other, (*_OF_ARGUMENTS, *causes))
         yield it._replace(carried=tuple(carried))
@@ -66,12 +73,18 @@ def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
 
 def _without_topics(fact: Fact) -> Fact:
     """Return a fact without the names of topics, which need only agree."""
-    values = {path: value for path, value in fact.arguments.get("values", {}).items() if not path.endswith("topic")}
+    values = {
+        path: value
+        for path, value in fact.arguments.get("values", {}).items()
+        if not path.endswith("topic")
+    }
     return fact._replace(arguments=_entry(fact.arguments["at"], values))
 
 
 def _by_links(fact: Fact, selectors: Mapping[str, str]) -> Fact:
-    """Return a fact with joints named by the links that they hold; `selectors` has these by the names of joints."""
+    """Return a fact with joints named by the links that they hold; `selectors` has these by the
+    names of joints.
+    """
     at, values = fact.arguments["at"], fact.arguments.get("values", {})
     is_joint, is_of_system = at.endswith("/joint"), at.startswith("ros2_control")
     at = _REFERENCE.sub(lambda found: f"[@reference='{selectors.get(found[1], found[1])}']", at)
@@ -79,12 +92,20 @@ def _by_links(fact: Fact, selectors: Mapping[str, str]) -> Fact:
     def named(key: str, value: Any) -> Any:
         if not (is_of_system or _JOINT_KEY.search(key) or (is_joint and key == "@name")):
             return value
-        return [selectors.get(it, it) for it in value] if isinstance(value, list) else selectors.get(value, value)
+        return (
+            [selectors.get(it, it) for it in value]
+            if isinstance(value, list)
+            else selectors.get(value, value)
+        )
 
-    return fact._replace(arguments=_entry(at, {key: named(key, value) for key, value in values.items()}))
+    return fact._replace(
+        arguments=_entry(at, {key: named(key, value) for key, value in values.items()})
+    )
 
 
-def _carried_from_names(fact: Fact, joints: Collection[str], links: Collection[str]) -> Iterator[Carried]:
+def _carried_from_names(
+    fact: Fact, joints: Collection[str], links: Collection[str]
+) -> Iterator[Carried]:
     """Yield what counts instead of a fact if names of joints or links are wrong."""
     without_links = _weakened(fact.arguments, links)
     weaker = _weakened(without_links, joints)
@@ -94,7 +115,9 @@ def _carried_from_names(fact: Fact, joints: Collection[str], links: Collection[s
 
 
 def _root_without_launch_files(solution: Solution) -> Element | None:
-    """Return the <robot> if no launch file gives arguments to xacro; None where there is no robot."""
+    """Return the <robot> if no launch file gives arguments to xacro; None where there is no
+    robot.
+    """
     urdf, submission = solution.submission.urdf, solution.submission
     if not isinstance(urdf, Read) or not urdf.is_expanded:
         return None
@@ -103,8 +126,12 @@ def _root_without_launch_files(solution: Solution) -> Element | None:
     return None if reading.robot is None else reading.root
 
 
-def _carried_from_launch(fact: Fact, other: Mapping[str, Any] | None, causes: tuple[str, ...]) -> list[Carried]:
-    """Return what counts instead of a fact if launch files give xacro no arguments: what stays true without them."""
+def _carried_from_launch(
+    fact: Fact, other: Mapping[str, Any] | None, causes: tuple[str, ...]
+) -> list[Carried]:
+    """Return what counts instead of a fact if launch files give xacro no arguments: what stays true
+    without them.
+    """
     if other == fact.arguments:
         return []
     if other is None:
@@ -117,12 +144,18 @@ def _carried_from_launch(fact: Fact, other: Mapping[str, Any] | None, causes: tu
 def _weakened(arguments: Mapping[str, Any], names: Collection[str]) -> Mapping[str, Any]:
     """Return the arguments without conditions and values that are names of joints and links."""
     at = _CONDITION.sub(lambda found: "" if found[1] in names else found[0], arguments["at"])
-    return _entry(at, {key: it for key, it in arguments.get("values", {}).items() if not _names_any(it, names)})
+    return _entry(
+        at,
+        {key: it for key, it in arguments.get("values", {}).items() if not _names_any(it, names)},
+    )
 
 
 def _names_any(value: Any, names: Collection[str]) -> bool:
     """Return whether a value is a name, or a list with one."""
-    return any(isinstance(it, str) and it in names for it in (value if isinstance(value, list) else [value]))
+    return any(
+        isinstance(it, str) and it in names
+        for it in (value if isinstance(value, list) else [value])
+    )
 
 
 def _entry(at: str, values: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -131,11 +164,15 @@ def _entry(at: str, values: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _entries(root: Element, covered: Collection[str]) -> Facts:
-    """Yield the values in each element, without the interfaces that are `covered`; or why it is omitted."""
+    """Yield the values in each element, without the interfaces that are `covered`; or why it is
+    omitted.
+    """
     for element in foreign_elements(root):
         about = f"<{name_of(element)}>"
         if sum(1 + len(inner.attrib) for inner in element.iter()) > _MAX_VALUES:
-            yield Omission(_label(element), f"it has more than {_MAX_VALUES} elements and attributes")
+            yield Omission(
+                _label(element), f"it has more than {_MAX_VALUES} elements and attributes"
+            )
             continue
         conditions = "".join(f"[@{key}='{value}']" for key, value in attributes_of(element))
         for label, path, values in _element_values(element):
@@ -157,7 +194,8 @@ def _drop_covered(values: _Values, covered: Collection[str]) -> None:
 
 
 def _element_values(element: Element) -> Iterator[tuple[str, str, _Values]]:
-    """Yield the plain values in an element, then those in each child that has elements or attributes.
+    """Yield the plain values in an element, then those in each child that has elements or
+    attributes.
 
     Each has a label, the path of the child, and values by their paths in it.
     """
@@ -191,7 +229,8 @@ def _values_by_path(element: Element, path: str = "") -> _Values:
 def _add(found: _Values, key: str, value: Any) -> None:
     """Add a value; of several values with one path, a list.
 
-    A path that exists on one machine only is none, nor is an empty text: what it becomes, an argument may say.
+    A path that exists on one machine only is none, nor is an empty text: what it becomes, an
+    argument may say.
     """
     if isinstance(value, str) and (not value or is_of_one_machine(value)):
         return
@@ -203,7 +242,9 @@ def _add(found: _Values, key: str, value: Any) -> None:
 
 
 def _value(text: str) -> str | bool | int | float:
-    """Return the text of an element or attribute as a rubric writes it: a number, true or false, else a string."""
+    """Return the text of an element or attribute as a rubric writes it: a number, true or false,
+    else a string.
+    """
     word = readable(text.strip())
     if word in _TRUTH:
         return _TRUTH[word]
@@ -218,4 +259,7 @@ def _children(element: Element) -> list[Element]:
 
 def _label(element: Element) -> str:
     """Return the tag and the name of an element."""
-    return f"{name_of(element)} {next((str(element.get(key)) for key in _NAMED_BY if element.get(key)), '')}"
+    return (
+        f"{name_of(element)} "
+        f"{next((str(element.get(key)) for key in _NAMED_BY if element.get(key)), '')}"
+    )

@@ -1,4 +1,5 @@
-"""Equivalents of a reference: the same robot in another file, one of each family. Each must keep full marks.
+"""Equivalents of a reference: the same robot in another file, one of each family. Each must keep
+full marks.
 
 `is_same_robot` tells whether a changed file is still the same robot.
 """
@@ -31,14 +32,18 @@ from grader.xml.urdf_format import PARTS
 
 _SORTED = ("link", "joint", "material", "visual", "collision")  # of these the order does not matter
 _COMMENTS = ("", " a robot ", ' <link name="ghost"/> ', "\n  0.6 / 4\n  ", " $ & % ")
-_NUMBER = re.compile(r"(?<![\w.+-])-?(?:0|[1-9]\d*)(?:\.\d+)?(?![\w.])")  # that xacro writes as it is
+_NUMBER = re.compile(
+    r"(?<![\w.+-])-?(?:0|[1-9]\d*)(?:\.\d+)?(?![\w.])"
+)  # that xacro writes as it is
 _MAX_DIGITS = 12  # that survive the conversion to a float and back
 _MOVED = Transform(rotation_from_rpy((0.4, -0.7, 1.1)), (0.31, -0.17, 0.23))
 _SLIDE = 0.19  # metres
 
 
 class Equivalent(NamedTuple):
-    """Another text for the robot: how it was rewritten, and the text with only its layout changed."""
+    """Another text for the robot: how it was rewritten, and the text with only its layout
+    changed.
+    """
 
     family: str
     text: str
@@ -57,7 +62,9 @@ _Rewriting = Callable[[Element, RewritingRules], bool]  # returns whether it cha
 
 
 def equivalents(root: Element, rules: RewritingRules) -> Iterator[Equivalent]:
-    """Yield a rewriting of a robot of each family, which changes all that the rules and the family allow."""
+    """Yield a rewriting of a robot of each family, which changes all that the rules and the family
+    allow.
+    """
     rules = rules._replace(named={*rules.named, *words_of_foreign(root)})
     before = text_of(copied(root))
     for family, rewriting in _REWRITINGS.items():
@@ -70,7 +77,11 @@ def equivalents(root: Element, rules: RewritingRules) -> Iterator[Equivalent]:
 def _reorder(tree: Element, _: RewritingRules) -> bool:
     """Reverse the order of elements: links, joints and materials, and those inside of each."""
     # A visual may use the material that another one defines before it.
-    free = ("joint", "material", "collision") if tree.find("link/visual/material/*") is not None else _SORTED
+    free = (
+        ("joint", "material", "collision")
+        if tree.find("link/visual/material/*") is not None
+        else _SORTED
+    )
     for owner in [tree, *own_elements(tree, "link", "joint", "visual", "collision", "inertial")]:
         kinds: dict[object, list[Element]] = {}  # of several origins the first counts
         for child in owner:
@@ -80,7 +91,9 @@ def _reorder(tree: Element, _: RewritingRules) -> bool:
 
 
 def _split_joints(tree: Element, _: RewritingRules) -> bool:
-    """Put an empty link into the middle of fixed joints; each keeps its name, in turn of the upper and lower half."""
+    """Put an empty link into the middle of fixed joints; each keeps its name, in turn of the upper
+    and lower half.
+    """
     fixed = [joint for joint in tree.iterchildren("joint") if joint.get("type") == "fixed"]
     for index, joint in enumerate(fixed):
         split_joint(tree, joint, _MOVED, is_first=index % 2 == 0)
@@ -92,7 +105,11 @@ def _move_frames(tree: Element, rules: RewritingRules) -> bool:
     moved = False
     for link in tree.iterchildren("link"):
         joint = parent_joint(tree, link.get("name", ""))
-        change = _free_move(tree, joint, rules) if joint is not None and link.get("name") not in rules.named else None
+        change = (
+            _free_move(tree, joint, rules)
+            if joint is not None and link.get("name") not in rules.named
+            else None
+        )
         if change is not None:
             move_frame(tree, link, change)
             moved = True
@@ -100,9 +117,11 @@ def _move_frames(tree: Element, rules: RewritingRules) -> bool:
 
 
 def _free_move(tree: Element, joint: Element, rules: RewritingRules) -> Transform | None:
-    """Return a change of a child's frame that leaves the motion of the joint as it is; None if there is none.
+    """Return a change of a child's frame that leaves the motion of the joint as it is; None if
+    there is none.
 
-    @root, @tip and @moved:2 name links by structure, whose frames are those that move, and those at the ends.
+    @root, @tip and @moved:2 name links by structure, whose frames are those that move, and those at
+    the ends.
     """
     kind, child = joint.get("type"), end(joint, "child").get("link")
     is_tip = all(end(other, "parent").get("link") != child for other in tree.iterchildren("joint"))
@@ -134,12 +153,18 @@ def _rename_links(tree: Element, rules: RewritingRules) -> bool:
 def _rename_joints(tree: Element, rules: RewritingRules) -> bool:
     """Rename joints that nothing but this file refers to."""
     children = [end(joint, "child").get("link") for joint in tree.iterchildren("joint")]
-    is_tree = len(set(children)) == len(children)  # of two parents, the joint that is last by name counts
+    is_tree = len(set(children)) == len(
+        children
+    )  # of two parents, the joint that is last by name counts
     return is_tree and _rename(tree, rules, "joint")
 
 
 def _rename(tree: Element, rules: RewritingRules, tag: str) -> bool:
-    uses = [(element, attribute) for owner, attribute in _NAMED[tag] for element in own_elements(tree, owner)]
+    uses = [
+        (element, attribute)
+        for owner, attribute in _NAMED[tag]
+        for element in own_elements(tree, owner)
+    ]
     names = {element.get(attribute, "") for element, attribute in uses if element.tag == tag}
     chosen = names - {"", *rules.named}
     for element, attribute in uses:
@@ -161,9 +186,13 @@ def _change_layout(tree: Element, _: RewritingRules) -> bool:
 
 def _use_properties(tree: Element, _: RewritingRules) -> bool:
     """Write numbers that occur more than once as properties of xacro."""
-    values = [(it, str(key)) for it in own_elements(tree, "*") for key in it.attrib if PARTS.get(str(key))]
+    values = [
+        (it, str(key)) for it in own_elements(tree, "*") for key in it.attrib if PARTS.get(str(key))
+    ]
     counts = Counter(number for it, key in values for number in _NUMBER.findall(it.get(key, "")))
-    repeated = [number for number, count in counts.items() if count > 1 and len(number) <= _MAX_DIGITS]
+    repeated = [
+        number for number, count in counts.items() if count > 1 and len(number) <= _MAX_DIGITS
+    ]
     if not repeated or _has_dollar(tree):
         return False
     names = {number: f"number_{index}" for index, number in enumerate(repeated)}
@@ -211,9 +240,11 @@ _REWRITINGS: dict[str, _Rewriting] = dict(zip(EQUIVALENTS, _ALL, strict=True))
 
 
 def is_same_robot(one: Urdf, other: Urdf, kept: Collection[str]) -> bool:
-    """Return whether two URDFs are the same robot; `kept` are names that something outside of the file refers to.
+    """Return whether two URDFs are the same robot; `kept` are names that something outside of the
+    file refers to.
 
-    ROS 2's verdict counts, the normal form of the robot, and the elements for simulators and controllers.
+    ROS 2's verdict counts, the normal form of the robot, and the elements for simulators and
+    controllers.
     """
     form = _counting_form(one, kept)
     return form is not None and form == _counting_form(other, kept)
@@ -225,7 +256,10 @@ def _counting_form(urdf: Urdf, kept: Collection[str]) -> object:
         return None
     robot, root = urdf.reading.robot, urdf.reading.root
     foreign = [
-        etree.tostring(child, with_tail=False) for child in sorted(foreign_elements(root), key=lambda it: str(it.tag))
+        etree.tostring(child, with_tail=False)
+        for child in sorted(foreign_elements(root), key=lambda it: str(it.tag))
     ]
-    form = normal_form(robot, {*kept, *words_of_foreign(root)}, decimals=2)  # half a turn may be written 3.14
+    form = normal_form(
+        robot, {*kept, *words_of_foreign(root)}, decimals=2
+    )  # half a turn may be written 3.14
     return urdf.loaded.verdict, urdf.reading.undetermined, foreign, form

@@ -1,4 +1,5 @@
-"""The facts of a reference: what may be true of it, as arguments of checks that are to be tried on it.
+"""The facts of a reference: what may be true of it, as arguments of checks that are to be tried on
+it.
 
 Here are those of the robot: its file, links, joints and tree.
 """
@@ -35,7 +36,9 @@ _MAX_TIPS = 20
 
 
 class Solution(NamedTuple):
-    """A solution: its submission; its URDF as it was read, and the robot that ROS 2 loads, with the joints at 0."""
+    """A solution: its submission; its URDF as it was read, and the robot that ROS 2 loads, with the
+    joints at 0.
+    """
 
     submission: Submission
     reading: Reading
@@ -63,7 +66,8 @@ class Fact(NamedTuple):
     check: str
     arguments: Mapping[str, Any]
     words: str  # of the id
-    package: str | None = None  # what it is about: the name of a package, empty for the main one; None for the robot
+    # what it is about: the name of a package, empty for the main one; None for the robot
+    package: str | None = None
     carried: "tuple[Carried, ...]" = ()
     otherwise: "Sequence[Fact]" = ()  # tried in its place if the reference does not pass it
     title: str = ""  # default: what the check says
@@ -98,7 +102,9 @@ def robot_facts(solution: Solution) -> Facts:
 
 
 def are_joints_free(solution: Solution) -> bool:
-    """Return whether joints may have other names: those that files use are compared with those of the robot."""
+    """Return whether joints may have other names: those that files use are compared with those of
+    the robot.
+    """
     found = read_agreement(solution.submission)
     return found.holds("frames") and found.holds("controllers")
 
@@ -117,7 +123,9 @@ def _rounded(vector: Sequence[float], digits: int = 6) -> list[float]:
 
 
 def _visual_facts(link: Link) -> Facts:
-    """Yield what a link shows; the place and colour of a shape only if no other shape of the link is of its kind."""
+    """Yield what a link shows; the place and colour of a shape only if no other shape of the link
+    is of its kind.
+    """
     if len(link.visuals) > MAX_SHAPES:
         yield Omission(f"{link.name} visuals", f"it has more than {MAX_SHAPES}")
         return
@@ -127,12 +135,25 @@ def _visual_facts(link: Link) -> Facts:
         yield _size(link.name, visual)
         if kinds[type(visual.geometry)] == 1:
             is_mesh = isinstance(visual.geometry, Mesh)
-            selected = {} if len(kinds) == 1 or is_mesh else {"shape": type(visual.geometry).__name__.lower()}
+            selected = (
+                {}
+                if len(kinds) == 1 or is_mesh
+                else {"shape": type(visual.geometry).__name__.lower()}
+            )
             if visual.material is not None:
-                yield _link_fact(link.name, "shows_colour", **selected, colour=_rounded(visual.material.rgba, 4))
+                yield _link_fact(
+                    link.name, "shows_colour", **selected, colour=_rounded(visual.material.rgba, 4)
+                )
             if not is_mesh:
                 xyz = _rounded(visual.origin.xyz)
-                yield _link_fact(link.name, "centre_at", **selected, relative_to=link.name, xyz=xyz, **_axis(visual))
+                yield _link_fact(
+                    link.name,
+                    "centre_at",
+                    **selected,
+                    relative_to=link.name,
+                    xyz=xyz,
+                    **_axis(visual),
+                )
     for kind in (kind for kind, number in kinds.items() if number > 1):
         reason = "a check examines one shape of a kind"
         yield Omission(f"place and colour of each {kind.__name__.lower()} of {link.name}", reason)
@@ -141,16 +162,22 @@ def _visual_facts(link: Link) -> Facts:
 def _size(link: str, visual: Visual) -> Fact:
     match visual.geometry:
         case Box(size=size):  # along the axes of the link, whichever of its own they are
-            first, *others = [_link_fact(link, "shows_box", size=_rounded(edges)) for edges in permutations(size)]
+            first, *others = [
+                _link_fact(link, "shows_box", size=_rounded(edges)) for edges in permutations(size)
+            ]
             return first._replace(otherwise=others)
         case Cylinder(radius=radius, length=length):
-            return _link_fact(link, "shows_cylinder", radius=round(radius, 6), length=round(length, 6))
+            return _link_fact(
+                link, "shows_cylinder", radius=round(radius, 6), length=round(length, 6)
+            )
         case Sphere(radius=radius):
             return _link_fact(link, "shows_sphere", radius=round(radius, 6))
         case mesh:
             file = "/".join(mesh_file(mesh.filename, is_expanded=True).steps)
             xyz, rpy = _rounded(visual.origin.xyz), _rounded(visual.origin.rpy)
-            return _link_fact(link, "shows_mesh", file=file, scale=_rounded(mesh.scale), xyz=xyz, rpy=rpy)
+            return _link_fact(
+                link, "shows_mesh", file=file, scale=_rounded(mesh.scale), xyz=xyz, rpy=rpy
+            )
 
 
 def _axis(visual: Visual) -> dict[str, Any]:
@@ -161,13 +188,17 @@ def _axis(visual: Visual) -> dict[str, Any]:
 
 
 def _body_facts(link: Link) -> Facts:
-    """Yield the mass and inertia of a link, and its collision shapes, or that they are those that it shows."""
+    """Yield the mass and inertia of a link, and its collision shapes, or that they are those that
+    it shows.
+    """
     if link.inertial is not None:
         least = abs(link.inertial.mass) * _MASS_SHARE
         tolerance = {"tolerance": least} if least < _MASS_TOLERANCE else {}
         yield _link_fact(link.name, "mass_is", mass=link.inertial.mass, **tolerance)
         title = f"the inertia of {link.name!r} is that of a uniform solid of its shapes"
-        loose = _link_fact(link.name, "inertia_plausible", tolerance=_LOOSE_INERTIA)._replace(title=title)
+        loose = _link_fact(link.name, "inertia_plausible", tolerance=_LOOSE_INERTIA)._replace(
+            title=title
+        )
         yield _link_fact(link.name, "inertia_plausible")._replace(title=title, otherwise=[loose])
     if len(link.collisions) > MAX_SHAPES:
         yield Omission(f"{link.name} collisions", f"it has more than {MAX_SHAPES}")
@@ -178,7 +209,9 @@ def _body_facts(link: Link) -> Facts:
         yield from shapes
     elif shapes:
         known = [
-            Carried(_shown(link.name), it.check, it.arguments) for it in shapes if only and it.check == "collides_as"
+            Carried(_shown(link.name), it.check, it.arguments)
+            for it in shapes
+            if only and it.check == "collides_as"
         ]
         match = _link_fact(link.name, "collision_matches_visual")
         yield match._replace(otherwise=shapes if only else (), carried=tuple(known))
@@ -186,7 +219,9 @@ def _body_facts(link: Link) -> Facts:
 
 def _shown(link: str) -> tuple[str, ...]:
     """Return the words of the facts about what a link shows."""
-    return tuple(f"{link} {check}" for check in ("shows_box", "shows_cylinder", "shows_sphere", "centre_at"))
+    return tuple(
+        f"{link} {check}" for check in ("shows_box", "shows_cylinder", "shows_sphere", "centre_at")
+    )
 
 
 def _collision(link: str, collision: Collision, only: Mapping[str, bool]) -> Fact:
@@ -204,32 +239,51 @@ def _collision(link: str, collision: Collision, only: Mapping[str, bool]) -> Fac
 
 
 def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
-    """Yield what may be true of the parent joint of a link; raise MissingElement for an axis of length zero."""
+    """Yield what may be true of the parent joint of a link; raise MissingElement for an axis of
+    length zero.
+    """
     link, parent = joint.child, joint.parent
     title = f"a {joint.type} joint connects {link!r} to {parent!r}"  # its name is free
     yield _link_fact(link, "held_by", parent=parent, joint_type=joint.type)._replace(title=title)
     pose = robot.pose(link, relative_to=parent)
     xyz, rpy = _rounded(pose.translation), _rounded(pose.rpy, 4)
-    turned = f"with rpy = {point((*_rounded([*map(degrees, rpy)], 1),))} (degrees)" if any(rpy) else "not rotated"
+    turned = (
+        f"with rpy = {point((*_rounded([*map(degrees, rpy)], 1),))} (degrees)"
+        if any(rpy)
+        else "not rotated"
+    )
     title = f"the frame {link!r} is at {point((*xyz,))} m in {parent!r}, {turned}"
-    frame = _link_fact(link, "frame_at", relative_to=parent, xyz=xyz, **({"rpy": rpy} if any(rpy) else {}))
+    frame = _link_fact(
+        link, "frame_at", relative_to=parent, xyz=xyz, **({"rpy": rpy} if any(rpy) else {})
+    )
     yield frame._replace(title=title)
-    of_type = Carried((f"{link} held_by",), "frame_at", frame.arguments)  # a joint of another type has no such range
+    of_type = Carried(
+        (f"{link} held_by",), "frame_at", frame.arguments
+    )  # a joint of another type has no such range
     if joint.limit is not None and joint.type in ("revolute", "prismatic"):
         yield _range_fact(joint, joint.limit)._replace(carried=(of_type,))
     if joint.dynamics is not None and joint.type != "fixed":
         friction, damping = joint.dynamics.friction, joint.dynamics.damping
         title = f"the joint that moves {link!r} has friction {friction:g} and damping {damping:g}"
-        yield _link_fact(link, "joint_dynamics", friction=friction, damping=damping)._replace(title=title)
+        yield _link_fact(link, "joint_dynamics", friction=friction, damping=damping)._replace(
+            title=title
+        )
     mimic = joint.mimic
     if mimic is not None and joint.type != "fixed" and robot.robot.has_joint(mimic.joint):
         leader = robot.joint(mimic.joint).child
-        yield _link_fact(link, "mimics", leader=leader, multiplier=mimic.multiplier, offset=mimic.offset)
+        yield _link_fact(
+            link, "mimics", leader=leader, multiplier=mimic.multiplier, offset=mimic.offset
+        )
     if joint.type in _WITH_AXIS:
         own = robot.axis(joint)
         direction = _rounded(pose.rotate(own), 2)
-        title = f"the axis of the joint that moves {link!r} points along {point((*direction,))} in {parent!r}"
-        axis = _link_fact(link, "joint_axis", relative_to=parent, direction=direction)._replace(title=title)
+        title = (
+            f"the axis of the joint that moves {link!r} points along {point((*direction,))} in "
+            f"{parent!r}"
+        )
+        axis = _link_fact(link, "joint_axis", relative_to=parent, direction=direction)._replace(
+            title=title
+        )
         in_own_frame = {"link": link, "relative_to": link, "direction": _rounded(own, 2)}
         yield axis._replace(carried=(Carried((f"{link} frame_at",), "joint_axis", in_own_frame),))
 
@@ -243,11 +297,15 @@ def _range_fact(joint: Joint, limit: Limit) -> Fact:
     others |= {} if turns else {"tolerance": _SLIDING_TOLERANCE}
     unit = "degrees" if turns else "m"
     title = f"the range of the joint that moves {joint.child!r} is {lower:g} to {upper:g} {unit}"
-    return _link_fact(joint.child, "joint_limits", lower=lower, upper=upper, **others)._replace(title=title)
+    return _link_fact(joint.child, "joint_limits", lower=lower, upper=upper, **others)._replace(
+        title=title
+    )
 
 
 def _tree_facts(solution: Solution) -> Iterator[Fact]:
-    """Yield the names of joints that other elements use, the root, the numbers of joints, and how the tips move."""
+    """Yield the names of joints that other elements use, the root, the numbers of joints, and how
+    the tips move.
+    """
     robot = solution.robot
     joints, root = robot.parent_joints.values(), robot.main_tree[0]
     words = words_of_foreign(solution.root)
@@ -261,14 +319,26 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
     of_types = Carried(held, rooted.check, rooted.arguments)
     moving = [joint for joint in joints if joint.type != "fixed"]
     kinds = Counter(joint.type for joint in moving)
-    numbers = {"moving": sum(joint.mimic is None for joint in moving), **{kind: kinds[kind] for kind in _COUNTED}}
+    numbers = {
+        "moving": sum(joint.mimic is None for joint in moving),
+        **{kind: kinds[kind] for kind in _COUNTED},
+    }
     yield _robot_fact("counts", **numbers)._replace(carried=(of_types,))
     inner = {joint.parent for joint in joints}
     chains = {name: robot.chain(name) for name in robot.main_tree if name not in inner}
     tips = [name for name, chain in chains.items() if any(joint.type != "fixed" for joint in chain)]
     if tips:
         names = [repr(tip) for tip in tips[:_MAX_TIPS]]
-        title = f"{enumerated(names)} {'moves' if len(names) == 1 else 'move'} as in the reference solution"
-        known = [f"{joint.child} {check}" for joint in joints for check in ("frame_at", "joint_axis", "mimics")]
+        title = (
+            f"{enumerated(names)} {'moves' if len(names) == 1 else 'move'} as in the reference "
+            "solution"
+        )
+        known = [
+            f"{joint.child} {check}"
+            for joint in joints
+            for check in ("frame_at", "joint_axis", "mimics")
+        ]
         motion = _robot_fact("kinematics_match_reference", links=tips[:_MAX_TIPS], match="order")
-        yield motion._replace(title=title, carried=(Carried(tuple(known), "counts", numbers), of_types))
+        yield motion._replace(
+            title=title, carried=(Carried(tuple(known), "counts", numbers), of_types)
+        )

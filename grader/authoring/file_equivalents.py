@@ -1,4 +1,6 @@
-"""Equivalents of the YAML files of packages: the same values in another text. Each must keep full marks."""
+"""Equivalents of the YAML files of packages: the same values in another text. Each must keep
+full marks.
+"""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -24,8 +26,13 @@ def file_equivalents(submission: Submission) -> Iterator[tuple[str, Mapping[str,
 
 
 def _for_every_node(workspace: Workspace, path: str, tree: YamlNode) -> str | None:
-    """Return a file that only one node gets, and that has only its parameters, with /** in place of its name."""
-    sections, nodes = [keys for keys, _ in sections_in(tree)], workspace.parameter_files.get(path, [])
+    """Return a file that only one node gets, and that has only its parameters, with /** in place
+    of its name.
+    """
+    sections, nodes = (
+        [keys for keys, _ in sections_in(tree)],
+        workspace.parameter_files.get(path, []),
+    )
     if len(nodes) != 1 or len(tree.value) != 1 or sections != [(workspace.name_of(nodes[0]),)]:
         return None
     before = tree.source.text
@@ -34,7 +41,9 @@ def _for_every_node(workspace: Workspace, path: str, tree: YamlNode) -> str | No
 
 
 def _in_flow_style(tree: YamlNode) -> str | None:
-    """Return a file as one mapping in braces; None for texts that would mean something else there."""
+    """Return a file as one mapping in braces; None for texts that would mean something else
+    there.
+    """
     text = _flow(tree)
     with suppress(ValueError):
         return text if yaml_value(text) == yaml_value(tree.source.text) else None
@@ -44,4 +53,8 @@ def _in_flow_style(tree: YamlNode) -> str | None:
 def _flow(node: YamlNode) -> str:
     if isinstance(node.value, dict):
         return f"{{{', '.join(f'{key}: {_flow(inner)}' for key, inner in node.value.items())}}}"
-    return f"[{', '.join(map(_flow, node.items))}]" if node.text is None else node.source.text[slice(*node.span)]
+    return (
+        f"[{', '.join(map(_flow, node.items))}]"
+        if node.text is None
+        else node.source.text[slice(*node.span)]
+    )

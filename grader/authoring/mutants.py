@@ -1,7 +1,8 @@
-"""Mutants of a reference: one file with one mistake, for every single edit that a family of mistakes allows.
+"""Mutants of a reference: one file with one mistake, for every single edit that a family of
+mistakes allows.
 
-Those of a URDF or xacro text come first; then those of a package: a file deleted or renamed, and mistakes in
-package.xml, setup.py, launch files and RViz files.
+Those of a URDF or xacro text come first; then those of a package: a file deleted or renamed, and
+mistakes in package.xml, setup.py, launch files and RViz files.
 """
 
 import ast
@@ -29,7 +30,8 @@ _BOX = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
 class Mutant(NamedTuple):
     """One file of a solution with one mistake."""
 
-    id: str  # stable: the family and the place by names, `number x10: joint base_lidar_joint/origin xyz.z`
+    # stable: the family and the place by names, `number x10: joint base_lidar_joint/origin xyz.z`
+    id: str
     family: str
     path: str
     line: int
@@ -45,7 +47,9 @@ class Mutant(NamedTuple):
 
 
 class MutantEdit(NamedTuple):
-    """A change of a text between two offsets: its family, and its place by names, with what tells it from others."""
+    """A change of a text between two offsets: its family, and its place by names, with what
+    tells it from others.
+    """
 
     family: str
     label: str
@@ -55,7 +59,9 @@ class MutantEdit(NamedTuple):
 
 
 def mutants(text: str, path: str = "", hidden: Collection[str] = ()) -> Iterator[Mutant]:
-    """Yield every mutant of a URDF or xacro once; `hidden` are links that must show nothing, which show a box."""
+    """Yield every mutant of a URDF or xacro once; `hidden` are links that must show nothing,
+    which show a box.
+    """
     return _as_mutants(text, path, _changes(text, {f"link {name}" for name in hidden}))
 
 
@@ -75,7 +81,10 @@ def _as_mutants(text: str, path: str, changes: Iterable[MutantEdit]) -> Iterator
 
 def _changes(text: str, hidden: Collection[str]) -> Iterator[MutantEdit]:
     places = list(_places(text))
-    names = {tag: [it.get("name", "") for it, *_ in places if it.tag == tag] for tag in ("link", "joint", "material")}
+    names = {
+        tag: [it.get("name", "") for it, *_ in places if it.tag == tag]
+        for tag in ("link", "joint", "material")
+    }
     for element, label, start in places:
         for attribute in attributes(text, start):
             yield from _attribute_changes(text, element, label, attribute, names)
@@ -93,7 +102,9 @@ def _changes(text: str, hidden: Collection[str]) -> Iterator[MutantEdit]:
 
 
 def _places(text: str) -> Iterator[tuple[Element, str, int]]:
-    """Yield each element with its offset, and its place by names, which does not change if lines are added."""
+    """Yield each element with its offset, and its place by names, which does not change if lines
+    are added.
+    """
     data, source = text.encode("utf-8", "surrogateescape"), Source("", text)
     try:
         root: Element | None = XmlFile(data, source).root
@@ -115,7 +126,11 @@ def _places(text: str) -> Iterator[tuple[Element, str, int]]:
 
 
 def _attribute_changes(
-    text: str, element: Element, label: str, attribute: Attribute, names: Mapping[str, Sequence[str]]
+    text: str,
+    element: Element,
+    label: str,
+    attribute: Attribute,
+    names: Mapping[str, Sequence[str]],
 ) -> Iterator[MutantEdit]:
     name, span = attribute.name, attribute.value
     place = f"{label} {name}"
@@ -129,7 +144,9 @@ def _attribute_changes(
         if other:
             yield MutantEdit("name exchanged", f"{place} -> {other}", *span, other)
     elif name == "type" and element.tag == "joint":
-        yield from (MutantEdit("type", f"{place} -> {other}", *span, other) for other in JOINT_TYPES)
+        yield from (
+            MutantEdit("type", f"{place} -> {other}", *span, other) for other in JOINT_TYPES
+        )
     elif name not in _UNTOUCHED and not name.startswith("xmlns"):
         yield from _value_changes(text, label, span, name)
 
@@ -195,11 +212,18 @@ _Changes = Callable[[Source, str], Iterable[MutantEdit]]  # of a file with a lab
 
 
 def package_mutants(
-    package: Package, links: Iterable[str], text: _Text, further: _Changes = lambda _, __: (), *, prefix: str = ""
+    package: Package,
+    links: Iterable[str],
+    text: _Text,
+    further: _Changes = lambda _, __: (),
+    *,
+    prefix: str = "",
 ) -> Iterator[Mutant]:
-    """Yield the mutants of a package; `links` are those of its robot, `text` returns that of a file.
+    """Yield the mutants of a package; `links` are those of its robot, `text` returns that of a
+    file.
 
-    `further` returns more changes of a file; `prefix` is what ids have before the paths in the package.
+    `further` returns more changes of a file; `prefix` is what ids have before the paths in the
+    package.
     """
     for own in package.tree.files:
         path, label = package.path(own), prefix + own
@@ -207,7 +231,9 @@ def package_mutants(
             name = path.rpartition("/")[2]
             renamed = f"{path.removesuffix(name)}{misspelt(name)}"
             yield Mutant(f"file deleted: {label}", "file deleted", path, 1, is_deleted=True)
-            yield Mutant(f"file renamed: {label}", "file renamed", path, 1, is_deleted=True, renamed=renamed)
+            yield Mutant(
+                f"file renamed: {label}", "file renamed", path, 1, is_deleted=True, renamed=renamed
+            )
         source = Source(path, text(path))
         changes: Iterable[MutantEdit] = ()
         if own in package.rviz_files:
@@ -225,11 +251,15 @@ def _file_changes(source: Source, label: str, own: str) -> Iterator[MutantEdit]:
     for mutant in mutants(source.text):
         place = mutant.id.partition(": ")[2]
         if mutant.family in _XML_FAMILIES and (own != MANIFEST or _READ_OF_MANIFEST.match(place)):
-            yield MutantEdit(mutant.family, f"{label} {place}", mutant.start, mutant.end, mutant.new)
+            yield MutantEdit(
+                mutant.family, f"{label} {place}", mutant.start, mutant.end, mutant.new
+            )
 
 
 def _rviz(source: Source, label: str, links: Iterable[str]) -> Iterator[MutantEdit]:
-    """Yield changes of the fixed frame, and of each display: disabled, its class or topic misspelt."""
+    """Yield changes of the fixed frame, and of each display: disabled, its class or topic
+    misspelt.
+    """
     try:
         root = read_yaml(source.text.encode("utf-8", "surrogateescape"), source.path)
     except YamlFault:
@@ -251,25 +281,35 @@ def _display_changes(display: YamlNode, label: str) -> Iterator[MutantEdit]:
     for keys in _DISPLAY_TEXTS:
         node = display.get(*keys)
         if node is not None and node.text:
-            yield MutantEdit("text misspelt", f"{place} {'/'.join(keys)}", *node.span, misspelt(node.text))
+            yield MutantEdit(
+                "text misspelt", f"{place} {'/'.join(keys)}", *node.span, misspelt(node.text)
+            )
 
 
 def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> Iterator[MutantEdit]:
-    """Yield the changes of a file: an entry of data_files, an action or an import deleted, a string misspelt."""
+    """Yield the changes of a file: an entry of data_files, an action or an import deleted, a string
+    misspelt.
+    """
     family = "data_files entry deleted" if is_setup else "action removed"
     for item in _entries(file):
         start, end = file.span(item)
         comma = re.compile(r"\s*,").match(file.text, end)
-        yield MutantEdit(family, f"{label} {_short(file, item)}", start, comma.end() if comma else end, "")
+        yield MutantEdit(
+            family, f"{label} {_short(file, item)}", start, comma.end() if comma else end, ""
+        )
     for call in file.calls("add_action"):
         action = call.args[0] if call.args else call
         yield MutantEdit(family, f"{label} {_short(file, action)}", *file.span(call), "None")
     for node in file.imports if is_setup else ():
-        yield MutantEdit("import deleted", f"{label} {file.segment(node)}", *file.span(node), "pass")
+        yield MutantEdit(
+            "import deleted", f"{label} {file.segment(node)}", *file.span(node), "pass"
+        )
     ignored = [*_for_people(file)]
     for text, start, end in file.literals:
         if text.strip() and not any(first <= start < last for first, last in ignored):
-            yield MutantEdit("string misspelt", f"{label} {text[:MAX_LABEL]}", start, end, misspelt(text))
+            yield MutantEdit(
+                "string misspelt", f"{label} {text[:MAX_LABEL]}", start, end, misspelt(text)
+            )
 
 
 def _entries(file: PythonFile) -> Iterator[ast.expr]:

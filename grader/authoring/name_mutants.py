@@ -1,4 +1,6 @@
-"""Mutants of what the files of a workspace agree on: names, values in YAML, what CMake installs, and dependencies."""
+"""Mutants of what the files of a workspace agree on: names, values in YAML, what CMake installs,
+and dependencies.
+"""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -19,19 +21,27 @@ _DEPENDENCY = re.compile(r"<((?:build_|build_export_|exec_)?depend)\b[^>]*>\s*([
 _REVERSED = {"true": "false", "false": "true", "True": "False", "False": "True"}
 
 
-def compared_names(submission: Submission, families: Iterable[Family]) -> Iterator[tuple[Fact, Edit]]:
-    """Yield the names of these families that files use or define, each with the edit that misspells it there."""
+def compared_names(
+    submission: Submission, families: Iterable[Family]
+) -> Iterator[tuple[Fact, Edit]]:
+    """Yield the names of these families that files use or define, each with the edit that misspells
+    it there.
+    """
     known = frozenset(families)
     for fact in read_facts(submission) if known else ():
         if isinstance(fact, Use | Definition) and FAMILY_OF[fact.kind] in known:
-            for edit in correction_edits(submission, Correction(fact.location, fact.name, misspelt(fact.name)))[:1]:
+            for edit in correction_edits(
+                submission, Correction(fact.location, fact.name, misspelt(fact.name))
+            )[:1]:
                 yield fact, edit
 
 
 def name_changes(
     source: Source, label: str, names: Iterable[tuple[Fact, Edit]], families: Iterable[Family]
 ) -> Iterator[MutantEdit]:
-    """Yield the changes of a file of a package: those of its format, then the names in it that are compared."""
+    """Yield the changes of a file of a package: those of its format, then the names in it that are
+    compared.
+    """
     name = source.path.rpartition("/")[2]
     if name == CMAKE:
         for found in _INSTALL.finditer(source.text):
@@ -39,7 +49,9 @@ def name_changes(
             yield MutantEdit("install removed", place, *found.span(), "")
     elif name == MANIFEST and "dependencies" in families:
         for found in _DEPENDENCY.finditer(source.text):
-            yield MutantEdit("dependency removed", f"{label} {found[1]} {found[2]}", *found.span(), "")
+            yield MutantEdit(
+                "dependency removed", f"{label} {found[1]} {found[2]}", *found.span(), ""
+            )
     elif name.endswith(_YAML):
         yield from _of_yaml(source, label)
     for fact, edit in names:
@@ -57,7 +69,9 @@ def _of_yaml(source: Source, label: str) -> Iterator[MutantEdit]:
     yield from _of_node(source, f"{label} ", root, set())
 
 
-def _of_node(source: Source, label: str, node: YamlNode, seen: set[YamlNode]) -> Iterator[MutantEdit]:
+def _of_node(
+    source: Source, label: str, node: YamlNode, seen: set[YamlNode]
+) -> Iterator[MutantEdit]:
     """Yield that each value is another one, and each key of a table misspelt; of an anchor once."""
     if node in seen:
         return
@@ -70,15 +84,21 @@ def _of_node(source: Source, label: str, node: YamlNode, seen: set[YamlNode]) ->
         at = node.key_location(key)
         start = source.offset(at.line, at.column)
         if isinstance(inner.value, dict) and source.text.startswith(key, start):
-            yield MutantEdit("name misspelt", f"{label}{key}", start, start + len(key), misspelt(key))
+            yield MutantEdit(
+                "name misspelt", f"{label}{key}", start, start + len(key), misspelt(key)
+            )
         yield from _of_node(source, f"{label}{key}.", inner, seen)
 
 
 def _of_scalar(source: Source, label: str, node: YamlNode) -> Iterator[MutantEdit]:
-    """Yield the change of a text: a truth value is reversed, a number is ten times as large, a word is misspelt."""
+    """Yield the change of a text: a truth value is reversed, a number is ten times as large, a word
+    is misspelt.
+    """
     (start, end), text = node.span, node.text or ""
     if node.quoted:
-        yield MutantEdit("text misspelt", label, start + 1, end - 1, misspelt(source.text[start + 1 : end - 1]))
+        yield MutantEdit(
+            "text misspelt", label, start + 1, end - 1, misspelt(source.text[start + 1 : end - 1])
+        )
     elif text in _REVERSED:
         yield MutantEdit("boolean reversed", label, start, end, _REVERSED[text])
     elif _NUMBER.fullmatch(text):

@@ -1,4 +1,6 @@
-"""The facts of the packages of a reference: files, builds, launch and RViz files, names and parameters."""
+"""The facts of the packages of a reference: files, builds, launch and RViz files, names and
+parameters.
+"""
 
 import posixpath
 import re
@@ -65,12 +67,18 @@ def package_facts(submission: Submission) -> Facts:
         facts = _facts_of(submission, package, named, prefix)
         about = f"{_THE_PACKAGE} {package.name}" if prefix else _THE_PACKAGE
         of = package.name if prefix else ""
-        yield from (fact._replace(about=about, package=of, words=f"{prefix}{fact.words}") for fact in facts)
+        yield from (
+            fact._replace(about=about, package=of, words=f"{prefix}{fact.words}") for fact in facts
+        )
 
 
 def _packages(submission: Submission) -> Iterator[tuple[Package, str]]:
-    """Yield the packages, each with what the words of its facts begin with: the main one, and the others."""
-    for package in sorted(submission.lab_packages.values(), key=lambda it: it is not submission.package):
+    """Yield the packages, each with what the words of its facts begin with: the main one, and the
+    others.
+    """
+    for package in sorted(
+        submission.lab_packages.values(), key=lambda it: it is not submission.package
+    ):
         yield package, "" if package is submission.package else f"{package.name} "
 
 
@@ -78,7 +86,11 @@ def words_of_launches(submission: Submission) -> Iterator[str]:
     """Yield the words of what the launch files start and find."""
     for package, prefix in _packages(submission):
         names = [posixpath.basename(path) for path in package.launch_files]
-        yield from (f"{prefix}{name} {check}" for name in names for check in ("node_runs", "launch_finds_files"))
+        yield from (
+            f"{prefix}{name} {check}"
+            for name in names
+            for check in ("node_runs", "launch_finds_files")
+        )
 
 
 def _builds(submission: Submission) -> tuple[str, ...]:
@@ -86,7 +98,9 @@ def _builds(submission: Submission) -> tuple[str, ...]:
     return tuple(f"{prefix}setup_imports" for _, prefix in _packages(submission))
 
 
-def _facts_of(submission: Submission, package: Package, named: Collection[str], prefix: str) -> Iterator[Fact]:
+def _facts_of(
+    submission: Submission, package: Package, named: Collection[str], prefix: str
+) -> Iterator[Fact]:
     """Yield what may be true of a package.
 
     That the files are installed which are `named` somewhere is a fact about names.
@@ -96,18 +110,24 @@ def _facts_of(submission: Submission, package: Package, named: Collection[str], 
     if package.manifest is not None and package.manifest.build_type:
         yield _package_fact("package_type", build_type=package.manifest.build_type)
     yield _package_fact("setup_imports")._replace(title="`colcon build` of the package succeeds")
-    yield from _installs(package, path.removeprefix(package.path("")) if package.holds(path) else "", named)
+    yield from _installs(
+        package, path.removeprefix(package.path("")) if package.holds(path) else "", named
+    )
     for launch in (it for it in package.launch_files if not it.startswith("test/")):
         yield from _launch_facts(submission, package, launch, prefix)
     yield from _rviz_facts(package)
 
 
 def measure_facts(solution: Solution) -> Iterator[Fact]:
-    """Yield the parameters of nodes that are a radius in the robot, or a distance between two links."""
+    """Yield the parameters of nodes that are a radius in the robot, or a distance between two
+    links.
+    """
     links = [link.name for link in solution.robot.robot.links]
     for node, name, value in _given(solution.submission):
         words = {*name.split("_")}
-        alike = sorted(links, key=lambda it: (not _WHEEL.search(it), -len(words & {*it.split("_")})))
+        alike = sorted(
+            links, key=lambda it: (not _WHEEL.search(it), -len(words & {*it.split("_")}))
+        )
         sizes = _sizes_meant(name, alike)
         if sizes is None or not isinstance(value, float):
             continue
@@ -117,7 +137,9 @@ def measure_facts(solution: Solution) -> Iterator[Fact]:
             of = enumerated([repr(link) for link in fitting])
             fact = _parameter_fact(node, name, measure=measure, links=[*fitting])
             known = [f"{link} {check}" for link in fitting for check in _MEASURING]
-            same = Carried((*known, _MOTION), "parameter_is", {"node": node, "parameter": name, "value": value})
+            same = Carried(
+                (*known, _MOTION), "parameter_is", {"node": node, "parameter": name, "value": value}
+            )
             title = f"the parameter {name} of {node} is the {measure} of {of} in the robot"
             yield fact._replace(title=title, carried=(*fact.carried, same))
 
@@ -125,7 +147,9 @@ def measure_facts(solution: Solution) -> Iterator[Fact]:
 def value_facts(submission: Submission) -> Iterator[Fact]:
     """Yield the values of parameters that nodes get, as files and launch files write them."""
     for node, name, value in _given(submission):
-        texts = [it for it in (value if isinstance(value, list) else [value]) if isinstance(it, str)]
+        texts = [
+            it for it in (value if isinstance(value, list) else [value]) if isinstance(it, str)
+        ]
         if isinstance(value, Unknown) or any(
             PREFIX in it or is_of_one_machine(it) or len(it) > _MAX_TEXT for it in texts
         ):
@@ -135,14 +159,18 @@ def value_facts(submission: Submission) -> Iterator[Fact]:
 
 
 def _given(submission: Submission) -> Iterator[tuple[str, str, Any]]:
-    """Yield the parameters that nodes get, by the names of the nodes and their own, and their values."""
+    """Yield the parameters that nodes get, by the names of the nodes and their own, and their
+    values.
+    """
     for node, given in workspace_of(submission).parameter_owners.items():
         for name, found in {name: it for one in given for name, it in one.values.items()}.items():
             yield node, name, found.value
 
 
 def _parameter_fact(node: str, name: str, **arguments: Any) -> Fact:
-    """Return a fact about a parameter, which costs nothing if a mistake of names keeps it from the node."""
+    """Return a fact about a parameter, which costs nothing if a mistake of names keeps it from the
+    node.
+    """
     where_given = {"node": node, "parameter": name, **arguments, "where_given": True}
     carried = (Carried(_OF_PARAMETERS, "parameter_is", where_given),)
     fact = _package_fact("parameter_is", f"{node} {name}", node=node, parameter=name, **arguments)
@@ -150,7 +178,9 @@ def _parameter_fact(node: str, name: str, **arguments: Any) -> Fact:
 
 
 def _sizes_meant(name: str, links: Sequence[str]) -> tuple[str, Iterable[tuple[str, ...]]] | None:
-    """Return what a parameter measures by its name, and of which links it may be; None for any other parameter."""
+    """Return what a parameter measures by its name, and of which links it may be; None for any
+    other parameter.
+    """
     if "radius" in name:
         return "radius", ((link,) for link in links)
     return ("distance", combinations(links, 2)) if _DISTANCE.search(name) else None
@@ -185,7 +215,9 @@ def _odd(mismatches: Sequence[Mismatch]) -> Omission | None:
         return None
     first = mismatches[0]
     text, noun = _ODD[first.family]
-    more = f"{text.format(counted(len(wrong), noun))}: {place_text(first.location)}: {first.message}"
+    more = (
+        f"{text.format(counted(len(wrong), noun))}: {place_text(first.location)}: {first.message}"
+    )
     return Omission(f"{first.family} names_agree", more)
 
 
@@ -194,13 +226,27 @@ def _package_fact(check: str, label: str = "", **arguments: Any) -> Fact:
 
 
 def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[Fact]:
-    """Yield that a build installs the URDF, the launch and RViz files, and a file of each other folder."""
-    own = {target: path for target, path in package.installed.items() if target.startswith(package.share)}
-    elsewhere = {path for target, path in own.items() if any(f"{target}/".startswith(f"{it}/") for it in named)}
+    """Yield that a build installs the URDF, the launch and RViz files, and a file of each other
+    folder.
+    """
+    own = {
+        target: path
+        for target, path in package.installed.items()
+        if target.startswith(package.share)
+    }
+    elsewhere = {
+        path
+        for target, path in own.items()
+        if any(f"{target}/".startswith(f"{it}/") for it in named)
+    }
     installed = [path for path in own.values() if path not in elsewhere]
-    launches = [path for path in package.launch_files if path in installed or not path.startswith("test/")]
+    launches = [
+        path for path in package.launch_files if path in installed or not path.startswith("test/")
+    ]
     kinds = {"urdf": [urdf] if urdf else [], "launch": launches, "rviz": package.rviz_files}
-    kinds = {kind: [path for path in paths if path not in elsewhere] for kind, paths in kinds.items()}
+    kinds = {
+        kind: [path for path in paths if path not in elsewhere] for kind, paths in kinds.items()
+    }
     for kind, paths in kinds.items():
         for name in map(posixpath.basename, paths):
             yield _package_fact("build_installs", name, kind=kind, name=name, despite_errors=True)
@@ -217,12 +263,18 @@ def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[F
         yield fact._replace(carried=with_named)
 
 
-def _launch_facts(submission: Submission, package: Package, path: str, prefix: str) -> Iterator[Fact]:
-    """Yield what may be true of a launch file, which costs nothing if it starts nothing by a mistake of others."""
+def _launch_facts(
+    submission: Submission, package: Package, path: str, prefix: str
+) -> Iterator[Fact]:
+    """Yield what may be true of a launch file, which costs nothing if it starts nothing by a
+    mistake of others.
+    """
     name, launch = posixpath.basename(path), package.launch(path)
     yield _package_fact("launch_found", name, name=name)
     included = {posixpath.basename(it.path) for it in launch.passed}
-    others = tuple(it for it in words_of_launches(submission) if it.split(" ")[-2] in included - {name})
+    others = tuple(
+        it for it in words_of_launches(submission) if it.split(" ")[-2] in included - {name}
+    )
     found = Carried((*_builds(submission), *_STOPPING, *others), "launch_found", {"name": name})
     after = found._replace(causes=(*found.causes, f"{prefix}{name} node_runs"))
     if nodes := _nodes_that_start(launch):
@@ -234,7 +286,9 @@ def _launch_facts(submission: Submission, package: Package, path: str, prefix: s
 
 
 def _turned_facts(package: Package, path: str) -> Iterator[Fact]:
-    """Yield what a launch file starts in addition, and no more, if one of its boolean arguments is turned round."""
+    """Yield what a launch file starts in addition, and no more, if one of its boolean arguments is
+    turned round.
+    """
     launch, name = package.launch(path), posixpath.basename(path)
     before = _started(launch)
     for argument, value in dict(launch.values).items():
@@ -243,10 +297,15 @@ def _turned_facts(package: Package, path: str) -> Iterator[Fact]:
             continue
         text = str(turned).lower() if isinstance(turned, bool) else turned
         after = _started(package.under({argument: text}).launch(path))
-        nodes, absent = ([it for it in one if it not in other] for one, other in ((after, before), (before, after)))
+        nodes, absent = (
+            [it for it in one if it not in other]
+            for one, other in ((after, before), (before, after))
+        )
         given = {key: names for key, names in (("nodes", nodes), ("not", absent)) if names}
         if given:
-            starts = f"starts {enumerated(nodes)}" if nodes else f"does not start {enumerated(absent)}"
+            starts = (
+                f"starts {enumerated(nodes)}" if nodes else f"does not start {enumerated(absent)}"
+            )
             fact = _package_fact("node_runs", f"{name} {argument}", launch=name, **given)
             title = f"with {argument}:={text}, the launch file {starts}"
             yield fact._replace(args={argument: turned}, title=title)
@@ -257,14 +316,24 @@ def _started(launch: Launch) -> list[str]:
 
 
 def _nodes_that_start(launch: Launch) -> list[str]:
-    """Return the nodes that start, with what a condition replaces: joint_state_publisher for its GUI, for example."""
-    names = {when: list(dict.fromkeys(it.name for it in launch.nodes if it.when is when)) for when in (True, False)}
-    alike = {name: [it for it in names[False] if name.startswith(it) or it.startswith(name)] for name in names[True]}
+    """Return the nodes that start, with what a condition replaces: joint_state_publisher for its
+    GUI, for example.
+    """
+    names = {
+        when: list(dict.fromkeys(it.name for it in launch.nodes if it.when is when))
+        for when in (True, False)
+    }
+    alike = {
+        name: [it for it in names[False] if name.startswith(it) or it.startswith(name)]
+        for name in names[True]
+    }
     return [" or ".join(dict.fromkeys((name, *others))) for name, others in alike.items()]
 
 
 def _rviz_facts(package: Package) -> Iterator[Fact]:
-    """Yield what may be true of each RViz file, which is also found by the first launch file that opens it."""
+    """Yield what may be true of each RViz file, which is also found by the first launch file that
+    opens it.
+    """
     opened: dict[str, str] = {}
     for path in package.launch_files:
         opened.setdefault(package.rviz_opened(package.launch(path)) or "", posixpath.basename(path))
@@ -274,9 +343,13 @@ def _rviz_facts(package: Package) -> Iterator[Fact]:
         yield _package_fact("rviz_found", name, **of)
         if rviz.fixed_frame:
             yield _package_fact("rviz_fixed_frame", name, **of, frame=rviz.fixed_frame)
-        displays = dict.fromkeys((display.package, display.kind) for display in rviz.displays if display.enabled)
+        displays = dict.fromkeys(
+            (display.package, display.kind) for display in rviz.displays if display.enabled
+        )
         for owner, kind in displays:
             if kind == "RobotModel":
                 yield _package_fact("rviz_shows_robot", name, **of)
             else:
-                yield _package_fact("rviz_display_on", f"{name} {kind}", **of, kind=f"{owner}/{kind}")
+                yield _package_fact(
+                    "rviz_display_on", f"{name} {kind}", **of, kind=f"{owner}/{kind}"
+                )

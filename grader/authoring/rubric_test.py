@@ -1,4 +1,5 @@
-"""Test a rubric: mutants of its reference must lose points, equivalents nothing, samples what they declare.
+"""Test a rubric: mutants of its reference must lose points, equivalents nothing, samples what they
+declare.
 
 `Trial` grades changed copies of the reference; `run_rubric_test` counts what becomes of them.
 """
@@ -38,7 +39,19 @@ from grader.submission.urdf import Read
 from grader.workspace.names import Fact, Family
 
 _WORD = re.compile(r"[\w@:.-]+")
-_TEXTS = (".py", ".xml", ".yaml", ".yml", ".rviz", ".launch", ".cfg", ".json", ".txt", ".world", ".sdf")
+_TEXTS = (
+    ".py",
+    ".xml",
+    ".yaml",
+    ".yml",
+    ".rviz",
+    ".launch",
+    ".cfg",
+    ".json",
+    ".txt",
+    ".world",
+    ".sdf",
+)
 _OF_ROBOT = (".urdf", ".xacro")
 _MESHES = (".stl", ".dae", ".obj")
 
@@ -78,7 +91,9 @@ class Trial:
     @cached_property
     def tested(self) -> list[Criterion]:
         """The criteria that the reference passes."""
-        return [found.criterion for found in self.expected.values() if found.outcome.status == "passed"]
+        return [
+            found.criterion for found in self.expected.values() if found.outcome.status == "passed"
+        ]
 
     @cached_property
     def kept(self) -> set[str]:
@@ -95,10 +110,14 @@ class Trial:
         if not isinstance(self.reference.urdf, Read):
             return ()
         found = [self.reference.urdf.path]
-        others = [path for path in self.reference.whole_tree.files if path.lower().endswith(_OF_ROBOT)]
+        others = [
+            path for path in self.reference.whole_tree.files if path.lower().endswith(_OF_ROBOT)
+        ]
         for path in found:  # grows
             text = self.text(path)
-            found += [other for other in others if other not in found and other.rpartition("/")[2] in text]
+            found += [
+                other for other in others if other not in found and other.rpartition("/")[2] in text
+            ]
         return tuple(found)
 
     def text(self, path: str) -> str:
@@ -106,9 +125,13 @@ class Trial:
         return (content(self.reference, path) or b"").decode("utf-8", "surrogateescape")
 
     def unexamined(self) -> tuple[list[str], int]:
-        """Return the files that may be emptied without a difference for any criterion, and how many were tried."""
+        """Return the files that may be emptied without a difference for any criterion, and how many
+        were tried.
+        """
         files = self.reference.whole_tree.files.items()
-        tried = [path for path, file in files if file.size and not _NO_PART_OF_LAB.search(path)][:_MAX_EMPTIED]
+        tried = [path for path, file in files if file.size and not _NO_PART_OF_LAB.search(path)][
+            :_MAX_EMPTIED
+        ]
         return [path for path in tried if not self._is_examined(path)], len(tried)
 
     def _is_examined(self, path: str) -> bool:
@@ -119,18 +142,26 @@ class Trial:
         except InputError:
             return True
         results = decide(self.rubric, emptied, self.expected)
-        return any(it.outcome.status != self.expected[it.criterion.id].outcome.status for it in results)
+        return any(
+            it.outcome.status != self.expected[it.criterion.id].outcome.status for it in results
+        )
 
     def mutants(self) -> Iterator[Mutant]:
         """Yield the mutants of the robot, and those of the package that a criterion may look at."""
-        hidden = [one.arguments.get("link", "") for one in self.tested if one.check.name == "shows_nothing"]
+        hidden = [
+            one.arguments.get("link", "")
+            for one in self.tested
+            if one.check.name == "shows_nothing"
+        ]
         for path in self.robot_files:
             yield from mutants(self.text(path), path, hidden)
         package, urdf = self.reference.package, self.reference.urdf
         if package is not None:
             robot = urdf.reading.robot if isinstance(urdf, Read) else None
             links = [link.name for link in robot.links] if robot is not None else []
-            packages = [it for it in self.reference.lab_packages.values() if it.folder != package.folder]
+            packages = [
+                it for it in self.reference.lab_packages.values() if it.folder != package.folder
+            ]
             for one in (package, *packages):
                 prefix = "" if one is package else f"{one.name}/"
                 made = package_mutants(one, links, self.text, self._name_changes, prefix=prefix)
@@ -151,7 +182,9 @@ class Trial:
         return [*compared_names(self.reference, self._families)]
 
     def _is_looked_at(self, mutant: Mutant) -> bool:
-        """Return whether a criterion may look at a mutant of a package: some look at its name or at meshes only."""
+        """Return whether a criterion may look at a mutant of a package: some look at its name or at
+        meshes only.
+        """
         subjects = {criterion.check.subject for criterion in self.tested}
         if "package" in subjects:
             return True
@@ -166,15 +199,21 @@ class Trial:
             return with_urdf(self.reference, {mutant.path: data})
         renamed = {mutant.renamed: content(self.reference, mutant.path)} if mutant.renamed else {}
         try:
-            return with_files(self.reference, {mutant.path: None if mutant.is_deleted else data, **renamed})
+            return with_files(
+                self.reference, {mutant.path: None if mutant.is_deleted else data, **renamed}
+            )
         except InputError:
             return None
 
     def results(self, mutant: Mutant, submission: Submission) -> list[Result]:
-        """Return the results of the criteria that a mutant can change: of the robot only the URDF is read again."""
+        """Return the results of the criteria that a mutant can change: of the robot only the URDF
+        is read again.
+        """
         is_of_robot = self._is_of_robot(mutant)
         subjects = {name: found.criterion.check.subject for name, found in self.expected.items()}
-        names = [name for name, subject in subjects.items() if not is_of_robot or subject != "package"]
+        names = [
+            name for name, subject in subjects.items() if not is_of_robot or subject != "package"
+        ]
         return [*decide(self.rubric, submission, names)]
 
     def _is_of_robot(self, mutant: Mutant) -> bool:
@@ -190,7 +229,11 @@ class Trial:
         if submission is None:
             return MutantOutcome(mutant, "caught")
         results = self.results(mutant, submission)
-        faults = {found.criterion.id: found.outcome.message for found in results if found.outcome.status == "errored"}
+        faults = {
+            found.criterion.id: found.outcome.message
+            for found in results
+            if found.outcome.status == "errored"
+        }
         is_of_robot = self._is_of_robot(mutant)
         if faults:
             fate = "faulty"
@@ -206,16 +249,27 @@ class Trial:
     def equivalents(self) -> Iterator[Loss]:
         """Yield what each rewriting of the reference loses: most lose nothing."""
         urdf = self.reference.urdf
-        if isinstance(urdf, Read) and urdf.loaded.verdict == "clean" and urdf.reading.root is not None:
-            has_places = any(name.startswith("@") and not name.startswith(JOINT_OF) for name in _names_in(self.rubric))
+        if (
+            isinstance(urdf, Read)
+            and urdf.loaded.verdict == "clean"
+            and urdf.reading.root is not None
+        ):
+            has_places = any(
+                name.startswith("@") and not name.startswith(JOINT_OF)
+                for name in _names_in(self.rubric)
+            )
             for found in equivalents(urdf.reading.root, RewritingRules(self.kept, has_places)):
                 submission = _rewritten(self.reference, urdf, found)
                 lost = self._lost(submission, self._must_pass(submission, found.family))
                 diff = _text_diff(self.robot_files[0], found.before, found.text) if lost else ""
                 yield Loss(found.family, lost, diff)
         for family, texts in file_equivalents(self.reference):
-            names = [it.id for it in self.tested if family != EVERY_NODE or it.check.name != "entry_is"]
-            lost = self._lost(with_files(self.reference, {path: it.encode() for path, it in texts.items()}), names)
+            names = [
+                it.id for it in self.tested if family != EVERY_NODE or it.check.name != "entry_is"
+            ]
+            lost = self._lost(
+                with_files(self.reference, {path: it.encode() for path, it in texts.items()}), names
+            )
             diffs = (_text_diff(path, self.text(path), text) for path, text in texts.items())
             yield Loss(family, lost, "\n".join(diffs))
 
@@ -225,14 +279,18 @@ class Trial:
         return {it.criterion.id: it.outcome.message for it in results if self.is_lost(it)}
 
     def _must_pass(self, submission: Submission, family: str) -> Collection[str]:
-        """Return the criteria on the robot that must still pass; for a URDF on its own, those that need no package."""
+        """Return the criteria on the robot that must still pass; for a URDF on its own, those that
+        need no package.
+        """
         others = ("package", "submission") if submission.is_single else ("package",)
         asked = (it for it in self.tested if it.check.subject not in others)
         return [it.id for it in asked if family not in it.check.about.breaks_under(it.arguments)]
 
 
 def _rewritten(reference: Submission, urdf: Read, equivalent: Equivalent) -> Submission:
-    """Return the reference with another text of its robot; a URDF that becomes xacro is graded on its own."""
+    """Return the reference with another text of its robot; a URDF that becomes xacro is graded on
+    its own.
+    """
     data = equivalent.text.encode()
     if not equivalent.is_xacro or (urdf.is_expanded and urdf.as_it_stands is None):
         return with_urdf(reference, {urdf.path: data})
@@ -241,7 +299,9 @@ def _rewritten(reference: Submission, urdf: Read, equivalent: Equivalent) -> Sub
 
 
 def _names_in(rubric: Rubric) -> Iterator[str]:
-    """Yield every text in the arguments of a rubric's checks, also keys of tables, and the joints that it poses."""
+    """Yield every text in the arguments of a rubric's checks, also keys of tables, and the joints
+    that it poses.
+    """
     for it in rubric.criteria:
         yield from _texts_in((it.arguments, it.at, [one.arguments for one in it.carried]))
 
@@ -289,13 +349,17 @@ class RubricTest(NamedTuple):
 
     @property
     def score(self) -> Decimal:
-        """The mutation score: the share of the mutants that lose points, in percent, without those that are ignored."""
+        """The mutation score: the share of the mutants that lose points, in percent, without those
+        that are ignored.
+        """
         count = self.caught + len(self.survivors)
         return Decimal(100 * self.caught) / count if count else Decimal(100)
 
     @property
     def lost(self) -> tuple[str, ...]:
-        """The criteria that the reference does not pass, without extra credit and those for manual grading."""
+        """The criteria that the reference does not pass, without extra credit and those for manual
+        grading.
+        """
         return tuple(found.criterion.id for found in self.reference.unearned)
 
     @property
@@ -306,13 +370,16 @@ class RubricTest(NamedTuple):
     @property
     def is_sound(self) -> bool:
         """Return whether no correct robot loses anything, and each sample what it should."""
-        return not (self.lost or self.losses or (self.samples is not None and self.samples.different))
+        return not (
+            self.lost or self.losses or (self.samples is not None and self.samples.different)
+        )
 
 
 def run_rubric_test(
     rubric: Rubric, samples: list[Sample] | None, progress: _Progress, grade_all: _GradeAll
 ) -> RubricTest:
-    """Return the test of a rubric. Raises InputError without a readable reference, RubricError for wrong samples.
+    """Return the test of a rubric. Raises InputError without a readable reference, RubricError for
+    wrong samples.
 
     `grade_all` grades mutants elsewhere, as `mutant_outcomes` does.
     """
@@ -320,7 +387,11 @@ def run_rubric_test(
     every = [*trial.mutants()]
     chosen = every if len(every) <= _MAX_MUTANTS else Random(0).sample(every, _MAX_MUTANTS)
     total = len(chosen) + len(samples or ())
-    of_samples = tested_samples(rubric, samples, lambda done: progress(done, total)) if samples is not None else None
+    of_samples = (
+        tested_samples(rubric, samples, lambda done: progress(done, total))
+        if samples is not None
+        else None
+    )
     outcomes = []
     for outcome in grade_all(chosen):
         outcomes.append(outcome)
@@ -339,13 +410,20 @@ def _trial_from(data: bytes, path: str) -> Trial:
 
 
 def _counted(
-    trial: Trial, every: Sequence[Mutant], outcomes: Iterable[MutantOutcome], samples: SampleResults | None
+    trial: Trial,
+    every: Sequence[Mutant],
+    outcomes: Iterable[MutantOutcome],
+    samples: SampleResults | None,
 ) -> RubricTest:
-    """Return the result of a test: `outcomes` are those of the mutants that were graded, in any order."""
+    """Return the result of a test: `outcomes` are those of the mutants that were graded, in any
+    order.
+    """
     places = {mutant: place for place, mutant in enumerate(every)}
     graded = sorted(outcomes, key=lambda outcome: places[outcome.mutant])
     fates = Counter(outcome.fate for outcome in graded)
-    survivors = [_survivor(trial, outcome.mutant) for outcome in graded if outcome.fate == "survived"]
+    survivors = [
+        _survivor(trial, outcome.mutant) for outcome in graded if outcome.fate == "survived"
+    ]
     failed = {name for outcome in graded for name in outcome.failed}
     patterns = [pattern for row in trial.rubric.ignored for pattern in row.mutants]
     tried, (unexamined, files) = [*trial.equivalents()], trial.unexamined()
@@ -362,7 +440,9 @@ def _counted(
         unexamined=tuple(unexamined),
         files=files,
         faults=tuple(
-            Loss(it.mutant.id, it.faults, _mutant_diff(trial, it.mutant)) for it in graded if it.fate == "faulty"
+            Loss(it.mutant.id, it.faults, _mutant_diff(trial, it.mutant))
+            for it in graded
+            if it.fate == "faulty"
         ),
         equivalents=tuple(it.name for it in tried),
         losses=tuple(it for it in tried if it.criteria),
@@ -373,22 +453,32 @@ def _counted(
 def _survivor(trial: Trial, mutant: Mutant) -> _Survivor:
     """Return a mutant that loses nothing, with the reason for which the rubric ignores it."""
     ignored = trial.rubric.ignored
-    reasons = (row.reason for row in ignored if any(_matches(mutant, pattern) for pattern in row.mutants))
+    reasons = (
+        row.reason for row in ignored if any(_matches(mutant, pattern) for pattern in row.mutants)
+    )
     return _Survivor(mutant, _mutant_diff(trial, mutant), next(reasons, ""))
 
 
 def _mutant_diff(trial: Trial, mutant: Mutant) -> str:
     if mutant.is_deleted:
-        return f"rename {mutant.path} to {mutant.renamed}" if mutant.renamed else f"delete {mutant.path}"
+        return (
+            f"rename {mutant.path} to {mutant.renamed}"
+            if mutant.renamed
+            else f"delete {mutant.path}"
+        )
     text = trial.text(mutant.path)
     return _text_diff(mutant.path, text, mutant.applied(text))
 
 
 def _text_diff(path: str, before: str, after: str) -> str:
     """Return the unified diff of two texts of a file, without a line break at its end."""
-    return "\n".join(unified_diff(before.splitlines(), after.splitlines(), path, path, n=_CONTEXT, lineterm=""))
+    return "\n".join(
+        unified_diff(before.splitlines(), after.splitlines(), path, path, n=_CONTEXT, lineterm="")
+    )
 
 
 def _matches(mutant: Mutant, pattern: str) -> bool:
-    """Return whether a pattern is a mutant's id or matches it: brackets in an id are a set of characters to fnmatch."""
+    """Return whether a pattern is a mutant's id or matches it: brackets in an id are a set of
+    characters to fnmatch.
+    """
     return mutant.id == pattern or fnmatchcase(mutant.id, pattern)

@@ -21,9 +21,16 @@ from grader.text import printable_path
 _EXPECTED = "expected.toml"
 _TEXT = toml_type(str)
 _VERDICT = toml_type(Literal["clean", "degraded", "rejected", "missing"])
-_WORDS = {"lost": "loses its points", "carried": "fails without a deduction", "pending": "needs manual grading"}
+_WORDS = {
+    "lost": "loses its points",
+    "carried": "fails without a deduction",
+    "pending": "needs manual grading",
+}
 _TABLE = KeyTable(
-    "sample", dict.fromkeys(("about", "path", "rubric"), _TEXT) | {"verdict": _VERDICT} | dict.fromkeys(_WORDS, NAMES)
+    "sample",
+    dict.fromkeys(("about", "path", "rubric"), _TEXT)
+    | {"verdict": _VERDICT}
+    | dict.fromkeys(_WORDS, NAMES),
 )
 
 
@@ -36,7 +43,9 @@ class Loss(NamedTuple):
 
 
 class SampleResults(NamedTuple):
-    """How many samples were graded, how many belong to another rubric, and what differs from their expected.toml."""
+    """How many samples were graded, how many belong to another rubric, and what differs from their
+    expected.toml.
+    """
 
     tried: int
     skipped: int
@@ -53,17 +62,23 @@ class Sample:
     rubric: str = ""  # the id of the only rubric that it is for
     verdict: str = ""  # that of ROS 2, if it matters
     lost: tuple[str, ...] = ()  # criteria that lose their points
-    carried: tuple[str, ...] = ()  # criteria that keep them, because an earlier mistake makes them fail
+    carried: tuple[
+        str, ...
+    ] = ()  # criteria that keep them, because an earlier mistake makes them fail
     pending: tuple[str, ...] = ()  # criteria that need manual grading
 
 
 def read_samples(folder: Path) -> list[Sample]:
-    """Return the samples in a folder by name. Raises RubricError for a broken expected.toml, InputError without any."""
+    """Return the samples in a folder by name. Raises RubricError for a broken expected.toml,
+    InputError without any.
+    """
     if not folder.is_dir():
         raise InputError(f"{printable_path(folder)} is not a folder with samples")
     found = [_sample(path) for path in sorted(folder.glob(f"*/{_EXPECTED}"))]
     if not found:
-        raise InputError(f"{printable_path(folder)} has no samples: no folder in it has an {_EXPECTED}")
+        raise InputError(
+            f"{printable_path(folder)} has no samples: no folder in it has an {_EXPECTED}"
+        )
     return found
 
 
@@ -75,7 +90,9 @@ def _sample(path: Path) -> Sample:
     return Sample(path.parent, **values)
 
 
-def tested_samples(rubric: Rubric, samples: list[Sample], show: Callable[[int], None]) -> SampleResults:
+def tested_samples(
+    rubric: Rubric, samples: list[Sample], show: Callable[[int], None]
+) -> SampleResults:
     """Return which samples of a rubric differ from what they expect."""
     own = [sample for sample in samples if sample.rubric in ("", rubric.id)]
     different: list[Loss] = []
@@ -88,7 +105,9 @@ def tested_samples(rubric: Rubric, samples: list[Sample], show: Callable[[int], 
 
 
 def _differences(sample: Sample, rubric: Rubric) -> Iterator[tuple[str, str]]:
-    """Yield what differs from the expected report: a criterion that is not adjusted, or `verdict`, and a message."""
+    """Yield what differs from the expected report: a criterion that is not adjusted, or `verdict`,
+    and a message.
+    """
     try:
         submission = open_submission(str(sample.folder / sample.path), rubric.lab)
     except InputError as error:
@@ -101,7 +120,10 @@ def _differences(sample: Sample, rubric: Rubric) -> Iterator[tuple[str, str]]:
     known = {criterion.id: criterion.adjustment is None for criterion in rubric.criteria}
     for name in (name for name in expected if name not in known):
         yield name, f"the rubric has no such criterion{did_you_mean(name, known)}"
-    graded = {it.criterion.id: (_actual(it), f": {it.outcome.message}") for it in grade(rubric, submission).results}
+    graded = {
+        it.criterion.id: (_actual(it), f": {it.outcome.message}")
+        for it in grade(rubric, submission).results
+    }
     for name in (name for name, counts in known.items() if counts):
         actual, message = graded.get(name, ("is not graded", ""))
         wanted = expected.get(name, "passes")

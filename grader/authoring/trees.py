@@ -15,7 +15,8 @@ _FOUND = re.compile(rf"\Afile:/*{INSTALLED}/([^/]+)/share/\1/")
 
 
 def copied(root: Element) -> Element:
-    """Return a copy of a tree without comments; paths of meshes that $(find package) gave become package:// ones.
+    """Return a copy of a tree without comments; paths of meshes that $(find package) gave become
+    package:// ones.
 
     Its root declares the namespace of xacro.
     """
@@ -48,7 +49,9 @@ def attribute_text(values: Iterable[float]) -> str:
     return " ".join(f"{value + 0.0:.13g}" for value in values)
 
 
-def attribute_numbers(element: Element | None, attribute: str, default: str = "0 0 0") -> list[float]:
+def attribute_numbers(
+    element: Element | None, attribute: str, default: str = "0 0 0"
+) -> list[float]:
     """Return the numbers of an attribute."""
     text = default if element is None else element.get(attribute, default)
     return [float(piece) for piece in text.split()]
@@ -86,12 +89,16 @@ def end(joint: Element, role: str) -> Element:
 
 def parent_joint(tree: Element, link: str) -> Element | None:
     """Return the one joint whose child is this link; None of several."""
-    found = [joint for joint in tree.iterchildren("joint") if end(joint, "child").get("link") == link]
+    found = [
+        joint for joint in tree.iterchildren("joint") if end(joint, "child").get("link") == link
+    ]
     return found[0] if len(found) == 1 else None
 
 
 def move_frame(tree: Element, link: Element, change: Transform) -> None:
-    """Move a link's frame by `change`, given in the frame, and everything in the link back: nothing else moves."""
+    """Move a link's frame by `change`, given in the frame, and everything in the link back: nothing
+    else moves.
+    """
     name = link.get("name", "")
     held = parent_joint(tree, name)
     assert held is not None
@@ -124,14 +131,18 @@ def add_joint(tree: Element, name: str, parent: str, child: str, transform: Tran
 
 
 def own_elements(tree: Element, *tags: str) -> Iterator[Element]:
-    """Yield the elements with these tags that ROS 2 reads: not those inside of elements for a simulator."""
+    """Yield the elements with these tags that ROS 2 reads: not those inside of elements for a
+    simulator.
+    """
     for child in tree:
         if child.tag not in FOREIGN:
             yield from child.iter(*tags)
 
 
 def split_joint(tree: Element, joint: Element, first: Transform, *, is_first: bool) -> None:
-    """Put an empty link into a joint, at `first` in the parent's frame; `is_first` if the upper half keeps the name."""
+    """Put an empty link into a joint, at `first` in the parent's frame; `is_first` if the upper
+    half keeps the name.
+    """
     middle, parent, child = fresh(tree, "link"), end(joint, "parent"), end(joint, "child")
     etree.SubElement(tree, "link", {"name": middle})
     second = first.inverse() @ pose(joint)

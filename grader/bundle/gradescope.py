@@ -1,4 +1,6 @@
-"""The autograder zip for Gradescope: the grader, a rubric, and the scripts that install and run them there."""
+"""The autograder zip for Gradescope: the grader, a rubric, and the scripts that install and run
+them there.
+"""
 
 import json
 import re
@@ -15,11 +17,15 @@ _SCRIPTS = Path(__file__).resolve().parent / "on_gradescope"
 _EXECUTABLES = ("setup.sh", "run_autograder")
 _DISTRIBUTION = "urdf-grader"
 _PACKAGE = Path(__file__).resolve().parent.parent
-_EXTRA = re.compile(r"""(?:\band\s+)?\bextra\s*==\s*["']([\w.-]+)["']""")  # and extra == 'documents'
+_EXTRA = re.compile(
+    r"""(?:\band\s+)?\bextra\s*==\s*["']([\w.-]+)["']"""
+)  # and extra == 'documents'
 
 
 def autograder_zip(rubric: Rubric) -> bytes:
-    """Return the zip to upload under "Configure Autograder". Raises InputError if the rubric cannot be used there."""
+    """Return the zip to upload under "Configure Autograder". Raises InputError if the rubric
+    cannot be used there.
+    """
     for criterion in rubric.criteria:
         package = criterion.check.function.__module__.split(".")[0]
         if package != "grader":
@@ -28,7 +34,10 @@ def autograder_zip(rubric: Rubric) -> bytes:
                 "which the bundle does not contain"
             )
     files = package_files()
-    for name in (*_EXECUTABLES, "autograder.py"):  # a checkout on Windows has line ends that bash does not accept
+    for name in (
+        *_EXECUTABLES,
+        "autograder.py",
+    ):  # a checkout on Windows has line ends that bash does not accept
         files[name] = (_SCRIPTS / name).read_bytes().replace(b"\r\n", b"\n")
     name = rubric.id if rubric.is_shipped else f"source/{RUBRIC_FILE}"
     settings = {"rubric": name, "sha256": rubric.sha256, "seconds": _SECONDS}
@@ -43,13 +52,16 @@ def autograder_zip(rubric: Rubric) -> bytes:
 
 
 def _reference(rubric: Rubric) -> dict[PurePosixPath, bytes]:
-    """Return the files of the reference solution, by which hints are found and with which checks compare.
+    """Return the files of the reference solution, by which hints are found and with which checks
+    compare.
 
     Without such a check there are none if it is not below the rubric's folder. Raises GraderError.
     """
     is_outside = ".." in PurePosixPath(rubric.reference).parts
     if rubric.solution is not None and rubric.compares_with_reference:
-        grade(rubric, rubric.solution.submission)  # raises GraderError where it cannot be compared with
+        grade(
+            rubric, rubric.solution.submission
+        )  # raises GraderError where it cannot be compared with
         if is_outside:
             raise InputError(
                 f"{rubric.id}: a check compares with the reference {rubric.reference}, "
@@ -61,20 +73,37 @@ def _reference(rubric: Rubric) -> dict[PurePosixPath, bytes]:
 
 
 def package_files() -> dict[str, bytes]:
-    """Return the files of the package by their paths in a wheel: with the rubrics, without references and examples."""
+    """Return the files of the package by their paths in a wheel: with the rubrics, without
+    references and examples.
+    """
     data = ("rubrics", "examples")  # in a wheel; in a checkout they are outside of the package
-    own = {path: content for path, content in _files_of(_PACKAGE, _PACKAGE).items() if path.parts[0] not in data}
+    own = {
+        path: content
+        for path, content in _files_of(_PACKAGE, _PACKAGE).items()
+        if path.parts[0] not in data
+    }
     rubrics = {
-        PurePosixPath("rubrics", name, RUBRIC_FILE): path.read_bytes() for name, path in shipped_rubrics().items()
+        PurePosixPath("rubrics", name, RUBRIC_FILE): path.read_bytes()
+        for name, path in shipped_rubrics().items()
     }
     return {str(_PACKAGE.name / path): data for path, data in (own | rubrics).items()}
 
 
 def _files_of(place: Path, root: Path) -> dict[PurePosixPath, bytes]:
-    """Return the files at or below a place by their paths from a folder, without those of editors and Python."""
+    """Return the files at or below a place by their paths from a folder, without those of
+    editors and Python.
+    """
     paths = [place] if place.is_file() else [path for path in place.rglob("*") if path.is_file()]
-    own = {PurePosixPath(*path.relative_to(root).parts): path for path in paths if path.suffix != ".pyc"}
-    return {name: path.read_bytes() for name, path in own.items() if not any(map(_is_left_out, name.parts))}
+    own = {
+        PurePosixPath(*path.relative_to(root).parts): path
+        for path in paths
+        if path.suffix != ".pyc"
+    }
+    return {
+        name: path.read_bytes()
+        for name, path in own.items()
+        if not any(map(_is_left_out, name.parts))
+    }
 
 
 def _is_left_out(name: str) -> bool:
@@ -84,19 +113,23 @@ def _is_left_out(name: str) -> bool:
 def requirements(extra: str) -> list[str]:
     """Return the requirements of the installed grader with one of its extras, for pip.
 
-    Raises InputError if none is installed. Those of an editable installation are as old as that: pip writes them.
+    Raises InputError if none is installed. Those of an editable installation are as old as that:
+    pip writes them.
     """
     try:
         declared = requires(_DISTRIBUTION) or []
     except PackageNotFoundError:
         raise InputError(
-            f"cannot determine the requirements of the grader: {_DISTRIBUTION} is not installed; install it with pip"
+            f"cannot determine the requirements of the grader: {_DISTRIBUTION} is not "
+            "installed; install it with pip"
         ) from None
     return sorted(own for requirement in declared if (own := _without_extra(requirement, extra)))
 
 
 def _without_extra(requirement: str, extra: str) -> str:
-    """Return a requirement without its condition on an extra; empty if it belongs to another extra."""
+    """Return a requirement without its condition on an extra; empty if it belongs to another
+    extra.
+    """
     name, _, marker = requirement.partition(";")
     condition = _EXTRA.search(marker)
     if condition is not None and condition[1] != extra:

@@ -20,7 +20,15 @@ from grader.checks.outcome import (
     within,
 )
 from grader.checks.toml_types import Colour, NonNegative, Size
-from grader.checks.visuals import VISIBLE, ShapeName, all_within, main_visual, shape_name, visible, visuals
+from grader.checks.visuals import (
+    VISIBLE,
+    ShapeName,
+    all_within,
+    main_visual,
+    shape_name,
+    visible,
+    visuals,
+)
 from grader.errors import MissingElement, NotDecided
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Material, Sphere, Visual
@@ -40,24 +48,41 @@ _ALIGNED = cos(radians(1.0))
 _Shown = TypeVar("_Shown", Box, Cylinder, Sphere)
 
 
-def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNegative, centred: bool = False) -> Outcome:
-    """A link shows a box whose edges along the link's x, y and z axes have the given lengths in metres.
+def shows_box(
+    robot: Configuration, *, link: str, size: Size, tolerance: NonNegative, centred: bool = False
+) -> Outcome:
+    """A link shows a box whose edges along the link's x, y and z axes have the given lengths in
+    metres.
 
-    A negative length is wrong in every shape: ROS 2 loads it, and each program shows something else.
+    A negative length is wrong in every shape: ROS 2 loads it, and each program shows something
+    else.
 
     Args:
         link: The link that is examined.
         size: The lengths of the edges along the link's x, y and z axes, in metres.
         tolerance: How far each length may be off, in metres.
-        centred: Whether the middle of the box must be straight above or below the link's frame, at x and y 0.
+        centred: Whether the middle of the box must be straight above or below the link's frame, at
+            x and y 0.
     """
-    edges = [(_edges_along_link(visual, box), visual) for visual, box in _visuals_of_kind(robot, link, Box)]
-    actual, visual = min(edges, key=lambda pair: (_largest_difference(pair[0], size), centred and _off_centre(pair[1])))
+    edges = [
+        (_edges_along_link(visual, box), visual)
+        for visual, box in _visuals_of_kind(robot, link, Box)
+    ]
+    actual, visual = min(
+        edges,
+        key=lambda pair: (_largest_difference(pair[0], size), centred and _off_centre(pair[1])),
+    )
     is_turned = actual is None or all_within(sorted(actual), sorted(size), tolerance)
     is_turned = is_turned and any(visual.origin.rpy)
-    at = place(visual.origin.location, "rpy") if is_turned else place(visual.geometry.location, "size")
+    at = (
+        place(visual.origin.location, "rpy")
+        if is_turned
+        else place(visual.geometry.location, "size")
+    )
     if actual is None:
-        return failed(f"the box of {link!r} is rotated: its edges should be along the axes of {link!r}", at)
+        return failed(
+            f"the box of {link!r} is rotated: its edges should be along the axes of {link!r}", at
+        )
     fine = min(actual) >= 0.0 and all_within(actual, size, tolerance)
     message = f"the box of {link!r} is {_size_text(actual)} m"
     if not fine:
@@ -73,7 +98,12 @@ def _size_text(size: Vector) -> str:
 
 
 def shows_cylinder(
-    robot: Configuration, *, link: str, radius: NonNegative, length: NonNegative, tolerance: NonNegative
+    robot: Configuration,
+    *,
+    link: str,
+    radius: NonNegative,
+    length: NonNegative,
+    tolerance: NonNegative,
 ) -> Outcome:
     """A link shows a cylinder of the given radius and length in metres.
 
@@ -84,10 +114,16 @@ def shows_cylinder(
         tolerance: How far radius and length may each be off, in metres.
     """
     expected = (radius, length)
-    sizes = [((shape.radius, shape.length), shape) for _, shape in _visuals_of_kind(robot, link, Cylinder)]
+    sizes = [
+        ((shape.radius, shape.length), shape)
+        for _, shape in _visuals_of_kind(robot, link, Cylinder)
+    ]
     actual, best = min(sizes, key=lambda pair: _largest_difference(pair[0], expected))
     fine = min(actual) >= 0.0 and all_within(actual, expected, tolerance)
-    message = f"{link!r} shows a cylinder of radius {point(actual[:1])} m and length {point(actual[1:])} m"
+    message = (
+        f"{link!r} shows a cylinder of radius {point(actual[:1])} m and length "
+        f"{point(actual[1:])} m"
+    )
     if not fine:
         message += f"; it should have radius {point((radius,))} m and length {point((length,))} m"
         message += f" ({unit})" if (unit := other_unit(actual, expected)) else ""
@@ -95,7 +131,9 @@ def shows_cylinder(
     return judged(fine, message, actual, expected, tolerance, "m", at=at)
 
 
-def shows_sphere(robot: Configuration, *, link: str, radius: NonNegative, tolerance: NonNegative) -> Outcome:
+def shows_sphere(
+    robot: Configuration, *, link: str, radius: NonNegative, tolerance: NonNegative
+) -> Outcome:
     """A link shows a sphere of the given radius in metres.
 
     Args:
@@ -110,17 +148,25 @@ def shows_sphere(robot: Configuration, *, link: str, radius: NonNegative, tolera
 
 
 def shows_colour(
-    robot: Configuration, *, link: str, colour: Colour, tolerance: NonNegative, shape: ShapeName = "any"
+    robot: Configuration,
+    *,
+    link: str,
+    colour: Colour,
+    tolerance: NonNegative,
+    shape: ShapeName = "any",
 ) -> Outcome:
-    """A link is shown in a colour: red, green, blue and, if a fourth channel is given, opacity, each from 0 to 1.
+    """A link is shown in a colour: red, green, blue and, if a fourth channel is given, opacity,
+    each from 0 to 1.
 
-    With an opacity below 0.01 it is invisible, which is never correct, unless the fourth channel demands it.
+    With an opacity below 0.01 it is invisible, which is never correct, unless the fourth channel
+    demands it.
 
     Args:
         link: The link that is examined.
         colour: Red, green, blue and, if it is to be checked, opacity, each from 0 to 1.
         tolerance: How far each channel may be off, on the scale from 0 to 1.
-        shape: Which of several visuals counts: the largest of this shape or, without one, the largest of all.
+        shape: Which of several visuals counts: the largest of this shape or, without one, the
+            largest of all.
     """
     visual = main_visual(robot, link, shape)
     if visual.material is None or _has_only_texture(visual.material):
@@ -142,8 +188,11 @@ def shows_colour(
     )
 
 
-def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: NonNegative) -> Outcome:
-    """A link is shown in a grey (red = green = blue) of at least the given level, from 0 to 1, and not invisible.
+def shows_grey(
+    robot: Configuration, *, link: str, at_least: float, tolerance: NonNegative
+) -> Outcome:
+    """A link is shown in a grey (red = green = blue) of at least the given level, from 0 to 1, and
+    not invisible.
 
     Below 0.01, the opacity makes it invisible; otherwise opacity is not checked.
 
@@ -164,11 +213,19 @@ def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: N
     elif not is_light:
         message += f"; each should be at least {at_least:g}"
     invisible, at = _why_invisible(visual.material), place(visual.material.location, "rgba")
-    return judged(is_grey and is_light and not invisible, message + invisible, actual, at_least, tolerance, at=at)
+    return judged(
+        is_grey and is_light and not invisible,
+        message + invisible,
+        actual,
+        at_least,
+        tolerance,
+        at=at,
+    )
 
 
 def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
-    """A link exists and shows nothing: no visual, or only invisible ones (without a size, or with an alpha below 0.01).
+    """A link exists and shows nothing: no visual, or only invisible ones (without a size, or with
+    an alpha below 0.01).
 
     Args:
         link: The link that is examined.
@@ -180,8 +237,12 @@ def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
     return failed(message, shown[0].location)
 
 
-def _visuals_of_kind(robot: Configuration, link: str, kind: type[_Shown]) -> list[tuple[Visual, _Shown]]:
-    """Return the visuals of a link that show a shape of a kind; raise MissingElement where there is none."""
+def _visuals_of_kind(
+    robot: Configuration, link: str, kind: type[_Shown]
+) -> list[tuple[Visual, _Shown]]:
+    """Return the visuals of a link that show a shape of a kind; raise MissingElement where there is
+    none.
+    """
     pairs = ((visual, visual.geometry) for visual in visuals(robot, link))
     found = [(visual, shape) for visual, shape in pairs if isinstance(shape, kind)]
     if not found:
@@ -192,7 +253,9 @@ def _visuals_of_kind(robot: Configuration, link: str, kind: type[_Shown]) -> lis
 
 
 def _edges_along_link(visual: Visual, box: Box) -> Vector | None:
-    """Return the edge lengths of a box along its link's axes, in metres; None where they are not along them."""
+    """Return the edge lengths of a box along its link's axes, in metres; None where they are not
+    along them.
+    """
     size = box.size
     rotation = rotation_from_rpy(visual.origin.rpy)
     if rotation is IDENTITY_ROTATION:
@@ -209,22 +272,35 @@ def _off_centre(visual: Visual) -> float:
 
 def _off_centre_failure(link: str, visual: Visual, tolerance: float) -> Outcome:
     actual = visual.origin.xyz[:2]
-    off = [f"{axis} {difference(value)}" for axis, value in zip("xy", actual, strict=True) if abs(value) > tolerance]
-    message = f"the middle of the box of {link!r} is at x {point(actual[:1])} and y {point(actual[1:])} m in its frame"
+    off = [
+        f"{axis} {difference(value)}"
+        for axis, value in zip("xy", actual, strict=True)
+        if abs(value) > tolerance
+    ]
+    message = (
+        f"the middle of the box of {link!r} is at x {point(actual[:1])} and y "
+        f"{point(actual[1:])} m in its frame"
+    )
     message += f"; it should be above the frame's origin, at 0 0 ({', '.join(off)})"
     at = place(visual.origin.location, "xyz") or place(visual.location)
     return judged(False, message, actual, (0.0, 0.0), tolerance, "m", at=at)
 
 
 def _largest_difference(actual: Sequence[float] | None, expected: Sequence[float]) -> float:
-    return float("inf") if actual is None else max(abs(a - b) for a, b in zip(actual, expected, strict=True))
+    return (
+        float("inf")
+        if actual is None
+        else max(abs(a - b) for a, b in zip(actual, expected, strict=True))
+    )
 
 
 def _why_invisible(material: Material) -> str:
     """Return the end of a message on a colour that nobody sees; empty for one that shows."""
     alpha = material.rgba[3]
     return (
-        "" if alpha >= VISIBLE else f"; its alpha is {alpha:g}, so it is invisible; it should be at least {VISIBLE:g}"
+        ""
+        if alpha >= VISIBLE
+        else f"; its alpha is {alpha:g}, so it is invisible; it should be at least {VISIBLE:g}"
     )
 
 
@@ -235,12 +311,26 @@ def _has_only_texture(material: Material) -> bool:
 
 def _judge_colourless(link: str, visual: Visual) -> Outcome:
     if visual.material is not None:
-        raise NotDecided(f"{link!r} is shown with a texture, which the grader does not open", "textures are not opened")
+        raise NotDecided(
+            f"{link!r} is shown with a texture, which the grader does not open",
+            "textures are not opened",
+        )
     if visual.has_unreadable_colour:
         at = place(visual.location, None, "material")
-        return failed(f"{link!r} has no colour: ROS 2 cannot read that of its material {visual.material_name!r}", at)
+        return failed(
+            (
+                f"{link!r} has no colour: ROS 2 cannot read that of its material "
+                f"{visual.material_name!r}"
+            ),
+            at,
+        )
     if visual.material_name:
-        message = f"{link!r} has no colour: the material {visual.material_name!r} is not defined here"
+        message = (
+            f"{link!r} has no colour: the material {visual.material_name!r} is not defined here"
+        )
         at = place(visual.location, "name", "material")
         return failed(message, at, mistake=f"{link!r} has no colour: its material is not defined")
-    return failed(f"{link!r} has no material, so RViz shows it in its default colour, red", place(visual.location))
+    return failed(
+        f"{link!r} has no material, so RViz shows it in its default colour, red",
+        place(visual.location),
+    )

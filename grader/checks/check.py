@@ -1,4 +1,6 @@
-"""A check: what a rubric names, what its signature and docstring say, and what it declares to hints and pictures."""
+"""A check: what a rubric names, what its signature and docstring say, and what it declares to
+hints and pictures.
+"""
 
 import inspect
 import re
@@ -12,7 +14,8 @@ from grader.checks.outcome import Outcome
 from grader.checks.toml_types import TomlType, toml_type
 from grader.errors import InputError
 
-# The ways in which the text of a robot is rewritten to an equal robot, in the order in which they are tried.
+# The ways in which the text of a robot is rewritten to an equal robot, in the order in which they
+# are tried.
 EQUIVALENTS = (
     "order of elements",
     "fixed joints split",
@@ -43,11 +46,12 @@ def everything(arguments: Mapping[str, Any]) -> Collection[str]:
 class About(NamedTuple):
     """What a check declares, in the table `ABOUT` of its module by the name of its function.
 
-    `looks_at` are the files of a package (`setup.py`, `package.xml`, `launch`, `rviz`) or the tags of a URDF (`limit`,
-    `visual/origin`, `joint@type`) on which the result depends, where hints propose edits. `breaks_under` are the
-    equivalents of a robot under which a criterion with such arguments may fail. `picture` is what a failure shows of
-    the reference: the outline of the link or its frame; a `wheel` shows how it rolls. `function_for` returns what is
-    called for such arguments, where they decide what is examined.
+    `looks_at` are the files of a package (`setup.py`, `package.xml`, `launch`, `rviz`) or the tags
+    of a URDF (`limit`, `visual/origin`, `joint@type`) on which the result depends, where hints
+    propose edits. `breaks_under` are the equivalents of a robot under which a criterion with such
+    arguments may fail. `picture` is what a failure shows of the reference: the outline of the link
+    or its frame; a `wheel` shows how it rolls. `function_for` returns what is called for such
+    arguments, where they decide what is examined.
     """
 
     looks_at: tuple[str, ...] = ()
@@ -57,7 +61,18 @@ class About(NamedTuple):
 
 
 # The arguments of checks that name links, or list their names.
-LINK_ARGUMENTS = ("link", "leader", "relative_to", "parent", "holds", "on", "of", "base", "links", "wheels")
+LINK_ARGUMENTS = (
+    "link",
+    "leader",
+    "relative_to",
+    "parent",
+    "holds",
+    "on",
+    "of",
+    "base",
+    "links",
+    "wheels",
+)
 
 
 Subject = Literal["urdf", "robot", "package", "submission", "reference"]
@@ -89,8 +104,14 @@ class Check(NamedTuple):
     about: About = About()  # what its module declares of it
 
     def for_arguments(self, arguments: Mapping[str, Any]) -> "Check":
-        """Return the check as it is called with these arguments, which may decide what is examined."""
-        function = self.about.function_for(arguments) if self.about.function_for is not None else self.function
+        """Return the check as it is called with these arguments, which may decide what is
+        examined.
+        """
+        function = (
+            self.about.function_for(arguments)
+            if self.about.function_for is not None
+            else self.function
+        )
         if function is self.function:
             return self
         return self._replace(function=function, examined=describe(function).examined)
@@ -112,10 +133,11 @@ class Check(NamedTuple):
 
 
 def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
-    """Return the check that a function is: its signature is the schema of the rubric's `with` table.
+    """Return the check that a function is: its signature is the schema of the rubric's `with`
+    table.
 
-    An argument whose key is a keyword of Python, such as `not`, has an underscore behind it in the function: `not_`.
-    Raises InputError for a signature that is no schema.
+    An argument whose key is a keyword of Python, such as `not`, has an underscore behind it in the
+    function: `not_`. Raises InputError for a signature that is no schema.
     """
     hints = get_type_hints(function, include_extras=True)
     subject, *rest = inspect.signature(function).parameters.values()
@@ -128,10 +150,15 @@ def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
     parameters = {}
     for name, default in ((parameter.name, parameter.default) for parameter in rest[len(also) :]):
         is_required, key = default is inspect.Parameter.empty, _key(name)
-        parameters[key] = _CheckParameter(key, hints[name], is_required, None if is_required else default)
+        parameters[key] = _CheckParameter(
+            key, hints[name], is_required, None if is_required else default
+        )
     main = subject.name if subject.name in _SUBJECTS else "robot"
     examined = tuple(
-        name for given in (main, *(parameter.name for parameter in also)) for name in _SUBJECTS if name == given
+        name
+        for given in (main, *(parameter.name for parameter in also))
+        for name in _SUBJECTS
+        if name == given
     )
     name = function.__name__
     about = getattr(sys.modules.get(function.__module__), "ABOUT", {}).get(name, About())
@@ -146,12 +173,16 @@ def _key(name: str) -> str:
 
 
 def _is_subject(parameter: inspect.Parameter) -> bool:
-    """Return whether a parameter after the first is another object that is examined: it is no keyword-only argument."""
+    """Return whether a parameter after the first is another object that is examined: it is no
+    keyword-only argument.
+    """
     return parameter.kind is parameter.POSITIONAL_OR_KEYWORD and parameter.name in _SUBJECTS
 
 
 class Documentation(NamedTuple):
-    """The paragraphs of a docstring before its first section, a fact first; the meaning of each argument."""
+    """The paragraphs of a docstring before its first section, a fact first; the meaning of each
+    argument.
+    """
 
     paragraphs: tuple[str, ...]
     arguments: Mapping[str, str]
@@ -163,15 +194,23 @@ class Documentation(NamedTuple):
 
 
 def documentation(function: Callable[..., Any]) -> Documentation:
-    """Return what the docstring of a function says; a function without one, or without `Args:`, has empty parts."""
+    """Return what the docstring of a function says; a function without one, or without `Args:`, has
+    empty parts.
+    """
     text, *sections = re.split(_SECTION, inspect.getdoc(function) or "")
     named = dict(zip(sections[::2], sections[1::2], strict=True))
-    paragraphs = tuple(_one_line(paragraph) for paragraph in text.split("\n\n") if paragraph.strip())
-    return Documentation(paragraphs, _arguments(inspect.cleandoc(named.get("Args", named.get("Arguments", "")))))
+    paragraphs = tuple(
+        _one_line(paragraph) for paragraph in text.split("\n\n") if paragraph.strip()
+    )
+    return Documentation(
+        paragraphs, _arguments(inspect.cleandoc(named.get("Args", named.get("Arguments", ""))))
+    )
 
 
 def _arguments(section: str) -> dict[str, str]:
-    """Return the entries of an `Args:` section by name; an entry continues on lines that are indented further."""
+    """Return the entries of an `Args:` section by name; an entry continues on lines that are
+    indented further.
+    """
     entries = (re.split(_ARGUMENT, entry) for entry in re.split(r"\n(?=\S)", section))
     return {_key(found[1]): _one_line(found[2]) for found in entries if len(found) == 3}
 

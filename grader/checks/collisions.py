@@ -4,7 +4,16 @@ from collections.abc import Sequence
 from math import hypot, inf
 
 from grader.checks.check import About
-from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, passed, place, point
+from grader.checks.outcome import (
+    SLACK,
+    Outcome,
+    failed,
+    in_degrees,
+    in_millimetres,
+    passed,
+    place,
+    point,
+)
 from grader.checks.toml_types import NonNegative, RadiusAndLength, Size
 from grader.checks.visuals import MAX_SHAPES, file_name, visuals
 from grader.errors import MissingElement, NotDecided, RubricError
@@ -27,9 +36,10 @@ _MESH_ANGLE = 1.0  # degrees that a mesh may be turned, because its size is not 
 def collision_matches_visual(robot: Configuration, *, link: str, tolerance: NonNegative) -> Outcome:
     """The collision shapes of a link are the shapes that it shows, each in its place.
 
-    They are compared as solids: turning a cylinder about its axis changes nothing. Shapes without a size do not count.
-    A negative size differs from a positive one, because simulators refuse it. A mesh is the same if it is the same file
-    at the same scale and pose; whether another file has the same shape needs manual grading.
+    They are compared as solids: turning a cylinder about its axis changes nothing. Shapes without a
+    size do not count. A negative size differs from a positive one, because simulators refuse it. A
+    mesh is the same if it is the same file at the same scale and pose; whether another file has the
+    same shape needs manual grading.
 
     Args:
         link: The link that is examined.
@@ -38,10 +48,16 @@ def collision_matches_visual(robot: Configuration, *, link: str, tolerance: NonN
     shown = visuals(robot, link)
     solid = _solid_collisions(robot, link, "the shapes that it shows")
     if max(len(shown), len(solid)) > MAX_SHAPES:
-        raise NotDecided(f"{link!r} has more than {MAX_SHAPES} shapes", "a link has very many shapes")
+        raise NotDecided(
+            f"{link!r} has more than {MAX_SHAPES} shapes", "a link has very many shapes"
+        )
     partners = most_pairs(
         [
-            [index for index, other in enumerate(solid) if _fits(_mismatch(visual, other, tolerance), tolerance)]
+            [
+                index
+                for index, other in enumerate(solid)
+                if _fits(_mismatch(visual, other, tolerance), tolerance)
+            ]
             for visual in shown
         ]
     )
@@ -50,10 +66,15 @@ def collision_matches_visual(robot: Configuration, *, link: str, tolerance: NonN
     if not lonely and not others:
         return passed(f"{link!r} has {counted(len(solid), 'collision shape')}, as shown")
     if not lonely:
-        message = f"{link!r} has a collision shape that it does not show: {_describe_shape(others[0])}"
+        message = (
+            f"{link!r} has a collision shape that it does not show: {_describe_shape(others[0])}"
+        )
         return failed(message, others[0].location)
     if not others:
-        return failed(f"no collision shape of {link!r} is {_describe_shape(lonely[0])}, as shown", lonely[0].location)
+        return failed(
+            f"no collision shape of {link!r} is {_describe_shape(lonely[0])}, as shown",
+            lonely[0].location,
+        )
     return _judge_unmatched(link, lonely, others, tolerance)
 
 
@@ -72,8 +93,8 @@ def collides_as(
 ) -> Outcome:
     """A link collides as a box, a cylinder or a sphere of the given size in the given place.
 
-    Exactly one of `box`, `cylinder` and `sphere` is given. They are compared as solids: turning a cylinder about its
-    axis changes nothing. Shapes without a size do not count.
+    Exactly one of `box`, `cylinder` and `sphere` is given. They are compared as solids: turning a
+    cylinder about its axis changes nothing. Shapes without a size do not count.
 
     Args:
         link: The link that is examined.
@@ -100,33 +121,53 @@ def collides_as(
     what += f" at {point(xyz)} m" if xyz else ""
     what += f" with rpy = {point(rpy)} (radians)" if any(rpy or ()) else ""
     what += f" in {relative_to!r}" if relative_to else ""
-    T_link_wanted = placed_by(robot.pose(relative_to or link, relative_to=link), Origin(xyz or _ZERO, rpy or _ZERO))
+    T_link_wanted = placed_by(
+        robot.pose(relative_to or link, relative_to=link), Origin(xyz or _ZERO, rpy or _ZERO)
+    )
 
     def off(collision: Collision) -> Mismatch | None:
         if isinstance(collision.geometry, Mesh):
             return None
         T_link_shape, is_turned = placed_by(IDENTITY, collision.origin), rpy is not None
-        found = mismatch(wanted, T_link_wanted, collision.geometry, T_link_shape, tolerance + SLACK, turned=is_turned)
+        found = mismatch(
+            wanted,
+            T_link_wanted,
+            collision.geometry,
+            T_link_shape,
+            tolerance + SLACK,
+            turned=is_turned,
+        )
         return found if found is None or xyz is not None else found._replace(apart=0.0)
 
     solid = _solid_collisions(robot, link, what)
     fitting = next((one for one in solid if _fits(off(one), tolerance)), None)
     if fitting is None:
         nearest = min(solid, key=lambda one: _rank_mismatch(off(one)))
-        return _fail_with_nearest(f"no collision shape of {link!r} is {what}", nearest, off(nearest), tolerance)
+        return _fail_with_nearest(
+            f"no collision shape of {link!r} is {what}", nearest, off(nearest), tolerance
+        )
     other = next((one for one in solid if one is not fitting), None)
     if only and other is not None:
-        message = f"{link!r} has another collision shape, {_describe_shape(other)}; it should have only {what}"
+        message = (
+            f"{link!r} has another collision shape, {_describe_shape(other)}; it should have "
+            f"only {what}"
+        )
         return failed(message, other.location)
     return passed(f"{link!r} collides as {what}")
 
 
 def _solid_collisions(robot: Configuration, link: str, expected: str) -> tuple[Collision, ...]:
-    """Return the collision shapes of a link that have a size; raise MissingElement if there is none."""
-    solid = tuple(collision for collision in robot.link(link).collisions if not is_empty(collision.geometry))
+    """Return the collision shapes of a link that have a size; raise MissingElement if there is
+    none.
+    """
+    solid = tuple(
+        collision for collision in robot.link(link).collisions if not is_empty(collision.geometry)
+    )
     if not solid:
         message = f"link {link!r} has no collision shape with a size; it should have {expected}"
-        raise MissingElement("collision", link, message=message, location=place(robot.link(link).location))
+        raise MissingElement(
+            "collision", link, message=message, location=place(robot.link(link).location)
+        )
     return solid
 
 
@@ -135,7 +176,9 @@ def _fits(off: Mismatch | None, tolerance: float) -> bool:
 
 
 def _mismatch(visual: Visual, collision: Collision, tolerance: float) -> Mismatch | None:
-    """Return how far two shapes differ; None for shapes of different kinds, and for different meshes."""
+    """Return how far two shapes differ; None for shapes of different kinds, and for different
+    meshes.
+    """
     a, b = visual.geometry, collision.geometry
     T_link_a, T_link_b = placed_by(IDENTITY, visual.origin), placed_by(IDENTITY, collision.origin)
     if not isinstance(a, Mesh) and not isinstance(b, Mesh):
@@ -147,20 +190,34 @@ def _mismatch(visual: Visual, collision: Collision, tolerance: float) -> Mismatc
     return Mismatch(apart, 0.0, 0.0 if angle <= _MESH_ANGLE else inf, angle)
 
 
-def _judge_unmatched(link: str, lonely: Sequence[Visual], others: Sequence[Collision], tolerance: float) -> Outcome:
-    """Return the outcome for visuals without a collision shape, and collision shapes without a visual."""
+def _judge_unmatched(
+    link: str, lonely: Sequence[Visual], others: Sequence[Collision], tolerance: float
+) -> Outcome:
+    """Return the outcome for visuals without a collision shape, and collision shapes without a
+    visual.
+    """
     files = {visual.geometry.filename for visual in lonely if isinstance(visual.geometry, Mesh)}
     meshes = [collision.geometry for collision in others if isinstance(collision.geometry, Mesh)]
     if len(meshes) == len(others) and all(isinstance(visual.geometry, Mesh) for visual in lonely):
         unknown = next((mesh for mesh in meshes if mesh.filename not in files), None)
         if unknown is not None:
             cause = "mesh files are not opened"
-            what = f"whether the collision mesh {file_name(unknown.filename)} of {link!r} has the shape that is shown"
+            what = (
+                f"whether the collision mesh {file_name(unknown.filename)} of {link!r} has the "
+                "shape that is shown"
+            )
             raise NotDecided(f"{what} cannot be determined: {cause}", cause)
-    pairs = [(_mismatch(visual, other, tolerance), visual, other) for visual in lonely for other in others]
+    pairs = [
+        (_mismatch(visual, other, tolerance), visual, other)
+        for visual in lonely
+        for other in others
+    ]
     off, visual, nearest = min(pairs, key=lambda pair: _rank_mismatch(pair[0]))
     return _fail_with_nearest(
-        f"no collision shape of {link!r} is {_describe_shape(visual)}, as shown", nearest, off, tolerance
+        f"no collision shape of {link!r} is {_describe_shape(visual)}, as shown",
+        nearest,
+        off,
+        tolerance,
     )
 
 
@@ -169,8 +226,12 @@ def _rank_mismatch(off: Mismatch | None) -> tuple[bool, float]:
     return off is None, 0.0 if off is None else min(off.apart + off.size + min(off.turn, 1e9), inf)
 
 
-def _fail_with_nearest(message: str, nearest: Collision, off: Mismatch | None, tolerance: float) -> Outcome:
-    """Return a failure that says how the nearest shape differs from the one that should be, at the place to look at."""
+def _fail_with_nearest(
+    message: str, nearest: Collision, off: Mismatch | None, tolerance: float
+) -> Outcome:
+    """Return a failure that says how the nearest shape differs from the one that should be, at the
+    place to look at.
+    """
     message += f"; the nearest is {_describe_shape(nearest)}"
     if off is None:
         return failed(message, nearest.geometry.location or nearest.location)

@@ -4,7 +4,16 @@ from itertools import product
 from operator import itemgetter
 
 from grader.checks.check import About
-from grader.checks.outcome import SLACK, Outcome, difference, in_millimetres, judged, place, point, within
+from grader.checks.outcome import (
+    SLACK,
+    Outcome,
+    difference,
+    in_millimetres,
+    judged,
+    place,
+    point,
+    within,
+)
 from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, visual_pose, visuals
 from grader.errors import NotDecided
@@ -20,18 +29,25 @@ _LEFT: Vector = (0.0, 1.0, 0.0)
 _MAX_PAIRS = 2_000
 
 
-def stands_on(robot: Configuration, *, link: str, on: str, tolerance: NonNegative, shape: ShapeName = "any") -> Outcome:
-    """The visuals of a link stand on the top of another link's visual: no gap, no overlap, within its outline.
+def stands_on(
+    robot: Configuration, *, link: str, on: str, tolerance: NonNegative, shape: ShapeName = "any"
+) -> Outcome:
+    """The visuals of a link stand on the top of another link's visual: no gap, no overlap, within
+    its outline.
 
     Args:
         link: The link that stands on the other.
         on: The link that it stands on.
-        tolerance: How large a gap, an overlap and the part beyond the outline may each be, in metres.
-        shape: Which of several visuals of the lower link counts: the largest of this shape or, without one, of all.
+        tolerance: How large a gap, an overlap and the part beyond the outline may each be, in
+            metres.
+        shape: Which of several visuals of the lower link counts: the largest of this shape or,
+            without one, of all.
     """
     support = main_visual(robot, on, shape)
     T_on_support = visual_pose(robot, on, support, on)
-    placed = [(visual.geometry, visual_pose(robot, link, visual, on)) for visual in visuals(robot, link)]
+    placed = [
+        (visual.geometry, visual_pose(robot, link, visual, on)) for visual in visuals(robot, link)
+    ]
     bottom = min(extent(geometry, pose, Z_AXIS)[0] for geometry, pose in placed)
     _, top = extent(support.geometry, T_on_support, Z_AXIS)
     beyond = _overhang(placed, support.geometry, T_on_support)
@@ -39,7 +55,10 @@ def stands_on(robot: Configuration, *, link: str, on: str, tolerance: NonNegativ
     touches = within(bottom, top, tolerance)
     fine = touches and beyond <= tolerance + SLACK
     if not touches:
-        message = f"the bottom of {link!r} is at z = {point((bottom,))} m in {on!r}; it should be at the top of {on!r}"
+        message = (
+            f"the bottom of {link!r} is at z = {point((bottom,))} m in {on!r}; it should be at "
+            f"the top of {on!r}"
+        )
         message += f", {point((top,))} m ({difference(bottom - top, 'too high', 'too low')})"
     elif not fine:
         message = f"{link!r} reaches {in_millimetres(beyond)} beyond the edge of the top of {on!r}"
@@ -48,7 +67,8 @@ def stands_on(robot: Configuration, *, link: str, on: str, tolerance: NonNegativ
 
 
 def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative) -> Outcome:
-    """No visual of a link cuts into a visual of another by more than the tolerance, in metres; touching passes.
+    """No visual of a link cuts into a visual of another by more than the tolerance, in metres;
+    touching passes.
 
     Args:
         link: The link that is examined.
@@ -56,7 +76,9 @@ def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative
         tolerance: How deep the visuals may overlap, in metres.
     """
     own = [(visual, visual_pose(robot, link, visual, of)) for visual in visuals(robot, link)]
-    others = [(visual.geometry, visual_pose(robot, of, visual, of)) for visual in visuals(robot, of)]
+    others = [
+        (visual.geometry, visual_pose(robot, of, visual, of)) for visual in visuals(robot, of)
+    ]
     if len(own) * len(others) > _MAX_PAIRS:
         raise NotDecided(f"{link!r} and {of!r} show too many shapes to compare", "too many shapes")
     deepest, culprit = 0.0, own[0][0]
@@ -72,13 +94,21 @@ def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative
     fine = deepest <= tolerance
     if fine and unknown is not None:
         raise UnknownShape(unknown)
-    message = f"{link!r} does not overlap {of!r}" if fine else f"{link!r} overlaps {of!r} by {in_millimetres(deepest)}"
+    message = (
+        f"{link!r} does not overlap {of!r}"
+        if fine
+        else f"{link!r} overlaps {of!r} by {in_millimetres(deepest)}"
+    )
     at = place(culprit.origin.location, "xyz") or place(culprit.location)
     return judged(fine, message, round(deepest, 4), 0.0, tolerance, "m", at=at)
 
 
-def _overhang(placed: list[tuple[Geometry, Transform]], support: Geometry, T_on_support: Transform) -> float:
-    """Return how far shapes reach beyond the outline of the one below, seen from above, in metres."""
+def _overhang(
+    placed: list[tuple[Geometry, Transform]], support: Geometry, T_on_support: Transform
+) -> float:
+    """Return how far shapes reach beyond the outline of the one below, seen from above, in
+    metres.
+    """
     directions = [X_AXIS, _LEFT]
     if isinstance(support, Box):  # its own edges: it may be turned about the vertical
         axes = [T_on_support.rotate(axis) for axis in (X_AXIS, _LEFT, Z_AXIS)]

@@ -35,7 +35,9 @@ def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
     """The text of an element that ROS 2 reads is compared, not what it means."""
     frames = ("fixed joints split", "frames moved")
     steps = steps_of(arguments.get("at") or "", is_xml=True)
-    is_read = arguments.get("file", _ROBOT) == _ROBOT and bool(steps) and steps[0].name in _READ_BY_ROS
+    is_read = (
+        arguments.get("file", _ROBOT) == _ROBOT and bool(steps) and steps[0].name in _READ_BY_ROS
+    )
     return (*frames, "links renamed", "joints renamed") if is_read else ()
 
 
@@ -53,33 +55,41 @@ def entry_is(
 ) -> Outcome:
     """The expanded robot, or a file of the package, has an entry at a path, with the given values.
 
-    The file is YAML, or XML such as SDF, SRDF and package.xml. Numbers, and lists of numbers in a text of XML, are
-    compared as numbers; in XML, true is equal to 1, and false to 0. In YAML, a quoted text is neither a number
-    nor a boolean. Comments do not count. If several entries are at the path, one of them must be as expected.
+    The file is YAML, or XML such as SDF, SRDF and package.xml. Numbers, and lists of numbers in a
+    text of XML, are compared as numbers; in XML, true is equal to 1, and false to 0. In YAML, a
+    quoted text is neither a number nor a boolean. Comments do not count. If several entries are at
+    the path, one of them must be as expected.
 
     Args:
-        file: The end of the path of a file in the package, such as "config/nav.yaml"; "robot" is the expanded robot.
-        at: The path of the entry below the root: in XML "gazebo[@reference='lidar']/sensor/@type", in YAML
-            "ros__parameters.limits.max" or "[ros_topic_name=/scan].gz_type_name". A condition in brackets is a value
-            that the entry contains. A key of YAML may contain dots, and lists are looked through.
-        value: The value of the entry; for a list, the items of a list in YAML, in order, or values of several entries.
+        file: The end of the path of a file in the package, such as "config/nav.yaml"; "robot" is
+            the expanded robot.
+        at: The path of the entry below the root: in XML "gazebo[@reference='lidar']/sensor/@type",
+            in YAML "ros__parameters.limits.max" or "[ros_topic_name=/scan].gz_type_name". A
+            condition in brackets is a value that the entry contains. A key of YAML may contain
+            dots, and lists are looked through.
+        value: The value of the entry; for a list, the items of a list in YAML, in order, or values
+            of several entries.
         one_of: Values of which the entry has one.
         has: Values that the items of a list, or several entries, have in any order.
-        values: What the entry contains: values by their paths in it, such as "camera/image/width" or
-            "plugin/@filename"; a list as for `value`.
+        values: What the entry contains: values by their paths in it, such as "camera/image/width"
+            or "plugin/@filename"; a list as for `value`.
         tolerance: How far a number may be off, in the number's own unit.
     """
     assert file == _ROBOT  # else it is _entry_of_file that is called
     reading = submission.needed_urdf()
     root = reading.elements
     if root is None:
-        raise MissingElement("robot", "", message="the file is not well-formed XML, so it has no elements")
+        raise MissingElement(
+            "robot", "", message="the file is not well-formed XML, so it has no elements"
+        )
     steps = [_with_names(step, robot) for step in steps_of(at, is_xml=True)]
     wanted = _Wanted(steps, value, one_of, has, values or {}, tolerance)
     tree = _robot_entry(reading, root)
     outcome = _judge(tree, wanted, _IN_ROBOT)
     if outcome.status == "passed":
-        is_dropped = wanted.first.name == "link" and not wanted.found_in(_robot_entry(reading, _kept(robot, root)))
+        is_dropped = wanted.first.name == "link" and not wanted.found_in(
+            _robot_entry(reading, _kept(robot, root))
+        )
         if is_dropped:
             _check_known(reading, tree, wanted)
             raise _dropped_part(tree, wanted)
@@ -141,27 +151,40 @@ class _Wanted(NamedTuple):
 
     @property
     def identity(self) -> str:
-        """The key of the attribute that identifies one of several elements; empty if the values have none."""
+        """The key of the attribute that identifies one of several elements; empty if the values
+        have none.
+        """
         return next((key for key in _IDENTIFYING if isinstance(self.values.get(key), str)), "")
 
     def found_in(self, tree: Entry) -> bool:
         """Return whether a tree has the entry with its values."""
         search = Search()
         found = search.find(tree, self.steps)
-        return bool(found) and self.has_own(found) and not all(self.wrong(search, it) for it in found)
+        return (
+            bool(found) and self.has_own(found) and not all(self.wrong(search, it) for it in found)
+        )
 
     def has_own(self, found: Sequence[Entry]) -> bool:
-        """Return whether the entries at the path have the value themselves, or several of them the values."""
+        """Return whether the entries at the path have the value themselves, or several of them
+        the values.
+        """
         items = [item for it in found for item in (it.children if it.is_list else [it])]
         return (
             (self.value is None or self._have(found, self.value))
-            and (self.one_of is None or any(self.equals(it, one) for it in found for one in self.one_of))
+            and (
+                self.one_of is None
+                or any(self.equals(it, one) for it in found for one in self.one_of)
+            )
             and (self.has is None or self._are_among(items, self.has))
         )
 
     def wrong(self, search: Search, entry: Entry) -> list[str]:
         """Return the keys of the values that an entry does not contain."""
-        return [key for key, value in self.values.items() if not self._have(_inside(search, entry, key), value)]
+        return [
+            key
+            for key, value in self.values.items()
+            if not self._have(_inside(search, entry, key), value)
+        ]
 
     def nearest(self, search: Search, entries: Sequence[Entry]) -> Entry:
         """Return the entry with the identifying attribute and the most of the other values."""
@@ -169,7 +192,9 @@ class _Wanted(NamedTuple):
         return min(entries, key=lambda entry: (self.identity in wrong[entry], len(wrong[entry])))
 
     def equals(self, entry: Entry, expected: Scalar) -> bool:
-        """Return whether a text is an expected value; in YAML, one in quotes is no number and no boolean."""
+        """Return whether a text is an expected value; in YAML, one in quotes is no number and no
+        boolean.
+        """
         if entry.text is None:
             return False
         if entry.is_xml or isinstance(expected, str):
@@ -177,21 +202,30 @@ class _Wanted(NamedTuple):
         if entry.is_quoted:
             return False
         if isinstance(expected, bool):
-            return entry.text.lower() in (("true", "yes", "on", "y") if expected else ("false", "no", "off", "n"))
+            return entry.text.lower() in (
+                ("true", "yes", "on", "y") if expected else ("false", "no", "off", "n")
+            )
         numbers = numbers_in(entry.text) or ()
         return len(numbers) == 1 and abs(numbers[0] - expected) <= self.tolerance + _SLACK
 
     def _have(self, found: Sequence[Entry], expected: Content) -> bool:
-        """Return whether an entry is a value; for a list, whether one is the list, or several have its items."""
+        """Return whether an entry is a value; for a list, whether one is the list, or several
+        have its items.
+        """
         if not isinstance(expected, list):
             return any(self.equals(it, expected) for it in found)
         lists = [it.children for it in found if it.is_list]
-        is_list = any(len(it) == len(expected) and all(map(self.equals, it, expected)) for it in lists)
+        is_list = any(
+            len(it) == len(expected) and all(map(self.equals, it, expected)) for it in lists
+        )
         return is_list or self._are_among(found, expected)
 
     def _are_among(self, found: Sequence[Entry], expected: Sequence[Scalar]) -> bool:
         """Return whether each expected value is that of a different entry, in any order."""
-        fitting = [[index for index, it in enumerate(found) if self.equals(it, value)] for value in expected]
+        fitting = [
+            [index for index, it in enumerate(found) if self.equals(it, value)]
+            for value in expected
+        ]
         return len(most_pairs(fitting)) == len(expected)
 
 
@@ -214,7 +248,14 @@ def _judge(tree: Entry, wanted: _Wanted, where: str) -> Outcome:
     if wanted.identity in wrong and (len(found) > 1 or wanted.identity == "@name"):
         return _no_identity(tree, search, found, wanted)
     faults = [_fault_text(key, _inside(search, best, key), wanted.values[key]) for key in wrong]
-    at = next((it for it in _inside(search, best, wrong[0]) if not _is_one(wanted, it, wanted.values[wrong[0]])), best)
+    at = next(
+        (
+            it
+            for it in _inside(search, best, wrong[0])
+            if not _is_one(wanted, it, wanted.values[wrong[0]])
+        ),
+        best,
+    )
     return failed(f"{shown}: {'; '.join(first_lines(faults, _MAX_NAMED))}", at.place)
 
 
@@ -223,7 +264,9 @@ def _is_one(wanted: _Wanted, entry: Entry, value: Content) -> bool:
 
 
 def _no_entry(tree: Entry, search: Search, wanted: _Wanted, where: str) -> Outcome:
-    """Return the failure of a path that leads to nothing: at its first step that has no entry, or none that fits."""
+    """Return the failure of a path that leads to nothing: at its first step that has no entry,
+    or none that fits.
+    """
     steps = wanted.steps
     depth = max(count for count in range(len(steps)) if search.find(tree, steps[:count]))
     above, step = search.find(tree, steps[:depth])[0], steps[depth]
@@ -254,11 +297,16 @@ def _none_fits(search: Search, named: Sequence[Entry], step: Step, shown: str) -
     """Return the failure of entries of which none has the values of the conditions."""
     rows = [row for it in named for row in (it.children if it.is_list else [it])] or list(named)
     given = [{key: _inside(search, row, key) for key, _ in step.conditions} for row in rows]
-    texts = [[(key, readable(found[0].text or "")) for key, found in one.items() if found] for one in given]
+    texts = [
+        [(key, readable(found[0].text or "")) for key, found in one.items() if found]
+        for one in given
+    ]
     known = dict.fromkeys(_shown([Step(step.name, tuple(one))], rows[0]) for one in texts)
     detail = f"; the file has {enumerated([*known], _MAX_NAMED)}"
     for key, value in step.conditions:
-        detail += did_you_mean(value, [text for one in texts for name, text in one if name == key and text])
+        detail += did_you_mean(
+            value, [text for one in texts for name, text in one if name == key and text]
+        )
     return failed(f"there is no {shown}", rows[0].place, detail=detail)
 
 
@@ -274,10 +322,15 @@ def _no_identity(tree: Entry, search: Search, found: Sequence[Entry], wanted: _W
 def _shown(steps: Sequence[Step], tree: Entry) -> str:
     """Return a path in words: <sensor> in <gazebo reference="lidar">; 'limits.max'."""
     if not tree.is_xml:
-        texts = (step.name + "".join(f"[{key}={value}]" for key, value in step.conditions) for step in steps)
+        texts = (
+            step.name + "".join(f"[{key}={value}]" for key, value in step.conditions)
+            for step in steps
+        )
         return repr(".".join(texts)) if steps else "the file"
     tags = [_tag(step) for step in steps if not step.name.startswith("@")]
-    shown = f"{''.join(tags[1:])} in {tags[0]}" if len(tags) > 1 else (tags or [f"<{tree.name}>"])[0]
+    shown = (
+        f"{''.join(tags[1:])} in {tags[0]}" if len(tags) > 1 else (tags or [f"<{tree.name}>"])[0]
+    )
     return f"{steps[-1].name} of {shown}" if steps and steps[-1].name.startswith("@") else shown
 
 
@@ -321,7 +374,8 @@ def _value_text(value: Scalar) -> str:
     return text if not isinstance(value, str) or numbers_in(text) else quoted(text)
 
 
-# --- The robot --------------------------------------------------------------------------------------------------------
+# --- The robot
+# ----------------------------------------------------------------------
 
 
 def _robot_entry(reading: Reading, root: Element) -> Entry:
@@ -336,18 +390,32 @@ def _robot_entry(reading: Reading, root: Element) -> Entry:
 
 def _with_names(step: Step, robot: Configuration) -> Step:
     """Return a step whose conditions have names, not selectors."""
-    found = ((key, selected_name(robot.known, robot.known_parents, value)) for key, value in step.conditions)
+    found = (
+        (key, selected_name(robot.known, robot.known_parents, value))
+        for key, value in step.conditions
+    )
     return step._replace(conditions=tuple(found))
 
 
 def _kept(robot: Configuration, root: Element) -> Element:
-    """Return a copy of a robot without the inertials, visuals and collisions of links that ROS 2 drops."""
-    parts = (part for link in robot.known.links for part in (link.inertial, *link.visuals, *link.collisions))
+    """Return a copy of a robot without the inertials, visuals and collisions of links that ROS 2
+    drops.
+    """
+    parts = (
+        part
+        for link in robot.known.links
+        for part in (link.inertial, *link.visuals, *link.collisions)
+    )
     tags = {part.location.tag for part in parts if part is not None and part.location is not None}
     copy = deepcopy(root)
     for tag, element in enumerate([*copy.iter()]):
         above = element.getparent()
-        if above is not None and name_of(above) == "link" and name_of(element) in _PARTS and tag not in tags:
+        if (
+            above is not None
+            and name_of(above) == "link"
+            and name_of(element) in _PARTS
+            and tag not in tags
+        ):
             above.remove(element)
     return copy
 
@@ -367,7 +435,11 @@ def _dropped_part(tree: Entry, wanted: _Wanted) -> MissingElement:
 def _check_known(reading: Reading, tree: Entry, wanted: _Wanted) -> None:
     """Raise NotDecided if xacro leaves open whether the element is there, or what it contains."""
     named = (it for it in tree.children if it.name == wanted.first.name or not wanted.steps)
-    fitting = [[*it.element.iter()] for it in named if it.element is not None and _may_fit(it, wanted.first, reading)]
+    fitting = [
+        [*it.element.iter()]
+        for it in named
+        if it.element is not None and _may_fit(it, wanted.first, reading)
+    ]
     assert tree.element is not None  # it is that of <robot>
     elements = [tree.element, *(inner for it in fitting for inner in it)]
     for found in (reading.unresolved[it] for it in elements if it in reading.unresolved):
@@ -376,7 +448,9 @@ def _check_known(reading: Reading, tree: Entry, wanted: _Wanted) -> None:
 
 
 def _may_fit(entry: Entry, step: Step, reading: Reading) -> bool:
-    """Return whether an element, of which not all may be known, can have the attributes of a step."""
+    """Return whether an element, of which not all may be known, can have the attributes of a
+    step.
+    """
     left = [(key, value) for key, value in step.conditions if key.startswith("@")]
     unresolved = reading.unresolved.get(entry.element) if entry.element is not None else None
     if unresolved is not None:

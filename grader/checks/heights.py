@@ -3,9 +3,26 @@
 from collections.abc import Callable, Sequence
 
 from grader.checks.check import About
-from grader.checks.outcome import SLACK, Outcome, difference, in_degrees, judged, measured, place, point, within
+from grader.checks.outcome import (
+    SLACK,
+    Outcome,
+    difference,
+    in_degrees,
+    judged,
+    measured,
+    place,
+    point,
+    within,
+)
 from grader.checks.toml_types import NonNegative
-from grader.checks.visuals import ShapeName, main_visual, origin_place, shape_name, span, visual_pose
+from grader.checks.visuals import (
+    ShapeName,
+    main_visual,
+    origin_place,
+    shape_name,
+    span,
+    visual_pose,
+)
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
 from grader.robot.shapes import UnknownShape, extent, turn_between
@@ -49,9 +66,15 @@ def bottom_at_height(
 
 
 def bottoms_at_height(
-    robot: Configuration, *, links: list[str], relative_to: str, height: float, tolerance: NonNegative
+    robot: Configuration,
+    *,
+    links: list[str],
+    relative_to: str,
+    height: float,
+    tolerance: NonNegative,
 ) -> Outcome:
-    """The lowest points of several links are at the same height (z) in another link's frame, in metres.
+    """The lowest points of several links are at the same height (z) in another link's frame, in
+    metres.
 
     Args:
         links: The links that are examined.
@@ -68,16 +91,26 @@ def bottoms_at_height(
     names = enumerated([repr(link) for link in lowest])
     message = f"the bottoms of {names} are at z = {point(actual)} m in {relative_to!r}"
     if wrong:
-        off = [f"{link!r} {difference(value - height, 'too high', 'too low')}" for link, value in wrong.items()]
+        off = [
+            f"{link!r} {difference(value - height, 'too high', 'too low')}"
+            for link, value in wrong.items()
+        ]
         message += f"; they should be at {height:g} m ({', '.join(off)})"
     at = _common_place(robot, wrong, lowest, relative_to, tolerance) if wrong else None
     return judged(not wrong, message, actual, height, tolerance, "m", at=at)
 
 
 def under_the_base(
-    robot: Configuration, *, link: str, base: str, wheels: list[str], tolerance: NonNegative, angle: NonNegative
+    robot: Configuration,
+    *,
+    link: str,
+    base: str,
+    wheels: list[str],
+    tolerance: NonNegative,
+    angle: NonNegative,
 ) -> Outcome:
-    """A frame has the x, y and orientation of a base's frame and is level with the lowest points of the wheels.
+    """A frame has the x, y and orientation of a base's frame and is level with the lowest points of
+    the wheels.
 
     Args:
         link: The link whose frame is examined, such as base_footprint.
@@ -95,16 +128,22 @@ def under_the_base(
     if not (within(x, 0.0, tolerance) and within(y, 0.0, tolerance)):
         faults.append(f"{base!r} is at x, y = {point((x, y))} m in it and should be at 0 0")
     if turned > angle + SLACK:
-        faults.append(f"{base!r} is rotated by {in_degrees(turned)} in it and should not be rotated")
+        faults.append(
+            f"{base!r} is rotated by {in_degrees(turned)} in it and should not be rotated"
+        )
     heights = {wheel: difference(value, "above", "below") for wheel, value in off.items()}
     faults += [f"the lowest point of {wheel!r} is {height} it" for wheel, height in heights.items()]
     if missing is not None and not faults:
         raise missing
     verb, found = ("should be", f": {'; '.join(faults)}") if faults else ("is", "")
-    message = f"the frame {link!r} {verb} under {base!r}, level with the bottoms of the wheels{found}"
+    message = (
+        f"the frame {link!r} {verb} under {base!r}, level with the bottoms of the wheels{found}"
+    )
     actual = (x, y, *lowest.values())
     at = origin_place(robot, base)
-    if len(off) == len(faults) < len(lowest):  # the frame is where it should be, and some wheel is not
+    if (
+        len(off) == len(faults) < len(lowest)
+    ):  # the frame is where it should be, and some wheel is not
         at = origin_place(robot, next(iter(off), base))
     return judged(not faults, message, actual, 0.0, tolerance, "m", at=at)
 
@@ -112,22 +151,34 @@ def under_the_base(
 def _measure_each(
     links: Sequence[str], measure: Callable[[str], float]
 ) -> tuple[dict[str, float], MissingElement | UnknownShape | None]:
-    """Return what can be measured of each link; and why one of them cannot, so that it does not hide the others."""
+    """Return what can be measured of each link; and why one of them cannot, so that it does not
+    hide the others.
+    """
     found: dict[str, float] = {}
     missing: MissingElement | UnknownShape | None = None
     for link in links:
         try:
             found[link] = measure(link)
         except (MissingElement, UnknownShape) as error:
-            missing = missing or error.with_traceback(None)  # a traceback keeps this frame and its values alive
+            missing = missing or error.with_traceback(
+                None
+            )  # a traceback keeps this frame and its values alive
     return found, missing
 
 
 def _common_place(
-    robot: Configuration, wrong: dict[str, float], lowest: dict[str, float], relative_to: str, tolerance: float
+    robot: Configuration,
+    wrong: dict[str, float],
+    lowest: dict[str, float],
+    relative_to: str,
+    tolerance: float,
 ) -> LazyLocation | None:
-    """Return where to look if heights are off: the origin of the frame if all are off alike, else of the first link."""
+    """Return where to look if heights are off: the origin of the frame if all are off alike, else
+    of the first link.
+    """
     first, value = next(iter(wrong.items()))
-    alike = len(wrong) == len(lowest) > 1 and all(within(other, value, tolerance) for other in wrong.values())
+    alike = len(wrong) == len(lowest) > 1 and all(
+        within(other, value, tolerance) for other in wrong.values()
+    )
     chain = robot.chain(first, above=relative_to) if alike else None
     return origin_place(robot, chain[0].child if chain else first)

@@ -1,4 +1,5 @@
-"""What xacro and RViz find of a robot once its packages are built: the files that it includes, and its meshes.
+"""What xacro and RViz find of a robot once its packages are built: the files that it includes, and
+its meshes.
 
 The file is read again from what builds install, so that the ordinary readers say what is not there.
 """
@@ -23,8 +24,8 @@ from grader.xacro.xacro_problems import WRITTEN_TO_STDERR
 class InstalledRobot(NamedTuple):
     """A robot as it is installed.
 
-    `missing` are files of the submission that it needs and a build does not install; `warning` is the first text that
-    xacro writes to standard error.
+    `missing` are files of the submission that it needs and a build does not install; `warning` is
+    the first text that xacro writes to standard error.
     """
 
     missing: tuple[str, ...] = ()
@@ -38,8 +39,12 @@ class _InstalledFiles:
 
     def __init__(self, package: Package) -> None:
         self.owners = [package, *(it for it in package.packages.values() if it is not package)]
-        self.budget = Budget()  # its own: what is read again says nothing about how long reading the package takes
-        self.files = {path: (it, source) for it in self.owners for path, source in it.installed.items()}
+        self.budget = (
+            Budget()
+        )  # its own: what is read again says nothing about how long reading the package takes
+        self.files = {
+            path: (it, source) for it in self.owners for path, source in it.installed.items()
+        }
         self.missing: dict[str, None] = {}
 
     @property
@@ -64,7 +69,9 @@ class _InstalledFiles:
     def note_missing(self, path: str) -> None:
         """Note a file that the submission has, but does not install."""
         name = posixpath.basename(path)
-        if any(posixpath.basename(own) == name for owner in self.owners for own in owner.tree.files):
+        if any(
+            posixpath.basename(own) == name for owner in self.owners for own in owner.tree.files
+        ):
             self.missing[path] = None
 
     def package(self, name: str) -> str | None:
@@ -80,7 +87,9 @@ class _InstalledFiles:
         """Note nothing."""
 
 
-def read_installed(package: Package, path: str, arguments: dict[str, str | None] | None) -> InstalledRobot:
+def read_installed(
+    package: Package, path: str, arguments: dict[str, str | None] | None
+) -> InstalledRobot:
     """Return the robot in an installed file, given its path below the prefix.
 
     `arguments` are those of xacro; None for a file that is read without it.
@@ -103,9 +112,15 @@ def read_installed(package: Package, path: str, arguments: dict[str, str | None]
 
 def _note_meshes(robot: Robot | None, files: _InstalledFiles, *, is_expanded: bool) -> None:
     """Note the meshes that a robot shows and that are not installed."""
-    for visual in chain.from_iterable(link.visuals for link in robot.links) if robot is not None else ():
+    for visual in (
+        chain.from_iterable(link.visuals for link in robot.links) if robot is not None else ()
+    ):
         if isinstance(visual.geometry, Mesh):
             file = mesh_file(visual.geometry.filename, is_expanded=is_expanded)
             path = posixpath.normpath(f"share/{file.package}/{file.path}")
-            if files.package(file.package) is not None and not file.fault and path not in files.files:
+            if (
+                files.package(file.package) is not None
+                and not file.fault
+                and path not in files.files
+            ):
                 files.note_missing(path)

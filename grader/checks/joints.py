@@ -1,4 +1,5 @@
-"""Checks of the joint that moves a link, the last one above it that is not fixed: limits, axis, mimic, dynamics.
+"""Checks of the joint that moves a link, the last one above it that is not fixed: limits, axis,
+mimic, dynamics.
 
 The numbers of an element of a joint are compared with the expected ones together, in one outcome.
 """
@@ -51,8 +52,9 @@ def joint_limits(
 ) -> Outcome:
     """The joint that moves a link has the given limits.
 
-    A continuous, planar or floating joint has no limits. Effort and velocity may be off by 1e-6. If the limits are the
-    expected ones, but in metres instead of degrees or the other way round, the joint has the wrong type.
+    A continuous, planar or floating joint has no limits. Effort and velocity may be off by 1e-6. If
+    the limits are the expected ones, but in metres instead of degrees or the other way round, the
+    joint has the wrong type.
 
     Args:
         link: The link that the joint moves.
@@ -71,7 +73,9 @@ def joint_limits(
     fault = f"it should be {_range_text(lower, upper)} {units}"
     if limit is None:
         return failed(
-            f"the joint that moves {link!r} has no limits; {fault}", joint.location, detail=_joint_detail(joint)
+            f"the joint that moves {link!r} has no limits; {fault}",
+            joint.location,
+            detail=_joint_detail(joint),
         )
     given = (limit.lower, limit.upper)
     ends = {"prismatic": given, "revolute": (degrees(limit.lower), degrees(limit.upper))}
@@ -80,19 +84,26 @@ def joint_limits(
     numbers = [
         _Number("lower", low, lower, tolerance, fault),
         _Number("upper", high, upper, tolerance, fault),
-        *_expected_numbers({"effort": (limit.effort, effort), "velocity": (limit.velocity, velocity)}, _EXACT),
+        *_expected_numbers(
+            {"effort": (limit.effort, effort), "velocity": (limit.velocity, velocity)}, _EXACT
+        ),
     ]
     is_meant = all(map(within, as_other, (lower, upper), (tolerance, tolerance)))
     if (
-        is_meant and (numbers[0].is_wrong or numbers[1].is_wrong) and max(map(abs, given)) <= FULL_TURN
+        is_meant
+        and (numbers[0].is_wrong or numbers[1].is_wrong)
+        and max(map(abs, given)) <= FULL_TURN
     ):  # else in degrees
         range_of_other = f"{_range_text(lower, upper)} {'m' if other == 'prismatic' else 'degrees'}"
         message = (
-            f"the joint that moves {link!r} is {joint.type}; it should be {other}, with a range of {range_of_other}"
+            f"the joint that moves {link!r} is {joint.type}; it should be {other}, with a range "
+            f"of {range_of_other}"
         )
         return failed(message, place(joint.location, "type"), detail=_joint_detail(joint))
     message = f"the range of the joint that moves {link!r} is {_range_text(low, high)} {units}"
-    return _compare_numbers(message, numbers, joint, limit.location, "deg" if joint.type == "revolute" else "m")
+    return _compare_numbers(
+        message, numbers, joint, limit.location, "deg" if joint.type == "revolute" else "m"
+    )
 
 
 def joint_axis(
@@ -133,7 +144,9 @@ def joint_axis(
     if not off <= tolerance + SLACK:
         message += f"; it should point along {point(expected)} ({in_degrees(off)} off)"
         at = axis_place(joint)
-        return judged(False, message, actual, expected, tolerance, "deg", at=at, detail=_joint_detail(joint))
+        return judged(
+            False, message, actual, expected, tolerance, "deg", at=at, detail=_joint_detail(joint)
+        )
     if through is None:
         return judged(True, message, actual, expected, tolerance, "deg")
     away = hypot(*cross(minus(through, T_relative_joint.translation), actual))
@@ -142,7 +155,9 @@ def joint_axis(
     message += "" if fine else "; it should pass through that point"
     at = place(joint.origin.location if joint.origin else None, "xyz") or joint.location
     found = away if isfinite(away) else None
-    return judged(fine, message, found, 0.0, distance, "m", at=at, detail="" if fine else _joint_detail(joint))
+    return judged(
+        fine, message, found, 0.0, distance, "m", at=at, detail="" if fine else _joint_detail(joint)
+    )
 
 
 def mimics(
@@ -181,7 +196,9 @@ def mimics(
         return failed(message, at, detail=detail)
     ratio, shift = followed[leading.name]
     message = f"the joint that moves {link!r} mimics the joint that moves {leader!r}"
-    numbers = _expected_numbers({"multiplier": (ratio, multiplier), "offset": (shift, offset)}, tolerance)
+    numbers = _expected_numbers(
+        {"multiplier": (ratio, multiplier), "offset": (shift, offset)}, tolerance
+    )
     return _compare_numbers(message, numbers, joint, joint.mimic.location if joint.mimic else None)
 
 
@@ -216,7 +233,8 @@ def joint_dynamics(
 
 
 def _mimic_chain(robot: Configuration, joint: Joint, link: str) -> dict[str, tuple[float, float]]:
-    """Return the joints that a joint mimics, directly and through others, each with the multiplier and offset to it.
+    """Return the joints that a joint mimics, directly and through others, each with the multiplier
+    and offset to it.
 
     The last may not exist. Raises MissingElement for a loop.
     """
@@ -230,7 +248,9 @@ def _mimic_chain(robot: Configuration, joint: Joint, link: str) -> dict[str, tup
         if name == first.name or name in found:
             message = f"the joint that moves {link!r} mimics itself, directly or through others"
             at = place(joint.mimic.location, "joint")
-            raise MissingElement("mimicked joint", link, message=message, detail=_joint_detail(first), location=at)
+            raise MissingElement(
+                "mimicked joint", link, message=message, detail=_joint_detail(first), location=at
+            )
         found[name] = ratio, shift
         if not robot.robot.has_joint(name):
             return found
@@ -256,7 +276,9 @@ class _Number(NamedTuple):
         return not within(self.actual, self.expected, self.tolerance)
 
 
-def _expected_numbers(values: Mapping[str, tuple[float, float | None]], tolerance: float) -> list[_Number]:
+def _expected_numbers(
+    values: Mapping[str, tuple[float, float | None]], tolerance: float
+) -> list[_Number]:
     """Return the numbers that are compared, by attribute: those with an expected value."""
     return [
         _Number(
@@ -272,19 +294,34 @@ def _expected_numbers(values: Mapping[str, tuple[float, float | None]], toleranc
 
 
 def _compare_numbers(
-    message: str, numbers: Sequence[_Number], joint: Joint, element: LazyLocation | None, of: str | None = None
+    message: str,
+    numbers: Sequence[_Number],
+    joint: Joint,
+    element: LazyLocation | None,
+    of: str | None = None,
 ) -> Outcome:
-    """Compare numbers of an element, which are in the unit `of` if they have one tolerance; NaN fails."""
+    """Compare numbers of an element, which are in the unit `of` if they have one tolerance; NaN
+    fails.
+    """
     faults = {number.fault: number.attribute for number in reversed(numbers) if number.is_wrong}
     message = "; ".join((message, *reversed(faults)))
     values = [(number.actual, number.expected) for number in numbers]
-    actual, expected = zip(*values, strict=True) if values and isfinite(sum(map(sum, values))) else (None, None)
+    actual, expected = (
+        zip(*values, strict=True) if values and isfinite(sum(map(sum, values))) else (None, None)
+    )
     tolerances = {number.tolerance for number in numbers}
     tolerance = tolerances.pop() if len(tolerances) == 1 else None
     at = place(element, next(reversed(faults.values()), None))
     detail = _joint_detail(joint) if faults else ""
     return judged(
-        not faults, message, actual, expected, tolerance, of if tolerance is not None else None, at=at, detail=detail
+        not faults,
+        message,
+        actual,
+        expected,
+        tolerance,
+        of if tolerance is not None else None,
+        at=at,
+        detail=detail,
     )
 
 

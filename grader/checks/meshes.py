@@ -1,6 +1,8 @@
-"""Checks of the meshes of a link: which file, where a build puts it, its scale and its pose. No mesh is loaded.
+"""Checks of the meshes of a link: which file, where a build puts it, its scale and its pose. No
+mesh is loaded.
 
-`_MeshFile` is what the name of a mesh means to ROS 2, and whether a build of the submission puts the file there.
+`_MeshFile` is what the name of a mesh means to ROS 2, and whether a build of the submission puts
+the file there.
 """
 
 import posixpath
@@ -45,7 +47,9 @@ from grader.text import quoted
 ABOUT = {"shows_mesh": About(("mesh", "visual"), picture="outline")}
 
 _ANGLE = 1.0  # degrees that a mesh may be turned
-_SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+):(//)?(.*)", re.DOTALL)  # one letter is a disk of Windows
+_SCHEME = re.compile(
+    r"([A-Za-z][A-Za-z0-9+.-]+):(//)?(.*)", re.DOTALL
+)  # one letter is a disk of Windows
 _ABSOLUTE = re.compile(r"[/~\\]|[A-Za-z]:")
 _ONE_MACHINE = "exists on one machine only; use package://"
 _BACKSLASH = "has a \\ in its path; separate folders by /"
@@ -56,9 +60,11 @@ _BEST_FIRST = ("passed", "pending", "failed")
 
 
 class _MeshFile(NamedTuple):
-    """The file name of a <mesh>: the package that it names and the path in it, and why ROS 2 does not find such a name.
+    """The file name of a <mesh>: the package that it names and the path in it, and why ROS 2 does
+    not find such a name.
 
-    `doubt` says why it cannot be determined whether it does. `written` is the name as the student wrote it.
+    `doubt` says why it cannot be determined whether it does. `written` is the name as the student
+    wrote it.
     """
 
     written: str
@@ -114,10 +120,11 @@ def shows_mesh(
 ) -> Outcome:
     """A link shows a mesh file, which ROS 2 finds on every machine.
 
-    Any visual of the link may be the mesh. Absolute and `file://` paths fail. The file of a `package://` path must be
-    in the submission where a build of its package installs it, if a package was submitted; then a relative path needs
-    manual grading. `file://$(find my_robot)` in xacro means the same as `package://my_robot`. A file that is empty or
-    not of the format of its ending fails, also one of a collision mesh of the link.
+    Any visual of the link may be the mesh. Absolute and `file://` paths fail. The file of a
+    `package://` path must be in the submission where a build of its package installs it, if a
+    package was submitted; then a relative path needs manual grading. `file://$(find my_robot)` in
+    xacro means the same as `package://my_robot`. A file that is empty or not of the format of its
+    ending fails, also one of a collision mesh of the link.
 
     Args:
         link: The link that is examined.
@@ -125,13 +132,19 @@ def shows_mesh(
         scale: The scale along x, y and z.
         xyz: Where the origin of the mesh is, in metres.
         rpy: The rotation of the mesh, in radians about fixed axes, within 1 degree.
-        tolerance: How far each coordinate may be off, in metres, and each scale, as a share of itself.
+        tolerance: How far each coordinate may be off, in metres, and each scale, as a share of
+            itself.
         relative_to: The link in whose frame the pose is, by default the link itself.
     """
     shown = visuals(robot, link)
     is_expanded = isinstance(submission.urdf, Read) and submission.urdf.is_expanded
     meshes = [
-        _ShownMesh(link, visual, visual.geometry, mesh_file(visual.geometry.filename, is_expanded=is_expanded))
+        _ShownMesh(
+            link,
+            visual,
+            visual.geometry,
+            mesh_file(visual.geometry.filename, is_expanded=is_expanded),
+        )
         for visual in shown
         if isinstance(visual.geometry, Mesh)
     ]
@@ -172,31 +185,55 @@ def _another_file(meshes: Sequence[_ShownMesh], file: str) -> Outcome:
     it = (alike or meshes)[0]
     reason = "; upper and lower case differ" if alike else ""
     message = f"{it.link!r} shows the mesh {file_name(it.file.written)}"
-    return failed(f"{message}; its path should end in {quoted(file)}{reason}", place(it.mesh.location, "filename"))
+    return failed(
+        f"{message}; its path should end in {quoted(file)}{reason}",
+        place(it.mesh.location, "filename"),
+    )
 
 
-def _examine_mesh(robot: Configuration, submission: Submission, it: _ShownMesh, wanted: _Pose) -> Outcome:
+def _examine_mesh(
+    robot: Configuration, submission: Submission, it: _ShownMesh, wanted: _Pose
+) -> Outcome:
     """Return the outcome for one mesh of the right name."""
-    name, fault, doubt, cause = file_name(it.file.written), it.file.fault, it.file.doubt, it.file.doubt
+    name, fault, doubt, cause = (
+        file_name(it.file.written),
+        it.file.fault,
+        it.file.doubt,
+        it.file.doubt,
+    )
     try:
         fault = fault or _why_not_found(it.file, submission)
     except NotDecided as reason:
         doubt, cause = str(reason), reason.cause
-    wrong = [(f"the mesh of {it.link!r} {fault}", place(it.mesh.location, "filename"))] if fault else []
+    wrong = (
+        [(f"the mesh of {it.link!r} {fault}", place(it.mesh.location, "filename"))] if fault else []
+    )
     wrong += _pose_differences(robot, it, wanted)
     if wrong:
         problem = _problem_text(it.link, it.file, fault) if fault else ""
-        return failed("; ".join(text for text, _ in wrong), wrong[0][1], detail=f" (mesh {name})", problem=problem)
+        return failed(
+            "; ".join(text for text, _ in wrong),
+            wrong[0][1],
+            detail=f" (mesh {name})",
+            problem=problem,
+        )
     if doubt:
-        text = f"whether ROS 2 finds the mesh {name} of {it.link!r} cannot be determined: {doubt}; needs manual grading"
+        text = (
+            f"whether ROS 2 finds the mesh {name} of {it.link!r} cannot be determined: {doubt}; "
+            "needs manual grading"
+        )
         return pending(text, cause)
     return passed(f"{it.link!r} shows the mesh {name}")
 
 
-def _pose_differences(robot: Configuration, it: _ShownMesh, wanted: _Pose) -> Iterator[tuple[str, LazyLocation | None]]:
+def _pose_differences(
+    robot: Configuration, it: _ShownMesh, wanted: _Pose
+) -> Iterator[tuple[str, LazyLocation | None]]:
     """Yield what is wrong with the scale and the pose of a mesh, and where."""
     scale = it.mesh.scale
-    if wanted.scale is not None and not all(map(_is_scaled, scale, wanted.scale, [wanted.tolerance] * 3)):
+    if wanted.scale is not None and not all(
+        map(_is_scaled, scale, wanted.scale, [wanted.tolerance] * 3)
+    ):
         yield (
             f"its scale is {_scale_text(scale)}; it should be {_scale_text(wanted.scale)}",
             place(it.mesh.location, "scale"),
@@ -213,7 +250,10 @@ def _pose_differences(robot: Configuration, it: _ShownMesh, wanted: _Pose) -> It
     if wanted.rpy is not None:
         angle = turn_between(pose.rotation, rotation_from_rpy(wanted.rpy))
         if not angle <= _ANGLE + SLACK:
-            yield f"its orientation is {in_degrees(angle)} off", place(origin, "rpy") or place(it.visual.location)
+            yield (
+                f"its orientation is {in_degrees(angle)} off",
+                place(origin, "rpy") or place(it.visual.location),
+            )
 
 
 def _is_scaled(actual: float, expected: float, tolerance: float) -> bool:
@@ -225,14 +265,18 @@ def _scale_text(scale: Vector) -> str:
 
 
 def mesh_file(filename: str, *, is_expanded: bool = False) -> _MeshFile:
-    """Return what the file name of a <mesh> means; `is_expanded` says whether xacro has been expanded in it."""
+    """Return what the file name of a <mesh> means; `is_expanded` says whether xacro has been
+    expanded in it.
+    """
     found = _SCHEME.fullmatch(filename)
     scheme, slashes, rest = found.groups() if found is not None else ("", "", filename)
     fault = _BACKSLASH if "\\" in filename else ""
     shared = _path_from_xacro(rest) if is_expanded and scheme in ("", "file") else None
     if shared is not None:
         written = f"{scheme}{'://' if scheme else ''}$(find {shared[0]})/{shared[1]}"
-        return _MeshFile(written, shared[1], shared[0], fault if scheme else "needs file:// before $(find ...)")
+        return _MeshFile(
+            written, shared[1], shared[0], fault if scheme else "needs file:// before $(find ...)"
+        )
     if scheme == "package" and slashes:
         package, _, path = rest.partition("/")
         return _MeshFile(filename, path, package, fault)
@@ -250,9 +294,11 @@ def mesh_file(filename: str, *, is_expanded: bool = False) -> _MeshFile:
 
 
 def mesh_problems(submission: Submission, urdf: Read) -> Iterator[Problem]:
-    """Yield a warning for each mesh that RViz certainly does not find on another machine, or after a build.
+    """Yield a warning for each mesh that RViz certainly does not find on another machine, or after
+    a build.
 
-    A file of a package that was not submitted may be installed, and so may a file:// path outside of home folders.
+    A file of a package that was not submitted may be installed, and so may a file:// path outside
+    of home folders.
     """
     links = urdf.loaded.robot.links if urdf.loaded.robot is not None else ()
     shapes = [(link, visual.geometry) for link in links for visual in link.visuals]
@@ -285,7 +331,8 @@ def _sure_fault(file: _MeshFile, submission: Submission) -> str:
 
 
 def _why_not_found(mesh: _MeshFile, submission: Submission) -> str:
-    """Return why ROS 2 does not find a package's file after a build; empty if it does, or no package was submitted.
+    """Return why ROS 2 does not find a package's file after a build; empty if it does, or no
+    package was submitted.
 
     Raises NotDecided where that cannot be determined statically.
     """
@@ -293,7 +340,9 @@ def _why_not_found(mesh: _MeshFile, submission: Submission) -> str:
         return ""
     if not mesh.package:
         if not mesh.doubt:
-            raise NotDecided("RViz finds no relative path; other programs may", "a mesh is at a relative path")
+            raise NotDecided(
+                "RViz finds no relative path; other programs may", "a mesh is at a relative path"
+            )
         return ""
     package = submission.packages[0].find(mesh.package)
     path = posixpath.normpath(mesh.path)
@@ -305,17 +354,27 @@ def _why_not_found(mesh: _MeshFile, submission: Submission) -> str:
 
 
 def _fault_in_package(package: Package, target: str, submission: Submission) -> str:
-    """Return what is wrong with the file that a build installs at a path, or why it installs none there."""
+    """Return what is wrong with the file that a build installs at a path, or why it installs none
+    there.
+    """
     found, name = look_up(package, target), posixpath.basename(target)
     file = package.tree.files.get(found.path) if found.state == "installed" else None
     if file is not None:
         return content_fault(file, target)
-    if found.state == "unknown" or any(posixpath.basename(path) == name for path in package.tree.files):
+    if found.state == "unknown" or any(
+        posixpath.basename(path) == name for path in package.tree.files
+    ):
         return _why_not_installed(package, target, found)
     if submission.tree.unopened:
-        raise NotDecided(f"{name} may be in an archive that could not be opened", "an archive could not be opened")
+        raise NotDecided(
+            f"{name} may be in an archive that could not be opened",
+            "an archive could not be opened",
+        )
     similar = closest(name, map(posixpath.basename, package.tree.files))
-    return f"is not in the package {package.name!r}{f'; there is {quoted(similar)}' if similar else ''}"
+    return (
+        "is not in the package "
+        f"{package.name!r}{f'; there is {quoted(similar)}' if similar else ''}"
+    )
 
 
 def _file_of(mesh: _MeshFile, submission: Submission) -> File | None:
@@ -337,13 +396,23 @@ def _path_from_xacro(path: str) -> tuple[str, str] | None:
 
 
 def _without_package(name: str, path: str, submission: Submission) -> str:
-    """Return that no submitted package has a name; raise NotDecided if one may be in an archive that is closed."""
+    """Return that no submitted package has a name; raise NotDecided if one may be in an archive
+    that is closed.
+    """
     if submission.tree.unopened:
         reason = "an archive could not be opened"
-        raise NotDecided(f"the package {quoted(name)} may be in an archive that could not be opened", reason)
+        raise NotDecided(
+            f"the package {quoted(name)} may be in an archive that could not be opened", reason
+        )
     holding = [package.name for package in submission.packages if path in package.tree.files]
-    meant = closest(name, [package.name for package in submission.packages]) or next(iter(holding), None)
-    hint = f"; the submission has {quoted(meant)}" if meant is not None else ", which is not part of the submission"
+    meant = closest(name, [package.name for package in submission.packages]) or next(
+        iter(holding), None
+    )
+    hint = (
+        f"; the submission has {quoted(meant)}"
+        if meant is not None
+        else ", which is not part of the submission"
+    )
     return f"names the package {quoted(name)}{hint}"
 
 

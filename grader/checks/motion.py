@@ -36,9 +36,11 @@ def rolls_forward(
     tolerance: NonNegative,
     any_type: bool = False,
 ) -> Outcome:
-    """Turning a wheel's joint by a small positive angle drives the base forward, if the wheel rolls without slip.
+    """Turning a wheel's joint by a small positive angle drives the base forward, if the wheel rolls
+    without slip.
 
-    The lowest point of the wheel must move opposite to `forward`, and the joint's axis must be within 45 degrees of
+    The lowest point of the wheel must move opposite to `forward`, and the joint's axis must be
+    within 45 degrees of
     level: about an upright axis, a wheel swivels.
 
     Args:
@@ -67,15 +69,24 @@ def rolls_forward(
 def travel_of(
     robot: Configuration, link: str, joint: Joint, base: str, up: Vector
 ) -> tuple[Vector, Literal[""]] | tuple[None, str]:
-    """Return the direction in which a small positive rotation drives the base, or None and why the wheel does not roll.
+    """Return the direction in which a small positive rotation drives the base, or None and why the
+    wheel does not roll.
 
-    The direction is a unit vector in the base's frame, perpendicular to the unit vector `up`. Raises MissingElement,
-    NotDecided or UnknownShape if it cannot be determined.
+    The direction is a unit vector in the base's frame, perpendicular to the unit vector `up`.
+    Raises MissingElement, NotDecided or UnknownShape if it cannot be determined.
     """
-    poses = [(visual.geometry, visual_pose(robot, link, visual, base)) for visual in visuals(robot, link)]
-    lowest = min(poses, key=lambda shape: extent(shape[0], shape[1], up)[0]) if len(poses) > 1 else poses[0]
+    poses = [
+        (visual.geometry, visual_pose(robot, link, visual, base)) for visual in visuals(robot, link)
+    ]
+    lowest = (
+        min(poses, key=lambda shape: extent(shape[0], shape[1], up)[0])
+        if len(poses) > 1
+        else poses[0]
+    )
     low = farthest(*lowest, minus((0.0, 0.0, 0.0), up))
-    moved = _flatten(minus(robot.displacement(link, joint, _SMALL_ANGLE, relative_to=base).apply(low), low), up)
+    moved = _flatten(
+        minus(robot.displacement(link, joint, _SMALL_ANGLE, relative_to=base).apply(low), low), up
+    )
     travel = unit((-moved[0], -moved[1], -moved[2])) if hypot(*moved) > _STANDSTILL else None
     if travel is None:
         return None, "its lowest point stays in place"
@@ -83,14 +94,26 @@ def travel_of(
     slope = degrees(asin(min(1.0, upright)))
     if slope > _MAX_SLOPE + SLACK:
         is_upright = slope >= 90.0 - _NEARLY
-        return None, "it turns about a vertical axis" if is_upright else f"its axis is {in_degrees(slope)} off level"
+        return (
+            None,
+            "it turns about a vertical axis"
+            if is_upright
+            else f"its axis is {in_degrees(slope)} off level",
+        )
     return travel, ""
 
 
 def axis_along(
-    robot: Configuration, *, link: str, axis: Direction, relative_to: str, direction: Direction, tolerance: NonNegative
+    robot: Configuration,
+    *,
+    link: str,
+    axis: Direction,
+    relative_to: str,
+    direction: Direction,
+    tolerance: NonNegative,
 ) -> Outcome:
-    """An axis of a link's frame lies along a direction of another link's frame, within `tolerance` degrees.
+    """An axis of a link's frame lies along a direction of another link's frame, within `tolerance`
+    degrees.
 
     Args:
         link: The link that is examined.
@@ -109,14 +132,23 @@ def axis_along(
     if not fine:
         message += f"; it should point along {point(expected)} ({in_degrees(off)} off)"
     joint = robot.parent_joints.get(link)
-    at = place(joint.origin.location if joint and joint.origin else None, "rpy") or place(robot.link(link).location)
+    at = place(joint.origin.location if joint and joint.origin else None, "rpy") or place(
+        robot.link(link).location
+    )
     return judged(fine, message, actual, expected, tolerance, "deg", at=at)
 
 
 def turns_about_itself(
-    robot: Configuration, *, link: str, base: str, tolerance: NonNegative, angle: NonNegative, any_type: bool = False
+    robot: Configuration,
+    *,
+    link: str,
+    base: str,
+    tolerance: NonNegative,
+    angle: NonNegative,
+    any_type: bool = False,
 ) -> Outcome:
-    """A cylinder turns about its own axis: the joint's axis has its direction (`angle`, degrees) and position (metres).
+    """A cylinder turns about its own axis: the joint's axis has its direction (`angle`, degrees)
+    and position (metres).
 
     Args:
         link: The link that shows the cylinder.
@@ -127,10 +159,16 @@ def turns_about_itself(
     """
     robot = _as_turning(robot, link) if any_type else robot
     cylinders = [visual for visual in visuals(robot, link) if isinstance(visual.geometry, Cylinder)]
-    visual = max(cylinders, key=lambda visual: volume(visual.geometry)) if cylinders else main_visual(robot, link)
+    visual = (
+        max(cylinders, key=lambda visual: volume(visual.geometry))
+        if cylinders
+        else main_visual(robot, link)
+    )
     if not isinstance(visual.geometry, Cylinder):
         message = f"{link!r} shows no cylinder, so it has no axis to turn about"
-        raise MissingElement("cylinder", link, message=message, location=place(visual.geometry.location))
+        raise MissingElement(
+            "cylinder", link, message=message, location=place(visual.geometry.location)
+        )
     joint = turning_joint(robot, link, base)
     T_joint_wheel = visual_pose(robot, link, visual, joint.child)
     turning, own = robot.axis(joint), T_joint_wheel.rotate((0.0, 0.0, 1.0))
@@ -138,19 +176,27 @@ def turns_about_itself(
     away = hypot(*cross(turning, T_joint_wheel.translation))
     at, detail = place(joint.axis_location, "xyz") or joint.location, f" (joint {joint.name!r})"
     if tilt > angle + SLACK:
-        message = f"the joint axis of {link!r} is {in_degrees(tilt)} off the cylinder's axis; they should coincide"
+        message = (
+            f"the joint axis of {link!r} is {in_degrees(tilt)} off the cylinder's axis; they "
+            "should coincide"
+        )
         return judged(False, message, tilt, 0.0, angle, "deg", at=at, detail=detail)
     fine = away <= tolerance + SLACK
     message = f"{link!r} turns about its own axis"
     if not fine:
-        message = f"the joint axis of {link!r} is {in_millimetres(away)} from the cylinder's axis; they should coincide"
+        message = (
+            f"the joint axis of {link!r} is {in_millimetres(away)} from the cylinder's axis; "
+            "they should coincide"
+        )
         message += "; it should be on it"
     at = place(visual.origin.location, "xyz") or at
     return judged(fine, message, away, 0.0, tolerance, "m", at=at, detail="" if fine else detail)
 
 
 def turning_joint(robot: Configuration, link: str, base: str) -> Joint:
-    """Return the turning joint next to a link, on the path to the base; raise MissingElement where nothing turns."""
+    """Return the turning joint next to a link, on the path to the base; raise MissingElement where
+    nothing turns.
+    """
     message = f"no joint between {base!r} and {link!r} turns; one should be continuous or revolute"
     return last_moving(robot.between(base, link), link, ("continuous", "revolute"), message)
 
@@ -163,7 +209,9 @@ def _as_turning(robot: Configuration, link: str) -> Configuration:
     known = {key: part for key, part in joint.unresolved.items() if key != "@type"}
     turning = replace(joint.known, type="continuous", unresolved=known)
     joints = (turning if other is joint.known else other for other in robot.known.joints)
-    return Configuration(replace(robot.known, joints=tuple(joints)), robot.positions, is_guarded=robot.is_guarded)
+    return Configuration(
+        replace(robot.known, joints=tuple(joints)), robot.positions, is_guarded=robot.is_guarded
+    )
 
 
 def _flatten(vector: Vector, up: Vector) -> Vector:

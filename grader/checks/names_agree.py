@@ -10,13 +10,16 @@ _MAX_NAMED = 3  # mistakes in a message
 
 
 def names_agree(submission: Submission, *, of: Family) -> Outcome:
-    """The names that files of the packages use are defined: files, frames, parameters, programs and so on.
+    """The names that files of the packages use are defined: files, frames, parameters, programs and
+    so on.
 
-    A name fails only if everything that could define it was read: one that a package outside of the submission may
-    define does not fail. Names that other packages of the submission use do not count.
+    A name fails only if everything that could define it was read: one that a package outside of the
+    submission may define does not fail. Names that other packages of the submission use do not
+    count.
 
     Args:
-        of: What is named: files, frames, controllers, parameters, arguments, programs, topics or dependencies.
+        of: What is named: files, frames, controllers, parameters, arguments, programs, topics or
+            dependencies.
     """
     from grader.workspace.reading import read_agreement, wrong_names  # late: few rubrics ask for it
 

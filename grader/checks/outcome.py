@@ -1,4 +1,6 @@
-"""The outcome of a check, and its wording: measured against expected, the difference, its unit and frame."""
+"""The outcome of a check, and its wording: measured against expected, the difference, its unit and
+frame.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
@@ -12,20 +14,29 @@ Status = Literal["passed", "failed", "skipped", "pending", "errored"]
 _Measured = bool | float | str | tuple[float, ...] | tuple[str, ...] | Mapping[str, str] | None
 _AnyPlace = Location | LazyLocation | None
 
-# A tolerance includes its end: 0.152 is within 0.002 of 0.15, although the floats differ by slightly more.
+# A tolerance includes its end: 0.152 is within 0.002 of 0.15, although the floats differ by
+# slightly more.
 SLACK = 1e-9
 _SIDES = ("too large", "too small")
-_BASE = "base"  # begins the names of the frames of a base: its x axis points forward, y left, z up (REP 103, REP 105)
-_DIRECTIONS = (("too far forward", "too far back"), ("too far left", "too far right"), ("too high", "too low"))
+# begins the names of the frames of a base: its x axis points forward, y left, z up (REP 103, REP
+# 105)
+_BASE = "base"
+_DIRECTIONS = (
+    ("too far forward", "too far back"),
+    ("too far left", "too far right"),
+    ("too high", "too low"),
+)
 _UNITS = ((1000.0, "millimetres"), (100.0, "centimetres"))
 _FEW, _MANY = 100.0, 1e7  # from here on: no decimals, an exponent
 
 
 class Outcome(NamedTuple):
-    """The result of one check: whether its fact is true, a sentence about it, what was measured, and where to look.
+    """The result of one check: whether its fact is true, a sentence about it, what was measured,
+    and where to look.
 
-    A check returns it, mostly from `judged`, `measured`, `failed` or `passed` below; the grader itself makes those
-    that are skipped or errored. Points come from the status alone, and every format shows the message.
+    A check returns it, mostly from `judged`, `measured`, `failed` or `passed` below; the grader
+    itself makes those that are skipped or errored. Points come from the status alone, and every
+    format shows the message.
 
     >>> outcome = measured("the radius of 'wheel' is", 0.2, 0.1, 0.002)
     >>> outcome.status, outcome.measured, outcome.unit
@@ -43,9 +54,13 @@ class Outcome(NamedTuple):
     tolerance: float | None = None
     unit: str | None = None
     location: Location | None = None  # the place to look at, of a failure
-    mistake: str = ""  # the message without what differs between students: equal mistakes are counted together
-    problem: str = ""  # the message of the file's problem that it reports, or in a few words what is in doubt
-    absent: tuple[str, ...] = ()  # what is not built yet, of a failure that is due to that alone: "lidar", "package"
+    # the message without what differs between students: equal mistakes are counted together
+    mistake: str = ""
+    # the message of the file's problem that it reports, or in a few words what is in doubt
+    problem: str = ""
+    absent: tuple[
+        str, ...
+    ] = ()  # what is not built yet, of a failure that is due to that alone: "lidar", "package"
 
 
 def fault_of(returned: object) -> str:
@@ -53,7 +68,9 @@ def fault_of(returned: object) -> str:
     if not isinstance(returned, Outcome):
         return f"it returned {type(returned).__name__}, not an Outcome"
     if returned.status not in ("passed", "failed", "pending"):
-        return f"it returned the status {returned.status!r}; a check returns passed, failed or pending"
+        return (
+            f"it returned the status {returned.status!r}; a check returns passed, failed or pending"
+        )
     for name, is_valid in _VALID.items():
         if not is_valid(getattr(returned, name)):
             return f"it returned an Outcome with an invalid {name}"
@@ -95,15 +112,19 @@ def passed(message: str) -> Outcome:
 
 
 def pending(message: str, cause: str = "", at: _AnyPlace = None, *, problem: str = "") -> Outcome:
-    """Return the outcome for manual grading; `cause` is the reason without what differs between students."""
+    """Return the outcome for manual grading; `cause` is the reason without what differs between
+    students.
+    """
     return Outcome("pending", message, location=location_of(at), mistake=cause, problem=problem)
 
 
-def failed(message: str, at: _AnyPlace = None, *, detail: str = "", problem: str = "", mistake: str = "") -> Outcome:
+def failed(
+    message: str, at: _AnyPlace = None, *, detail: str = "", problem: str = "", mistake: str = ""
+) -> Outcome:
     """Return the outcome for a fact that is not true.
 
-    `detail` ends the message with what differs between students; `mistake` replaces a message in which something else
-    does.
+    `detail` ends the message with what differs between students; `mistake` replaces a message in
+    which something else does.
     """
     outcome = judged(False, message, at=at, detail=detail)
     return outcome._replace(problem=problem, mistake=mistake or outcome.mistake)
@@ -146,7 +167,9 @@ def measured(
     sides: tuple[str, str] = _SIDES,
     at: _AnyPlace = None,
 ) -> Outcome:
-    """Compare one length in metres: "the radius of 'wheel' is 0.2 m; it should be 0.1 m (100 mm too large)"."""
+    """Compare one length in metres: "the radius of 'wheel' is 0.2 m; it should be 0.1 m (100 mm too
+    large)".
+    """
     fine = within(actual, expected, tolerance)
     message = f"{what} {point((actual,))} m"
     if not fine:
@@ -156,38 +179,59 @@ def measured(
 
 
 def measured_point(
-    what: str, actual: Vector, expected: Vector, tolerance: float, frame: str, *, at: _AnyPlace = None
+    what: str,
+    actual: Vector,
+    expected: Vector,
+    tolerance: float,
+    frame: str,
+    *,
+    at: _AnyPlace = None,
 ) -> Outcome:
     """Compare a point in a frame, in metres; each coordinate must be within the tolerance."""
     wrong = [axis for axis in range(3) if not within(actual[axis], expected[axis], tolerance)]
     off = [_off_along(axis, actual[axis] - expected[axis], frame) for axis in wrong]
     message = f"{what} is at {point(actual)} m in {frame!r}"
     if off:
-        message += f"; it should be at {point(expected)} m ({other_unit(actual, expected) or ', '.join(off)})"
+        message += (
+            f"; it should be at {point(expected)} m "
+            f"({other_unit(actual, expected) or ', '.join(off)})"
+        )
     return judged(not off, message, actual, expected, tolerance, "m", at=at)
 
 
 def _off_along(axis: int, off: float, frame: str) -> str:
-    """Return how far a coordinate is off: in the frame of a base by where that is, else by its sign."""
+    """Return how far a coordinate is off: in the frame of a base by where that is, else by its
+    sign.
+    """
     if not frame.startswith(_BASE):
         return f"{'xyz'[axis]} {difference(off)}"
     return difference(off, *_DIRECTIONS[axis])
 
 
 def how_far_off(outcome: Outcome) -> float | None:
-    """Return by how many metres a length or a point is off that fails; None if it fails for another reason."""
+    """Return by how many metres a length or a point is off that fails; None if it fails for another
+    reason.
+    """
     if outcome.status != "failed" or outcome.unit != "m":
         return None
-    actual, expected = (one if isinstance(one, tuple) else (one,) for one in (outcome.measured, outcome.expected))
+    actual, expected = (
+        one if isinstance(one, tuple) else (one,) for one in (outcome.measured, outcome.expected)
+    )
     pairs = [*zip(actual, expected, strict=False)]
-    numbers = [abs(a - b) for a, b in pairs if isinstance(a, float | int) and isinstance(b, float | int)]
+    numbers = [
+        abs(a - b) for a, b in pairs if isinstance(a, float | int) and isinstance(b, float | int)
+    ]
     is_off = isfinite(sum(numbers)) and max(numbers, default=0) > (outcome.tolerance or 0)
     return max(numbers) if is_off else None
 
 
 def other_unit(actual: Sequence[float], expected: Sequence[float]) -> str:
-    """Return that lengths seem to be in millimetres or centimetres; empty unless all are too large by that factor."""
-    pairs = [(a, b) for a, b in zip(actual, expected, strict=True) if abs(a) > SLACK or abs(b) > SLACK]
+    """Return that lengths seem to be in millimetres or centimetres; empty unless all are too large
+    by that factor.
+    """
+    pairs = [
+        (a, b) for a, b in zip(actual, expected, strict=True) if abs(a) > SLACK or abs(b) > SLACK
+    ]
     units = (unit for factor, unit in _UNITS if all(abs(a - b * factor) < abs(b) for a, b in pairs))
     unit = next(units, "") if pairs else ""
     return f"a URDF is in metres, not in {unit}" if unit else ""
@@ -220,9 +264,17 @@ def point(values: tuple[float, ...]) -> str:
     return " ".join(map(_short_number, values))
 
 
-def place(element: LazyLocation | None, attribute: str | None = None, inside: str | None = None) -> LazyLocation | None:
-    """Return the place of an element that was read from the file, of one of its attributes, or of an element inside."""
-    return LazyLocation(element.source, element.tag, attribute, inside) if element is not None else None
+def place(
+    element: LazyLocation | None, attribute: str | None = None, inside: str | None = None
+) -> LazyLocation | None:
+    """Return the place of an element that was read from the file, of one of its attributes, or of
+    an element inside.
+    """
+    return (
+        LazyLocation(element.source, element.tag, attribute, inside)
+        if element is not None
+        else None
+    )
 
 
 @lru_cache(maxsize=4096)

@@ -1,4 +1,6 @@
-"""Checks of a package: its manifest, whether a build of it succeeds, and what that installs. Nothing is run."""
+"""Checks of a package: its manifest, whether a build of it succeeds, and what that installs.
+Nothing is run.
+"""
 
 import posixpath
 from collections.abc import Sequence
@@ -43,11 +45,13 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
         problem, count = manifest.refusals[0], len(manifest.refusals)
         more = f" (and {count - 1} more)" if count > 1 else ""
         return failed(problem.message + more, problem.location, problem=problem.message)
-    message = f"the package is named {manifest.name!r}{'' if fine else f'; it should be named {name!r}'}"
+    message = (
+        f"the package is named {manifest.name!r}{'' if fine else f'; it should be named {name!r}'}"
+    )
     setup, registered = package.installation, package.registered
     if fine and setup is not None and registered and name not in registered:
-        # ament_index finds a package by its marker. colcon adds one for the name in package.xml, but no file goes below
-        # that name.
+        # ament_index finds a package by its marker. colcon adds one for the name in package.xml,
+        # but no file goes below that name.
         others = enumerated([repr(other) for other in registered])
         message = f"package.xml names the package {name!r}, but setup.py registers it as {others}"
         at = next(copy.at for copy in setup.copies if copy.target.startswith(RESOURCE_INDEX))
@@ -73,16 +77,23 @@ def package_type(package: Package, *, build_type: str) -> Outcome:
 
 
 def build_installs(
-    package: Package, submission: Submission, *, kind: _FileKind, name: str, despite_errors: bool = False
+    package: Package,
+    submission: Submission,
+    *,
+    kind: _FileKind,
+    name: str,
+    despite_errors: bool = False,
 ) -> Outcome:
     """A build of the package installs its URDF, launch file or RViz file, below share/<package>.
 
-    setup.py or CMakeLists.txt is evaluated statically; what cannot be determined needs manual grading.
+    setup.py or CMakeLists.txt is evaluated statically; what cannot be determined needs manual
+    grading.
 
     Args:
         kind: The kind of the file.
         name: The file's name, which decides if the package has several files of the kind.
-        despite_errors: Whether an error that stops the build is ignored, which `setup_imports` reports.
+        despite_errors: Whether an error that stops the build is ignored, which `setup_imports`
+            reports.
     """
     files = _files_of(package, kind, name)
     graded = submission.path
@@ -94,27 +105,38 @@ def build_installs(
 
 
 def installs_files(package: Package, *, files: list[str], despite_errors: bool = False) -> Outcome:
-    """A build of the package installs at least one file that matches these patterns, below share/<package>.
+    """A build of the package installs at least one file that matches these patterns, below
+    share/<package>.
 
     Args:
-        files: Patterns for paths in the package, such as "meshes/*.stl"; one installed file is enough.
-        despite_errors: Whether an error that stops the build is ignored, which `setup_imports` reports.
+        files: Patterns for paths in the package, such as "meshes/*.stl"; one installed file is
+            enough.
+        despite_errors: Whether an error that stops the build is ignored, which `setup_imports`
+            reports.
     """
-    found = [path for path in package.tree.files if any(fnmatch(path, pattern) for pattern in files)]
+    found = [
+        path for path in package.tree.files if any(fnmatch(path, pattern) for pattern in files)
+    ]
     if not found:
         patterns = enumerated([repr(pattern) for pattern in files], word="or")
-        raise MissingElement("file", files[0], message=f"the package has no file that matches {patterns}")
+        raise MissingElement(
+            "file", files[0], message=f"the package has no file that matches {patterns}"
+        )
     return _require_installed(package, found, None, despite_errors=despite_errors)
 
 
 def setup_imports(package: Package) -> Outcome:
-    """A build of the package succeeds: Python runs `setup.py`, or CMake `CMakeLists.txt`, without an error."""
+    """A build of the package succeeds: Python runs `setup.py`, or CMake `CMakeLists.txt`,
+    without an error.
+    """
     setup = _readable_setup(package)
     return _build_error(package, setup) or passed(f"{setup.file} builds")
 
 
 def _readable_manifest(package: Package) -> "Manifest":
-    """Return the package's package.xml, also of one that is broken if its build type can be read."""
+    """Return the package's package.xml, also of one that is broken if its build type can be
+    read.
+    """
     manifest = package.manifest
     if manifest is not None and manifest.unread:
         raise NotDecided(manifest.unread, "package.xml cannot be read")
@@ -124,7 +146,9 @@ def _readable_manifest(package: Package) -> "Manifest":
         raise MissingElement(MANIFEST, package.folder, message=message, absent=MANIFEST)
     if not manifest.build_type and manifest.refusals:
         problem = manifest.refusals[0]
-        raise MissingElement(MANIFEST, package.folder, message=problem.message, location=problem.location)
+        raise MissingElement(
+            MANIFEST, package.folder, message=problem.message, location=problem.location
+        )
     return manifest
 
 
@@ -140,7 +164,9 @@ def _build_error(package: Package, setup: "Installation") -> Outcome | None:
         messages = list(dict.fromkeys(message for message, _, _ in errors))
         _, hint, at = errors[0]
         message, problem = "; ".join(first_lines(messages, 3)), messages[0] + hint
-        return failed(message, setup.location(at), detail=hint if len(messages) == 1 else "", problem=problem)
+        return failed(
+            message, setup.location(at), detail=hint if len(messages) == 1 else "", problem=problem
+        )
     if not setup.is_called:
         message = "setup.py does not call setup()"
         return failed(message, setup.location(setup.called_at), problem=message)
@@ -152,7 +178,9 @@ def _build_error(package: Package, setup: "Installation") -> Outcome | None:
 
 
 def _files_of(package: Package, kind: _FileKind, name: str) -> Sequence[str]:
-    """Return the file of a package that has this name, else all of the kind that are no part of another one."""
+    """Return the file of a package that has this name, else all of the kind that are no part of
+    another one.
+    """
     if kind == "launch":
         chosen = package.launch_file(name)
         return [chosen] if chosen is not None else []
@@ -161,7 +189,10 @@ def _files_of(package: Package, kind: _FileKind, name: str) -> Sequence[str]:
     named = [path for path in paths if posixpath.basename(path) == name]
     if named or kind != "urdf":
         return named or paths
-    from grader.submission.robots import find_robots, parts_of  # late: the URDF usually has the lab's name
+    from grader.submission.robots import (
+        find_robots,
+        parts_of,
+    )  # late: the URDF usually has the lab's name
 
     parts = parts_of(find_robots(package.tree))
     return [path for path in paths if path not in parts] or paths
@@ -170,14 +201,19 @@ def _files_of(package: Package, kind: _FileKind, name: str) -> Sequence[str]:
 def _readable_setup(package: Package) -> "Installation":
     """Return what the package's setup.py or CMakeLists.txt installs.
 
-    Raises MissingElement if there is none, or if it cannot be parsed; NotDecided if it needs manual grading.
+    Raises MissingElement if there is none, or if it cannot be parsed; NotDecided if it needs manual
+    grading.
     """
     setup = package.installation
     if setup is None:
         message = f"the package has no {package.missing_build_file}, so a build installs nothing"
-        raise MissingElement(SETUP, package.folder, message=message, absent=package.missing_build_file)
+        raise MissingElement(
+            SETUP, package.folder, message=message, absent=package.missing_build_file
+        )
     if setup.fault is not None and setup.fault.sure:
-        raise MissingElement(SETUP, package.folder, message=setup.fault_text, location=setup.fault.location)
+        raise MissingElement(
+            SETUP, package.folder, message=setup.fault_text, location=setup.fault.location
+        )
     if setup.unread:
         raise NotDecided(setup.unread, f"{setup.file} cannot be read")
     return setup
@@ -194,10 +230,21 @@ def _require_installed(
         return passed(f"{setup.file} has an entry for {files[0]}")
     copies = [copy for copy in setup.copies if copy.source in files]
     inside = [copy for copy in copies if copy.target.startswith(package.share)]
-    twice = sorted({copy.target for copy in inside if posixpath.basename(copy.target) == posixpath.basename(files[0])})
+    twice = sorted(
+        {
+            copy.target
+            for copy in inside
+            if posixpath.basename(copy.target) == posixpath.basename(files[0])
+        }
+    )
     if kind == "launch" and len(twice) > 1:
-        message = f"a build installs {files[0]} as {' and as '.join(twice)}; ros2 launch needs exactly one"
-        return failed(message, setup.location(inside[-1].at), mistake="a build installs the launch file twice")
+        message = (
+            f"a build installs {files[0]} as {' and as '.join(twice)}; ros2 launch needs "
+            "exactly one"
+        )
+        return failed(
+            message, setup.location(inside[-1].at), mistake="a build installs the launch file twice"
+        )
     if inside and setup.misspelt is not None:
         raise package.without_data_files(setup.misspelt.message)
     if inside:
@@ -214,11 +261,15 @@ def _require_installed(
     raise _why_not_installed(package, setup, files, kind)
 
 
-def _stops_at(package: Package, setup: "Installation", files: Sequence[str], kind: _FileKind | None) -> bool:
+def _stops_at(
+    package: Package, setup: "Installation", files: Sequence[str], kind: _FileKind | None
+) -> bool:
     """Return whether a build stops at the entry for these files, so that it is there."""
     folders = {posixpath.dirname(path) for path in files}
     paths = [stop.path for stop in setup.stops if stop.path]
-    if setup.is_cmake and any(closest(path, folders) for path in paths):  # install(DIRECTORY lunch ...)
+    if setup.is_cmake and any(
+        closest(path, folders) for path in paths
+    ):  # install(DIRECTORY lunch ...)
         return True
     owners = ((_kind_of_file(path, package), posixpath.dirname(path)) for path in paths)
     return any(owner == kind or folder in folders for owner, folder in owners)
@@ -232,36 +283,56 @@ def _why_not_installed(
     empty = _pattern_for(setup.empty, files, kind)
     if empty is None:
         message += f": {'no' if setup.is_cmake else 'no entry of'} {setup.entries} names it"
-        return MissingElement(what, package.folder, message=message, location=setup.location(setup.called_at))
+        return MissingElement(
+            what, package.folder, message=message, location=setup.location(setup.called_at)
+        )
     problem = f"the pattern {empty.pattern!r} in {setup.file} matches no file"
     # Late: a URDF on its own needs none of what reads a package.
     from grader.package.found_problems import why_no_match
 
     detail, at = why_no_match(package, empty.pattern), setup.location(empty.at)
     message += f": {problem}"
-    return MissingElement(what, package.folder, message=message, detail=detail, location=at, problem=problem + detail)
+    return MissingElement(
+        what, package.folder, message=message, detail=detail, location=at, problem=problem + detail
+    )
 
 
-def _pattern_for(empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: _FileKind | None) -> "EmptyGlob | None":
-    """Return the pattern without a match that is meant for one of these files, by its folder, ending or kind."""
+def _pattern_for(
+    empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: _FileKind | None
+) -> "EmptyGlob | None":
+    """Return the pattern without a match that is meant for one of these files, by its folder,
+    ending or kind.
+    """
     folders = {posixpath.dirname(path) for path in files}
     endings = tuple({posixpath.splitext(path)[1] for path in files} - {""})
     for glob in empty:
         folder = posixpath.dirname(glob.pattern)
-        if folder in folders or (folder and closest(folder, folders)) or (endings and glob.pattern.endswith(endings)):
+        if (
+            folder in folders
+            or (folder and closest(folder, folders))
+            or (endings and glob.pattern.endswith(endings))
+        ):
             return glob
     return next((glob for glob in empty if kind is not None and kind in glob.pattern.lower()), None)
 
 
 def _kind_of_file(path: str, package: Package) -> _FileKind | None:
-    """Return the kind of file that an entry is about, by its ending or by the other files of its folder."""
+    """Return the kind of file that an entry is about, by its ending or by the other files of its
+    folder.
+    """
     if ".launch." in path or path.endswith("_launch.py"):
         return "launch"
     for kind, endings in _ENDINGS.items():
         if path.lower().endswith(endings):
             return kind
     folder = posixpath.dirname(path)
-    beside = [path for path in package.tree.files if posixpath.dirname(path) == folder] if folder else []
+    beside = (
+        [path for path in package.tree.files if posixpath.dirname(path) == folder] if folder else []
+    )
     endings = (*_ENDINGS["urdf"], *_ENDINGS["rviz"])
-    kinds = {_kind_of_file(path, package) for path in beside if path.endswith(endings) or ".launch." in path}
+    kinds = {
+        _kind_of_file(path, package)
+        for path in beside
+        if path.endswith(endings) or ".launch." in path
+    }
     return next(iter(kinds)) if len(kinds) == 1 else None

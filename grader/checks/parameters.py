@@ -1,4 +1,6 @@
-"""The check of parameters: the values that nodes get, wherever they are written, also measured on the robot."""
+"""The check of parameters: the values that nodes get, wherever they are written, also measured on
+the robot.
+"""
 
 from collections.abc import Callable, Iterator, Mapping
 from math import dist
@@ -38,10 +40,11 @@ def parameter_is(
     tolerance: NonNegative = _EXACT,
     where_given: bool = False,
 ) -> Outcome:
-    """A node gets this value of a parameter, wherever it is written, under the criterion's `args` if it has some.
+    """A node gets this value of a parameter, wherever it is written, under the criterion's `args`
+    if it has some.
 
-    Parameter files, values in launch files and arguments of the node count as in ROS 2. Controllers get those of
-    the controller manager's files, and those that their spawner is given.
+    Parameter files, values in launch files and arguments of the node count as in ROS 2. Controllers
+    get those of the controller manager's files, and those that their spawner is given.
 
     Args:
         node: The name of the node, or of the controller, without its namespace.
@@ -49,13 +52,14 @@ def parameter_is(
         value: The value that it should have; for a list all items, in order.
         one_of: Values of which it should have one.
         has: Values that a list should have among its items.
-        measure: The measure of the robot that the value should equal: the radius or length of the shape of the first
-            link, the distance between two links, or a limit of the joint that moves the first one. Of a wheel, the
-            centre of its shape counts; of any other link, its frame.
+        measure: The measure of the robot that the value should equal: the radius or length of the
+            shape of the first link, the distance between two links, or a limit of the joint that
+            moves the first one. Of a wheel, the centre of its shape counts; of any other link, its
+            frame.
         links: The links that are measured.
         tolerance: How far a number may be off, in the number's own unit.
-        where_given: Whether a node that does not get the parameter passes, for `carried`, if no parameter file has
-            another value.
+        where_given: Whether a node that does not get the parameter passes, for `carried`, if no
+            parameter file has another value.
     """
     del package  # without one, there are no parameters
     said = f"{node} gets"
@@ -79,7 +83,10 @@ def parameter_is(
         shown = round(value, _DIGITS) if isinstance(value, float) else value
         wanted, fits = f"should be {_text(shown)}", _equal(actual, value, tolerance)
     if one_of is not None:
-        wanted, fits = f"should be {enumerated([*map(_text, one_of)], word='or')}", _is_one(actual, one_of, tolerance)
+        wanted, fits = (
+            f"should be {enumerated([*map(_text, one_of)], word='or')}",
+            _is_one(actual, one_of, tolerance),
+        )
     if has is not None:
         items = actual if isinstance(actual, list) else [actual]
         wanted = f"should have {enumerated([*map(_text, has)])}"
@@ -90,19 +97,27 @@ def parameter_is(
     return passed(message) if fits else failed(f"{message}; it {wanted}", found.location)
 
 
-def _measured_if_there(submission: Submission, measure: _Measure, links: list[str] | None) -> float | None:
+def _measured_if_there(
+    submission: Submission, measure: _Measure, links: list[str] | None
+) -> float | None:
     try:
         return measured(submission, measure, links or [])
     except MissingElement:
         return None
 
 
-def _written_otherwise(submission: Submission, parameter: str, value: Any, tolerance: float) -> ParameterValue | None:
-    """Return what parameter files have for a parameter, of whatever node, if none of them has a certain value."""
+def _written_otherwise(
+    submission: Submission, parameter: str, value: Any, tolerance: float
+) -> ParameterValue | None:
+    """Return what parameter files have for a parameter, of whatever node, if none of them has a
+    certain value.
+    """
     from grader.workspace.workspace import workspace_of  # late: few rubrics ask for it
     from grader.workspace.yaml_values import sections_in
 
-    sections = (section for _, tree in workspace_of(submission).trees for _, section in sections_in(tree))
+    sections = (
+        section for _, tree in workspace_of(submission).trees for _, section in sections_in(tree)
+    )
     nodes = (section.get(*parameter.split(".")) for section in sections)
     written = [value_in_file(node) for node in nodes if node is not None]
     known = [it for it in written if not isinstance(it.value, Unknown)]
@@ -111,7 +126,9 @@ def _written_otherwise(submission: Submission, parameter: str, value: Any, toler
 
 
 def value_of(submission: Submission, node: str, parameter: str) -> ParameterValue:
-    """Return the value that a node gets. Raises MissingElement if it gets none, NotDecided where that is not known."""
+    """Return the value that a node gets. Raises MissingElement if it gets none, NotDecided where
+    that is not known.
+    """
     from grader.workspace.workspace import workspace_of  # late: few rubrics ask for it
 
     workspace = workspace_of(submission)
@@ -119,18 +136,28 @@ def value_of(submission: Submission, node: str, parameter: str) -> ParameterValu
     values = [found.values[parameter] for found in given if parameter in found.values]
     if len({repr(it.value) for it in values}) == 1 and len(values) == len(given):
         return values[0]
-    unknown = next((found.unknown for found in given if found.unknown), "") or workspace.unknown_nodes
+    unknown = (
+        next((found.unknown for found in given if found.unknown), "") or workspace.unknown_nodes
+    )
     if values and not unknown:
         places = enumerated([f"{it.location.path}:{it.location.line}" for it in values])
-        raise NotDecided(f"{node} gets different values of {parameter}: {places}", "a parameter has several values")
+        raise NotDecided(
+            f"{node} gets different values of {parameter}: {places}",
+            "a parameter has several values",
+        )
     if unknown:
-        raise NotDecided(f"the parameters of {node} are not known: {unknown}", "parameters of a node are not known")
+        raise NotDecided(
+            f"the parameters of {node} are not known: {unknown}",
+            "parameters of a node are not known",
+        )
     if not given:
         guess = did_you_mean(node, workspace.parameter_owners)
         message = f"nothing gives parameters to a node {quoted(node)}{guess}"
         raise MissingElement("parameters of the node", node, message=message)
     names = [name for found in given for name in found.values]
-    message = f"{node} does not get the parameter {quoted(parameter)}{did_you_mean(parameter, names)}"
+    message = (
+        f"{node} does not get the parameter {quoted(parameter)}{did_you_mean(parameter, names)}"
+    )
     at = next((it.location for found in given for it in found.values.values()), None)
     raise MissingElement("parameter", f"{node} {parameter}", message=message, location=at)
 
@@ -139,10 +166,14 @@ def _equal(actual: Any, wanted: Any, tolerance: float) -> bool:
     """Return whether a value is a wanted one: numbers within a tolerance, lists item by item."""
     match actual, wanted:
         case (list(), list()):
-            return len(actual) == len(wanted) and all(map(_equal, actual, wanted, [tolerance] * len(actual)))
+            return len(actual) == len(wanted) and all(
+                map(_equal, actual, wanted, [tolerance] * len(actual))
+            )
         case (bool() | str(), bool() | str()):
             return (type(actual), actual) == (type(wanted), wanted)
-        case (int() | float(), int() | float()) if not isinstance(actual, bool) and not isinstance(wanted, bool):
+        case (int() | float(), int() | float()) if not isinstance(actual, bool) and not isinstance(
+            wanted, bool
+        ):
             return abs(actual - wanted) <= tolerance
     return False
 
@@ -160,13 +191,22 @@ def _text(value: Any) -> str:
 
 
 def measured(submission: Submission, measure: _Measure, links: list[str]) -> float:
-    """Return a measure of the robot, in metres or radians. Raises MissingElement for a link that is not there."""
+    """Return a measure of the robot, in metres or radians. Raises MissingElement for a link that is
+    not there.
+    """
     robot = submission.needed_urdf().robot
     if robot is None:
-        raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot")
+        raise MissingElement(
+            "robot", "", message="ROS 2 cannot read the file, so there is no robot"
+        )
     if len(links) != 1 + (measure == "distance"):
         raise RubricError(
-            (f"parameter_is measures a {measure}: give {'two links' if measure == 'distance' else 'a link'}",)
+            (
+                (
+                    f"parameter_is measures a {measure}: give "
+                    f"{'two links' if measure == 'distance' else 'a link'}"
+                ),
+            )
         )
     found = measures(Configuration(robot), links).get(measure)
     if found is None:
@@ -175,7 +215,8 @@ def measured(submission: Submission, measure: _Measure, links: list[str]) -> flo
 
 
 def measures(robot: Configuration, links: list[str]) -> Mapping[str, Callable[[], float]]:
-    """Return what can be measured of one link, or of two: a radius, a distance, the limits of a joint.
+    """Return what can be measured of one link, or of two: a radius, a distance, the limits of a
+    joint.
 
     Args:
         robot: The robot.
@@ -185,7 +226,9 @@ def measures(robot: Configuration, links: list[str]) -> Mapping[str, Callable[[]
 
 
 def _place(robot: Configuration, link: str, relative_to: str) -> Vector:
-    """Return the centre of a cylinder or sphere that a joint turns without end, or where the link's frame is."""
+    """Return the centre of a cylinder or sphere that a joint turns without end, or where the link's
+    frame is.
+    """
     joint = robot.parent_joints.get(link)
     if joint is not None and joint.type == "continuous" and robot.robot.link(link).visuals:
         visual = main_visual(robot, link)
@@ -206,7 +249,9 @@ def _measures(robot: Configuration, links: list[str]) -> Iterator[tuple[str, Cal
                 yield "length", lambda: length
             case Sphere(radius=radius):
                 yield "radius", lambda: radius
-    joint: Joint | None = next((it for it in reversed(robot.chain(links[0])) if it.type != "fixed"), None)
+    joint: Joint | None = next(
+        (it for it in reversed(robot.chain(links[0])) if it.type != "fixed"), None
+    )
     if joint is not None and joint.limit is not None:
         limit = joint.limit
         yield from (("lower", lambda: limit.lower), ("upper", lambda: limit.upper))

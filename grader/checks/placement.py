@@ -3,7 +3,16 @@
 from math import acos, degrees
 
 from grader.checks.check import About
-from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, location_of, measured_point, place, point
+from grader.checks.outcome import (
+    SLACK,
+    Outcome,
+    failed,
+    in_degrees,
+    location_of,
+    measured_point,
+    place,
+    point,
+)
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, visual_pose
 from grader.robot.kinematics import Configuration
@@ -40,14 +49,21 @@ def frame_at(
         relative_to: The link in whose frame the point is given.
         xyz: The point: x, y and z, in metres.
         tolerance: How far each coordinate may be off, in metres.
-        rpy: The orientation: roll, pitch and yaw about fixed axes, in radians. It counts if `angle` is given.
+        rpy: The orientation: roll, pitch and yaw about fixed axes, in radians. It counts if `angle`
+            is given.
         angle: How far the orientation may be off, in degrees; with 180, it is not checked.
     """
     pose, at = robot.pose(link, relative_to=relative_to), origin_place(robot, link)
-    placed = measured_point(f"the frame {link!r}", pose.translation, xyz, tolerance, relative_to, at=at)
+    placed = measured_point(
+        f"the frame {link!r}", pose.translation, xyz, tolerance, relative_to, at=at
+    )
     return (
         _with_orientation(
-            placed, turn_between(pose.rotation, rotation_from_rpy(rpy)), angle, f"rpy = {point(rpy)} (radians)", at
+            placed,
+            turn_between(pose.rotation, rotation_from_rpy(rpy)),
+            angle,
+            f"rpy = {point(rpy)} (radians)",
+            at,
         )
         if angle < _ANY_ANGLE
         else placed
@@ -66,7 +82,8 @@ def centre_at(
     axis: Direction = Z_AXIS,
     angle: NonNegative = _ANY_AXIS,
 ) -> Outcome:
-    """The centre of a link's visual is at a point in another link's frame (m); if rigid, only fixed joints are between.
+    """The centre of a link's visual is at a point in another link's frame (m); if rigid, only fixed
+    joints are between.
 
     Args:
         link: The link that is examined.
@@ -74,8 +91,10 @@ def centre_at(
         xyz: The point: x, y and z, in metres.
         tolerance: How far each coordinate may be off, in metres.
         rigid: Whether only fixed joints may lie between the two links.
-        shape: Which of several visuals counts: the largest of this shape or, without one, the largest of all.
-        axis: The direction of the visual's z axis in the other frame, either way. It counts if `angle` is given.
+        shape: Which of several visuals counts: the largest of this shape or, without one, the
+            largest of all.
+        axis: The direction of the visual's z axis in the other frame, either way. It counts if
+            `angle` is given.
         angle: How far the z axis may be off, in degrees; with 90, it is not checked.
     """
     visual = main_visual(robot, link, shape)
@@ -87,15 +106,23 @@ def centre_at(
     if loose is not None:
         return loose
     at = _origin_by(robot, link, visual, relative_to, minus(actual, xyz)) or place(visual.location)
-    placed = measured_point(f"the centre of the visual of {link!r}", actual, xyz, tolerance, relative_to, at=at)
+    placed = measured_point(
+        f"the centre of the visual of {link!r}", actual, xyz, tolerance, relative_to, at=at
+    )
     if angle >= _ANY_AXIS:
         return placed
     cosine = abs(dot(pose.rotate(Z_AXIS), unit(axis) or axis))
-    return _with_orientation(placed, degrees(acos(min(1.0, cosine))), angle, f"the axis {point(axis)}", at)
+    return _with_orientation(
+        placed, degrees(acos(min(1.0, cosine))), angle, f"the axis {point(axis)}", at
+    )
 
 
-def _with_orientation(placed: Outcome, turned: float, angle: float, wanted: str, at: LazyLocation | None) -> Outcome:
-    """Return the outcome of a position, or its failure where the orientation is more than `angle` degrees off."""
+def _with_orientation(
+    placed: Outcome, turned: float, angle: float, wanted: str, at: LazyLocation | None
+) -> Outcome:
+    """Return the outcome of a position, or its failure where the orientation is more than `angle`
+    degrees off.
+    """
     if turned <= angle + SLACK:
         return placed
     message = f"{placed.message}; its orientation is {in_degrees(turned)} off {wanted}"
@@ -105,7 +132,9 @@ def _with_orientation(placed: Outcome, turned: float, angle: float, wanted: str,
 
 
 def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome | None:
-    """Return the failure of a link that moves in another link's frame; None where only fixed joints lie between."""
+    """Return the failure of a link that moves in another link's frame; None where only fixed joints
+    lie between.
+    """
     path = robot.between(relative_to, link)
     loose = next((joint for joint in path if joint.type != "fixed"), None)
     if loose is None:
@@ -119,8 +148,11 @@ def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome |
     return failed(message, place(loose.location, "type"), detail=detail)
 
 
-def _origin_by(robot: Configuration, link: str, visual: Visual, relative_to: str, off: Vector) -> LazyLocation | None:
-    """Return the origin that puts a visual off: its own if it moves the visual along that line, else the joint's.
+def _origin_by(
+    robot: Configuration, link: str, visual: Visual, relative_to: str, off: Vector
+) -> LazyLocation | None:
+    """Return the origin that puts a visual off: its own if it moves the visual along that line,
+    else the joint's.
 
     In the frame of its own link, nothing but the visual's own origin moves it.
     """

@@ -1,4 +1,6 @@
-"""The check of the problems that the reader finds in a URDF, and in the xacro that it is written in."""
+"""The check of the problems that the reader finds in a URDF, and in the xacro that it is written
+in.
+"""
 
 from collections.abc import Sequence
 from typing import Annotated
@@ -20,7 +22,10 @@ ABOUT = {"without_problems": About(breaks_under=everything)}
 
 _CODES = [kind.code for kind in (*CATALOGUE, *XACRO_CATALOGUE)]
 _KNOWN = Constraint(
-    "codes of problems of a URDF or of xacro, such as URDF012 (`grader explain CODE` describes one)",
+    (
+        "codes of problems of a URDF or of xacro, such as URDF012 (`grader explain CODE` "
+        "describes one)"
+    ),
     lambda codes: set(codes) <= set(_CODES),
     {"items": {"enum": _CODES}},
 )
@@ -41,17 +46,25 @@ def without_problems(urdf: Reading, submission: Submission, *, problems: _Codes)
     certain = [problem for problem in found if problem.kind.effect != "undetermined"]
     if certain:
         return _fail_with_problems(certain)
-    open_ones = [it for it in submission.urdf.problems if it.kind.effect == "undetermined" or it.kind is UNLISTED]
+    open_ones = [
+        it
+        for it in submission.urdf.problems
+        if it.kind.effect == "undetermined" or it.kind is UNLISTED
+    ]
     if open_ones:
         first = open_ones[0]
         return pending(f"{first.message}; needs manual grading", first.message, first.location)
     if urdf.robot is None:
-        raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot")
+        raise MissingElement(
+            "robot", "", message="ROS 2 cannot read the file, so there is no robot"
+        )
     return passed(f"the URDF has none of the problems {enumerated(problems, _MAX_NAMED)}")
 
 
 def _fail_with_problems(found: Sequence[Problem]) -> Outcome:
     first, more = found[0], len(found) - 1
     others = f" (and {counted(more, 'more such problem')})" if more else ""
-    outcome = failed(f"{first.code}: {first.message}{others}", first.location, problem=first.message)
+    outcome = failed(
+        f"{first.code}: {first.message}{others}", first.location, problem=first.message
+    )
     return outcome._replace(mistake=f"{first.code}: {first.kind.title}")

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 ENTRY_POINTS = "grader.checks"
 
-# Each is a function in a module of this package, which is imported when a rubric names the check: importing all of them
-# takes as long as to grade a URDF.
+# Each is a function in a module of this package, which is imported when a rubric names the check:
+# importing all of them takes as long as to grade a URDF.
 CHECKS = (
     "loading.urdf_loads",
     "problem_codes.without_problems",
@@ -82,18 +82,27 @@ def _own_check(place: str) -> Check:
 
 
 def check_names() -> list[str]:
-    """Return the names of all checks: the grader's own in the order of the catalogue, then those of other packages."""
+    """Return the names of all checks: the grader's own in the order of the catalogue, then those of
+    other packages.
+    """
     return [*_PLACES, *sorted(set(_entry_points()) - set(_PLACES))]
 
 
 def unused_checks() -> list[tuple[str, str]]:
-    """Return each check of another package that is not used because the grader has its name, with that package."""
+    """Return each check of another package that is not used because the grader has its name, with
+    that package.
+    """
     entries = _entry_points()
-    return sorted((name, _package_of(entry)) for name in set(_PLACES) & set(entries) for entry in entries[name])
+    return sorted(
+        (name, _package_of(entry))
+        for name in set(_PLACES) & set(entries)
+        for entry in entries[name]
+    )
 
 
 def find_check(name: str) -> Check | None:
-    """Return the check of this name; a check of another package cannot replace one of the grader's own.
+    """Return the check of this name; a check of another package cannot replace one of the grader's
+    own.
 
     Raises InputError for a check of another package that cannot be used, or that two packages have.
     """
@@ -102,12 +111,16 @@ def find_check(name: str) -> Check | None:
     entries = _entry_points().get(name, [])
     if len(entries) > 1:  # which of them is found first depends on the machine
         packages = enumerated(sorted(map(_package_of, entries)))
-        raise InputError(f"the check {name} is in several packages, {packages}: uninstall all but one")
+        raise InputError(
+            f"the check {name} is in several packages, {packages}: uninstall all but one"
+        )
     return _load_plugin(name, entries[0]) if entries else None
 
 
 def usable_check(name: str) -> Check | None:
-    """Return the check of this name; None for one that cannot be used: a rubric that names it is refused."""
+    """Return the check of this name; None for one that cannot be used: a rubric that names it is
+    refused.
+    """
     try:
         return find_check(name)
     except InputError:
@@ -123,7 +136,9 @@ def _load_plugin(name: str, entry: "EntryPoint") -> Check:
     except BaseException as error:  # noqa: BLE001  a fault of another package, which may even exit
         reason = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
         source = f"{distribution} ({entry.value.replace(':', '.')})"
-        raise InputError(f"the check {name} of the package {source} cannot be used: {reason}") from None
+        raise InputError(
+            f"the check {name} of the package {source} cannot be used: {reason}"
+        ) from None
 
 
 def _package_of(entry: "EntryPoint") -> str:
@@ -131,7 +146,9 @@ def _package_of(entry: "EntryPoint") -> str:
 
 
 def _entry_points() -> dict[str, list["EntryPoint"]]:
-    from importlib.metadata import entry_points  # reading the metadata of all packages takes longer than grading
+    from importlib.metadata import (
+        entry_points,
+    )  # reading the metadata of all packages takes longer than grading
 
     found: dict[str, list[EntryPoint]] = {}
     for entry in entry_points(group=ENTRY_POINTS):

@@ -1,4 +1,5 @@
-"""What a rubric asks of the nodes that a launch file starts: which not, their remappings, arguments and topics.
+"""What a rubric asks of the nodes that a launch file starts: which not, their remappings, arguments
+and topics.
 
 What cannot be determined is a fault that is not sure.
 """
@@ -26,7 +27,9 @@ _Topics = Sequence[str] | Mapping[str, str] | None  # a table has their types
 
 
 class Wanted(NamedTuple):
-    """What a rubric asks besides the nodes that are started: the arguments of the check node_runs."""
+    """What a rubric asks besides the nodes that are started: the arguments of the check
+    node_runs.
+    """
 
     absent: Sequence[str] | None
     remap: Mapping[str, str] | None
@@ -37,7 +40,9 @@ class Wanted(NamedTuple):
 
 
 class Fault(NamedTuple):
-    """What is not as a rubric asks; or, if it is not `is_sure`, what may not be so, after "whether"."""
+    """What is not as a rubric asks; or, if it is not `is_sure`, what may not be so, after
+    "whether".
+    """
 
     message: str
     at: Location | None = None
@@ -59,7 +64,11 @@ def find_faults(
     from grader.workspace.workspace import workspace_of  # late: few rubrics ask for it
 
     workspace = workspace_of(submission)
-    named = [replace(node, node_name=workspace.name_of(node)) for node in launch.nodes if node.when is not False]
+    named = [
+        replace(node, node_name=workspace.name_of(node))
+        for node in launch.nodes
+        if node.when is not False
+    ]
     launch = replace(launch, nodes=tuple(named))
     found = [*_started_although(launch, wanted.absent or ())]
     if wanted.remap or wanted.arguments:
@@ -75,7 +84,9 @@ def find_faults(
 def _started_although(launch: "Launch", names: Iterable[str]) -> Iterator[Fault]:
     """Yield the nodes that are started, or may be, and should not."""
     for name in names:
-        found = sorted((node for node in launch.nodes if node.name == name), key=lambda node: node.when is None)
+        found = sorted(
+            (node for node in launch.nodes if node.name == name), key=lambda node: node.when is None
+        )
         if found and found[0].when:
             yield Fault(f"the launch file starts {name}; it should not", found[0].location)
         elif found or launch.unknown:
@@ -83,12 +94,16 @@ def _started_although(launch: "Launch", names: Iterable[str]) -> Iterator[Fault]
 
 
 def _ill_started(launch: "Launch", names: Sequence[str], wanted: Wanted) -> Fault | None:
-    """Return what is wrong with a node, if it is started, and none of its name has the remappings and arguments."""
+    """Return what is wrong with a node, if it is started, and none of its name has the remappings
+    and arguments.
+    """
     found = [(node, _fault_of(node, wanted)) for node in launch.nodes if node.name in names]
     faults = [fault for node, fault in found if fault is not None]
     if not found or any(fault is None and node.when for node, fault in found):
         return None
-    is_sure = not launch.unknown and len(faults) == len(found) and all(fault.is_sure for fault in faults)
+    is_sure = (
+        not launch.unknown and len(faults) == len(found) and all(fault.is_sure for fault in faults)
+    )
     if is_sure:
         return faults[0]
     return Fault(f"{' or '.join(names)} has these remappings and arguments", is_sure=False)
@@ -101,7 +116,10 @@ def _fault_of(node: "StartedNode", wanted: Wanted) -> Fault | None:
     for name, to in (wanted.remap or {}).items():
         actual, expected = node.topic(name), node.full_name(to)
         if actual != expected:
-            message = f"{node.executable} has the name {actual} for {quoted(name)}; it should be {expected}"
+            message = (
+                f"{node.executable} has the name {actual} for {quoted(name)}; it should be "
+                f"{expected}"
+            )
             return Fault(message, node.location, is_sure=actual is not None and "~" not in actual)
     words = [word for given in node.arguments for word in _words_of(given)]
     for phrase in _phrases(wanted.arguments or ()):
@@ -152,7 +170,11 @@ def _not_included(launch: "Launch", end: str) -> Fault | None:
         return Fault(f"{end} is included", is_sure=False)
     paths = [it.path.removeprefix("share/") for it in launch.passed]
     detail = f"; it includes {enumerated(paths[:_MAX_NAMED])}" if paths else "; it includes none"
-    return Fault(f"the launch file does not include {end}", launch.passed[0].location if paths else None, detail)
+    return Fault(
+        f"the launch file does not include {end}",
+        launch.passed[0].location if paths else None,
+        detail,
+    )
 
 
 class _Opened:
@@ -164,9 +186,15 @@ class _Opened:
         for node in launch.nodes:
             package, own = workspace.package_of(node), workspace.python_node(node)
             if package is not None:
-                is_read = own is not None and not own.doubts and not workspace.python_nodes[package.name].doubts
+                is_read = (
+                    own is not None
+                    and not own.doubts
+                    and not workspace.python_nodes[package.name].doubts
+                )
                 self._is_open = self._is_open or not is_read
-            for endpoint in [it for it in own.endpoints if it.kind in _VERBS] if own is not None else ():
+            for endpoint in (
+                [it for it in own.endpoints if it.kind in _VERBS] if own is not None else ()
+            ):
                 topic = node.topic(endpoint.name) if endpoint.name is not None else None
                 self._is_open = self._is_open or topic is None or "~" in topic
                 self._topics.append((topic or "", endpoint, node))
@@ -176,14 +204,23 @@ class _Opened:
         full, type_ = f"/{name.removeprefix('/')}", re.sub("[/:]+", ".", of)
         own = [it for it in self._topics if it[1].kind == kind]
         found = [it for it in own if it[0] == full]
-        if any(node.when and endpoint.type == (type_ or endpoint.type) for _, endpoint, node in found):
+        if any(
+            node.when and endpoint.type == (type_ or endpoint.type) for _, endpoint, node in found
+        ):
             return None
-        is_sure = not self._is_open and all(endpoint.type not in (None, type_) for _, endpoint, node in found)
+        is_sure = not self._is_open and all(
+            endpoint.type not in (None, type_) for _, endpoint, node in found
+        )
         if not is_sure:
-            return Fault(f"a node {_VERBS[kind]} {full}{f' with {of}' if of else ''}", is_sure=False)
+            return Fault(
+                f"a node {_VERBS[kind]} {full}{f' with {of}' if of else ''}", is_sure=False
+            )
         if found:
             actual = (found[0][1].type or "").replace(".", "/")
-            return Fault(f"a node {_VERBS[kind]} {full} with {actual}; it should be {of}", found[0][1].location)
+            return Fault(
+                f"a node {_VERBS[kind]} {full} with {actual}; it should be {of}",
+                found[0][1].location,
+            )
         names = [topic for topic, *_ in own]
         detail = did_you_mean(full, names)
         at = next((endpoint.location for topic, endpoint, _ in own if repr(topic) in detail), None)

@@ -1,4 +1,6 @@
-"""The types of the values in a rubric: name, JSON Schema and conversion of each, made from Python annotations."""
+"""The types of the values in a rubric: name, JSON Schema and conversion of each, made from Python
+annotations.
+"""
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -16,7 +18,9 @@ class WrongValue(ValueError):
 
 
 class TomlType(NamedTuple):
-    """A type: its name for messages, its JSON Schema, and `parse`, which converts a TOML value or raises WrongValue."""
+    """A type: its name for messages, its JSON Schema, and `parse`, which converts a TOML value or
+    raises WrongValue.
+    """
 
     name: str
     schema: Mapping[str, Any]
@@ -24,7 +28,9 @@ class TomlType(NamedTuple):
 
 
 class Constraint(NamedTuple):
-    """A constraint for `Annotated`: `must_be` ends the message "... must be", `schema` adds to the type's schema."""
+    """A constraint for `Annotated`: `must_be` ends the message "... must be", `schema` adds to the
+    type's schema.
+    """
 
     must_be: str
     holds: Callable[[Any], bool]
@@ -36,7 +42,9 @@ class Constraint(NamedTuple):
 
 _AtLeastZero = Constraint("at least 0", lambda value: value >= 0, {"minimum": 0})
 _EachAtLeastZero = Constraint(
-    "at least 0 in each number", lambda values: min(values) >= 0, {"items": {"type": "number", "minimum": 0}}
+    "at least 0 in each number",
+    lambda values: min(values) >= 0,
+    {"items": {"type": "number", "minimum": 0}},
 )
 _EachFromZeroToOne = Constraint(
     "from 0 to 1 in each number",
@@ -50,7 +58,9 @@ Count = Annotated[int, _AtLeastZero]
 Size = Annotated[Vector, _EachAtLeastZero]
 RadiusAndLength = Annotated[tuple[float, float], _EachAtLeastZero]
 Direction = Annotated[Vector, _NotZero]
-Colour = Annotated[tuple[float, float, float] | tuple[float, float, float, float], _EachFromZeroToOne]
+Colour = Annotated[
+    tuple[float, float, float] | tuple[float, float, float, float], _EachFromZeroToOne
+]
 
 Scalar = str | float | bool
 Content = Scalar | list[Scalar]
@@ -62,7 +72,9 @@ def simple_type(
     accepts: Callable[[Any], bool],
     convert: Callable[[Any], Any] = lambda value: value,
 ) -> TomlType:
-    """Return a type whose values `accepts` recognises and `convert` converts, unless that raises WrongValue."""
+    """Return a type whose values `accepts` recognises and `convert` converts, unless that raises
+    WrongValue.
+    """
 
     def parse(value: Any) -> Any:
         if accepts(value):
@@ -99,15 +111,21 @@ _PLURALS: Mapping[Any, str] = {
 
 @lru_cache(maxsize=256)
 def toml_type(annotation: Any) -> TomlType:
-    """Return the type for str, float, int, bool, Literal, a union, list, tuple, Mapping, or Annotated."""
+    """Return the type for str, float, int, bool, Literal, a union, list, tuple, Mapping, or
+    Annotated.
+    """
     inner = get_args(annotation)
     origin = get_origin(annotation)
     if annotation in _SIMPLE:
         return _SIMPLE[annotation]
     if origin is Annotated:
-        return constrained(toml_type(inner[0]), *(item for item in inner[1:] if isinstance(item, Constraint)))
+        return constrained(
+            toml_type(inner[0]), *(item for item in inner[1:] if isinstance(item, Constraint))
+        )
     if origin is Literal:
-        return simple_type(f"one of {', '.join(inner)}", {"enum": list(inner)}, lambda value: value in inner)
+        return simple_type(
+            f"one of {', '.join(inner)}", {"enum": list(inner)}, lambda value: value in inner
+        )
     if origin in (UnionType, Union):
         return _union_type(
             [toml_type(member) for member in inner if member is not NoneType]
@@ -128,16 +146,23 @@ def _union_type(members: "list[TomlType]") -> TomlType:
 
 def _table_type(inner: tuple[Any, ...]) -> TomlType:
     item, plural = (
-        (toml_type(inner[1]), _PLURALS.get(inner[1], "values")) if len(inner) == 2 else (_SIMPLE[str], "strings")
+        (toml_type(inner[1]), _PLURALS.get(inner[1], "values"))
+        if len(inner) == 2
+        else (_SIMPLE[str], "strings")
     )
     schema = {"type": "object", "additionalProperties": item.schema, "minProperties": 1}
     return simple_type(
-        f"a table of {plural}", schema, _is_table, lambda table: {key: item.parse(table[key]) for key in table}
+        f"a table of {plural}",
+        schema,
+        _is_table,
+        lambda table: {key: item.parse(table[key]) for key in table},
     )
 
 
 def described(base: TomlType, description: str, **keywords: Any) -> TomlType:
-    """Return a type whose JSON Schema says what the value means; without a description, only the keywords are added."""
+    """Return a type whose JSON Schema says what the value means; without a description, only the
+    keywords are added.
+    """
     text = {"description": description} if description else {}
     return base._replace(schema={**base.schema, **text, **keywords})
 

@@ -17,7 +17,11 @@ _MAX_FILE_NAME = 100  # characters that a message shows
 MAX_SHAPES = 50  # of one link that are compared with each other
 VISIBLE = 0.01  # the smallest alpha of a colour that shows
 ShapeName = Literal["any", "box", "cylinder", "sphere"]
-_SHAPES: dict[str, type[Box] | type[Cylinder] | type[Sphere]] = {"box": Box, "cylinder": Cylinder, "sphere": Sphere}
+_SHAPES: dict[str, type[Box] | type[Cylinder] | type[Sphere]] = {
+    "box": Box,
+    "cylinder": Cylinder,
+    "sphere": Sphere,
+}
 
 
 def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
@@ -31,13 +35,18 @@ def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
 
 
 def visible(robot: Configuration, link: str) -> list[Visual]:
-    """Return the visuals of a link that have a size and are not transparent; raise MissingElement without the link."""
+    """Return the visuals of a link that have a size and are not transparent; raise MissingElement
+    without the link.
+    """
     shown = (visual for visual in robot.link(link).visuals if not is_empty(visual.geometry))
-    return [visual for visual in shown if visual.material is None or visual.material.rgba[3] >= VISIBLE]
+    return [
+        visual for visual in shown if visual.material is None or visual.material.rgba[3] >= VISIBLE
+    ]
 
 
 def main_visual(robot: Configuration, link: str, shape: ShapeName = "any") -> Visual:
-    """Return the visual that counts for a link: its only one, else the first mesh, of unknown size, else the largest.
+    """Return the visual that counts for a link: its only one, else the first mesh, of unknown size,
+    else the largest.
 
     If the link has visuals of the named shape, only these count.
     """
@@ -45,8 +54,14 @@ def main_visual(robot: Configuration, link: str, shape: ShapeName = "any") -> Vi
     if len(shown) == 1:
         return shown[0]
     if shape != "any":
-        shown = tuple(visual for visual in shown if isinstance(visual.geometry, _SHAPES[shape])) or shown
-    return max(shown, key=lambda visual: inf if isinstance(visual.geometry, Mesh) else volume(visual.geometry))
+        shown = (
+            tuple(visual for visual in shown if isinstance(visual.geometry, _SHAPES[shape]))
+            or shown
+        )
+    return max(
+        shown,
+        key=lambda visual: inf if isinstance(visual.geometry, Mesh) else volume(visual.geometry),
+    )
 
 
 def visual_pose(robot: Configuration, link: str, visual: Visual, relative_to: str) -> Transform:
@@ -54,10 +69,17 @@ def visual_pose(robot: Configuration, link: str, visual: Visual, relative_to: st
     return placed_by(robot.pose(link, relative_to=relative_to), visual.origin)
 
 
-def span(robot: Configuration, link: str, relative_to: str, direction: Vector) -> tuple[float, float]:
-    """Return the lowest and highest coordinate of a link's visuals along a unit direction, in metres, in a frame."""
+def span(
+    robot: Configuration, link: str, relative_to: str, direction: Vector
+) -> tuple[float, float]:
+    """Return the lowest and highest coordinate of a link's visuals along a unit direction, in
+    metres, in a frame.
+    """
     pose = robot.pose(link, relative_to=relative_to)
-    spans = [extent(visual.geometry, placed_by(pose, visual.origin), direction) for visual in visuals(robot, link)]
+    spans = [
+        extent(visual.geometry, placed_by(pose, visual.origin), direction)
+        for visual in visuals(robot, link)
+    ]
     lows, highs = zip(*spans, strict=True)
     return min(lows), max(highs)
 
@@ -81,8 +103,14 @@ def origin_place(robot: Configuration, link: str) -> LazyLocation | None:
 
 
 def axis_place(joint: Joint) -> LazyLocation | None:
-    """Return the place that gives an axis its direction: the joint's rpy if the axis is z of a rotated frame."""
-    is_z = joint.axis_location is not None and joint.axis is not None and unit(joint.axis) == (0.0, 0.0, 1.0)
+    """Return the place that gives an axis its direction: the joint's rpy if the axis is z of a
+    rotated frame.
+    """
+    is_z = (
+        joint.axis_location is not None
+        and joint.axis is not None
+        and unit(joint.axis) == (0.0, 0.0, 1.0)
+    )
     if is_z and joint.origin is not None and any(joint.origin.rpy):
         return place(joint.origin.location, "rpy")
     return place(joint.axis_location, "xyz") or joint.location

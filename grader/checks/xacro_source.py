@@ -1,4 +1,6 @@
-"""The check of the xacro that a robot is written in: its properties, its macros, the files that it includes."""
+"""The check of the xacro that a robot is written in: its properties, its macros, the files that
+it includes.
+"""
 
 from collections.abc import Collection, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
@@ -21,7 +23,9 @@ if TYPE_CHECKING:
     from grader.xacro.expansion import ExpandedSource
     from grader.xacro.inventory import Definitions, Inventory
 
-ABOUT = {"xacro_uses": About(("xacro:property", "xacro:macro", "xacro:include"), breaks_under=everything)}
+ABOUT = {
+    "xacro_uses": About(("xacro:property", "xacro:macro", "xacro:include"), breaks_under=everything)
+}
 
 _MAX_NAMED = 5  # names in a message
 
@@ -42,15 +46,16 @@ def xacro_uses(
     macros: Count | list[str] = 0,
     includes: Count | list[str] = 0,
 ) -> Outcome:
-    """The robot is written in xacro, which defines and uses properties and macros, and includes files.
+    """The robot is written in xacro, which defines and uses properties and macros, and includes
+    files.
 
-    The graded URDF and the files that it includes are examined as they are written. A property is used if an expression
-    names it, also in the body of a macro; a macro is used if it is called. Without any argument, xacro must be expanded
-    before ROS 2 reads it.
+    The graded URDF and the files that it includes are examined as they are written. A property is
+    used if an expression names it, also in the body of a macro; a macro is used if it is called.
+    Without any argument, xacro must be expanded before ROS 2 reads it.
 
     Args:
-        file: The end of the path of the one file whose definitions and includes count, such as "urdf/wheel.xacro"; by
-            default, all files. They may be used in any file.
+        file: The end of the path of the one file whose definitions and includes count, such as
+            "urdf/wheel.xacro"; by default, all files. They may be used in any file.
         properties: How many properties must at least be defined and used, or their names.
         macros: How many macros must at least be defined and called, or their names.
         includes: How many files must at least be included, or the ends of their paths.
@@ -70,10 +75,17 @@ def xacro_uses(
     ]
     if not lacks:
         names = [path.rpartition("/")[2] for path in paths]
-        return passed(f"{enumerated(names, _MAX_NAMED)}: xacro with the expected properties, macros and includes")
+        return passed(
+            f"{enumerated(names, _MAX_NAMED)}: xacro with the expected properties, macros "
+            "and includes"
+        )
     _refuse_unknown(source, found)
-    at = next((lack.location for lack in lacks if lack.location is not None), LazyLocation(source, 0))
-    return failed("; ".join(lack.message for lack in lacks), at, detail="".join(lack.detail for lack in lacks))
+    at = next(
+        (lack.location for lack in lacks if lack.location is not None), LazyLocation(source, 0)
+    )
+    return failed(
+        "; ".join(lack.message for lack in lacks), at, detail="".join(lack.detail for lack in lacks)
+    )
 
 
 def _take_inventory(source: "ExpandedSource", submission: Submission) -> "Inventory":
@@ -107,18 +119,29 @@ def _find_source(submission: Submission, file: str) -> "ExpandedSource | Outcome
     if not isinstance(source, ExpandedSource) and find_xacro(source.text) is not None:
         source = _expand_file(submission, urdf.path, urdf.data)
     if isinstance(source, ExpandedSource):
-        if not file or submission.is_single or any(_ends_with(path, file) for path in source.documents):
+        if (
+            not file
+            or submission.is_single
+            or any(_ends_with(path, file) for path in source.documents)
+        ):
             return source
     elif not file or submission.is_single:
-        others = [path for path in submission.tree.files if path.lower().endswith(".xacro") and path != urdf.path]
+        others = [
+            path
+            for path in submission.tree.files
+            if path.lower().endswith(".xacro") and path != urdf.path
+        ]
         if others:
             listed = enumerated(others, _MAX_NAMED)
             message = f"the graded URDF is {urdf.path}, which is no xacro, but there is {listed}"
             raise NotDecided(message, "the graded URDF is no xacro, but the submission has xacro")
         if reading.root is None:
-            raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot")
+            raise MissingElement(
+                "robot", "", message="ROS 2 cannot read the file, so there is no robot"
+            )
         return failed(
-            "the URDF is not written in xacro: it has no expression and no tag of xacro", LazyLocation(source, 0)
+            "the URDF is not written in xacro: it has no expression and no tag of xacro",
+            LazyLocation(source, 0),
         )
     return _other_file(submission, file)
 
@@ -130,12 +153,15 @@ def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome"
     found = [path for path in submission.tree.files if _ends_with(path, file)]
     if len(found) > 1:
         raise NotDecided(
-            f"several files are called {file}: {enumerated(found, _MAX_NAMED)}", "several files have the name"
+            f"several files are called {file}: {enumerated(found, _MAX_NAMED)}",
+            "several files have the name",
         )
     if not found:
         raise MissingElement("file", file, message=f"the submission has no file {quoted(file)}")
     try:
-        source = _expand_file(submission, found[0], submission.tree.files[found[0]].read(URDF_LIMIT))
+        source = _expand_file(
+            submission, found[0], submission.tree.files[found[0]].read(URDF_LIMIT)
+        )
     except InputError as error:
         raise NotDecided(str(error), "a file cannot be read") from None
     if isinstance(source, ExpandedSource) and find_xacro(source.text) is not None:
@@ -144,16 +170,22 @@ def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome"
 
 
 def _expand_file(submission: Submission, path: str, data: bytes) -> "ExpandedSource | Source":
-    """Return a file as xacro; raise NotDecided or MissingElement where it cannot be expanded at all."""
+    """Return a file as xacro; raise NotDecided or MissingElement where it cannot be expanded at
+    all.
+    """
     from grader.xacro.expansion import ExpandedSource, expand
 
-    expansion = expand(data, path, submission.surroundings(submission.budget), submission.opening.arguments)
+    expansion = expand(
+        data, path, submission.surroundings(submission.budget), submission.opening.arguments
+    )
     if isinstance(expansion.source, ExpandedSource):
         return expansion.source
     for found in expansion.undetermined:
         raise NotDecided(found.reason)
     first = expansion.problems[0]
-    raise MissingElement("xacro", path, message=first.message, location=first.location, problem=first.message)
+    raise MissingElement(
+        "xacro", path, message=first.message, location=first.location, problem=first.message
+    )
 
 
 def _judge_expansion(submission: Submission) -> Outcome:
@@ -167,18 +199,31 @@ def _judge_expansion(submission: Submission) -> Outcome:
 
 
 def _missing_uses(
-    kind: str, plural: str, wanted: int | list[str], defined: "Definitions", used: Collection[str], paths: Sequence[str]
+    kind: str,
+    plural: str,
+    wanted: int | list[str],
+    defined: "Definitions",
+    used: Collection[str],
+    paths: Sequence[str],
 ) -> Iterator[_Lack]:
-    """Yield what is missing of definitions that are used: some of the named ones, or of a number."""
+    """Yield what is missing of definitions that are used: some of the named ones, or of a
+    number.
+    """
     places = {
-        name: next((place for place in found if place.source.path in paths), None) for name, found in defined.items()
+        name: next((place for place in found if place.source.path in paths), None)
+        for name, found in defined.items()
     }
     own = {name: place.at("name") for name, place in places.items() if place is not None}
     if isinstance(wanted, int):
         unused = [name for name in own if name not in used]
         if len(own) - len(unused) < wanted:
-            message = f"{counted(len(own) - len(unused), kind, plural)} defined and used; there should be {wanted}"
-            detail = f"; not used: {enumerated([*map(quoted, unused)], _MAX_NAMED)}" if unused else ""
+            message = (
+                f"{counted(len(own) - len(unused), kind, plural)} defined and used; there "
+                f"should be {wanted}"
+            )
+            detail = (
+                f"; not used: {enumerated([*map(quoted, unused)], _MAX_NAMED)}" if unused else ""
+            )
             yield _Lack(message, own[unused[0]] if unused else None, detail)
         return
     for name in wanted:
@@ -186,7 +231,11 @@ def _missing_uses(
             yield _Lack(f"the {kind} {quoted(name)} is not defined", None, did_you_mean(name, own))
         elif name not in used:
             yield _Lack(
-                f"the {kind} {quoted(name)} is defined, but never {'called' if kind == 'macro' else 'used'}", own[name]
+                (
+                    f"the {kind} {quoted(name)} is defined, but never "
+                    f"{'called' if kind == 'macro' else 'used'}"
+                ),
+                own[name],
             )
 
 
@@ -200,7 +249,9 @@ def _missing_includes(wanted: int | list[str], included: Sequence[str]) -> Itera
         names = [path.rpartition("/")[2] for path in included]
         detail = f"; included: {enumerated(names, _MAX_NAMED) or 'none'}"
         yield _Lack(
-            f"no file {enumerated([*map(quoted, missing)], _MAX_NAMED, 'and no file')} is included", None, detail
+            f"no file {enumerated([*map(quoted, missing)], _MAX_NAMED, 'and no file')} is included",
+            None,
+            detail,
         )
 
 

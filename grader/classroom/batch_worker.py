@@ -1,4 +1,6 @@
-"""The work of a worker process: grade submissions one by one. All data is plain and can be sent to any process."""
+"""The work of a worker process: grade submissions one by one. All data is plain and can be sent to
+any process.
+"""
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -48,7 +50,9 @@ class Task(NamedTuple):
 
 
 def grade_all(context: ClassContext, tasks: Sequence[Task]) -> list[StoredResult]:
-    """Grade submissions one after the other, in isolation: an error affects only its own submission."""
+    """Grade submissions one after the other, in isolation: an error affects only its own
+    submission.
+    """
     return [_grade_one(context, task) for task in tasks]
 
 
@@ -60,10 +64,14 @@ def _grade_one(context: ClassContext, task: Task) -> StoredResult:
         result = result._replace(digest=digest_of(opened.digest))
         if result.digest == task.graded:
             return result
-        submission = opened.submission(rubric, Opening(arguments=context.arguments, no_documents=task.no_documents))
+        submission = opened.submission(
+            rubric, Opening(arguments=context.arguments, no_documents=task.no_documents)
+        )
         report = grade(rubric, submission, context.parts, is_one_of_class=True, is_explained=False)
     except InputError as error:
-        result = result._replace(digest=result.digest or digest_of(str(error), digest_of_unread(root, task.paths)))
+        result = result._replace(
+            digest=result.digest or digest_of(str(error), digest_of_unread(root, task.paths))
+        )
         if result.digest != task.graded:
             result = undecided(context, result._replace(verdict="unreadable", reason=str(error)))
         return result
@@ -71,11 +79,15 @@ def _grade_one(context: ClassContext, task: Task) -> StoredResult:
         if isinstance(error, MemoryError) and not task.no_documents:
             return _grade_one(context, task._replace(no_documents=NO_MEMORY))
         is_known = isinstance(error, MachineError)  # in the next run it may be over
-        reason = str(error) if is_known else f"the grader itself failed: {type(error).__name__}: {error}"
+        reason = (
+            str(error) if is_known else f"the grader itself failed: {type(error).__name__}: {error}"
+        )
         reason = NO_MEMORY if isinstance(error, MemoryError) else reason
         return undecided(context, result._replace(verdict="errored", reason=reason))
     entries = {one.criterion.id: _stored_criterion(one) for one in report.results}
-    result = result._replace(parts=report.parts, results=entries, answers=_answers_of(report, result.digest))
+    result = result._replace(
+        parts=report.parts, results=entries, answers=_answers_of(report, result.digest)
+    )
     if fault := report.fault:
         return result._replace(verdict="errored", reason=fault)
     is_handed_out = bool(report.another_robot)  # by the course, so that it is no equal work
@@ -99,7 +111,8 @@ def _stored_criterion(result: Result) -> StoredCriterion:
 
 
 def _answers_of(report: Report, digest: str) -> dict[str, str]:
-    """Return the key of the answer for each criterion that needs manual grading, empty if there is nothing to read.
+    """Return the key of the answer for each criterion that needs manual grading, empty if there is
+    nothing to read.
 
     It is that of the words, or of the whole submission where more than words is to be looked at.
     """
@@ -124,7 +137,9 @@ def undecided(context: ClassContext, result: StoredResult) -> StoredResult:
 
 
 def reference_hashes(data: bytes, path: str) -> tuple[str, ...]:
-    """Return the hashes of the work in a rubric's reference; raises InputError if nothing can be graded without it."""
+    """Return the hashes of the work in a rubric's reference; raises InputError if nothing can be
+    graded without it.
+    """
     rubric = _rubric_from(data, path)
     if rubric.solution is not None and rubric.compares_with_reference:
         _ = rubric.solution.robot  # raises InputError
@@ -135,7 +150,8 @@ def reference_hashes(data: bytes, path: str) -> tuple[str, ...]:
 
 
 def _why_unreadable(submission: Submission) -> str:
-    """Return why nothing in a submission could be read, although its folder could; empty if something was read.
+    """Return why nothing in a submission could be read, although its folder could; empty if
+    something was read.
 
     A damaged or empty archive makes a submission unreadable if there is nothing else to grade.
     """

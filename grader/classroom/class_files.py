@@ -1,4 +1,5 @@
-"""The folder or zip of a class, and each submission in it: the one that `grader grade` would see, and its digest.
+"""The folder or zip of a class, and each submission in it: the one that `grader grade` would see,
+and its digest.
 
 Nothing is extracted.
 """
@@ -31,7 +32,9 @@ if TYPE_CHECKING:
 
 ClassListing = ClassDirectory | ClassZip
 _DOCUMENTS = (*EVIDENCE, ".docx", ".doc", ".odt", ".pages", ".ipynb", ".md", ".txt", ".rst", ".rtf")
-_MAX_HASHED = 64 * 1024 * 1024  # bytes of a file that go into the digest; of a larger file its size does
+_MAX_HASHED = (
+    64 * 1024 * 1024
+)  # bytes of a file that go into the digest; of a larger file its size does
 
 
 def listing_of(path: Path) -> ClassListing:
@@ -49,7 +52,8 @@ def listing_of(path: Path) -> ClassListing:
         raise not_there(path)
     if archive_kind(read_start(path, 512)) != "zip":
         raise InputError(
-            f"{shown} is neither a folder nor a zip: name the folder that holds the class's submissions"
+            f"{shown} is neither a folder nor a zip: name the folder that holds the class's "
+            "submissions"
             " (`grader grade` grades a single one)"
         )
     return ClassZip(path)
@@ -69,9 +73,15 @@ class _OpenedSubmission(NamedTuple):
         """Return the submission; raises InputError if it is empty."""
         opening = opening._replace(max_size=self.max_size)
         if self.tree is None:
-            return read_submission(self.data or b"", identity=self.name, path=self.shown, opening=opening)
+            return read_submission(
+                self.data or b"", identity=self.name, path=self.shown, opening=opening
+            )
         return submission_of(
-            with_inner(self.tree, LabFolders(rubric.folders).is_lab), self.name, rubric.lab, opening, shown=self.shown
+            with_inner(self.tree, LabFolders(rubric.folders).is_lab),
+            self.name,
+            rubric.lab,
+            opening,
+            shown=self.shown,
         )
 
 
@@ -80,19 +90,23 @@ def open_class_submission(
 ) -> _OpenedSubmission:
     """Open what is at `paths` below a class folder, or in a class zip; raises InputError.
 
-    Several files become one submission, called `name`, that contains them as `names`; so does a single document, which
-    has its own name.
+    Several files become one submission, called `name`, that contains them as `names`; so does a
+    single document, which has its own name.
     """
     own_names, source = [path.rpartition("/")[2] for path in paths], _open(root)
     is_document = len(paths) == 1 and _is_document(source, paths[0])
     if len(paths) == 1 and not is_document:
         return _open_single(source, paths[0], max_size)
     name = without_endings(own_names[0]) if is_document else name
-    return _opened_tree(name, name, source.files(dict(zip(paths, names or own_names, strict=True)), name), max_size)
+    return _opened_tree(
+        name, name, source.files(dict(zip(paths, names or own_names, strict=True)), name), max_size
+    )
 
 
 def digest_of_unread(root: str, paths: tuple[str, ...]) -> str:
-    """Return the hash of the bytes of files that are no submission; empty if they cannot be read."""
+    """Return the hash of the bytes of files that are no submission; empty if they cannot be
+    read.
+    """
     digest = sha256()
     try:
         for path in paths:
@@ -107,7 +121,9 @@ def _open(root: str) -> ClassListing:
     """Return a class folder, or a zip that stays open as long as the file is the same."""
     with suppress(OSError):
         status = os.stat(root)  # noqa: PTH116
-        return _listing(root, (status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns))
+        return _listing(
+            root, (status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns)
+        )
     return listing_of(Path(root))
 
 
@@ -134,7 +150,9 @@ def _open_single(source: ClassListing, path: str, max_size: int) -> _OpenedSubmi
 
 
 def _is_document(source: ClassListing, path: str) -> bool:
-    """Return whether a single file may hold answers or evidence, and is no URDF with the ending .txt."""
+    """Return whether a single file may hold answers or evidence, and is no URDF with the ending
+    .txt.
+    """
     is_named = path.lower().endswith(_DOCUMENTS) and not source.is_folder(path)
     return is_named and not (path.lower().endswith(".txt") and _is_robot(source, path))
 
@@ -149,17 +167,25 @@ def _is_robot(source: ClassListing, path: str) -> bool:
 
 
 def _digest(name: str, max_size: int) -> "hashlib._Hash":
-    """Return a hash of the name, which is in the report, and of the limit for a URDF if it is not the default."""
+    """Return a hash of the name, which is in the report, and of the limit for a URDF if it is not
+    the default.
+    """
     return sha256(repr(name if max_size == URDF_LIMIT else (name, max_size)).encode())
 
 
 def _opened_tree(name: str, shown: str, tree: Tree, max_size: int) -> _OpenedSubmission:
-    """Return a submission of files, with the hash of all that it is read from: the files, the ignored files, its name.
+    """Return a submission of files, with the hash of all that it is read from: the files, the
+    ignored files, its name.
 
-    Build folders are unseen on disk; in a zip they are ordinary folders if they have an entry of their own.
+    Build folders are unseen on disk; in a zip they are ordinary folders if they have an entry of
+    their own.
     """
     digest = _digest(name, max_size)
-    digest.update(repr((sorted(tree.folders | tree.unseen), tuple(map(str, tree.ignored)), tree.generated)).encode())
+    digest.update(
+        repr(
+            (sorted(tree.folders | tree.unseen), tuple(map(str, tree.ignored)), tree.generated)
+        ).encode()
+    )
     for path, file in tree.files.items():
         digest.update(repr((path, file.size)).encode())
         try:

@@ -10,9 +10,14 @@ from grader.robot.normal_form import robot_hash, written_form
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 
-_MAX_SHARING = 4  # students, or a tenth of the class: what more have in common comes from the handout
+# students, or a tenth of the class: what more have in common comes from the handout
+_MAX_SHARING = 4
 _DIGITS = 16  # of a hash
-_LABELS = {"urdf": "the same file", "robot": "the same robot", "written": "the same links, joints and materials"}
+_LABELS = {
+    "urdf": "the same file",
+    "robot": "the same robot",
+    "written": "the same links, joints and materials",
+}
 
 
 class EqualWork(NamedTuple):
@@ -25,8 +30,8 @@ class EqualWork(NamedTuple):
 def forms_of(submission: Submission, *, is_handed_out: bool = False) -> dict[str, str]:
     """Return the hashes of a robot's forms, without what is empty.
 
-    `urdf` is that of the file, `robot` that of its normal form, `written` that of its links, joints and materials as
-    written.
+    `urdf` is that of the file, `robot` that of its normal form, `written` that of its links, joints
+    and materials as written.
     """
     urdf, found = submission.urdf, dict[str, str]()
     if isinstance(urdf, Read):
@@ -51,7 +56,9 @@ def equal_work(results: Iterable[StoredResult], handed_out: Iterable[str]) -> li
     found: dict[tuple[str, ...], str] = {}
     own = [one for one in works if known.isdisjoint((one.work.get("urdf"), one.work.get("robot")))]
     for kind, label in _LABELS.items():
-        for group in _groups((one.work[kind], one) for one in own if one.work.get(kind, "") not in {"", *known}):
+        for group in _groups(
+            (one.work[kind], one) for one in own if one.work.get(kind, "") not in {"", *known}
+        ):
             is_rare = len(group) <= most and len({one.work.get("robot") for one in group}) > 1
             if kind != "written" or is_rare:
                 found.setdefault(tuple(one.student for one in group), label)
@@ -59,9 +66,13 @@ def equal_work(results: Iterable[StoredResult], handed_out: Iterable[str]) -> li
 
 
 def _groups(works: Iterable[tuple[str, StoredResult]]) -> list[list[StoredResult]]:
-    """Return the groups with the same hash that come from more than one submission, the largest first."""
+    """Return the groups with the same hash that come from more than one submission, the largest
+    first.
+    """
     groups: dict[str, list[StoredResult]] = {}
     for form, work in works:
         groups.setdefault(form, []).append(work)
-    several = (group for group in groups.values() if len({(one.root, one.paths) for one in group}) > 1)
+    several = (
+        group for group in groups.values() if len({(one.root, one.paths) for one in group}) > 1
+    )
     return sorted(several, key=lambda group: (-len(group), [one.student for one in group]))

@@ -22,7 +22,9 @@ class PointsChange(NamedTuple):
 
 
 class Change(NamedTuple):
-    """The published grade of a student, None while there is none, the criteria whose points changed, and why."""
+    """The published grade of a student, None while there is none, the criteria whose points
+    changed, and why.
+    """
 
     key: str
     name: str
@@ -33,7 +35,9 @@ class Change(NamedTuple):
 
 
 class _Snapshot(NamedTuple):
-    """A run of a gradebook: its totals and the newest results until then; the names of students are those of now."""
+    """A run of a gradebook: its totals and the newest results until then; the names of students are
+    those of now.
+    """
 
     run: Run
     results: Results
@@ -42,10 +46,17 @@ class _Snapshot(NamedTuple):
 
 
 def snapshot(folder: Path, number: int | None) -> _Snapshot:
-    """Return a run of a gradebook, by default the newest one with the current grades. Raises InputError."""
+    """Return a run of a gradebook, by default the newest one with the current grades. Raises
+    InputError.
+    """
     book = Gradebook(folder)
-    grades = {one.student.key: (one.student.name, one.published, one.is_marked_early) for one in book}
-    results, run = book.results, book.run_with({key: total for key, (_, total, _) in grades.items()})
+    grades = {
+        one.student.key: (one.student.name, one.published, one.is_marked_early) for one in book
+    }
+    results, run = (
+        book.results,
+        book.run_with({key: total for key, (_, total, _) in grades.items()}),
+    )
     if number is not None:
         if not 0 < number <= run.run:
             raise InputError(f"{printable_path(folder)} has no run {number}: it has 1 to {run.run}")
@@ -58,15 +69,25 @@ def snapshot(folder: Path, number: int | None) -> _Snapshot:
 def changes(before: _Snapshot, after: _Snapshot) -> Iterator[Change]:
     """Yield the students for whom something changed, in the order of their keys."""
     runs = (before.run, after.run)
-    keys = sorted({*before.results.students, *after.results.students, *(key for run in runs for key in run.students)})
-    for key, old, new in zip(keys, before.results.each(keys), after.results.each(keys), strict=True):
+    keys = sorted(
+        {
+            *before.results.students,
+            *after.results.students,
+            *(key for run in runs for key in run.students),
+        }
+    )
+    for key, old, new in zip(
+        keys, before.results.each(keys), after.results.each(keys), strict=True
+    ):
         first, last = (_points(one.run.total(key)) for one in (before, after))
         criteria = [*_points_changes(old, new)] if old is not None and new is not None else []
         why = [*_reasons(old, new, before.run, after.run)]
         if not (criteria or first != last or (old is None) != (new is None)):
             why.clear()
         elif not why:
-            why.append("it was graded again" if criteria else "marks, the roster or the deadline changed")
+            why.append(
+                "it was graded again" if criteria else "marks, the roster or the deadline changed"
+            )
         if key in after.early:
             why.append(Reason.EARLY_MARK)
         if why:
@@ -89,13 +110,19 @@ def _points_changes(old: StoredResult, new: StoredResult) -> Iterator[PointsChan
             yield PointsChange(name, before, after)
 
 
-def _reasons(old: StoredResult | None, new: StoredResult | None, before: Run, after: Run) -> Iterator[str]:
+def _reasons(
+    old: StoredResult | None, new: StoredResult | None, before: Run, after: Run
+) -> Iterator[str]:
     """Yield what may have changed a grade."""
     if old is None or new is None:
         if old is not None:
             yield "no longer there"
         if new is not None:
-            yield "first submission" if new.student not in before.totals else "its older result was damaged"
+            yield (
+                "first submission"
+                if new.student not in before.totals
+                else "its older result was damaged"
+            )
         return
     if old.student in before.totals and old.student not in after.totals:
         yield "no longer there"

@@ -1,6 +1,8 @@
-"""A gradebook: the grades of a class, computed from the results, the rubric, the roster and the marks of people.
+"""A gradebook: the grades of a class, computed from the results, the rubric, the roster and the
+marks of people.
 
-Last, the grades as a table, one row a student: `grades.csv`, and `export csv`, which people may change.
+Last, the grades as a table, one row a student: `grades.csv`, and `export csv`, which people may
+change.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -34,18 +36,30 @@ _NOT_SUBMITTED = Outcome("skipped", "not graded: this part was not submitted")
 _MAX_SHARED = 10_000  # results
 # The columns before and after those of the criteria; `submission` is the digest of what was graded.
 _FIRST = ("id", "name", "section", "status", "total")
-_LAST = ("score", "max_score", "pending", "late_days", "late_points", "not_final_because", "email", "submission")
+_LAST = (
+    "score",
+    "max_score",
+    "pending",
+    "late_days",
+    "late_points",
+    "not_final_because",
+    "email",
+    "submission",
+)
 
 
 class Gradebook:
-    """A class in a gradebook: iterating yields the grade of every student, in the order of the keys.
+    """A class in a gradebook: iterating yields the grade of every student, in the order of the
+    keys.
 
-    `batch` ends with one, and every other command on a class begins with one. It keeps nothing: the grades are computed
-    again from the files of its folder.
+    `batch` ends with one, and every other command on a class begins with one. It keeps nothing: the
+    grades are computed again from the files of its folder.
     """
 
     def __init__(self, folder: Path, run: Run | None = None, answers: Path | None = None) -> None:
-        """`run` is one that is not in the file yet; `answers` is the file of the model answers, for those who grade."""
+        """`run` is one that is not in the file yet; `answers` is the file of the model answers, for
+        those who grade.
+        """
         names.check_gradebook(folder)
         self.folder, self.settings = folder, read_settings(folder)
         names.check_roster(folder, self.settings)
@@ -57,17 +71,25 @@ class Gradebook:
             self.rubric = load_with_answers(str(rubric), answers)
         self.roster: Roster | None = None
         if roster.exists():
-            self.roster = read_roster(read_capped(roster, SIZE_LIMIT, advice=""), printable_path(roster))
+            self.roster = read_roster(
+                read_capped(roster, SIZE_LIMIT, advice=""), printable_path(roster)
+            )
         self.results = Results(folder / names.RESULTS)
         if run is None:
             self.results.check_newest()
         if run is None and not self.results.runs:
-            raise InputError(f"nothing is graded yet in {printable_path(folder)}: run `grader batch PATH`")
+            raise InputError(
+                f"nothing is graded yet in {printable_path(folder)}: run `grader batch PATH`"
+            )
         self.run: Run = run or self.results.runs[-1]
         self.due = self.settings.deadline(folder)
-        self._on_roster = {one.key: one for one in self.roster.students} if self.roster is not None else {}
+        self._on_roster = (
+            {one.key: one for one in self.roster.students} if self.roster is not None else {}
+        )
         others = self.results.students if self.roster is None else ()
-        self.keys = sorted({*self._on_roster, *self.run.totals, *others})  # a submission may have been assigned since
+        self.keys = sorted(
+            {*self._on_roster, *self.run.totals, *others}
+        )  # a submission may have been assigned since
         self.marks: Marks = read_marks(folder / names.MARKS, self.keys, self.rubric)
         self._marked = {student for student, _ in (*self.marks.counting, *self.marks.comments)}
         self.is_outdated = (self.run.rubric, self.run.version) != (self.rubric.sha256, __version__)
@@ -81,7 +103,9 @@ class Gradebook:
     @property
     def criteria(self) -> tuple[Criterion, ...]:
         """The criteria of the graded parts."""
-        return tuple(row for row in self.rubric.criteria if row.part in (self.settings.parts or {row.part}))
+        return tuple(
+            row for row in self.rubric.criteria if row.part in (self.settings.parts or {row.part})
+        )
 
     @property
     def maximum(self) -> Decimal:
@@ -99,12 +123,16 @@ class Gradebook:
         return self._grade(key, self.results.of(key))
 
     def student(self, key: str, stored: StoredResult | None) -> Student:
-        """Return a student as the roster has it, completed by the LMS ids in the names of the submission."""
+        """Return a student as the roster has it, completed by the LMS ids in the names of the
+        submission.
+        """
         person: dict[str, Any] = dict(stored.person) if stored is not None else {}
         found = self._on_roster.get(key)
         if found is None:
             return Student(key, **person, is_on_roster=self.roster is None)
-        return found._replace(**{name: value for name, value in person.items() if not getattr(found, name)})
+        return found._replace(
+            **{name: value for name, value in person.items() if not getattr(found, name)}
+        )
 
     def report(self, stored: StoredResult) -> Report:
         """Return the points of a result: outcomes without places, values and hints."""
@@ -113,22 +141,31 @@ class Gradebook:
         if unread:
             why = f"{unread}; needs manual grading"
         entries = ((name, stored.results[name]) for name in self._rows if name in stored.results)
-        results = (self._result(name, status, words or why, *more) for name, (_, status, words, *more) in entries)
+        results = (
+            self._result(name, status, words or why, *more)
+            for name, (_, status, words, *more) in entries
+        )
         urdf = Unreadable("", unread) if unread else Absent()
         submission = Submission(stored.student, urdf, is_single=False)
         return Report(submission, self.rubric, stored.parts, without_gifts(results, submission))
 
     def reopened(self, stored: StoredResult) -> Submission | None:
-        """Return a submission as it was graded; None if it has moved or changed since, or cannot be read."""
+        """Return a submission as it was graded; None if it has moved or changed since, or cannot be
+        read.
+        """
         settings, roots = self.settings, self.settings.roots(self.folder)
         if stored.root >= len(roots) or not stored.paths:
             return None
         root = str(roots[stored.root].resolve())
         try:
-            opened = open_class_submission(root, stored.paths, stored.names, stored.student, settings.max_size)
+            opened = open_class_submission(
+                root, stored.paths, stored.names, stored.student, settings.max_size
+            )
             if digest_of(opened.digest) != stored.digest:
                 return None
-            known = Opening(0, settings.arguments, stored.no_documents, converted=self.results.texts(stored))
+            known = Opening(
+                0, settings.arguments, stored.no_documents, converted=self.results.texts(stored)
+            )
             return opened.submission(self.rubric, known)
         except InputError:
             return None
@@ -140,7 +177,10 @@ class Gradebook:
 
     def _grade(self, key: str, stored: StoredResult | None) -> StudentGrade:
         whole = (key, TOTAL)
-        student, final = self.student(key, stored), self.marks.counting.get(whole) or self.marks.comments.get(whole)
+        student, final = (
+            self.student(key, stored),
+            self.marks.counting.get(whole) or self.marks.comments.get(whole),
+        )
         known = set[Reason]()
         if not student.is_on_roster:
             known.add(Reason.NOT_ON_ROSTER)
@@ -149,7 +189,9 @@ class Gradebook:
         if stored is None:
             if key in self.run.totals:
                 known.add(Reason.DAMAGED)
-            nothing = Report(Submission(key, Absent(), is_single=False), self.rubric, self.settings.parts, ())
+            nothing = Report(
+                Submission(key, Absent(), is_single=False), self.rubric, self.settings.parts, ()
+            )
             return StudentGrade(student, None, nothing, final=final, known=frozenset(known))
         if key not in self.run.totals:
             known.add(Reason.GONE)
@@ -169,12 +211,18 @@ class Gradebook:
         times = student._replace(
             is_late=stored.is_late if student.is_late is None else student.is_late,
             submitted=student.submitted or stored.submitted,
-            days_late=0.0 if student.is_late is False and student.days_late is None else student.days_late,
+            days_late=0.0
+            if student.is_late is False and student.days_late is None
+            else student.days_late,
         )
-        return lateness(self.rubric, times, report.score, self.due, own.value if own is not None else "")
+        return lateness(
+            self.rubric, times, report.score, self.due, own.value if own is not None else ""
+        )
 
     def with_marks(self, report: Report, stored: StoredResult) -> tuple[Report, tuple[str, ...]]:
-        """Return a report with marks and comments, and the criteria that were marked before the submission changed."""
+        """Return a report with marks and comments, and the criteria that were marked before the
+        submission changed.
+        """
         if stored.student not in self._marked:
             return report, ()
         results = {one.criterion.id: one for one in report.results}
@@ -183,7 +231,9 @@ class Gradebook:
             key = stored.student, name
             mark, comment = self.marks.counting.get(key), self.marks.comments.get(key)
             if comment is not None and name in results:
-                results[name] = results[name]._replace(comment=ManualComment(comment.comment, comment.by))
+                results[name] = results[name]._replace(
+                    comment=ManualComment(comment.comment, comment.by)
+                )
             if mark is None or mark.points is None or row.adjustment is not None:
                 continue
             given = ManualMark(mark.points, mark.by, mark.comment)
@@ -191,7 +241,9 @@ class Gradebook:
             results[name] = result._replace(manual_mark=given, hint=None, comment=None)
             if _is_older(mark, stored):
                 older.append(name)
-        return report._replace(results=tuple(results[name] for name in self._rows if name in results)), tuple(older)
+        return report._replace(
+            results=tuple(results[name] for name in self._rows if name in results)
+        ), tuple(older)
 
 
 def _is_older(mark: Mark, stored: StoredResult) -> bool:
@@ -203,7 +255,8 @@ def grade_table(
 ) -> tuple[list[str], Iterator[list[CellValue]]]:
     """Return the header, and the rows of grades; what is not decided is empty.
 
-    A table that `is_exported` has a column by which `mark --import` knows which cells a person changed.
+    A table that `is_exported` has a column by which `mark --import` knows which cells a person
+    changed.
     """
     header = [*_FIRST, *(row.id for row in book.rubric.criteria), *_LAST]
     if is_exported:
@@ -212,7 +265,9 @@ def grade_table(
 
 
 def points_of(book: Gradebook, grade: StudentGrade) -> dict[str, str]:
-    """Return the cells of a student that `mark --import` takes for marks, by criterion and for the total."""
+    """Return the cells of a student that `mark --import` takes for marks, by criterion and for the
+    total.
+    """
     points = dict.fromkeys((row.id for row in book.rubric.criteria), "")
     if grade.stored is not None and not grade.is_excused:
         points |= {one.criterion.id: one.cell for one in grade.results}

@@ -1,4 +1,5 @@
-"""The folder of a gradebook: the files in it, how it is recognised, who may write it, and its settings in `class.toml`.
+"""The folder of a gradebook: the files in it, how it is recognised, who may write it, and its
+settings in `class.toml`.
 
 The settings are what a later run needs to grade the class again.
 """
@@ -26,7 +27,10 @@ CLASS_FILE = "class.toml"
 _LOCK = ".lock"
 _WINDOWS_LOCK_AT = 1 << 30  # beyond the end of the file: others cannot read what is locked
 _MAX_SIZE = 1024 * 1024  # bytes of the settings
-_HEAD = "# What `grader batch` needs to grade this class again. An option of the command replaces what is here.\n"
+_HEAD = (
+    "# What `grader batch` needs to grade this class again. An option of the command replaces "
+    "what is here.\n"
+)
 _ARGUMENTS = "arguments"
 
 
@@ -42,7 +46,8 @@ def check_gradebook(folder: Path) -> None:
         raise InputError(f"{shown} is a file: a gradebook is a folder")
     if not folder.is_dir():
         raise InputError(
-            f"there is no gradebook {shown}: `grader batch PATH --gradebook {shell_quoted(folder)}` makes it"
+            f"there is no gradebook {shown}: `grader batch PATH --gradebook "
+            f"{shell_quoted(folder)}` makes it"
         )
     if not is_gradebook(folder):
         raise InputError(f"{shown} is not a gradebook: it has no {CLASS_FILE}")
@@ -52,32 +57,44 @@ def check_free(folder: Path) -> None:
     """Raise InputError unless a path is a gradebook, an empty folder, or absent."""
     is_begun = is_gradebook(folder) or (folder / _LOCK).exists()  # a first run may have been killed
     if folder.is_dir() and not is_begun and any(folder.iterdir()):
-        raise InputError(f"{printable_path(folder)} is not empty and not a gradebook: name another folder")
+        raise InputError(
+            f"{printable_path(folder)} is not empty and not a gradebook: name another folder"
+        )
     if folder.exists() and not folder.is_dir():
         check_gradebook(folder)
 
 
 def check_roster(folder: Path, settings: "ClassSettings") -> None:
-    """Raise InputError if the copy of the roster is no longer there: without it nobody would be missing."""
+    """Raise InputError if the copy of the roster is no longer there: without it nobody would be
+    missing.
+    """
     file = folder / ROSTER
     if settings.roster_hash and not file.exists():
         command = f"`grader batch --roster CSV --gradebook {shell_quoted(folder)}`"
-        raise InputError(f"{printable_path(file)} is gone: restore it, or name the roster again with {command}")
+        raise InputError(
+            f"{printable_path(file)} is gone: restore it, or name the roster again with {command}"
+        )
 
 
 def make_gradebook(folder: Path) -> None:
-    """Make the folders of a gradebook, unless they exist; only its owner can read them. Raises InputError."""
+    """Make the folders of a gradebook, unless they exist; only its owner can read them. Raises
+    InputError.
+    """
     check_free(folder)
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         (folder / _LOCK).touch(0o600)
         (folder / MARKS).mkdir(mode=0o700, exist_ok=True)
     except OSError as error:
-        raise InputError(f"cannot make the gradebook {printable_path(folder)}: {error.strerror}") from None
+        raise InputError(
+            f"cannot make the gradebook {printable_path(folder)}: {error.strerror}"
+        ) from None
 
 
 def lock(handle: int, *, wait: bool = True) -> None:
-    """Lock an open file until it is closed; raises OSError if another process has locked it, without `wait`."""
+    """Lock an open file until it is closed; raises OSError if another process has locked it,
+    without `wait`.
+    """
     if sys.platform == "win32":
         import msvcrt
 
@@ -91,17 +108,22 @@ def lock(handle: int, *, wait: bool = True) -> None:
 
 @contextmanager
 def batch_lock(folder: Path) -> Iterator[None]:
-    """Hold the lock of a run over a class; raise InputError while another run holds it. It ends with the process."""
+    """Hold the lock of a run over a class; raise InputError while another run holds it. It ends
+    with the process.
+    """
     try:
         file = os.fdopen(os.open(folder / _LOCK, os.O_RDWR | os.O_CREAT, 0o600), "r+b")
     except OSError as error:
-        raise InputError(f"cannot write to the gradebook {printable_path(folder)}: {error.strerror}") from None
+        raise InputError(
+            f"cannot write to the gradebook {printable_path(folder)}: {error.strerror}"
+        ) from None
     with file:
         try:
             lock(file.fileno(), wait=False)
         except OSError:
             raise InputError(
-                f"another `grader batch` writes to {printable_path(folder)}: wait until it has ended"
+                f"another `grader batch` writes to {printable_path(folder)}: wait until it "
+                "has ended"
             ) from None
         yield
 
@@ -152,7 +174,9 @@ def read_settings(folder: Path) -> ClassSettings:
     types = {one.name: type(getattr(ClassSettings(), one.name)) for one in fields(ClassSettings)}
     for key, value in data.items():
         if key not in types:
-            raise InputError(f"{shown} has an unknown key {printable(key)!r}{did_you_mean(key, types)}")
+            raise InputError(
+                f"{shown} has an unknown key {printable(key)!r}{did_you_mean(key, types)}"
+            )
         wanted = list if types[key] is tuple else types[key]
         parts: Iterable[object] = ()
         if isinstance(value, list):
@@ -160,22 +184,36 @@ def read_settings(folder: Path) -> ClassSettings:
         elif isinstance(value, dict):
             parts = value.values()
         if type(value) is not wanted or not all(isinstance(part, str) for part in parts):
-            names = {list: "a list of texts", dict: "a table of texts", int: "a number", str: "a text"}
+            names = {
+                list: "a list of texts",
+                dict: "a table of texts",
+                int: "a number",
+                str: "a text",
+            }
             raise InputError(f"{shown}: {key} should be {names[wanted]}")
-    given: dict[str, Any] = {key: tuple(value) if isinstance(value, list) else value for key, value in data.items()}
+    given: dict[str, Any] = {
+        key: tuple(value) if isinstance(value, list) else value for key, value in data.items()
+    }
     return ClassSettings(**given)
 
 
 def settings_text(settings: ClassSettings) -> str:
     """Return the settings as TOML; `read_settings` returns the same."""
-    values = {one.name: getattr(settings, one.name) for one in fields(settings) if one.name != _ARGUMENTS}
+    values = {
+        one.name: getattr(settings, one.name) for one in fields(settings) if one.name != _ARGUMENTS
+    }
     lines = [f"{key} = {_toml_value(value)}\n" for key, value in values.items()]
     if settings.arguments:
         lines.append(f"\n[{_ARGUMENTS}]\n")
-        lines += [f"{_toml_value(key)} = {_toml_value(value)}\n" for key, value in sorted(settings.arguments.items())]
+        lines += [
+            f"{_toml_value(key)} = {_toml_value(value)}\n"
+            for key, value in sorted(settings.arguments.items())
+        ]
     return "".join((_HEAD, *lines))
 
 
 def _toml_value(value: object) -> str:
-    """Return a value in TOML, whose texts and lists of texts are those of JSON but for the character DEL."""
+    """Return a value in TOML, whose texts and lists of texts are those of JSON but for the
+    character DEL.
+    """
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -1,6 +1,8 @@
-"""The late penalty of a submission under a rubric's policy: a separate line, never part of a criterion.
+"""The late penalty of a submission under a rubric's policy: a separate line, never part of a
+criterion.
 
-As in Canvas (app/models/late_policy.rb): a percentage of the maximum for each day begun, and never below the floor.
+As in Canvas (app/models/late_policy.rb): a percentage of the maximum for each day begun, and never
+below the floor.
 """
 
 import re
@@ -22,7 +24,8 @@ _IN_MINUTES = re.compile(r"\S+[T ]\d\d(:?\d\d)?(Z|[+-].*)?")  # a time without s
 
 
 class Lateness(NamedTuple):
-    """The lateness of a submission: days begun, the penalty in points (0 or less), and the reason in words.
+    """The lateness of a submission: days begun, the penalty in points (0 or less), and the reason
+    in words.
 
     If the LMS does not tell when it was submitted, the days are a guess.
     """
@@ -38,7 +41,8 @@ def lateness(
 ) -> Lateness:
     """Return the lateness of a student's submission with this score.
 
-    The deadline `own` of `grader mark STUDENT deadline` comes first, then the student's, `deadline` and the rubric's.
+    The deadline `own` of `grader mark STUDENT deadline` comes first, then the student's, `deadline`
+    and the rubric's.
     """
     policy = rubric.late
     if own:
@@ -64,12 +68,15 @@ def read_time(text: str, where: str = "") -> datetime:
     try:
         moment = datetime.fromisoformat(text)
     except ValueError:
-        raise InputError(f"{where}{text!r} is not a date or time: write it as 2026-11-20T23:59+01:00") from None
+        raise InputError(
+            f"{where}{text!r} is not a date or time: write it as 2026-11-20T23:59+01:00"
+        ) from None
     return moment.replace(second=59, microsecond=_LAST) if _IN_MINUTES.fullmatch(text) else moment
 
 
 def time_text(when: datetime | str, zone: tzinfo | None = None) -> str:
-    """Return a time in a time zone, by default that of this machine, with its offset: 2026-11-20 23:59 (UTC+01:00).
+    """Return a time in a time zone, by default that of this machine, with its offset: 2026-11-20
+    23:59 (UTC+01:00).
 
     A time without an offset is returned without one.
     """
@@ -79,31 +86,55 @@ def time_text(when: datetime | str, zone: tzinfo | None = None) -> str:
             moment = moment.astimezone(zone)
     plain = moment.replace(tzinfo=None)
     offset = moment.isoformat().removeprefix(plain.isoformat())
-    shown = plain.isoformat(" ", "seconds" if plain.second and plain.microsecond != _LAST else "minutes")
+    shown = plain.isoformat(
+        " ", "seconds" if plain.second and plain.microsecond != _LAST else "minutes"
+    )
     return f"{shown} (UTC{offset.replace('+00:00', '')})" if offset else shown
 
 
-def _days_late(times: Student, policy: Late | None, deadline: datetime | None) -> tuple[int, str, bool]:
+def _days_late(
+    times: Student, policy: Late | None, deadline: datetime | None
+) -> tuple[int, str, bool]:
     """Return the days begun, the reason in words, and whether the days are a guess."""
     grace = timedelta(minutes=float(policy.grace_minutes) if policy is not None else 0)
     if times.days_late is not None:
-        # A whole number is what a person has decided; a fraction is a time, which Moodle has measured.
-        days = max(0, ceil(times.days_late - grace / _DAY if times.days_late % 1 else times.days_late))
-        source = f"by {times.measured_by}'s own status" if times.measured_by else "as recorded by the instructor"
+        # A whole number is what a person has decided; a fraction is a time, which Moodle has
+        # measured.
+        days = max(
+            0, ceil(times.days_late - grace / _DAY if times.days_late % 1 else times.days_late)
+        )
+        source = (
+            f"by {times.measured_by}'s own status"
+            if times.measured_by
+            else "as recorded by the instructor"
+        )
         is_guess = bool(times.measured_by and times.due)  # which the LMS may not know
         return days, f"{counted(days, 'day')} late, {source}" if days else "", is_guess
-    due = read_time(times.due) if times.due else deadline or (policy.due if policy is not None else None)
+    due = (
+        read_time(times.due)
+        if times.due
+        else deadline or (policy.due if policy is not None else None)
+    )
     if times.submitted and due is not None:
         # A time without an offset is in the time zone of the other one.
         submitted = _in_zone(datetime.fromisoformat(times.submitted), due)
         due = _in_zone(due, submitted)
-        days = max(0, -((times.extension_days * _DAY + grace - (submitted - due)) // _DAY))  # rounded up to days begun
+        days = max(
+            0, -((times.extension_days * _DAY + grace - (submitted - due)) // _DAY)
+        )  # rounded up to days begun
         extension = f", extension {times.extension_days:g} day{'s' * (times.extension_days != 1)}"
         more = extension if times.extension_days else ""
-        shown = f"submitted {time_text(submitted, due.tzinfo)}, deadline {time_text(due, due.tzinfo)}{more}"
+        shown = (
+            f"submitted {time_text(submitted, due.tzinfo)}, deadline "
+            f"{time_text(due, due.tzinfo)}{more}"
+        )
         return days, f"{counted(days, 'day')} late: {shown}" if days else "", False
     # The LMS says only that the submission is late, and may not know the student's own deadline.
-    return (1, "late by an unknown time, which counts as 1 day", True) if times.is_late else (0, "", False)
+    return (
+        (1, "late by an unknown time, which counts as 1 day", True)
+        if times.is_late
+        else (0, "", False)
+    )
 
 
 def _in_zone(time: datetime, other: datetime) -> datetime:

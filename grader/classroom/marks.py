@@ -1,10 +1,12 @@
-"""The marks of people: the rows of the CSV files in a folder, and which of them counts for a student and criterion.
+"""The marks of people: the rows of the CSV files in a folder, and which of them counts for a
+student and criterion.
 
-The latest time counts, of equal times in one file the later row. A row without a time is newer than all with one.
-Different rows that have no order are refused; equal rows are one. A comment without points changes only the comment.
+The latest time counts, of equal times in one file the later row. A row without a time is newer than
+all with one. Different rows that have no order are refused; equal rows are one. A comment without
+points changes only the comment.
 
-People and spreadsheets write the files, too: a file keeps its delimiter, decimal sign, encoding, line ends, order of
-columns and further columns. It is locked only while rows are appended.
+People and spreadsheets write the files, too: a file keeps its delimiter, decimal sign, encoding,
+line ends, order of columns and further columns. It is locked only while rows are appended.
 """
 
 import os
@@ -39,7 +41,9 @@ _Rows = list[tuple[str, Cells]]  # the place of each row, file and line, and its
 _TITLES = {*COLUMNS, "answer", "exported", "id"}  # known in any spelling
 SURPLUS = ""  # in place of a title: the cells that have none
 WITHDRAWN = "-"  # in place of points: no formula
-_FLAGS = os.O_RDWR | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
+_FLAGS = (
+    os.O_RDWR | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
+)
 _SAFE = re.compile(r"(?!(?:con|prn|aux|nul|com\d|lpt\d)$)[a-z0-9_]{1,40}")  # no device of Windows
 _DIGEST = re.compile(r"d[0-9a-f]+")
 _MAX_MISTAKES = 20
@@ -78,7 +82,9 @@ class Marks(NamedTuple):
     ignored: list[str]  # which rows do not count, and why
 
     def add(self, key: Key, rows: Sequence[Mark]) -> None:
-        """Add all rows of a student's criterion, in the order of files; raises InputError if they have no order."""
+        """Add all rows of a student's criterion, in the order of files; raises InputError if they
+        have no order.
+        """
         newest, counting = _newest(rows), _newest([mark for mark in rows if mark.value] or rows)
         self.newest[key] = newest
         if counting.value not in ("", WITHDRAWN):
@@ -87,12 +93,16 @@ class Marks(NamedTuple):
             self.comments[key] = newest
 
     def next_time(self, key: Key) -> str:
-        """Return the time for a new mark: now, or later, so that it counts. Raises InputError if none would."""
+        """Return the time for a new mark: now, or later, so that it counts. Raises InputError if
+        none would.
+        """
         before, now = self.newest.get(key), datetime.now(UTC)
         if before is None:
             return _utc_text(now)
         if not before.time:
-            raise InputError(f"{before.place} has no time, so it counts before every new mark: change that row")
+            raise InputError(
+                f"{before.place} has no time, so it counts before every new mark: change that row"
+            )
         return _utc_text(max(now, datetime.fromisoformat(before.time) + timedelta(milliseconds=1)))
 
 
@@ -103,11 +113,19 @@ def _utc_text(time: datetime) -> str:
 
 def append_marks(path: Path, marks: Iterable[Mark]) -> None:
     """Append marks to a grader's file; raises InputError as `_append_rows` does."""
-    _append_rows(path, [{**{name: getattr(mark, name) for name in COLUMNS}, "points": mark.value} for mark in marks])
+    _append_rows(
+        path,
+        [
+            {**{name: getattr(mark, name) for name in COLUMNS}, "points": mark.value}
+            for mark in marks
+        ],
+    )
 
 
 def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:
-    """Return the marks in the files of a folder; raises InputError with a line for each row that cannot be read."""
+    """Return the marks in the files of a folder; raises InputError with a line for each row that
+    cannot be read.
+    """
     most, keys = maxima(rubric), dict.fromkeys(students)
 
     def read(cells: Cells, place: str) -> list[Mark]:
@@ -118,7 +136,9 @@ def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:
     return collect(_rows_in_folder(folder, mistakes), read, mistakes, [])
 
 
-def collect(rows: Iterable[tuple[str, Cells]], read: _Reader, mistakes: list[str], ignored: list[str]) -> Marks:
+def collect(
+    rows: Iterable[tuple[str, Cells]], read: _Reader, mistakes: list[str], ignored: list[str]
+) -> Marks:
     """Return the marks in rows, each with its place; raises InputError if there are mistakes."""
     found: dict[Key, list[Mark]] = defaultdict(list)
     marks = Marks({}, {}, {}, ignored)
@@ -142,7 +162,9 @@ def collect(rows: Iterable[tuple[str, Cells]], read: _Reader, mistakes: list[str
 
 
 def _rows_in_folder(folder: Path, mistakes: list[str]) -> Iterator[tuple[str, Cells]]:
-    """Yield the place and the cells of each row of the files in a folder; files that cannot be read are mistakes."""
+    """Yield the place and the cells of each row of the files in a folder; files that cannot be read
+    are mistakes.
+    """
     for path in sorted(folder.absolute().glob("[!.]*.[cC][sS][vV]")):
         shown = printable_path(Path(folder.name, path.name))
         try:
@@ -153,16 +175,28 @@ def _rows_in_folder(folder: Path, mistakes: list[str]) -> Iterator[tuple[str, Ce
 
 
 def maxima(rubric: Rubric) -> dict[str, Decimal]:
-    """Return the most points for each criterion and TOTAL; marks of an adjusted criterion never count: any is valid."""
-    most = {row.id: row.points if row.adjustment is None else Decimal(MAX_POINTS) for row in rubric.criteria}
-    return {**most, TOTAL: sum((row.points for row in rubric.criteria), Decimal(0)), DEADLINE: Decimal(0)}
+    """Return the most points for each criterion and TOTAL; marks of an adjusted criterion never
+    count: any is valid.
+    """
+    most = {
+        row.id: row.points if row.adjustment is None else Decimal(MAX_POINTS)
+        for row in rubric.criteria
+    }
+    return {
+        **most,
+        TOTAL: sum((row.points for row in rubric.criteria), Decimal(0)),
+        DEADLINE: Decimal(0),
+    }
 
 
 def mark_in(cells: Cells, key: Key, most: Decimal, place: str) -> Mark:
     """Return the mark in a row; raises InputError, or NotCountedError."""
     value, submission = cells["points"], cells["submission"]
     if cells[SURPLUS]:
-        raise InputError(f"{quoted(cells[SURPLUS])} is in no column: a cell that contains a delimiter needs quotes")
+        raise InputError(
+            f"{quoted(cells[SURPLUS])} is in no column: a cell that contains a delimiter "
+            "needs quotes"
+        )
     if submission and not _DIGEST.fullmatch(submission):
         raise InputError(f"{quoted(submission)} is not the digest of a submission")
     if value.casefold() == EXCUSED and key[1] == TOTAL:
@@ -176,9 +210,14 @@ def mark_in(cells: Cells, key: Key, most: Decimal, place: str) -> Mark:
 
 def _time(text: str) -> str:
     with suppress(ValueError, OverflowError):
-        if not text or ((time := datetime.fromisoformat(text)).tzinfo is not None and time.year < MAXYEAR):
+        if not text or (
+            (time := datetime.fromisoformat(text)).tzinfo is not None and time.year < MAXYEAR
+        ):
             return _utc_text(time) if text else ""
-    raise InputError(f"{quoted(text)} is not a time: write it as 2026-11-23T14:05:09.123+00:00, or leave it empty")
+    raise InputError(
+        f"{quoted(text)} is not a time: write it as 2026-11-23T14:05:09.123+00:00, or leave "
+        "it empty"
+    )
 
 
 def _newest(rows: Sequence[Mark]) -> Mark:
@@ -195,16 +234,22 @@ def _newest(rows: Sequence[Mark]) -> Mark:
 
 
 def read_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], _Rows]:
-    """Return a CSV file, the titles of its columns, and its rows; raises InputError if two columns have one title."""
+    """Return a CSV file, the titles of its columns, and its rows; raises InputError if two columns
+    have one title.
+    """
     table = read_table(data, shown, is_from_person=True)
     header, *lines = table.filled or [TableRow(1, 1, (), "")]
-    titles = tuple(name if (name := folded(title)) in _TITLES else title.strip() for title in header.values)
+    titles = tuple(
+        name if (name := folded(title)) in _TITLES else title.strip() for title in header.values
+    )
     if twice := [title for title, count in Counter(filter(None, titles)).items() if count > 1]:
         raise InputError(f"{shown} has two columns {twice[0]!r}")
     rows = _Rows()
     for line in lines:
         row = dict.fromkeys((*COLUMNS, SURPLUS), "")
-        for title, cell in zip_longest(titles[: len(line.cells)], map(_cell_text, line.values), fillvalue=SURPLUS):
+        for title, cell in zip_longest(
+            titles[: len(line.cells)], map(_cell_text, line.values), fillvalue=SURPLUS
+        ):
             row[title] = cell if title else f"{row[SURPLUS]} {cell}".strip()
         rows.append((f"{shown}:{line.line}", row))
     return table, titles, rows
@@ -222,8 +267,9 @@ def _with_newlines(text: str) -> str:
 def _whole_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], _Rows]:
     """Return the rows of a file of marks; raises InputError if the last mark in it may be cut.
 
-    The last row may be cut where it has no line break: it is refused (12.5 cut to 12 is a wrong mark), unless its last
-    cell is the digest, which is not used then, or one of a person's own column.
+    The last row may be cut where it has no line break: it is refused (12.5 cut to 12 is a wrong
+    mark), unless its last cell is the digest, which is not used then, or one of a person's own
+    column.
     """
     table, titles, rows = read_rows(data, shown)
     if titles and not ({"student", "criterion"} <= {*titles} and {"points", "comment"} & {*titles}):
@@ -233,14 +279,17 @@ def _whole_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], _Rows]
         is_whole = rows and len(last.cells) == len(titles) and titles[-1] not in COLUMNS[:-1]
         if not is_whole or table.encoding == "windows-1252":
             where = f"{shown}:{last.line}"
-            raise InputError(f"{where}: the last row may be incomplete: check it, and end it with a line break")
+            raise InputError(
+                f"{where}: the last row may be incomplete: check it, and end it with a line break"
+            )
         if titles[-1] == COLUMNS[-1]:
             rows[-1] = rows[-1][0], {**rows[-1][1], titles[-1]: ""}
     return table, titles, rows
 
 
 def _append_rows(path: Path, rows: Sequence[Mapping[str, str]]) -> None:
-    """Append rows to a file of marks, all or none, and wait until they are on the disk; make the file if necessary.
+    """Append rows to a file of marks, all or none, and wait until they are on the disk; make the
+    file if necessary.
 
     Raises InputError if the file cannot be written, lacks a column, or may be cut at its end.
     """
@@ -277,7 +326,9 @@ def _sync_folder(folder: Path) -> None:
 
 
 def _encoded(data: bytes, rows: Sequence[Mapping[str, str]], shown: str) -> bytes:
-    """Return what appends rows to a file in its own style, with the header or line break that it lacks."""
+    """Return what appends rows to a file in its own style, with the header or line break that it
+    lacks.
+    """
     table, titles, old = _whole_rows(data, shown)
     if missing := [name for name in COLUMNS if titles and name not in titles]:
         raise InputError(f"{shown} has no column {enumerated(missing)}: add it to the first line")
@@ -285,16 +336,26 @@ def _encoded(data: bytes, rows: Sequence[Mapping[str, str]], shown: str) -> byte
     text = end if table.rows and not table.rows[-1].end else ""
     text += "" if titles else table.delimiter.join(COLUMNS) + end
     points = " ".join(row["points"] for _, row in old)
-    has_comma = bool(re.search(r"\d,\d", points) or (table.delimiter == ";" and not re.search(r"\d\.\d", points)))
+    has_comma = bool(
+        re.search(r"\d,\d", points) or (table.delimiter == ";" and not re.search(r"\d\.\d", points))
+    )
     for row in rows:
-        texts = {name: value if value == WITHDRAWN else protected(_with_newlines(value)) for name, value in row.items()}
+        texts = {
+            name: value if value == WITHDRAWN else protected(_with_newlines(value))
+            for name, value in row.items()
+        }
         texts["points"] = texts["points"].replace(".", ",") if has_comma else texts["points"]
-        text += table.delimiter.join(table.cell(texts.get(title, "")) for title in titles or COLUMNS) + end
+        text += (
+            table.delimiter.join(table.cell(texts.get(title, "")) for title in titles or COLUMNS)
+            + end
+        )
     return text.encode(table.encoding, "xmlcharrefreplace")
 
 
 def mark_file(folder: Path, by: str) -> Path:
-    """Return the file of a grader: valid on every system, and of nobody else, though systems may ignore case."""
+    """Return the file of a grader: valid on every system, and of nobody else, though systems may
+    ignore case.
+    """
     name = unicodedata.normalize("NFC", by.strip().lower())
     if not _SAFE.fullmatch(name):
         digest = sha256_of(name.encode("utf-8", "surrogateescape"))[:16]

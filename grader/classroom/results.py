@@ -1,12 +1,12 @@
 """The file `results.jsonl` of a gradebook: one line a graded submission and one line a run.
 
-A line of a submission comes before that of its run, and the newest of a student counts. The texts of Word and PDF
-files, which are slow to read, are on lines of their own. The file can be computed again from the submissions: without
-it only the comparison of runs and some seconds are lost. A last line that was not written to its end is ignored, and
-cut before the next one is appended.
+A line of a submission comes before that of its run, and the newest of a student counts. The texts
+of Word and PDF files, which are slow to read, are on lines of their own. The file can be computed
+again from the submissions: without it only the comparison of runs and some seconds are lost. A last
+line that was not written to its end is ignored, and cut before the next one is appended.
 
-Each line ends with its checksum, and that of a run names the students whose lines it wrote: what is damaged or lost
-counts for nobody.
+Each line ends with its checksum, and that of a run names the students whose lines it wrote: what is
+damaged or lost counts for nobody.
 """
 
 import json
@@ -26,9 +26,11 @@ from grader.files.reading import read_error, sha256_of
 from grader.text import enumerated, printable_path
 
 Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
-# What is kept of a criterion: points, status, the mistake in words, the criterion that carries it, and of a length that
-# was measured how far it is off, in metres.
-StoredCriterion = tuple[float | None, Status, str, str] | tuple[float | None, Status, str, str, float]
+# What is kept of a criterion: points, status, the mistake in words, the criterion that carries it,
+# and of a length that was measured how far it is off, in metres.
+StoredCriterion = (
+    tuple[float | None, Status, str, str] | tuple[float | None, Status, str, str, float]
+)
 _DIGITS = 16  # of a hash
 _MAX_NAMED = 10  # lines
 _RUN, _GRADED, _TEXTS = b'{"run":', b'{"student":', b'{"texts":'
@@ -53,7 +55,9 @@ class StoredResult(NamedTuple):
     parts: tuple[str, ...] = ()
     results: Mapping[str, StoredCriterion] = {}
     work: Mapping[str, str] = {}  # hashes of the robot in several forms, for equal work
-    answers: Mapping[str, str] = {}  # by criterion: students with the same answer have the same key, empty without one
+    answers: Mapping[
+        str, str
+    ] = {}  # by criterion: students with the same answer have the same key, empty without one
     no_documents: str = ""  # why its documents were not read
     texts: Mapping[str, str] = {}  # those of Word and PDF files by path, in a new result only
 
@@ -62,8 +66,14 @@ class StoredResult(NamedTuple):
         """The line of the file, without what is empty, and before it that of the texts."""
         values = self._asdict()
         files = values.pop("texts")
-        line = _json_line({name: value for name, value in values.items() if value or name in ("student", "run")})
-        return _json_line({"texts": self.student, "digest": self.digest, "files": files}) + line if files else line
+        line = _json_line(
+            {name: value for name, value in values.items() if value or name in ("student", "run")}
+        )
+        return (
+            _json_line({"texts": self.student, "digest": self.digest, "files": files}) + line
+            if files
+            else line
+        )
 
 
 class Run(NamedTuple):
@@ -113,11 +123,15 @@ def _is_whole(line: bytes) -> bool:
 def _values_in(line: bytes) -> dict[str, Any]:
     """Return the values in a whole line, lists as tuples."""
     values = json.loads(line.rpartition(_CHECKSUM)[0] + b"}")
-    return {key: tuple(value) if isinstance(value, list) else value for key, value in values.items()}
+    return {
+        key: tuple(value) if isinstance(value, list) else value for key, value in values.items()
+    }
 
 
 def digest_of(*parts: object) -> str:
-    """Return the hash of some values: it begins with a letter, so that no spreadsheet takes it for a number."""
+    """Return the hash of some values: it begins with a letter, so that no spreadsheet takes it for
+    a number.
+    """
     return f"d{sha256_of(repr(parts).encode())[:_DIGITS]}"
 
 
@@ -135,7 +149,8 @@ class Results:
         self.runs: list[Run] = []
         self.damaged: list[int] = []  # the numbers of lines, from 1
         self.unfinished = set[str]()  # the students whose results were written since the newest run
-        self._is_torn = False  # whether a line since the newest run is damaged, which may be that of a run
+        # whether a line since the newest run is damaged, which may be that of a run
+        self._is_torn = False
         # A hundred thousand students fit into memory, but not all of their results.
         self._places, self._texts = dict[str, int](), dict[str, int]()
         with self._refuse_damage():
@@ -165,13 +180,17 @@ class Results:
                     self.unfinished.add(key)
 
     def _end_run(self, run: Run) -> None:
-        """Keep a run; a student whose line of it is lost has no result: an older one is that of other work."""
+        """Keep a run; a student whose line of it is lost has no result: an older one is that of
+        other work.
+        """
         for key in {*run.written} - self.unfinished:
             self._places.pop(key, None)
         self.unfinished.clear()
         self._is_torn = False
         # Only the newest are compared.
-        self.runs[-1:] = [older._replace(totals={}, others={}, written=()) for older in self.runs[-1:]]
+        self.runs[-1:] = [
+            older._replace(totals={}, others={}, written=()) for older in self.runs[-1:]
+        ]
         self.runs.append(run)
 
     @property
@@ -179,7 +198,11 @@ class Results:
         """Which lines are damaged; empty without any."""
         lines = enumerated([*map(str, self.damaged)], _MAX_NAMED)
         noun, verb = ("line", "does") if len(self.damaged) == 1 else ("lines", "do")
-        return f"{noun} {lines} of {printable_path(self._file)} cannot be read, and {verb} not count" if lines else ""
+        return (
+            f"{noun} {lines} of {printable_path(self._file)} cannot be read, and {verb} not count"
+            if lines
+            else ""
+        )
 
     def check_newest(self) -> None:
         """Raise InputError if the newest run may be lost."""
@@ -193,7 +216,9 @@ class Results:
             yield
         except (ValueError, TypeError, KeyError, AttributeError):
             shown = printable_path(self._file)
-            raise InputError(f"{shown} is damaged: delete it, and rerun `grader batch`, which makes it again") from None
+            raise InputError(
+                f"{shown} is damaged: delete it, and rerun `grader batch`, which makes it again"
+            ) from None
 
     def _whole_lines(self) -> Iterator[bytes]:
         """Yield the whole lines, up to one that was not written to its end."""
@@ -238,7 +263,9 @@ class Results:
         [found] = self._read_values(self._texts, [stored.student])
         return dict(found["files"]) if found and found["digest"] == stored.digest else {}
 
-    def _read_values(self, places: Mapping[str, int], keys: Iterable[str]) -> Iterator[dict[str, Any]]:
+    def _read_values(
+        self, places: Mapping[str, int], keys: Iterable[str]
+    ) -> Iterator[dict[str, Any]]:
         """Yield the values in a line for each key, none for a key without."""
         if not places:
             yield from ({} for _ in keys)
@@ -254,7 +281,9 @@ class Results:
 
 
 class ResultsWriter:
-    """Appends lines to a file of results, behind its last whole line. Raises InputError if it cannot be written."""
+    """Appends lines to a file of results, behind its last whole line. Raises InputError if it
+    cannot be written.
+    """
 
     def __init__(self, file: Path, end: int) -> None:
         self._shown = printable_path(file)

@@ -1,4 +1,6 @@
-"""Statistics of a class: the grades as they are published, each criterion, the most common mistakes, the sections."""
+"""Statistics of a class: the grades as they are published, each criterion, the most common
+mistakes, the sections.
+"""
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
@@ -25,7 +27,9 @@ class _Summary(NamedTuple):
 
 
 class CriterionFigures(NamedTuple):
-    """The students by each of COUNTS, and the mean share of the points that they earned; None if open or adjusted."""
+    """The students by each of COUNTS, and the mean share of the points that they earned; None if
+    open or adjusted.
+    """
 
     criterion: Criterion
     counts: Counter[str]
@@ -33,7 +37,9 @@ class CriterionFigures(NamedTuple):
 
 
 class _CommonMistake(NamedTuple):
-    """A mistake that several students made in a criterion; of one that is measured, how far it is off."""
+    """A mistake that several students made in a criterion; of one that is measured, how far it is
+    off.
+    """
 
     criterion: str
     message: str
@@ -41,10 +47,11 @@ class _CommonMistake(NamedTuple):
 
 
 class ClassStatistics(NamedTuple):
-    """The figures of a class. Students who are not on the roster, or whose submission is gone, are in `attention` only.
+    """The figures of a class. Students who are not on the roster, or whose submission is gone, are
+    in `attention` only.
 
-    A grade counts if it is a final mark, or that of a graded submission, after marks, adjustments and the late penalty;
-    points that still need manual grading are not in it yet.
+    A grade counts if it is a final mark, or that of a graded submission, after marks, adjustments
+    and the late penalty; points that still need manual grading are not in it yet.
     """
 
     rubric: Rubric
@@ -53,7 +60,9 @@ class ClassStatistics(NamedTuple):
     all: _Summary | None  # None if no grade counts
     open: int  # grades with points that still need manual grading
     late: int  # students
-    tenths: Sequence[Sequence[str]]  # students in each tenth of the maximum, which itself is in the last one
+    tenths: Sequence[
+        Sequence[str]
+    ]  # students in each tenth of the maximum, which itself is in the last one
     criteria: Sequence[CriterionFigures]
     mistakes: Sequence[_CommonMistake]
     sections: dict[str, _Summary]  # without any if there is only one
@@ -65,14 +74,18 @@ class ClassStatistics(NamedTuple):
 def statistics(book: Gradebook, grades: Iterable[StudentGrade]) -> ClassStatistics:
     """Return the statistics of the grades of a class."""
     every = list(grades)
-    enrolled = [one for one in every if one.student.is_on_roster and (one.has_final or not one.is_gone)]
+    enrolled = [
+        one for one in every if one.student.is_on_roster and (one.has_final or not one.is_gone)
+    ]
     counted = [one for one in enrolled if one.is_counted]
     most = book.maximum
     sections, tenths = defaultdict[str, list[Decimal]](list), [list[str]() for _ in range(_TENTHS)]
     for one in counted:
         total = one.total or Decimal(0)
         sections[one.student.section].append(total)
-        tenths[max(0, min(_TENTHS - 1, int(total * _TENTHS // (most or 1))))].append(one.student.key)
+        tenths[max(0, min(_TENTHS - 1, int(total * _TENTHS // (most or 1))))].append(
+            one.student.key
+        )
     attention: dict[Reason, list[tuple[str, str]]] = {reason: [] for reason in Reason}
     for one in every:
         for reason, detail in one.concerns.items():
@@ -87,7 +100,9 @@ def statistics(book: Gradebook, grades: Iterable[StudentGrade]) -> ClassStatisti
         sum(one.late.days > 0 and not one.has_final for one in enrolled),
         tenths,
         *_criteria_figures(book, counted),
-        {name: summary(values) for name, values in sorted(sections.items())} if len(sections) > 1 else {},
+        {name: summary(values) for name, values in sorted(sections.items())}
+        if len(sections) > 1
+        else {},
         {reason: those for reason, those in attention.items() if those},
         equal_work(present, book.settings.handed_out),
         {one.student.key: one.student.name for one in every},
@@ -98,7 +113,9 @@ def summary(totals: Iterable[Decimal]) -> _Summary:
     """Return the figures of some grades, of at least one."""
     found = sorted(totals)
     count = len(found)
-    return _Summary(count, sum(found, Decimal(0)) / count, (found[(count - 1) // 2] + found[count // 2]) / 2)
+    return _Summary(
+        count, sum(found, Decimal(0)) / count, (found[(count - 1) // 2] + found[count // 2]) / 2
+    )
 
 
 def _criteria_figures(
@@ -120,8 +137,14 @@ def _criteria_figures(
                 else:
                     mistakes[name, result.mistake].append((grade.student.key, result.mistake, 0))
     common = sorted(mistakes.items(), key=lambda item: (-len(item[1]), item[0]))[:_MAX_MISTAKES]
-    rows = [CriterionFigures(row, counts[row.id], _share(row, counts[row.id], earned[row.id])) for row in book.criteria]
-    return rows, [_CommonMistake(name, _words(those), sorted(key for key, *_ in those)) for (name, _), those in common]
+    rows = [
+        CriterionFigures(row, counts[row.id], _share(row, counts[row.id], earned[row.id]))
+        for row in book.criteria
+    ]
+    return rows, [
+        _CommonMistake(name, _words(those), sorted(key for key, *_ in those))
+        for (name, _), those in common
+    ]
 
 
 def _words(those: Sequence[tuple[str, str, float]]) -> str:

@@ -17,10 +17,12 @@ _ON_TIME = Lateness()
 
 
 class Reason(StrEnum):
-    """Why a grade needs attention, the most urgent reason first; the last two only keep it from being published.
+    """Why a grade needs attention, the most urgent reason first; the last two only keep it from
+    being published.
 
-    UNCLEAR means that there are possible submissions, of which none was graded, GONE that the newest run did not find
-    the submission, and OUTDATED that it was graded by another rubric or version, or on other parts.
+    UNCLEAR means that there are possible submissions, of which none was graded, GONE that the
+    newest run did not find the submission, and OUTDATED that it was graded by another rubric or
+    version, or on other parts.
     """
 
     FAILED = "the grader failed"
@@ -41,12 +43,22 @@ class Reason(StrEnum):
 
 # They keep a grade from being published; of a final mark only GONE needs attention.
 _OBSTACLES = {
-    *(Reason.FAILED, Reason.UNREADABLE, Reason.DAMAGED, Reason.UNCLEAR, Reason.MISSING, Reason.GONE, Reason.OUTDATED)
+    *(
+        Reason.FAILED,
+        Reason.UNREADABLE,
+        Reason.DAMAGED,
+        Reason.UNCLEAR,
+        Reason.MISSING,
+        Reason.GONE,
+        Reason.OUTDATED,
+    )
 }
 
 
 class SharedResult(Result):
-    """The result of a criterion in a class: most students share it, so what follows from it is computed once."""
+    """The result of a criterion in a class: most students share it, so what follows from it is
+    computed once.
+    """
 
     @cached_property
     def points(self) -> Decimal:
@@ -61,11 +73,15 @@ class SharedResult(Result):
     @cached_property
     def is_faulty(self) -> bool:
         """Whether the grader failed on the criterion, and nobody has marked it."""
-        return self.outcome.status == "errored" and self.manual_mark is None and not self.is_adjusted
+        return (
+            self.outcome.status == "errored" and self.manual_mark is None and not self.is_adjusted
+        )
 
     @cached_property
     def kinds(self) -> tuple[str, ...]:
-        """What it counts as in the figures of a class: a mark, a given point, or the status of the check."""
+        """What it counts as in the figures of a class: a mark, a given point, or the status of the
+        check.
+        """
         if self.manual_mark is not None:
             return "marked", "decided"
         if self.carried or self.is_adjusted:
@@ -89,9 +105,11 @@ class SharedResult(Result):
 class StudentGrade:
     """The grade of one student: what counts, what is open, and why a person should look at it.
 
-    A `Gradebook` makes it from the stored result, the marks and the roster, and nothing else decides what a student
-    gets: `grades.csv`, exports, reports, statistics and pages read it. `total` is the grade as it is now, `published`
-    what may leave the house, `obstacle` what is in the way, and `concerns` all that a person should look at.
+    A `Gradebook` makes it from the stored result, the marks and the roster, and nothing else
+    decides what a student
+    gets: `grades.csv`, exports, reports, statistics and pages read it. `total` is the grade as it
+    is now, `published` what may leave the house, `obstacle` what is in the way, and `concerns` all
+    that a person should look at.
 
     A student who submitted nothing has no grade until a person gives a final mark:
 
@@ -112,8 +130,12 @@ class StudentGrade:
     report: Report  # its points with the manual marks; without a submission no results
     late: Lateness = _ON_TIME
     final: Mark | None = None  # the mark, comment or excuse of the whole submission
-    older: tuple[str, ...] = ()  # the criteria (or `total`) that were marked before the submission changed
-    known: frozenset[Reason] = frozenset()  # what the class says: NOT_ON_ROSTER, UNCLEAR, DAMAGED, GONE, OUTDATED
+    older: tuple[
+        str, ...
+    ] = ()  # the criteria (or `total`) that were marked before the submission changed
+    known: frozenset[Reason] = (
+        frozenset()
+    )  # what the class says: NOT_ON_ROSTER, UNCLEAR, DAMAGED, GONE, OUTDATED
 
     @property
     def is_excused(self) -> bool:
@@ -132,7 +154,9 @@ class StudentGrade:
 
     @property
     def is_marked_early(self) -> bool:
-        """Whether the whole grade was decided when there was no submission: the mark has a time, but no digest."""
+        """Whether the whole grade was decided when there was no submission: the mark has a time,
+        but no digest.
+        """
         mark = self.final if self.stored is not None and self.has_final else None
         return mark is not None and bool(mark.time) and not mark.submission
 
@@ -162,8 +186,14 @@ class StudentGrade:
 
     @cached_property
     def total(self) -> Decimal | None:
-        """The final mark, else the points after the late penalty; None for an excuse, and without a submission."""
-        return self.final_points if self.has_final or self.stored is None else self.score + self.late.points
+        """The final mark, else the points after the late penalty; None for an excuse, and without a
+        submission.
+        """
+        return (
+            self.final_points
+            if self.has_final or self.stored is None
+            else self.score + self.late.points
+        )
 
     @cached_property
     def pending(self) -> Decimal:
@@ -185,7 +215,8 @@ class StudentGrade:
     def losses(self) -> list[tuple[Decimal, str]]:
         """The points that were lost by mistakes or marks, and the criterion.
 
-        The most points come first, and after all others what was skipped because of another criterion.
+        The most points come first, and after all others what was skipped because of another
+        criterion.
         """
         lost = [
             (one.outcome.status == "skipped", one.points - one.criterion.maximum, one.criterion.id)
@@ -217,7 +248,9 @@ class StudentGrade:
         details = dict.fromkeys((Reason.FAILED, Reason.UNREADABLE, Reason.SEVERAL), reason)
         details[Reason.OLDER_MARKS] = ", ".join(self.older)
         if self.final is not None:
-            details[Reason.EARLY_MARK] = f"{self.final.value} instead of {format_points(self.score)}"
+            details[Reason.EARLY_MARK] = (
+                f"{self.final.value} instead of {format_points(self.score)}"
+            )
         return {one: details.get(one, "") for one in Reason if one in found}
 
     @cached_property
@@ -232,7 +265,10 @@ class StudentGrade:
     def why_open(self) -> str:
         """Why this grade must not be published yet; empty if it is final."""
         if self.obstacle is Reason.PENDING:
-            return f"{counted_points(self.pending)} {'needs' if self.pending == 1 else 'need'} manual grading"
+            return (
+                f"{counted_points(self.pending)} {'needs' if self.pending == 1 else 'need'} "
+                "manual grading"
+            )
         if self.obstacle is None:
             return ""
         detail = self.concerns.get(self.obstacle)
@@ -245,6 +281,8 @@ class StudentGrade:
 
     @property
     def is_counted(self) -> bool:
-        """Whether the grade is in the figures of the class: also one that is open, if the submission was graded."""
+        """Whether the grade is in the figures of the class: also one that is open, if the
+        submission was graded.
+        """
         is_graded = self.status == "graded" and not self.is_gone
         return self.student.is_on_roster and (is_graded or self.published is not None)

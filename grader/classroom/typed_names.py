@@ -17,7 +17,9 @@ from grader.text import enumerated, format_points, printable, quoted
 
 _FINEST = Decimal("0.0001")  # points, as in rubrics
 _MAX_LISTED = 10
-_NUMBER = re.compile(r"\s*[+-]?(?=[.,]?[0-9])[0-9]{0,40}(?:[.,][0-9]{0,40})?(?:[eE][+-]?[0-9]{1,9})?\s*")
+_NUMBER = re.compile(
+    r"\s*[+-]?(?=[.,]?[0-9])[0-9]{0,40}(?:[.,][0-9]{0,40})?(?:[eE][+-]?[0-9]{1,9})?\s*"
+)
 
 
 class NotCountedError(InputError):
@@ -25,22 +27,31 @@ class NotCountedError(InputError):
 
 
 def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
-    """Return the only student whom a typed name may mean: an id, login, address or number, or some words of the name.
+    """Return the only student whom a typed name may mean: an id, login, address or number, or some
+    words of the name.
 
-    Raises InputError: if several students match, it lists them; else similar names; else it ends with `advice`.
+    Raises InputError: if several students match, it lists them; else similar names; else it ends
+    with `advice`.
     """
     word = plain(name)
     found = [
-        one for one, ids, words in _clues(tuple(students)) if word in ids or words.issuperset(word.split() or [""])
+        one
+        for one, ids, words in _clues(tuple(students))
+        if word in ids or words.issuperset(word.split() or [""])
     ]
     if len(found) == 1:
         return found[0]
     if found:
-        shown = [f"{one.key!r} ({printable(one.name)})" if one.name else repr(one.key) for one in found]
+        shown = [
+            f"{one.key!r} ({printable(one.name)})" if one.name else repr(one.key) for one in found
+        ]
         raise InputError(
-            f"{name!r} is ambiguous: it may be {enumerated(shown, _MAX_LISTED, 'or')}; use one of these ids"
+            f"{name!r} is ambiguous: it may be {enumerated(shown, _MAX_LISTED, 'or')}; use "
+            "one of these ids"
         )
-    changed = enumerated([*map(repr, as_number(name, tuple(one.key for one in students)))], _MAX_LISTED, "or")
+    changed = enumerated(
+        [*map(repr, as_number(name, tuple(one.key for one in students)))], _MAX_LISTED, "or"
+    )
     digits = re.sub(r"\D", "", name)  # with another digit, it is the id of another student
     words = (word for one in students for word in (one.key, one.login, one.name))
     some = {word for word in words if re.sub(r"\D", "", word) == digits}
@@ -53,15 +64,29 @@ def _clues(students: tuple[Student, ...]) -> list[tuple[Student, set[str], set[s
     """Return each student with the ids, and the words of the name."""
     clues = []
     for one in students:
-        ids = (one.key, one.login, one.sis, one.canvas, one.moodle, one.email, one.email.partition("@")[0])
+        ids = (
+            one.key,
+            one.login,
+            one.sis,
+            one.canvas,
+            one.moodle,
+            one.email,
+            one.email.partition("@")[0],
+        )
         clues.append(
-            (one, {plain(word) for word in (*ids, *one.aliases)} - {""}, {*plain(one.name or one.key).split()})
+            (
+                one,
+                {plain(word) for word in (*ids, *one.aliases)} - {""},
+                {*plain(one.name or one.key).split()},
+            )
         )
     return clues
 
 
 def known(noun: str, cell: str, names: Collection[str]) -> str:
-    """Return the student or criterion in a cell; raises NotCountedError, or InputError for a changed cell."""
+    """Return the student or criterion in a cell; raises NotCountedError, or InputError for a
+    changed cell.
+    """
     if cell in names:
         return cell
     if not cell:
@@ -73,11 +98,15 @@ def known(noun: str, cell: str, names: Collection[str]) -> str:
 
 
 def as_number(cell: str, names: tuple[str, ...]) -> list[str]:
-    """Return the names that a spreadsheet may have changed into a number: 0012 into 12, 123456 into 1.2E+05."""
+    """Return the names that a spreadsheet may have changed into a number: 0012 into 12, 123456 into
+    1.2E+05.
+    """
     if (number := number_in(cell)) is None:
         return []
     rounded = Context(prec=len(number.as_tuple().digits), traps=[])
-    return [name for name, value in _numbers(names) if name != cell and rounded.plus(value) == number]
+    return [
+        name for name, value in _numbers(names) if name != cell and rounded.plus(value) == number
+    ]
 
 
 @lru_cache(maxsize=2)
@@ -91,13 +120,18 @@ def number_in(text: str) -> Decimal | None:
 
 
 def read_points(text: str, name: str, most: Decimal) -> Decimal:
-    """Return the points in a text, from 0 to `most`; raises InputError, which names what they are for and the range."""
+    """Return the points in a text, from 0 to `most`; raises InputError, which names what they are
+    for and the range.
+    """
     points, text = number_in(text), text.strip()
     if points is not None and not 0 <= points <= most:
         kind = NotCountedError if points > most else InputError
         raise kind(f"{name} is worth 0 to {format_points(most)} points, not {text}")
     if points is None or points != points.quantize(_FINEST):
-        raise InputError(f"points are a number from 0 to {format_points(most)}, with at most 4 decimals, not {text!r}")
+        raise InputError(
+            f"points are a number from 0 to {format_points(most)}, with at most 4 decimals, "
+            f"not {text!r}"
+        )
     return abs(points)  # -0 is 0
 
 
@@ -106,5 +140,8 @@ def criterion_of(rubric: Rubric, name: str) -> Criterion:
     criteria = {criterion.id: criterion for criterion in rubric.criteria}
     if name not in criteria:
         guess = did_you_mean(name, criteria)
-        raise InputError(f"the rubric {rubric.id} has no criterion {name!r}{guess} (`{rubric.shown_by}` lists them)")
+        raise InputError(
+            f"the rubric {rubric.id} has no criterion {name!r}{guess} (`{rubric.shown_by}` "
+            "lists them)"
+        )
     return criteria[name]

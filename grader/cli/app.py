@@ -19,15 +19,28 @@ from grader.errors import GraderError
 from grader.files.limits import ROBOT_ENDINGS
 from grader.text import printable_path, shell_quoted
 
-# In the order of the help, with the module of each: it holds a function, or a group of commands, of this name.
+# In the order of the help, with the module of each: it holds a function, or a group of commands, of
+# this name.
 COMMANDS = {
-    "grade": "grade", "inspect": "inspect", "batch": "batch", "mark": "review", "review": "review",
-    "export": "class_grades", "diff": "class_grades", "stats": "class_grades", "bundle": "rubric", "explain": "explain",
-    "schema": "explain", "rubric": "rubric",
-}  # fmt: skip
+    "grade": "grade",
+    "inspect": "inspect",
+    "batch": "batch",
+    "mark": "review",
+    "review": "review",
+    "export": "class_grades",
+    "diff": "class_grades",
+    "stats": "class_grades",
+    "bundle": "rubric",
+    "explain": "explain",
+    "schema": "explain",
+    "rubric": "rubric",
+}
 _LIMITED = ("grade", "inspect")  # the commands that read one submission
 # Of options that take a file, for one that is given without.
-_EXAMPLES = {"--fix": "my_robot.urdf --fix fixed.urdf", "--save": "my_robot.urdf --save html=report.html"}
+_EXAMPLES = {
+    "--fix": "my_robot.urdf --fix fixed.urdf",
+    "--save": "my_robot.urdf --save html=report.html",
+}
 _COMPLETION = ("--show-completion", "--install-completion")
 
 
@@ -40,13 +53,19 @@ def _print_version(is_given: bool) -> None:
 def _root(
     version: Annotated[
         bool,
-        typer.Option("--version", "-V", help="Print the version and exit.", callback=_print_version, is_eager=True),
+        typer.Option(
+            "--version",
+            "-V",
+            help="Print the version and exit.",
+            callback=_print_version,
+            is_eager=True,
+        ),
     ] = False,
 ) -> None:
     """Grade robotics lab submissions: URDF, forward kinematics, ROS 2 package.
 
-    Students start with grade, instructors with rubric show and batch. Each command describes its arguments under
-    --help, with examples.
+    Students start with grade, instructors with rubric show and batch. Each command describes its
+    arguments under --help, with examples.
 
     Examples:
 
@@ -59,7 +78,9 @@ def _root(
 
 
 def make_app(names: Collection[str]) -> typer.Typer:
-    """Return the command line with these commands: importing all of them takes longer than to grade a URDF."""
+    """Return the command line with these commands: importing all of them takes longer than to grade
+    a URDF.
+    """
     app = typer.Typer(
         name="grader",
         no_args_is_help=True,
@@ -68,7 +89,9 @@ def make_app(names: Collection[str]) -> typer.Typer:
         pretty_exceptions_enable=False,
         context_settings={"help_option_names": ["-h", "--help"]},
     )
-    app.callback()(_root if len(names) > 1 else lambda: None)  # the options of `grader` itself precede the command
+    app.callback()(
+        _root if len(names) > 1 else lambda: None
+    )  # the options of `grader` itself precede the command
     for name in names:
         command = getattr(import_module(f"grader.cli.{COMMANDS[name]}"), name)
         if isinstance(command, typer.Typer):
@@ -106,7 +129,9 @@ def _run(arguments: Sequence[str]) -> int:
         return ExitCode.INTERRUPTED
     except Exception as error:  # noqa: BLE001  no traceback ever reaches a user
         return _other_error(error)
-    if result == 1 and arguments[0] in _COMPLETION:  # typer's code for a shell that it does not know
+    if (
+        result == 1 and arguments[0] in _COMPLETION
+    ):  # typer's code for a shell that it does not know
         return ExitCode.NOT_GRADED
     return result if isinstance(result, int) else ExitCode.PASSED
 
@@ -117,7 +142,9 @@ def _reason_of(error: OSError) -> str:
 
 
 def _complete() -> int:
-    """Print the completions of the word at the cursor; nothing if there is an error, which the shell would show."""
+    """Print the completions of the word at the cursor; nothing if there is an error, which the
+    shell would show.
+    """
     with redirect_stderr(StringIO()), suppress(Exception):
         try:
             make_app(COMMANDS)(prog_name="grader")
@@ -127,13 +154,17 @@ def _complete() -> int:
 
 
 def _command(arguments: Sequence[str]) -> list[str]:
-    """Return the command that is typed, if it is one. Raises GraderError if a file is named instead."""
+    """Return the command that is typed, if it is one. Raises GraderError if a file is named
+    instead.
+    """
     first = arguments[0] if arguments else "-"
     if first in COMMANDS:
         return [first]
     is_submission = os.path.lexists(first) or first.lower().endswith((*ROBOT_ENDINGS, ".zip"))
     if not first.startswith("-") and is_submission:
-        raise GraderError(f"there is no command {first!r}; to grade it, use `grader grade {shell_quoted(first)}`")
+        raise GraderError(
+            f"there is no command {first!r}; to grade it, use `grader grade {shell_quoted(first)}`"
+        )
     return []
 
 
@@ -143,11 +174,17 @@ def _other_error(error: Exception) -> ExitCode:
         return ExitCode.FAULT
     message, context = error.format_message(), getattr(error, "ctx", None)
     example = _EXAMPLES.get(getattr(error, "option_name", ""), "")
-    if context is not None and message == context.get_help():  # a group of commands without arguments
+    if (
+        context is not None and message == context.get_help()
+    ):  # a group of commands without arguments
         print(message, file=sys.stderr)
     else:
         command = context.command_path if context is not None else "grader"
-        advice = f"for example `grader grade {example}`" if example else f"`{command} --help` shows the usage"
+        advice = (
+            f"for example `grader grade {example}`"
+            if example
+            else f"`{command} --help` shows the usage"
+        )
         warn(_one_line(f"{message} ({advice})"))
     return ExitCode.NOT_GRADED
 

@@ -1,4 +1,6 @@
-"""grader export, stats and diff: the grades of a class for an LMS, their figures, and what changed between runs."""
+"""grader export, stats and diff: the grades of a class for an LMS, their figures, and what changed
+between runs.
+"""
 
 from pathlib import Path
 from typing import Annotated, Literal
@@ -13,8 +15,13 @@ from grader.report.formats import OutputFormat
 
 _TARGETS = ("csv", *FORMS, "json", "html")
 _INTO = "The gradebook or worksheet that the LMS exported."
-_OUTPUT = "The file to write (default: standard output); with html, the folder (default: the gradebook)."
-_STRICT = "Write nothing if a row or student is unmatched, a mark or time is in doubt, or the LMS would refuse a grade."
+_OUTPUT = (
+    "The file to write (default: standard output); with html, the folder (default: the gradebook)."
+)
+_STRICT = (
+    "Write nothing if a row or student is unmatched, a mark or time is in doubt, or the LMS "
+    "would refuse a grade."
+)
 _PENDING = "Also export grades with points that need manual grading."
 _MAXIMUM = "Export points unchanged, even if the LMS has another maximum."
 _ONLY = "Omit the columns of other assignments."
@@ -31,29 +38,35 @@ def _known_target(target: str) -> str:
 def export(
     target: Annotated[
         str,
-        typer.Argument(metavar="|".join(_TARGETS), callback=_known_target, help="The format of the grades."),
+        typer.Argument(
+            metavar="|".join(_TARGETS), callback=_known_target, help="The format of the grades."
+        ),
     ],
     gradebook: GradebookOption,
     into: Annotated[Path | None, typer.Option(metavar="LMS-FILE", help=_INTO)] = None,
     output: Annotated[Path | None, typer.Option(metavar="FILE|DIR", help=_OUTPUT)] = None,
     strict: Annotated[bool, typer.Option("--strict", help=_STRICT)] = False,
-    column: Annotated[str, typer.Option(metavar="TITLE", help="The grade's column, if it is ambiguous.")] = "",
+    column: Annotated[
+        str, typer.Option(metavar="TITLE", help="The grade's column, if it is ambiguous.")
+    ] = "",
     pending_as_zero: Annotated[bool, typer.Option("--pending-as-zero", help=_PENDING)] = False,
     any_maximum: Annotated[bool, typer.Option("--any-maximum", help=_MAXIMUM)] = False,
     only: Annotated[bool, typer.Option("--only", help=_ONLY)] = False,
     excel: Annotated[bool, typer.Option("--excel", help=_EXCEL)] = False,
     feedback: Annotated[Path | None, typer.Option(metavar="ZIP", help=_FEEDBACK)] = None,
     feedback_format: Annotated[
-        Literal["html", "markdown"], typer.Option(metavar="html|markdown", help="The format of these reports.")
+        Literal["html", "markdown"],
+        typer.Option(metavar="html|markdown", help="The format of these reports."),
     ] = "html",
 ) -> int:
     """Export the grades for a spreadsheet, an LMS or a browser.
 
-    A grade is the final mark of `grader mark STUDENT total`, else the sum of automatic points and manual marks minus
-    the late penalty. For Canvas, Moodle, Blackboard and Brightspace, give the file that the LMS exported with --into.
-    Only the grade cells (and Moodle's feedback) change. Rows without a grade are omitted, so that the import overwrites
-    no other grade. The maximum in the file must be the rubric's. Exits 1 if --strict writes nothing. With html, the
-    folder contains a page for each student, and the class's page index.html, which is for graders only.
+    A grade is the final mark of `grader mark STUDENT total`, else the sum of automatic points and
+    manual marks minus the late penalty. For Canvas, Moodle, Blackboard and Brightspace, give the
+    file that the LMS exported with --into. Only the grade cells (and Moodle's feedback) change.
+    Rows without a grade are omitted, so that the import overwrites no other grade. The maximum in
+    the file must be the rubric's. Exits 1 if --strict writes nothing. With html, the folder
+    contains a page for each student, and the class's page index.html, which is for graders only.
 
     Examples:
 
@@ -65,7 +78,8 @@ def export(
 
     Recipes:
 
-      Publish in Canvas: --into and --only, then import the file. "Upload Submissions" takes the zip of --feedback.
+      Publish in Canvas: --into and --only, then import the file. "Upload Submissions" takes the zip
+      of --feedback.
 
       Publish in Moodle: --into, then "Upload grading worksheet".
 
@@ -104,8 +118,8 @@ def stats(
 ) -> str:
     """Show statistics of a class: grades, mistakes, equal work.
 
-    A grade is the one that is published: after marks, adjustments and the late penalty. The share of a criterion is the
-    mean share of its points that students earned.
+    A grade is the one that is published: after marks, adjustments and the late penalty. The share
+    of a criterion is the mean share of its points that students earned.
 
     Examples:
 
@@ -127,17 +141,25 @@ def stats(
 def diff(
     gradebooks: Annotated[
         list[Path] | None,
-        typer.Argument(metavar="[GRADEBOOK] [GRADEBOOK]", help="A gradebook; of two, the older one first."),
+        typer.Argument(
+            metavar="[GRADEBOOK] [GRADEBOOK]", help="A gradebook; of two, the older one first."
+        ),
     ] = None,
-    gradebook: Annotated[Path | None, typer.Option("--gradebook", metavar="FOLDER", help=_FIRST)] = None,
-    before: Annotated[int | None, typer.Option(metavar="RUN", help="The number of the older run.")] = None,
-    after: Annotated[int | None, typer.Option(metavar="RUN", help="The number of the newer run.")] = None,
+    gradebook: Annotated[
+        Path | None, typer.Option("--gradebook", metavar="FOLDER", help=_FIRST)
+    ] = None,
+    before: Annotated[
+        int | None, typer.Option(metavar="RUN", help="The number of the older run.")
+    ] = None,
+    after: Annotated[
+        int | None, typer.Option(metavar="RUN", help="The number of the newer run.")
+    ] = None,
     output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> str:
     """Show whose grade changed between two runs, and why.
 
-    Compares the last two runs of a gradebook, or two gradebooks. A grade changes with the submission, the rubric, the
-    grader, marks, the roster or the deadline. Runs count from 1.
+    Compares the last two runs of a gradebook, or two gradebooks. A grade changes with the
+    submission, the rubric, the grader, marks, the roster or the deadline. Runs count from 1.
 
     Examples:
 
@@ -155,5 +177,9 @@ def diff(
     """
     from grader.commands.class_figures import compare
 
-    books = [gradebook, *(gradebooks or ())] if gradebook is not None else gradebooks or [only_gradebook()]
+    books = (
+        [gradebook, *(gradebooks or ())]
+        if gradebook is not None
+        else gradebooks or [only_gradebook()]
+    )
     return compare(tuple(books), before, after, output_format, screen())

@@ -1,6 +1,8 @@
-"""What ends a command early: Ctrl-C, without the interpreter's messages, and limits of processor time and memory.
+"""What ends a command early: Ctrl-C, without the interpreter's messages, and limits of processor
+time and memory.
 
-Everything that reads a student's files counts its own work. The outer limits are for work that is not counted.
+Everything that reads a student's files counts its own work. The outer limits are for work that is
+not counted.
 """
 
 import os
@@ -26,11 +28,12 @@ _MEMORY = 2 * 1024**3  # bytes more than at the start
 
 @contextmanager
 def quiet_interrupts() -> Iterator[None]:
-    """Ctrl-C raises KeyboardInterrupt as always, but Python prints nothing about what it interrupts.
+    """Ctrl-C raises KeyboardInterrupt as always, but Python prints nothing about what it
+    interrupts.
 
-    It can arrive where Python cannot raise an exception (a finalizer, a callback of an import): there Python would
-    print the KeyboardInterrupt and go on, so it is raised again afterwards. Files that the interrupted code leaves open
-    are no mistake.
+    It can arrive where Python cannot raise an exception (a finalizer, a callback of an import):
+    there Python would print the KeyboardInterrupt and go on, so it is raised again afterwards.
+    Files that the interrupted code leaves open are no mistake.
     """
     before = signal.getsignal(signal.SIGINT)
     if before is not signal.default_int_handler:  # ignored, as after nohup, or somebody else's
@@ -75,7 +78,11 @@ def _interrupt() -> None:
 @contextmanager
 def outer_limits() -> Iterator[None]:
     """Limit the processor time and the memory of what follows. Raises GraderError."""
-    if sys.platform == "win32" or find_spec("resource") is None or current_thread() is not main_thread():
+    if (
+        sys.platform == "win32"
+        or find_spec("resource") is None
+        or current_thread() is not main_thread()
+    ):
         yield
         return
     import resource
@@ -97,7 +104,9 @@ def outer_limits() -> Iterator[None]:
         for limit, value in wanted.items():
             soft, hard = before[limit]
             with suppress(ValueError, OSError):  # one that is lower already stays
-                resource.setrlimit(limit, (value if soft == resource.RLIM_INFINITY else min(soft, value), hard))
+                resource.setrlimit(
+                    limit, (value if soft == resource.RLIM_INFINITY else min(soft, value), hard)
+                )
         yield
     except OutOfTime:
         raise GraderError(f"this takes more than {_SECONDS} s of processor time") from None
@@ -113,5 +122,7 @@ def outer_limits() -> Iterator[None]:
 def _size() -> int:
     """Return the address space that this process uses; 0 where the system does not tell."""
     with suppress(OSError, ValueError):
-        return int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * os.sysconf("SC_PAGE_SIZE")
+        return int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * os.sysconf(
+            "SC_PAGE_SIZE"
+        )
     return 0

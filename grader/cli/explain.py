@@ -1,4 +1,6 @@
-"""grader explain and grader schema: what codes and checks mean, and what the files of the grader hold."""
+"""grader explain and grader schema: what codes and checks mean, and what the files of the grader
+hold.
+"""
 
 from typing import Annotated, Literal, get_args
 
@@ -34,7 +36,10 @@ SchemaName = Literal["report", "rubric", "inspect", "class", "diff", "rubric-tes
 
 
 def schema(
-    name: Annotated[SchemaName, typer.Argument(metavar="|".join(get_args(SchemaName)), help="The schema to print.")],
+    name: Annotated[
+        SchemaName,
+        typer.Argument(metavar="|".join(get_args(SchemaName)), help="The schema to print."),
+    ],
 ) -> str:
     """Print a JSON Schema of the grader's input or output.
 

@@ -21,18 +21,22 @@ _PATH = "A .urdf file, package, workspace, repository, .zip or .tar.gz, or - for
 _SAVE = "Also write a report to a file; repeatable."
 _FAIL_UNDER = "Exit 0 if the score reaches this, in points or percent."
 _FIX = (
-    "Write the graded file with all proven edits to a file; of a folder or an archive, the changed files to a folder."
+    "Write the graded file with all proven edits to a file; of a folder or an archive, the "
+    "changed files to a folder."
 )
 _EXPECT = "Refuse a rubric with another hash (see grader rubric show)."
 
 
 def grade(
-    path: Annotated[str, typer.Argument(metavar="[PATH]", help=_PATH, show_default="the current folder")] = ".",
+    path: Annotated[
+        str, typer.Argument(metavar="[PATH]", help=_PATH, show_default="the current folder")
+    ] = ".",
     rubric: RubricOption = DEFAULT_RUBRIC,
     expect_rubric: Annotated[str | None, typer.Option(metavar="SHA256", help=_EXPECT)] = None,
     part: PartOption = None,
     output_format: Annotated[
-        Format, typer.Option("--format", metavar="FORMAT", help=f"Output format: {', '.join(Format)}.")
+        Format,
+        typer.Option("--format", metavar="FORMAT", help=f"Output format: {', '.join(Format)}."),
     ] = Format.TERMINAL,
     save: Annotated[list[str] | None, typer.Option(metavar="FORMAT=FILE", help=_SAVE)] = None,
     fail_under: Annotated[str | None, typer.Option(metavar="N|N%", help=_FAIL_UNDER)] = None,
@@ -43,17 +47,20 @@ def grade(
         bool, typer.Option("--verbose", help="Also show what passed, answers and notes (terminal).")
     ] = False,
     hints: Annotated[
-        HintLevel | None, typer.Option(metavar="LEVEL", help="Maximum detail of hints: none, place, cause or edit.")
+        HintLevel | None,
+        typer.Option(metavar="LEVEL", help="Maximum detail of hints: none, place, cause or edit."),
     ] = None,
     fix: Annotated[Path | None, typer.Option(metavar="FILE|FOLDER", help=_FIX)] = None,
-    watch: Annotated[bool, typer.Option("--watch", help="Grade again after every change, until Ctrl-C.")] = False,
+    watch: Annotated[
+        bool, typer.Option("--watch", help="Grade again after every change, until Ctrl-C.")
+    ] = False,
 ) -> int:
     """Grade a submission against a rubric.
 
     The report explains every lost point with file and line.
 
-    Exit codes: 0 all automatic criteria passed (or the score reaches --fail-under); 1 otherwise; 2 nothing was graded;
-    3 a check is faulty.
+    Exit codes: 0 all automatic criteria passed (or the score reaches --fail-under); 1 otherwise; 2
+    nothing was graded; 3 a check is faulty.
 
     Examples:
 
@@ -97,11 +104,19 @@ def grade(
 
 
 def _grade_once(request: GradeRequest) -> int:
-    """Grade, and print the report; in a job of GitHub Actions also publish it. Return the exit code."""
+    """Grade, and print the report; in a job of GitHub Actions also publish it. Return the exit
+    code.
+    """
 
     def show(run: GradeRun) -> None:
-        text = render(run.report, request.output_format, run.base, screen(), verbose=request.verbose)
-        write_stdout(text if request.output_format.needs == "console" else text.encode("utf-8", "backslashreplace"))
+        text = render(
+            run.report, request.output_format, run.base, screen(), verbose=request.verbose
+        )
+        write_stdout(
+            text
+            if request.output_format.needs == "console"
+            else text.encode("utf-8", "backslashreplace")
+        )
 
     run = grade_and_save(request, warn, show)
     if _is_github_job():

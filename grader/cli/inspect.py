@@ -20,15 +20,18 @@ def inspect(
     path: Annotated[str, typer.Argument(metavar="PATH", help=_PATH)],
     joint: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE", help=_JOINT)] = None,
     relative_to: Annotated[str | None, typer.Option(metavar="LINK", help=_RELATIVE)] = None,
-    output_format: Annotated[InspectFormat, typer.Option("--format", help="Output format.")] = InspectFormat.TERMINAL,
+    output_format: Annotated[
+        InspectFormat, typer.Option("--format", help="Output format.")
+    ] = InspectFormat.TERMINAL,
     max_size: MaxSizeOption = URDF_LIMIT,
     arg: ArgOption = None,
 ) -> int:
     """Show a URDF as ROS 2 reads it: problems, tree, joints, poses.
 
-    A xacro file is expanded as xacro does, without running it. Of packages it also lists the names that files use and
-    nothing defines: files, frames, controllers, parameters, arguments, programs, topics, dependencies. Exits 1 if
-    ROS 2 or xacro rejects the file, if this cannot be determined statically, or if a name is certainly wrong.
+    A xacro file is expanded as xacro does, without running it. Of packages it also lists the names
+    that files use and nothing defines: files, frames, controllers, parameters, arguments, programs,
+    topics, dependencies. Exits 1 if ROS 2 or xacro rejects the file, if this cannot be determined
+    statically, or if a name is certainly wrong.
 
     Examples:
 

@@ -1,4 +1,6 @@
-"""grader mark and grader review: manual grading by command, on a page in the browser, or in a spreadsheet."""
+"""grader mark and grader review: manual grading by command, on a page in the browser, or in a
+spreadsheet.
+"""
 
 from pathlib import Path
 from typing import Annotated
@@ -17,20 +19,29 @@ _PORT = "The port of the page; default: any free port."
 
 def mark(
     gradebook: GradebookOption,
-    student: Annotated[str, typer.Argument(metavar="STUDENT", help="The id, login, email address or name.")] = "",
-    criterion: Annotated[str, typer.Argument(metavar="CRITERION|total|deadline", help=_CRITERION)] = "",
+    student: Annotated[
+        str, typer.Argument(metavar="STUDENT", help="The id, login, email address or name.")
+    ] = "",
+    criterion: Annotated[
+        str, typer.Argument(metavar="CRITERION|total|deadline", help=_CRITERION)
+    ] = "",
     points: Annotated[str, typer.Argument(metavar="[POINTS|TIME|excused|-]", help=_POINTS)] = "",
     comment: Annotated[str, typer.Option(metavar="TEXT", help="For the student.")] = "",
-    missing: Annotated[bool, typer.Option("--missing", help="All students without a submission.")] = False,
-    file: Annotated[Path | None, typer.Option("--import", metavar="CSV", help="The marks of many students.")] = None,
+    missing: Annotated[
+        bool, typer.Option("--missing", help="All students without a submission.")
+    ] = False,
+    file: Annotated[
+        Path | None, typer.Option("--import", metavar="CSV", help="The marks of many students.")
+    ] = None,
     by: ByOption = "",
 ) -> str:
     """Give a mark for a criterion or a submission, or another deadline.
 
-    Use it for criteria that need manual grading, or to override a check. `total` gives a final mark, which is the whole
-    grade, also without a submission; `excused` in place of its points means that the student needs no grade. A comment
-    without POINTS changes no points. The mark is appended to the file of --by in the folder marks/ of the gradebook:
-    people may edit these files, and add files of their own. The latest mark counts, and `-` withdraws it.
+    Use it for criteria that need manual grading, or to override a check. `total` gives a final
+    mark, which is the whole grade, also without a submission; `excused` in place of its points
+    means that the student needs no grade. A comment without POINTS changes no points. The mark is
+    appended to the file of --by in the folder marks/ of the gradebook: people may edit these files,
+    and add files of their own. The latest mark counts, and `-` withdraws it.
 
     Examples:
 
@@ -52,7 +63,13 @@ def mark(
         if student or criterion or points or comment or missing:
             raise InputError("--import takes no argument and no other option but --by")
         return import_marks(gradebook, file, by)
-    row = {"student": student, "criterion": criterion, "points": points, "comment": comment, "by": by}
+    row = {
+        "student": student,
+        "criterion": criterion,
+        "points": points,
+        "comment": comment,
+        "by": by,
+    }
     if missing:  # in place of the student
         return mark_missing(gradebook, {**row, "criterion": student, "points": criterion}, warn)
     return give_mark(gradebook, row, warn)
@@ -61,23 +78,33 @@ def mark(
 def review(
     gradebook: GradebookOption,
     criterion: Annotated[str, typer.Option(metavar="ID", help="Only this criterion.")] = "",
-    section: Annotated[str | None, typer.Option(metavar="NAME", help="Only this section of the roster.")] = None,
-    anonymous: Annotated[bool, typer.Option("--anonymous", help="Show no names, ids or paths of students.")] = False,
+    section: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Only this section of the roster.")
+    ] = None,
+    anonymous: Annotated[
+        bool, typer.Option("--anonymous", help="Show no names, ids or paths of students.")
+    ] = False,
     by: ByOption = "",
     answers: AnswersOption = None,
     sheet: Annotated[Path | None, typer.Option(metavar="FILE", help=_SHEET)] = None,
-    port: Annotated[int, typer.Option(metavar="N", min=0, max=65535, show_default=False, help=_PORT)] = 0,
-    no_browser: Annotated[bool, typer.Option("--no-browser", help="Only print the address.")] = False,
+    port: Annotated[
+        int, typer.Option(metavar="N", min=0, max=65535, show_default=False, help=_PORT)
+    ] = 0,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="Only print the address.")
+    ] = False,
 ) -> str:
     """Grade what needs manual grading on a page in the browser.
 
-    The command prints the address of the page, which works on this machine only, and opens it. An item is a criterion
-    with the student's answer, the model answer of --answers, and the pictures, or with the robot and the lines of the
-    file; students with the same answer are one item, and so are criteria of a student that are open for one reason.
-    Each mark is saved immediately, in the file of --by in the folder marks/ of the gradebook. Marked items can be
-    opened and marked again. Ctrl-C ends the review.
+    The command prints the address of the page, which works on this machine only, and opens it. An
+    item is a criterion with the student's answer, the model answer of --answers, and the pictures,
+    or with the robot and the lines of the file; students with the same answer are one item, and so
+    are criteria of a student that are open for one reason. Each mark is saved immediately, in the
+    file of --by in the folder marks/ of the gradebook. Marked items can be opened and marked again.
+    Ctrl-C ends the review.
 
-    With --sheet, no page is served: fill in the points in a spreadsheet, and record them with `mark --import FILE`.
+    With --sheet, no page is served: fill in the points in a spreadsheet, and record them with `mark
+    --import FILE`.
 
     Examples:
 
@@ -93,7 +120,9 @@ def review(
 
     if section is not None and not section.strip():
         raise InputError("--section is empty: name a section, or omit it to review all")
-    session = ReviewSession(gradebook, ReviewFilter(criterion, section or ""), by, answers, is_anonymous=anonymous)
+    session = ReviewSession(
+        gradebook, ReviewFilter(criterion, section or ""), by, answers, is_anonymous=anonymous
+    )
     if sheet is not None:
         return write_sheet(session, sheet)
     return review_in_browser(session, port, TERMINAL, opens=not no_browser)

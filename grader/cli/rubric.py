@@ -1,4 +1,6 @@
-"""grader rubric and grader bundle: list, show, write, check and test rubrics, and pack one for a grading platform."""
+"""grader rubric and grader bundle: list, show, write, check and test rubrics, and pack one for a
+grading platform.
+"""
 
 from pathlib import Path
 from typing import Annotated, Literal
@@ -29,7 +31,9 @@ Examples:
 _FOLDER = "A folder with samples: submissions with an expected.toml."
 _LEAST = "Exit 1 if the mutation score is less, in percent."
 rubric = typer.Typer(help=_HELP, no_args_is_help=True)
-RubricArgument = Annotated[str, typer.Argument(metavar="ID|FILE", help="The rubric: an id or a .toml file.")]
+RubricArgument = Annotated[
+    str, typer.Argument(metavar="ID|FILE", help="The rubric: an id or a .toml file.")
+]
 
 
 @rubric.command("list")
@@ -80,14 +84,19 @@ def list_checks() -> str:
 def new_rubric(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="The .toml file to write.")],
     reference: Annotated[
-        str, typer.Option("--from", metavar="PATH", help="The reference: a URDF, xacro, package, workspace or archive.")
+        str,
+        typer.Option(
+            "--from",
+            metavar="PATH",
+            help="The reference: a URDF, xacro, package, workspace or archive.",
+        ),
     ],
     force: Annotated[bool, typer.Option("--force", help="Replace FILE if it exists.")] = False,
 ) -> str:
     """Write a rubric from a reference solution.
 
-    It has a criterion for each fact that can be measured. It is graded on the reference, which must get full marks. The
-    output lists the facts that no check can test.
+    It has a criterion for each fact that can be measured. It is graded on the reference, which must
+    get full marks. The output lists the facts that no check can test.
 
     Examples:
 
@@ -105,7 +114,9 @@ def new_rubric(
 @rubric.command("copy")
 def copy_rubric(
     name: Annotated[str, typer.Argument(metavar="ID", help="A rubric of the grader.")],
-    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="The folder to write into: FOLDER/ID.")],
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", help="The folder to write into: FOLDER/ID.")
+    ],
 ) -> str:
     """Copy a rubric with its files, to change it.
 
@@ -120,8 +131,8 @@ def copy_rubric(
 def check_rubric(file: RubricArgument) -> int:
     """Check a rubric and its reference solution.
 
-    Exits 2 if there are mistakes, and lists all of them with their lines; 1 if automatic criteria cannot be decided on
-    the reference, such as the radius of a wheel that is a mesh.
+    Exits 2 if there are mistakes, and lists all of them with their lines; 1 if automatic criteria
+    cannot be decided on the reference, such as the radius of a wheel that is a mesh.
 
     Examples:
 
@@ -141,11 +152,11 @@ def run_test(
 ) -> int:
     """Test a rubric on variants of its reference and on samples.
 
-    The reference and its equivalents must keep full marks; every mutant must lose points. Mutants that get full marks
-    are listed with their diff.
+    The reference and its equivalents must keep full marks; every mutant must lose points. Mutants
+    that get full marks are listed with their diff.
 
-    Exit codes: 0 no correct robot loses points, all samples are as expected, and the score reaches --fail-under; 1
-    otherwise; 2 the rubric is broken or has no reference; 3 a check is faulty.
+    Exit codes: 0 no correct robot loses points, all samples are as expected, and the score reaches
+    --fail-under; 1 otherwise; 2 the rubric is broken or has no reference; 3 a check is faulty.
 
     Examples:
 
@@ -162,7 +173,9 @@ def run_test(
 
 
 def bundle(
-    platform: Annotated[Literal["gradescope"], typer.Argument(metavar="PLATFORM", help="The platform: gradescope.")],
+    platform: Annotated[
+        Literal["gradescope"], typer.Argument(metavar="PLATFORM", help="The platform: gradescope.")
+    ],
     output: Annotated[Path, typer.Argument(metavar="OUT.zip", help="The file to write.")],
     rubric: RubricOption = DEFAULT_RUBRIC,
 ) -> str:

@@ -43,7 +43,8 @@ def write_stderr(text: str) -> None:
 
 @contextmanager
 def show_class(work: str) -> Iterator[Callable[["Progress"], None]]:
-    """Show the progress of a pass over a class, whose work is named; yields the function that receives it.
+    """Show the progress of a pass over a class, whose work is named; yields the function that
+    receives it.
 
     It is one line that changes on a terminal, else a line every ten seconds.
     """
@@ -81,7 +82,10 @@ def _progress_line(progress: "Progress", seconds: float) -> str:
     kinds = (progress.errored, "errored"), (progress.unreadable, "unreadable")
     counts = ", ".join(f"{count} {kind}" for count, kind in kinds if count)
     time_left = f"{left:.0f} s" if left < 100 else f"{left / 60:.0f} min"
-    return f"{progress.done} of {progress.total}, {rate:.0f}/s, {time_left} left{f' ({counts})' if counts else ''}"
+    return (
+        f"{progress.done} of {progress.total}, {rate:.0f}/s, {time_left} "
+        f"left{f' ({counts})' if counts else ''}"
+    )
 
 
 TERMINAL = Terminal(write_stdout, warn, screen, show_class)

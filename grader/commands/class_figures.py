@@ -25,7 +25,9 @@ def warn_of_ignored(book: Gradebook, warn: Warn) -> None:
 
 
 def record_run(folder: Path, warn: Warn) -> None:
-    """Record the current grades as a run, unless the newest one has them, so that `diff` compares with them."""
+    """Record the current grades as a run, unless the newest one has them, so that `diff` compares
+    with them.
+    """
     try:
         with batch_lock(folder):
             append_run(Gradebook(folder))
@@ -34,9 +36,15 @@ def record_run(folder: Path, warn: Warn) -> None:
 
 
 def append_run(book: Gradebook) -> Results | None:
-    """Append a run with the current grades, and return the results with it; None if there is no need, or no way."""
+    """Append a run with the current grades, and return the results with it; None if there is no
+    need, or no way.
+    """
     now = book.run_with({one.student.key: one.published for one in book})
-    if book.results.unfinished or book.is_outdated or (now.totals, now.others) == (book.run.totals, book.run.others):
+    if (
+        book.results.unfinished
+        or book.is_outdated
+        or (now.totals, now.others) == (book.run.totals, book.run.others)
+    ):
         return None
     with ResultsWriter(book.folder / RESULTS, book.results.end) as writer:
         writer.append(now._replace(run=book.results.next_run, time=time_of_run(), written=()).line)
@@ -44,7 +52,9 @@ def append_run(book: Gradebook) -> Results | None:
     return Results(book.folder / RESULTS)
 
 
-def class_statistics(gradebook: Path, kind: OutputFormat, terminal: Terminal, *, verbose: bool) -> str:
+def class_statistics(
+    gradebook: Path, kind: OutputFormat, terminal: Terminal, *, verbose: bool
+) -> str:
     """Return the statistics of a class. Raises InputError."""
     book = Gradebook(gradebook)
     warn_of_ignored(book, terminal.warn)
@@ -57,7 +67,13 @@ def class_statistics(gradebook: Path, kind: OutputFormat, terminal: Terminal, *,
     return draw(partial(render_class, statistics(book, book), verbose=verbose), terminal.screen())
 
 
-def compare(books: tuple[Path, ...], before: int | None, after: int | None, kind: OutputFormat, screen: Screen) -> str:
+def compare(
+    books: tuple[Path, ...],
+    before: int | None,
+    after: int | None,
+    kind: OutputFormat,
+    screen: Screen,
+) -> str:
     """Return what changed between two runs of a gradebook, or two gradebooks. Raises InputError."""
     from grader.classroom.grade_changes import changes, snapshot
 

@@ -45,7 +45,8 @@ _TASK_SIZE = 4  # reports
 _SECONDS = 60.0  # in which hints are searched, and a few reports written
 _NOTHING = Outcome("skipped", "not graded, because nothing was submitted")
 _MOVED = (
-    "The submission has moved or changed since it was graded, so this report has no details: run `grader batch` again."
+    "The submission has moved or changed since it was graded, so this report has no details: "
+    "run `grader batch` again."
 )
 
 
@@ -61,7 +62,9 @@ class ReportRun(NamedTuple):
 
 
 class _ReportTask(NamedTuple):
-    """A report to write: the student and the name of the file; without hints if their search was lost."""
+    """A report to write: the student and the name of the file; without hints if their search was
+    lost.
+    """
 
     key: str
     name: str
@@ -71,30 +74,46 @@ class _ReportTask(NamedTuple):
 def report_of(book: Gradebook, grade: StudentGrade, *, has_hints: bool = True) -> Report:
     """Return the report on a student's submission, with the marks, the grade and notes.
 
-    There is a note for a final mark, an excuse, a comment, a late penalty, and who graded if a person did. Without
-    notes, the report is the same as that of `grader grade`. A submission that has changed since has its points only.
+    There is a note for a final mark, an excuse, a comment, a late penalty, and who graded if a
+    person did. Without notes, the report is the same as that of `grader grade`. A submission that
+    has changed since has its points only.
     """
     if grade.stored is not None:
-        report, _ = book.with_marks(_graded_again(book, grade.stored, has_hints=has_hints), grade.stored)
+        report, _ = book.with_marks(
+            _graded_again(book, grade.stored, has_hints=has_hints), grade.stored
+        )
     else:
         results = tuple(Result(criterion, _NOTHING) for criterion in book.criteria)
         nothing = Submission(grade.student.key, Absent(), is_single=False)
         report = Report(nothing, book.rubric, book.settings.parts, results)
-    is_changed = grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
-    counting = Grade(grade.total, grade.late.points, grade.final_points is not None) if is_changed else None
+    is_changed = (
+        grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
+    )
+    counting = (
+        Grade(grade.total, grade.late.points, grade.final_points is not None)
+        if is_changed
+        else None
+    )
     student = grade.student.name or grade.student.key
-    return report._replace(notes=(*report.notes, *notes_of(grade, report)), grade=counting, student=student)
+    return report._replace(
+        notes=(*report.notes, *notes_of(grade, report)), grade=counting, student=student
+    )
 
 
 def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
-    """Yield the sentences about the mark, the excuse or the comment of the whole submission, graders, and lateness."""
+    """Yield the sentences about the mark, the excuse or the comment of the whole submission,
+    graders, and lateness.
+    """
     mark, late = grade.final, grade.late
     if mark is not None:
         by = by_name(mark.by)
         what = f"Excused{by}." if grade.is_excused else f"Comment{by}:"
         if mark.points is not None:
             points = counted_points(mark.points)
-            what = f"Final mark: {points}, given{by or ' manually'} instead of the sum of the criteria."
+            what = (
+                f"Final mark: {points}, given{by or ' manually'} instead of the sum of the "
+                "criteria."
+            )
         yield " ".join((what, *mark.comment.split()))
     people = {row.manual_mark.by for row in report.results if row.manual_mark is not None}
     if people and not grade.has_final:
@@ -124,18 +143,26 @@ def _graded_again(book: Gradebook, stored: StoredResult, *, has_hints: bool) -> 
 
 
 def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
-    """Raise InputError if reports cannot be written to a folder, or the next run would read it as a submission."""
+    """Raise InputError if reports cannot be written to a folder, or the next run would read it as a
+    submission.
+    """
     refuse_symlinks(folder, submissions)
     cannot = f"cannot write files to {printable_path(folder)}"
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{cannot}: it is not a folder")
     if not {folder.resolve(), *folder.resolve().parents}.isdisjoint(submissions):
-        why = "the next run would take them for a submission; choose a folder outside of the class folder"
+        why = (
+            "the next run would take them for a submission; choose a folder outside of the "
+            "class folder"
+        )
         raise InputError(f"{cannot}: {why}")
 
 
-def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, timeout: float = _SECONDS) -> None:
-    """Write a report for each student who has a result, a final mark or an excuse; in HTML also the class's page.
+def write_reports(
+    run: ReportRun, terminal: Terminal, jobs: int | None = None, timeout: float = _SECONDS
+) -> None:
+    """Write a report for each student who has a result, a final mark or an excuse; in HTML also the
+    class's page.
 
     Raises InputError and RubricError, which concern all reports.
     """
@@ -143,25 +170,41 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, t
     book = Gradebook(run.gradebook)
     files = file_names([one.student.key for one in book if one.stored is not None or one.has_final])
     place = run.gradebook if run.folder == run.gradebook / names.REPORTS else run.folder
-    class_page = "" if Format.HTML not in run.formats else f"{'' if place == run.folder else '../'}{_CLASS_PAGE}"
+    class_page = (
+        ""
+        if Format.HTML not in run.formats
+        else f"{'' if place == run.folder else '../'}{_CLASS_PAGE}"
+    )
     run = run._replace(time=book.run.time, class_page=class_page)
     lost = render_reports(run, files, terminal, jobs, timeout)
     if Format.HTML in run.formats:
         prefix = "" if place == run.folder else f"{names.REPORTS}/"
-        write_class_page(book, place, {key: prefix + name for key, name in files.items() if key not in lost})
-    terminal.warn(f"{counted(len(files) - len(lost), 'report')} written to {printable_path(run.folder)}")
+        write_class_page(
+            book, place, {key: prefix + name for key, name in files.items() if key not in lost}
+        )
+    terminal.warn(
+        f"{counted(len(files) - len(lost), 'report')} written to {printable_path(run.folder)}"
+    )
     for key, why in lost.items():
         terminal.warn(printable(f"no report for {key}: {why}"))
 
 
 def render_reports(
-    run: ReportRun, files: Mapping[str, str], terminal: Terminal, jobs: int | None = None, timeout: float = _SECONDS
+    run: ReportRun,
+    files: Mapping[str, str],
+    terminal: Terminal,
+    jobs: int | None = None,
+    timeout: float = _SECONDS,
 ) -> dict[str, str]:
-    """Write the reports of students, by their file names; return who has none, and why. Raises as `write_reports`."""
+    """Write the reports of students, by their file names; return who has none, and why. Raises as
+    `write_reports`.
+    """
     lost, workers, done = dict[str, str](), jobs or processors(), 0
     with Processes(workers, timeout) as executor, terminal.show_class("writing reports") as show:
         show(Progress(len(files)))
-        queue = Queue(executor, workers, partial(_write_some, run), _without_hints, _not_written, _TASK_SIZE)
+        queue = Queue(
+            executor, workers, partial(_write_some, run), _without_hints, _not_written, _TASK_SIZE
+        )
         for results in queue.results(_ReportTask(*item) for item in files.items()):
             lost |= {key: why for key, why in results if why}
             done += len(results)
@@ -179,14 +222,18 @@ def _not_written(task: _ReportTask, error: Exception) -> tuple[str, str]:
     if isinstance(error, InputError | RubricError):
         raise error
     is_known = isinstance(error, WorkerError | MachineError)
-    return task.key, str(error) if is_known else f"the grader itself failed: {type(error).__name__}: {error}"
+    return task.key, str(
+        error
+    ) if is_known else f"the grader itself failed: {type(error).__name__}: {error}"
 
 
 def _write_some(run: ReportRun, tasks: Sequence[_ReportTask]) -> list[tuple[str, str]]:
     """Write the reports of some students, in a worker; return the students."""
     book = _opened_gradebook(run)
     for task in tasks:
-        report = report_of(book, book.grade(task.key), has_hints=task.has_hints)._replace(class_page=run.class_page)
+        report = report_of(book, book.grade(task.key), has_hints=task.has_hints)._replace(
+            class_page=run.class_page
+        )
         for kind in run.formats:
             save(Path(run.folder, f"{task.name}.{kind.ending}"), render(report, kind))
     return [(task.key, "") for task in tasks]
@@ -200,13 +247,18 @@ def _opened_gradebook(run: ReportRun) -> Gradebook:
 
 
 def file_names(keys: Sequence[str]) -> dict[str, str]:
-    """Return a file name without ending for each key: valid on every system, and unique without regard to case.
+    """Return a file name without ending for each key: valid on every system, and unique without
+    regard to case.
 
-    A key that is not a valid name, or that differs from another one only in case, gets its digest appended.
+    A key that is not a valid name, or that differs from another one only in case, gets its digest
+    appended.
     """
     folds = {key: unicodedata.normalize("NFC", key).casefold() for key in keys}
     counts = Counter(folds.values())
-    return {key: key if _SAFE.fullmatch(key) and counts[folds[key]] == 1 else _with_digest(key) for key in keys}
+    return {
+        key: key if _SAFE.fullmatch(key) and counts[folds[key]] == 1 else _with_digest(key)
+        for key in keys
+    }
 
 
 def _with_digest(key: str) -> str:
@@ -215,10 +267,15 @@ def _with_digest(key: str) -> str:
 
 
 def write_class_page(book: Gradebook, folder: Path, pages: Mapping[str, str]) -> None:
-    """Write the class's page into a folder, with links to the pages of students, by their names from there."""
+    """Write the class's page into a folder, with links to the pages of students, by their names
+    from there.
+    """
     from grader.classroom.statistics import statistics
     from grader.report.pages.class_page import render_class_page
 
     grades = list(book)
     links = {key: quote(f"{name}.{Format.HTML.ending}") for key, name in pages.items()}
-    save(folder / _CLASS_PAGE, without_commands(render_class_page(book, grades, statistics(book, grades), links)))
+    save(
+        folder / _CLASS_PAGE,
+        without_commands(render_class_page(book, grades, statistics(book, grades), links)),
+    )

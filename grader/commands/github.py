@@ -20,8 +20,8 @@ _MAX_SUMMARY = 1024 * 1024  # bytes: GitHub does not show a longer step summary
 def publish_report(report: "Report", base: "Base", annotate: _Annotate | None, warn: Warn) -> None:
     """Annotate the findings of a report, and add it to the job summary.
 
-    Annotations are workflow commands for standard error, where GitHub reads them as well: standard output is for the
-    report.
+    Annotations are workflow commands for standard error, where GitHub reads them as well: standard
+    output is for the report.
     """
     from grader.report.annotations import render_github
     from grader.report.markdown import cut_markdown
@@ -50,7 +50,9 @@ def _add_to_summary(text: Callable[[int], str], warn: Warn) -> None:
     try:
         refuse_symlinks(Path(summary))
         no_symlinks = getattr(os, "O_NOFOLLOW", 0)
-        with open(summary, "ab", opener=lambda path, flags: os.open(path, flags | no_symlinks, 0o666)) as file:
+        with open(
+            summary, "ab", opener=lambda path, flags: os.open(path, flags | no_symlinks, 0o666)
+        ) as file:
             size = file.tell()
             added = text(_MAX_SUMMARY - size - 1).encode("utf-8", "backslashreplace")
             if added:

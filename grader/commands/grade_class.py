@@ -1,6 +1,7 @@
 """Grade a class into its gradebook, and write its grades and reports.
 
-The inputs are the options of the command, else what the gradebook has of the last run; it gets copies of them.
+The inputs are the options of the command, else what the gradebook has of the last run; it gets
+copies of them.
 """
 
 import gc
@@ -20,7 +21,13 @@ from grader.classroom.batch_run import Batch
 from grader.classroom.batch_worker import ClassContext, reference_hashes
 from grader.classroom.equal_work import hashes_of
 from grader.classroom.gradebook import Gradebook, grade_table
-from grader.classroom.gradebook_folder import CLASS_FILE, ClassSettings, read_settings, relative, settings_text
+from grader.classroom.gradebook_folder import (
+    CLASS_FILE,
+    ClassSettings,
+    read_settings,
+    relative,
+    settings_text,
+)
 from grader.classroom.lateness import read_time, time_text
 from grader.classroom.lms.forms import FORMS
 from grader.classroom.results import Results, ResultsWriter, Run, digest_of, time_of_run
@@ -54,7 +61,8 @@ _FORMAT = 2  # of results: those of another one are graded again
 class ClassRequest:
     """The options of `grader batch`.
 
-    Up to `max_size`, None stands for what the gradebook keeps of the last run; it does not keep the others.
+    Up to `max_size`, None stands for what the gradebook keeps of the last run; it does not keep the
+    others.
     """
 
     paths: Sequence[Path] | None  # the class folders or zips
@@ -99,7 +107,9 @@ class _ClassInputs:
     def near_roots(self) -> tuple[Path, ...]:
         """The same, relative to the current folder if they are in it."""
         here = Path.cwd()
-        return tuple(root.relative_to(here) if root.is_relative_to(here) else root for root in self.roots)
+        return tuple(
+            root.relative_to(here) if root.is_relative_to(here) else root for root in self.roots
+        )
 
 
 def _read_inputs(options: ClassRequest, warn: Warn) -> _ClassInputs:
@@ -113,10 +123,14 @@ def _read_inputs(options: ClassRequest, warn: Warn) -> _ClassInputs:
     if rubric is None:
         rubric = usual if is_new else load_rubric(folder / settings.rubric)
         if options.usual_rubric != DEFAULT_RUBRIC and usual.id != rubric.id:
-            warn(f"{printable_path(folder)} keeps its rubric {rubric.id}, not {usual.id}: name it with --rubric")
+            warn(
+                f"{printable_path(folder)} keeps its rubric {rubric.id}, not {usual.id}: "
+                "name it with --rubric"
+            )
     elif (recorded := settings.rubric_id) not in ("", rubric.id):
         raise InputError(
-            f"{printable_path(folder)} is the gradebook of {recorded}, not of {rubric.id}: name another folder"
+            f"{printable_path(folder)} is the gradebook of {recorded}, not of {rubric.id}: "
+            "name another folder"
         )
     if not (options.paths or settings.submissions):
         raise InputError("name the PATH of the submissions, a folder or the zip of an LMS")
@@ -129,14 +143,19 @@ def _read_inputs(options: ClassRequest, warn: Warn) -> _ClassInputs:
     if options.roster or roster_file.exists():
         roster = read_roster(_read_csv(roster_file), printable_path(roster_file))
     inputs = _ClassInputs(folder, _updated(options, settings, folder, rubric), rubric, roster)
-    if not options.paths and (gone := [printable_path(root) for root in inputs.near_roots if not root.exists()]):
+    if not options.paths and (
+        gone := [printable_path(root) for root in inputs.near_roots if not root.exists()]
+    ):
         raise InputError(
-            f"{enumerated(gone)} of the last run cannot be found: name the new PATH; of several sections, name all"
+            f"{enumerated(gone)} of the last run cannot be found: name the new PATH; of "
+            "several sections, name all"
         )
     return inputs
 
 
-def _updated(options: ClassRequest, settings: ClassSettings, folder: Path, rubric: Rubric) -> ClassSettings:
+def _updated(
+    options: ClassRequest, settings: ClassSettings, folder: Path, rubric: Rubric
+) -> ClassSettings:
     """Return the settings with the options of the command."""
     for name in options.part or ():
         rubric.part(name)
@@ -153,15 +172,21 @@ def _updated(options: ClassRequest, settings: ClassSettings, folder: Path, rubri
         "max_size": options.max_size,
         "submissions": paths or None,
     }
-    settings = replace(settings, **{name: value for name, value in given.items() if value is not None})
+    settings = replace(
+        settings, **{name: value for name, value in given.items() if value is not None}
+    )
     if options.ignore_file or not settings.handed_out:
         own = tuple(_handed_out(options.ignore_file or (), rubric))
-        settings = replace(settings, handed_out=(*own, *reference_hashes(rubric.data, str(rubric.path))))
+        settings = replace(
+            settings, handed_out=(*own, *reference_hashes(rubric.data, str(rubric.path)))
+        )
     return settings
 
 
 def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
-    """Yield the hashes of the work that the course handed out. Raises InputError for a file without any."""
+    """Yield the hashes of the work that the course handed out. Raises InputError for a file without
+    any.
+    """
     for path in files:
         hashes = hashes_of(open_submission(str(path), rubric.lab))
         if not hashes:
@@ -170,7 +195,9 @@ def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
 
 
 def _keep_inputs(inputs: _ClassInputs, options: ClassRequest, warn: Warn) -> _ClassInputs:
-    """Write the settings and the copies of the roster and the rubric into the gradebook. Raises InputError."""
+    """Write the settings and the copies of the roster and the rubric into the gradebook. Raises
+    InputError.
+    """
     folder, settings, rubric = inputs.folder, inputs.settings, inputs.rubric
     if options.roster is not None:
         data, file = _read_csv(options.roster), folder / names.ROSTER
@@ -178,7 +205,9 @@ def _keep_inputs(inputs: _ClassInputs, options: ClassRequest, warn: Warn) -> _Cl
         save_bytes(file, data, inputs.roots, _PRIVATE)
         settings = replace(settings, roster_hash=sha256_of(data))
     if options.rubric is not None or not settings.rubric:
-        _warn_of_edits(folder / settings.rubric, (settings.rubric_hash, rubric.sha256), rubric.path, warn)
+        _warn_of_edits(
+            folder / settings.rubric, (settings.rubric_hash, rubric.sha256), rubric.path, warn
+        )
         copy = _copy_rubric(folder, rubric)
         settings = replace(settings, rubric=copy, rubric_id=rubric.id, rubric_hash=rubric.sha256)
     if not (folder / CLASS_FILE).exists() or settings != read_settings(folder):
@@ -197,13 +226,23 @@ def _read_csv(file: Path) -> bytes:
 
 
 def _copy_rubric(folder: Path, rubric: Rubric) -> str:
-    """Copy a rubric and its reference into a gradebook, placed to each other as before; return where it is."""
+    """Copy a rubric and its reference into a gradebook, placed to each other as before; return
+    where it is.
+    """
     target, own = folder / names.RUBRIC, rubric.path.resolve()
-    files = [file for file in files_of(str(rubric.path)) if file.name != rubric.answers and file.exists()]
-    near = [file.resolve() for file in files if not Path(rubric.reference).is_absolute() or file == rubric.path]
+    files = [
+        file for file in files_of(str(rubric.path)) if file.name != rubric.answers and file.exists()
+    ]
+    near = [
+        file.resolve()
+        for file in files
+        if not Path(rubric.reference).is_absolute() or file == rubric.path
+    ]
     base = Path(os.path.commonpath([file.parent for file in near]))
     found = {path for file in near for path in (file, *file.rglob("*")) if path.is_file()} - {own}
-    copies = {target / path.relative_to(base): path for path in found if path.parent.name != "__pycache__"}
+    copies = {
+        target / path.relative_to(base): path for path in found if path.parent.name != "__pycache__"
+    }
     copies[target / own.relative_to(base)] = own  # when all that it needs is there
     try:
         for place, path in copies.items():
@@ -233,7 +272,10 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
         refuse_report_folder(request.reports, inputs.roots)
     layout, lab = (settings.layout, settings.assignment), (rubric.id, rubric.folders)
     intake = read_class(inputs.near_roots, inputs.roster, *layout, *lab, settings.ignore)
-    warn(f"{counted(len({(one.root, one.paths) for one in intake.submissions}), 'submission')}, layout {intake.layout}")
+    warn(
+        f"{counted(len({(one.root, one.paths) for one in intake.submissions}), 'submission')}, "
+        f"layout {intake.layout}"
+    )
     for lines in (intake.notes, intake.unmatched, [f"ignored: {line}" for line in intake.ignored]):
         for line in first_lines(lines, _MAX_LINES):
             warn(printable(line))
@@ -243,7 +285,9 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
         results = Results(folder / names.RESULTS)
         _check_same_class(folder, results, intake)
         if results.runs and results.runs[-1].rubric != rubric.sha256:
-            with suppress(GraderError):  # such as that of an old rubric that an edit broke: then it is not compared
+            with suppress(
+                GraderError
+            ):  # such as that of an old rubric that an edit broke: then it is not compared
                 results = append_run(Gradebook(folder)) or results
         inputs = _keep_inputs(inputs, request, warn)
         table, done = _grade(request, inputs, results, intake, terminal)
@@ -263,27 +307,47 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
 
 def _ending(folder: Path, table: ClassTable, layout: str) -> str:
     """Return where the grades are, how many students need attention, and the next command."""
-    is_only = [file.parent.resolve() for file in Path().glob(f"*/{CLASS_FILE}")] == [folder.resolve()]
+    is_only = [file.parent.resolve() for file in Path().glob(f"*/{CLASS_FILE}")] == [
+        folder.resolve()
+    ]
     lms = layout if layout in FORMS else "csv"
     command = f"grader {'review' if table.open else f'export {lms}'}"
     option = "" if is_only else f" --gradebook {shell_quoted(folder)}"
-    attention = f" · {table.attention} need{'s' * (table.attention == 1)} attention" if table.attention else ""
+    attention = (
+        f" · {table.attention} need{'s' * (table.attention == 1)} attention"
+        if table.attention
+        else ""
+    )
     return f"grades: {printable_path(folder / names.GRADES)}{attention} · next: {command}{option}"
 
 
 def _grade(
-    request: ClassRequest, inputs: _ClassInputs, results: Results, intake: Intake, terminal: Terminal
+    request: ClassRequest,
+    inputs: _ClassInputs,
+    results: Results,
+    intake: Intake,
+    terminal: Terminal,
 ) -> tuple[ClassTable, Progress]:
     """Grade what has no current result, append the run, and write the grades of the class."""
     folder, rubric, settings = inputs.folder, inputs.rubric, inputs.settings
     roots, arguments = tuple(map(str, inputs.roots)), dict(settings.arguments)
-    shared = ClassContext(roots, rubric.data, str(rubric.path.resolve()), settings.max_size, settings.parts, arguments)
+    shared = ClassContext(
+        roots, rubric.data, str(rubric.path.resolve()), settings.max_size, settings.parts, arguments
+    )
     context = _context(inputs)
     present = dict.fromkeys(one.student.key for one in intake.submissions)
     with ResultsWriter(folder / names.RESULTS, results.end) as writer:
         batch = Batch(results, writer, shared, context)
         done = _batch(request, inputs, batch, intake, terminal)
-        run = Run(results.next_run, time_of_run(), __version__, rubric.sha256, context, present, sorted(intake.unclear))
+        run = Run(
+            results.next_run,
+            time_of_run(),
+            __version__,
+            rubric.sha256,
+            context,
+            present,
+            sorted(intake.unclear),
+        )
         book, table = Gradebook(folder, run=run), ClassTable(rubric, verbose=request.verbose)
         published: dict[str, Decimal | None] = {}
 
@@ -303,13 +367,19 @@ def _grade(
 def _context(inputs: _ClassInputs) -> str:
     """Return the hash of all that results depend on besides the submissions."""
     folder, settings = inputs.folder, inputs.settings
-    copies = sorted(path for path in (folder / names.RUBRIC).rglob("*") if path.is_file())  # with the reference
-    reference = sha256_of(repr([(path.relative_to(folder).as_posix(), path.read_bytes()) for path in copies]).encode())
+    copies = sorted(
+        path for path in (folder / names.RUBRIC).rglob("*") if path.is_file()
+    )  # with the reference
+    reference = sha256_of(
+        repr([(path.relative_to(folder).as_posix(), path.read_bytes()) for path in copies]).encode()
+    )
     options = settings.parts, sorted(settings.arguments.items()), settings.max_size
     return digest_of(inputs.rubric.sha256, reference, *options, __version__, _FORMAT)
 
 
-def _batch(request: ClassRequest, inputs: _ClassInputs, batch: Batch, intake: Intake, terminal: Terminal) -> Progress:
+def _batch(
+    request: ClassRequest, inputs: _ClassInputs, batch: Batch, intake: Intake, terminal: Terminal
+) -> Progress:
     """Grade what has no current result, and say how many that were."""
     with _executor(request, inputs) as (executor, workers), terminal.show_class("grading") as show:
         try:
@@ -337,7 +407,9 @@ def _executor(request: ClassRequest, inputs: _ClassInputs) -> Iterator[tuple[Exe
 
 
 def write_grades(book: Gradebook, grades: Iterable[StudentGrade] | None = None) -> None:
-    """Write the grades of a class, by default the current ones, into its gradebook. Raises InputError."""
+    """Write the grades of a class, by default the current ones, into its gradebook. Raises
+    InputError.
+    """
     table = write_table(*grade_table(book, book if grades is None else grades))
     save(book.folder / names.GRADES, table, book.settings.roots(book.folder), _PRIVATE)
 
@@ -348,7 +420,9 @@ def write_grades_with(marks: int, book: Gradebook) -> None:
         write_grades(book)
     except InputError as error:
         saved = "the mark is saved" if marks == 1 else f"{marks} marks are saved"
-        raise InputError(f"{saved}, {names.GRADES} is not: {error}; the next command writes it") from None
+        raise InputError(
+            f"{saved}, {names.GRADES} is not: {error}; the next command writes it"
+        ) from None
 
 
 def _check_same_class(folder: Path, results: Results, intake: Intake) -> None:
@@ -360,5 +434,6 @@ def _check_same_class(folder: Path, results: Results, intake: Intake) -> None:
         raise InputError(
             f"{printable_path(folder)} is the gradebook of another class, or a section is missing: "
             f"{counted(len(missing), 'student')} of {len(recorded)} have no submission now "
-            f"({printable(enumerated(missing, _MAX_NAMED))}); name the paths of all sections, or another --gradebook"
+            f"({printable(enumerated(missing, _MAX_NAMED))}); name the paths of all "
+            "sections, or another --gradebook"
         )

@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.commands.invocation import ExitCode, Saves, exit_code, read_arguments, read_threshold
 from grader.commands.rubrics import files_of, load
-from grader.commands.writing import CHECKOUTS, Warn, missing_folder, refuse_inputs, refuse_symlinks, save_all
+from grader.commands.writing import (
+    CHECKOUTS,
+    Warn,
+    missing_folder,
+    refuse_inputs,
+    refuse_symlinks,
+    save_all,
+)
 from grader.errors import GraderError, InputError
 from grader.files.limits import ROBOT_ENDINGS
 from grader.grading.hint_levels import HintLevel
@@ -23,7 +30,15 @@ if TYPE_CHECKING:
     from grader.grading.rubric import Rubric
     from grader.hints.hinting import Fix
 
-_SOURCES = (*ROBOT_ENDINGS, ".toml", ".py", ".yaml", ".yml", ".rviz", ".cfg")  # files that no report may replace
+_SOURCES = (
+    *ROBOT_ENDINGS,
+    ".toml",
+    ".py",
+    ".yaml",
+    ".yml",
+    ".rviz",
+    ".cfg",
+)  # files that no report may replace
 _MAX_NAMED = 8  # criteria in a message
 _MAX_UP = 3  # folders between a package and what is graded in it
 _SHA256 = r"[0-9a-fA-F]{64}"
@@ -35,7 +50,9 @@ class GradeRequest(NamedTuple):
     path: str  # of the submission; - for a URDF on standard input
     rubric: str  # an id or a file
     expect_rubric: str | None  # the hash that the rubric must have
-    part: Sequence[str] | None  # the ids of the parts to grade; default: all that the submission can meet
+    part: (
+        Sequence[str] | None
+    )  # the ids of the parts to grade; default: all that the submission can meet
     output_format: Format  # of standard output
     saves: Saves  # the files to write, with their formats
     fail_under: str | None  # the score that must be reached, in points or percent
@@ -64,7 +81,9 @@ class GradeRun(NamedTuple):
     @property
     def reason(self) -> str:
         """Why the exit code is 1 although nothing failed; empty otherwise."""
-        names = enumerated([result.criterion.id for result in self.report.pending_automatic], _MAX_NAMED)
+        names = enumerated(
+            [result.criterion.id for result in self.report.pending_automatic], _MAX_NAMED
+        )
         if self.exit_code != ExitCode.FAILED or not names or self.report.has_failures:
             return ""
         return printable(f"exit code 1: cannot be determined, and needs manual grading: {names}")
@@ -100,12 +119,18 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
     from grader.submission.submission import Opening
 
     rubric = requested_rubric(request)
-    reports = frozenset(os.path.realpath(file) for _, file in request.saves if file.suffix.lower() not in _SOURCES)
+    reports = frozenset(
+        os.path.realpath(file) for _, file in request.saves if file.suffix.lower() not in _SOURCES
+    )
     opening = Opening(request.max_size, read_arguments(request.arg or ()), reports=reports)
     submission = open_submission(request.path, rubric.lab, opening, with_neighbours=True)
     if submission.several:
         warn(submission.several)
-    if submission.package is None and not submission.is_single and (around := _package_around(request.path)):
+    if (
+        submission.package is None
+        and not submission.is_single
+        and (around := _package_around(request.path))
+    ):
         warn(f"{around}/package.xml exists: this is inside a package; run `grader grade {around}`")
     report = grade(rubric, submission, tuple(request.part or ()))
     for result in report.results:
@@ -115,18 +140,24 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
     if report.has_failures or request.fix is not None or request.hints is not None:
         from grader.commands.hints_and_fix import add_hints  # late: many submissions lose nothing
 
-        report, fix = add_hints(report, submission, request.hints, warn, is_fixed=request.fix is not None)
+        report, fix = add_hints(
+            report, submission, request.hints, warn, is_fixed=request.fix is not None
+        )
     folder = folder_of(request.path, submission.path) if submission.is_single else None
     besides = tuple(folder / path for path in submission.besides) if folder is not None else ()
-    return GradeRun(report, base_of(request.path, folder), exit_code(report, threshold), fix, besides)
+    return GradeRun(
+        report, base_of(request.path, folder), exit_code(report, threshold), fix, besides
+    )
 
 
 def check_saves(saves: Saves, rubric: Sequence[Path], *paths: str) -> None:
-    """Raise InputError if a report has no folder, would overwrite an input, or leads through a symlink of a submission.
+    """Raise InputError if a report has no folder, would overwrite an input, or leads through a
+    symlink of a submission.
 
     Inputs are the files of the rubric and the submissions that are files.
     """
-    # os.path.isdir is False for a name that is too long, for which Path.is_dir raises before Python 3.14.
+    # os.path.isdir is False for a name that is too long, for which Path.is_dir raises before Python
+    # 3.14.
     inputs = [*rubric, *(Path(path) for path in paths if not os.path.isdir(path))]  # noqa: PTH112
     for _, file in saves:
         refuse_symlinks(file, paths)
@@ -141,28 +172,41 @@ def save_reports(request: GradeRequest, run: GradeRun) -> None:
     for _, file in request.saves:
         is_source = file.suffix.lower() in _SOURCES
         refuse_inputs("--save", file, (Path(request.path) if is_source else graded, *run.besides))
-    texts = {file: render(run.report, kind, run.base, verbose=request.verbose) for kind, file in request.saves}
-    save_all({file: text.encode("utf-8", "backslashreplace") for file, text in texts.items()}, (request.path,))
+    texts = {
+        file: render(run.report, kind, run.base, verbose=request.verbose)
+        for kind, file in request.saves
+    }
+    save_all(
+        {file: text.encode("utf-8", "backslashreplace") for file, text in texts.items()},
+        (request.path,),
+    )
 
 
 def _package_around(path: str) -> str:
     """Return the way from a folder up to the package that it is in; empty if it is in none."""
     folder = Path(path).absolute()
-    ways = (os.path.normpath(f"{path}/{'../' * depth}") for depth in range(1, min(_MAX_UP, len(folder.parents)) + 1))
+    ways = (
+        os.path.normpath(f"{path}/{'../' * depth}")
+        for depth in range(1, min(_MAX_UP, len(folder.parents)) + 1)
+    )
     return next((shell_quoted(way) for way in ways if Path(way, "package.xml").is_file()), "")
 
 
 def requested_rubric(request: GradeRequest) -> "Rubric":
-    """Return the rubric. Raises GraderError if it is not the expected one or lacks a part that is named."""
+    """Return the rubric. Raises GraderError if it is not the expected one or lacks a part that is
+    named.
+    """
     expected = request.expect_rubric
     if expected is not None and not re.fullmatch(_SHA256, expected):
         raise GraderError(
-            f"--expect-rubric takes the 64 digits that `grader rubric show` prints as sha256, not {expected!r}"
+            "--expect-rubric takes the 64 digits that `grader rubric show` prints as "
+            f"sha256, not {expected!r}"
         )
     rubric = load(request.rubric, request.answers)
     if expected is not None and expected.lower() != rubric.sha256:
         raise InputError(
-            f"the rubric {rubric.id} is not the expected one: its sha256 is {rubric.sha256}, not {expected.lower()}"
+            f"the rubric {rubric.id} is not the expected one: its sha256 is "
+            f"{rubric.sha256}, not {expected.lower()}"
         )
     for name in request.part or ():
         rubric.part(name)
@@ -175,7 +219,9 @@ def folder_of(path: str, inside: str | None) -> Path:
 
 
 def base_of(path: str, single: Path | None) -> Base:
-    """Return where a submission is in its repository; `single` is the folder in which paths of a single URDF start."""
+    """Return where a submission is in its repository; `single` is the folder in which paths of a
+    single URDF start.
+    """
     if path == "-":
         return Base(is_outside=True)
     named = Path(path)
@@ -195,7 +241,9 @@ def base_of(path: str, single: Path | None) -> Base:
 
 
 def _repository(place: Path) -> Path | None:
-    """Return the root of a path's repository: the CI checkout, else the folder with .git, else the current folder."""
+    """Return the root of a path's repository: the CI checkout, else the folder with .git, else the
+    current folder.
+    """
     around = [place, *place.parents]
     for name in CHECKOUTS:
         checkout = Path(os.environ.get(name) or os.sep).resolve()

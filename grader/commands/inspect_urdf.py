@@ -1,4 +1,6 @@
-"""Read a URDF as ROS 2 does, with its joints at given positions, and the names in the packages around it."""
+"""Read a URDF as ROS 2 does, with its joints at given positions, and the names in the packages
+around it.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -23,23 +25,37 @@ _MAX_NAMED = 20
 
 
 def inspect(
-    path: str, joints: Sequence[str], relative_to: str | None, max_size: int, arguments: Sequence[str], warn: Warn
+    path: str,
+    joints: Sequence[str],
+    relative_to: str | None,
+    max_size: int,
+    arguments: Sequence[str],
+    warn: Warn,
 ) -> Inspection:
     """Return the inspection of the URDF and the packages at a path. Raises GraderError."""
     given = read_arguments(arguments)
-    submission = open_submission(path, Lab("robot.urdf"), Opening(max_size, given), with_neighbours=True)
+    submission = open_submission(
+        path, Lab("robot.urdf"), Opening(max_size, given), with_neighbours=True
+    )
     submission = _without_part(submission)
     base = base_of(path, folder_of(path, submission.path) if submission.is_single else None)
     match urdf := submission.urdf:
         case Unreadable(reason=reason):
             raise InputError(reason)
         case Absent() if submission.packages and (joints or relative_to is not None):
-            raise GraderError(f"{printable_path(path)} has no URDF: there are no joints and no frames")
+            raise GraderError(
+                f"{printable_path(path)} has no URDF: there are no joints and no frames"
+            )
         case Absent() if submission.packages:
             names = _name_problems(submission)
-            return Inspection(submission.id, None, names=names, source_of=submission.source, base=base)
+            return Inspection(
+                submission.id, None, names=names, source_of=submission.source, base=base
+            )
         case Absent():
-            raise InputError(f"{printable_path(path)} has neither a URDF nor a package: no file in it has a <robot>")
+            raise InputError(
+                f"{printable_path(path)} has neither a URDF nor a package: no file in it "
+                "has a <robot>"
+            )
     if submission.other_candidates:
         others = ", ".join(file.path for file in submission.other_candidates)
         warn(f"inspecting {urdf.path}; other candidates: {others}")
@@ -56,13 +72,22 @@ def inspect(
         raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
     problems = in_order((*urdf.loaded.problems, *mesh_problems(submission, urdf)))
     reading = urdf.loaded._replace(problems=problems)
-    return Inspection(urdf.path, reading, robot, relative_to, _name_problems(submission), submission.source, base)
+    return Inspection(
+        urdf.path, reading, robot, relative_to, _name_problems(submission), submission.source, base
+    )
 
 
 def _without_part(submission: Submission) -> Submission:
-    """Return packages as such without a robot, where the best candidate is xacro without links that nothing loads."""
+    """Return packages as such without a robot, where the best candidate is xacro without links that
+    nothing loads.
+    """
     urdf = submission.urdf
-    if submission.is_single or not submission.packages or not isinstance(urdf, Read) or not urdf.is_expanded:
+    if (
+        submission.is_single
+        or not submission.packages
+        or not isinstance(urdf, Read)
+        or not urdf.is_expanded
+    ):
         return submission
     errors = {problem.kind for problem in urdf.problems if problem.severity == "error"}
     name = urdf.path.rpartition("/")[2]
@@ -92,12 +117,16 @@ def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None
 
 
 def _read_position(text: str) -> tuple[str, float]:
-    """Return the joint and its position in radians or metres that `--joint` gives. Raises GraderError."""
+    """Return the joint and its position in radians or metres that `--joint` gives. Raises
+    GraderError.
+    """
     name, equals, value = text.rpartition("=")
     try:
         position = float(value)
     except ValueError:
         position = nan
     if not equals or not isfinite(position):
-        raise GraderError(f"--joint takes NAME=VALUE with a number in radians or metres, not {text!r}")
+        raise GraderError(
+            f"--joint takes NAME=VALUE with a number in radians or metres, not {text!r}"
+        )
     return name, position

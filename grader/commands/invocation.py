@@ -1,4 +1,6 @@
-"""How a command is called and answers: the values of --fail-under, --save and --arg, and its exit code."""
+"""How a command is called and answers: the values of --fail-under, --save and --arg, and its
+exit code.
+"""
 
 import os
 import re
@@ -31,18 +33,24 @@ class ExitCode(IntEnum):
 
 
 def read_threshold(text: str) -> tuple[Decimal, bool]:
-    """Return the score of `--fail-under`, such as 58.5 or 80%, and whether it is in percent. Raises GraderError."""
-    if not re.fullmatch(_THRESHOLD, text) or (text.endswith("%") and Decimal(text[:-1]) > _MAX_PERCENT):
-        raise GraderError(f"--fail-under takes points or a percentage from 0% to 100%, not {text!r}")
+    """Return the score of `--fail-under`, such as 58.5 or 80%, and whether it is in percent.
+    Raises GraderError.
+    """
+    if not re.fullmatch(_THRESHOLD, text) or (
+        text.endswith("%") and Decimal(text[:-1]) > _MAX_PERCENT
+    ):
+        raise GraderError(
+            f"--fail-under takes points or a percentage from 0% to 100%, not {text!r}"
+        )
     return Decimal(text.removesuffix("%")), text.endswith("%")
 
 
 def exit_code(report: "Report", threshold: tuple[Decimal, bool] | None) -> ExitCode:
     """Return the exit code for a report.
 
-    A faulty check takes precedence. With a threshold, only the score decides, but a file that ROS 2 rejects never
-    passes. Without one, every automatic criterion must have passed, except extra credit and adjusted criteria. A
-    criterion that could not be decided has not passed.
+    A faulty check takes precedence. With a threshold, only the score decides, but a file that ROS 2
+    rejects never passes. Without one, every automatic criterion must have passed, except extra
+    credit and adjusted criteria. A criterion that could not be decided has not passed.
     """
     if report.fault:
         return ExitCode.FAULT
@@ -71,17 +79,24 @@ def _read_save(text: str) -> tuple[Format, Path]:
     if kind not in list(Format) or not equals or file in ("", "-"):
         meant = next((kind for kind in Format if text.endswith(f".{kind.ending}")), None)
         guess = f"; did you mean --save {meant}={text}?" if meant is not None and not equals else ""
-        raise GraderError(f"--save takes FORMAT=FILE with one of the formats {', '.join(Format)}, not {text!r}{guess}")
+        raise GraderError(
+            f"--save takes FORMAT=FILE with one of the formats {', '.join(Format)}, not "
+            f"{text!r}{guess}"
+        )
     # The shell expands no ~ after `=`; Path.expanduser raises for an unknown user.
     return Format(kind), Path(os.path.expanduser(file))  # noqa: PTH111
 
 
 def read_arguments(texts: Sequence[str]) -> dict[str, str]:
-    """Return the values that `--arg` gives arguments of xacro, by their names. Raises GraderError."""
+    """Return the values that `--arg` gives arguments of xacro, by their names. Raises
+    GraderError.
+    """
     arguments: dict[str, str] = {}
     for text in texts:
         name, equals, value = text.partition("=")
         if not equals or not name.removesuffix(":"):
-            raise GraderError(f"--arg takes NAME=VALUE, an argument of the xacro file, not {text!r}")
+            raise GraderError(
+                f"--arg takes NAME=VALUE, an argument of the xacro file, not {text!r}"
+            )
         arguments[name.removesuffix(":")] = value  # NAME:=VALUE, as xacro takes it
     return arguments

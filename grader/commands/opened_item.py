@@ -1,7 +1,7 @@
 """What a person looks at to give a mark: the submission is read again, as it was graded.
 
-Of a question it is the answer, of evidence the pictures, of the robot or package the views of the robot and the file
-around the line that decides.
+Of a question it is the answer, of evidence the pictures, of the robot or package the views of the
+robot and the file around the line that decides.
 """
 
 from collections.abc import Iterator, Sequence
@@ -16,7 +16,12 @@ from grader.classroom.review_items import ReviewItem
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import InputError
 from grader.grading.criterion import Criterion
-from grader.grading.criterion_pictures import evidence_files, loose_lines, may_have_pictures, pictures_of
+from grader.grading.criterion_pictures import (
+    evidence_files,
+    loose_lines,
+    may_have_pictures,
+    pictures_of,
+)
 from grader.grading.grade import grade
 from grader.grading.report import Report, Result
 from grader.package.package import SETUP
@@ -41,15 +46,19 @@ def _graded_again(book: Gradebook, key: str) -> tuple[Submission, Report]:
     graded = book.results.of(key)
     submission = book.reopened(graded) if graded is not None else None
     if submission is None:
-        command = f"`grader batch NEWPATH --gradebook {shell_quoted(book.folder)}` with its class folder"
+        command = (
+            f"`grader batch NEWPATH --gradebook {shell_quoted(book.folder)}` with its class folder"
+        )
         raise InputError(f"the submission has moved or changed since it was graded: run {command}")
     return submission, grade(book.rubric, submission, book.settings.parts, is_one_of_class=True)
 
 
 def open_item(book: Gradebook, item: ReviewItem) -> OpenedItem:
-    """Return what a person looks at for an item. Raises InputError if its submission has moved or changed.
+    """Return what a person looks at for an item. Raises InputError if its submission has moved or
+    changed.
 
-    Of an anonymous student it has no names of files and no lines of them, because students choose them.
+    Of an anonymous student it has no names of files and no lines of them, because students choose
+    them.
     """
     first = item.members[0]
     if item.members[1:] and not item.answer:
@@ -75,14 +84,18 @@ def open_item(book: Gradebook, item: ReviewItem) -> OpenedItem:
 
 
 def _paths(book: Gradebook, item: ReviewItem, result: Result) -> Iterator[str]:
-    """Yield the places in a submission and its path below the class folder, which is named if there are several."""
+    """Yield the places in a submission and its path below the class folder, which is named if there
+    are several.
+    """
     stored, location = item.members[0].stored, result.outcome.location
     root = book.settings.roots(book.folder)[stored.root]
     above = PurePosixPath(root.name if len(book.settings.submissions) > 1 else "")
     submitted = ", ".join(str(above / path) for path in stored.paths)
     places = [*evidence_files(result)]
     if location is not None:
-        places.append(f"{location.path}, line {location.line}" if counts_lines(location) else location.path)
+        places.append(
+            f"{location.path}, line {location.line}" if counts_lines(location) else location.path
+        )
     yield from (f"{place} in {submitted}" for place in places)
     if not places:
         yield submitted
@@ -103,20 +116,30 @@ def _without_name(number: int, found: EmbeddedPicture | NotShown) -> EmbeddedPic
     return NotShown(f"file {number}", found.reason.replace(found.where, f"file {number}"))
 
 
-def _with_robot(opened: OpenedItem, report: Report, results: Sequence[Result], *, is_anonymous: bool) -> OpenedItem:
-    """Return an item with the views of the robot, and the files around the places that decide its criteria."""
+def _with_robot(
+    opened: OpenedItem, report: Report, results: Sequence[Result], *, is_anonymous: bool
+) -> OpenedItem:
+    """Return an item with the views of the robot, and the files around the places that decide its
+    criteria.
+    """
     picture, views, legend = picture_of(report), "", list[str]()
     if picture is not None:
         legend = callout_lines(picture)
         views = drawing_element(_without_names(picture) if is_anonymous else picture, legend=False)
-    found = dict.fromkeys(place for result in results if (place := _deciding_place(report, result)) is not None)
-    shown = ((location_text(one), source_lines(one, report.submission.source, _AROUND)) for one in found)
+    found = dict.fromkeys(
+        place for result in results if (place := _deciding_place(report, result)) is not None
+    )
+    shown = (
+        (location_text(one), source_lines(one, report.submission.source, _AROUND)) for one in found
+    )
     places = [*islice(((words, lines) for words, lines in shown if lines), _MAX_PLACES)]
     return opened._replace(views=views, legend=legend, places=places)
 
 
 def _without_names(picture: Picture) -> Picture:
-    """Return a picture without the names of links, and so without the numbers and sentences about them."""
+    """Return a picture without the names of links, and so without the numbers and sentences about
+    them.
+    """
     bodies = tuple(body._replace(link="") for body in picture.scene.bodies)
     return replace(picture, scene=replace(picture.scene, bodies=bodies, missing=()), callouts=())
 
@@ -124,7 +147,8 @@ def _without_names(picture: Picture) -> Picture:
 def _deciding_place(report: Report, result: Result) -> Location | None:
     """Return the place that decides a criterion of the robot or package; None if there is none.
 
-    It is that of the outcome, else that of what cannot be determined, else that of the link that is examined.
+    It is that of the outcome, else that of what cannot be determined, else that of the link that is
+    examined.
     """
     outcome, criterion, robot = result.outcome, result.criterion, report.submission.robot
     if outcome.location is not None:
@@ -136,12 +160,16 @@ def _deciding_place(report: Report, result: Result) -> Location | None:
     if robot is None or not robot.links or criterion.check.subject not in _OF_ROBOT:
         return None
     link = criterion.arguments.get("link")
-    examined = robot.link(link) if isinstance(link, str) and robot.has_link(link) else robot.links[0]
+    examined = (
+        robot.link(link) if isinstance(link, str) and robot.has_link(link) else robot.links[0]
+    )
     return location_of(examined.known.location)
 
 
 def _unknown_place(report: Report, criterion: Criterion) -> Location | None:
-    """Return the place of what keeps a criterion from being determined: first in a file that its check looks at."""
+    """Return the place of what keeps a criterion from being determined: first in a file that its
+    check looks at.
+    """
     if criterion.check.subject in _OF_ROBOT:
         found = [one for one in report.problems if one.kind.effect == "undetermined"]
     else:

@@ -1,8 +1,10 @@
-"""Grade what needs manual grading on a page in the browser, item by item, which a server on this machine serves.
+"""Grade what needs manual grading on a page in the browser, item by item, which a server on this
+machine serves.
 
-The server is for one person: bound to the loopback address, with a secret in the path of every address. Requests
-without the secret are refused. Requests of other websites are refused as well: the server accepts only its own host
-name, and only JSON from its own origin. It answers one request at a time, so that nothing is written concurrently.
+The server is for one person: bound to the loopback address, with a secret in the path of every
+address. Requests without the secret are refused. Requests of other websites are refused as well:
+the server accepts only its own host name, and only JSON from its own origin. It answers one request
+at a time, so that nothing is written concurrently.
 """
 
 import hmac
@@ -35,9 +37,12 @@ from grader.report.pages import review_pages as pages
 from grader.text import counted, printable, printable_path
 
 HOST = "127.0.0.1"
-_ENDINGS = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]  # end it as Ctrl-C does
+_ENDINGS = [
+    getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)
+]  # end it as Ctrl-C does
 MAX_BODY = 64 * 1024  # bytes; `http.server` limits the headers
-_PATIENCE = 15.0  # seconds in which a client must send a whole request, and receive a whole response
+# seconds in which a client must send a whole request, and receive a whole response
+_PATIENCE = 15.0
 _TEXT = "text/plain; charset=utf-8"
 _TOKEN_BYTES = 24
 _LINK = "open-review.html"  # in the gradebook, while the server runs
@@ -80,19 +85,25 @@ class LocalServer(ThreadingTCPServer):
     allow_reuse_address = True
     request_queue_size = 64
 
-    def __init__(self, application: Callable[[tuple[str, ...], bytes | None], _Response], port: int = 0) -> None:
+    def __init__(
+        self, application: Callable[[tuple[str, ...], bytes | None], _Response], port: int = 0
+    ) -> None:
         self.application, self.lock = application, Lock()
         self.token = secrets.token_urlsafe(_TOKEN_BYTES)
         try:
             super().__init__((HOST, port), _Handler)
         except OSError as error:
-            raise InputError(f"cannot listen on port {port} of {HOST}: {error.strerror}; name another --port") from None
+            raise InputError(
+                f"cannot listen on port {port} of {HOST}: {error.strerror}; name another --port"
+            ) from None
         self.port = int(self.server_address[1])
         self.hosts = tuple(f"{name}:{self.port}" for name in (HOST, "localhost"))
         self.url = f"http://{self.hosts[0]}/{self.token}/"
 
     def finish_request(self, request: Any, client_address: Any) -> None:
-        """Serve a connection; the whole request must arrive in time, however slowly its bytes do."""
+        """Serve a connection; the whole request must arrive in time, however slowly its bytes
+        do.
+        """
         timer = Timer(_PATIENCE, _stop_reading, [request])
         timer.daemon = True
         timer.start()
@@ -105,7 +116,9 @@ class LocalServer(ThreadingTCPServer):
             with self.lock:
                 return self.application(path, body)
         except Exception as error:  # noqa: BLE001  no traceback ever reaches a user
-            reason = error.strerror if isinstance(error, OSError) else f"{type(error).__name__}: {error}"
+            reason = (
+                error.strerror if isinstance(error, OSError) else f"{type(error).__name__}: {error}"
+            )
             message = printable(f"the grader failed on this request: {reason}")
             return _Response(f"{message}\n".encode(), status=HTTPStatus.INTERNAL_SERVER_ERROR)
 
@@ -145,22 +158,35 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _path(self) -> tuple[str, ...]:
         """Return the path after the secret."""
-        if len(self.headers.get_all("Host", [])) != 1 or self.headers["Host"].lower() not in self.server.hosts:
-            raise _RefusedError(HTTPStatus.MISDIRECTED_REQUEST, "wrong host name: use the address of the command")
+        if (
+            len(self.headers.get_all("Host", [])) != 1
+            or self.headers["Host"].lower() not in self.server.hosts
+        ):
+            raise _RefusedError(
+                HTTPStatus.MISDIRECTED_REQUEST, "wrong host name: use the address of the command"
+            )
         if self.path == "/favicon.ico":  # every browser asks for it
             raise _RefusedError(HTTPStatus.NO_CONTENT)
         first, *rest = self.path.partition("?")[0].removeprefix("/").split("/")
         if not hmac.compare_digest(first.encode(), self.server.token.encode()) or not rest:
-            raise _RefusedError(HTTPStatus.NOT_FOUND, "not found: use the whole address that the command has printed")
+            raise _RefusedError(
+                HTTPStatus.NOT_FOUND,
+                "not found: use the whole address that the command has printed",
+            )
         return tuple(rest)
 
     def _body(self) -> bytes:
         """Return the body of a request, which must be JSON from the page."""
         own = f"http://{self.headers['Host'].lower()}"
-        if self.headers.get("Origin") != own or self.headers.get("Sec-Fetch-Site", "same-origin") != "same-origin":
+        if (
+            self.headers.get("Origin") != own
+            or self.headers.get("Sec-Fetch-Site", "same-origin") != "same-origin"
+        ):
             raise _RefusedError(HTTPStatus.FORBIDDEN, "this request is not from the page")
         if self.headers.get_content_type() != "application/json":
-            raise _RefusedError(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "the content type must be application/json")
+            raise _RefusedError(
+                HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "the content type must be application/json"
+            )
         length = self.headers.get("Content-Length", "")
         if not re.fullmatch("[0-9]+", length):
             raise _RefusedError(HTTPStatus.LENGTH_REQUIRED, "the header Content-Length is missing")
@@ -179,7 +205,9 @@ class _Handler(BaseHTTPRequestHandler):
 
 
 class ReviewPage:
-    """The application of the server: shows items of a session by number, and executes actions from the page."""
+    """The application of the server: shows items of a session by number, and executes actions from
+    the page.
+    """
 
     def __init__(self, session: ReviewSession) -> None:
         self.session = session
@@ -203,9 +231,15 @@ class ReviewPage:
             case ("end",):
                 given = sum(mark.points is not None for mark in session.own.values())
                 folder = printable_path(session.folder)
-                return _html(pages.end_page(given, session.left, self._place(at), folder, session.lms))
+                return _html(
+                    pages.end_page(given, session.left, self._place(at), folder, session.lms)
+                )
             case (_, "people") if at >= 0:
-                return _json(people=[(label, left, self.address(to)) for label, left, to in session.people(at)])
+                return _json(
+                    people=[
+                        (label, left, self.address(to)) for label, left, to in session.people(at)
+                    ]
+                )
             case (_,) if is_item:
                 item = session.item_at(at)
                 place = self._place(at) | {"so_far": session.so_far(item)}
@@ -215,7 +249,9 @@ class ReviewPage:
                 found = {str(which): one for which, one in pictures}.get(number)
                 if isinstance(found, EmbeddedPicture):
                     return _Response(
-                        found.data, found.kind.media_type, policy=_PDF_POLICY if found.kind is PDF else _SANDBOX
+                        found.data,
+                        found.kind.media_type,
+                        policy=_PDF_POLICY if found.kind is PDF else _SANDBOX,
                     )
         return _Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
 
@@ -223,7 +259,12 @@ class ReviewPage:
         session, listed = self.session, self.session.listed
         questions = [*dict.fromkeys(criterion for criterion, _ in session.items)]
         filters = pages.filters(session.filter, questions, sorted(session.sections.values()))
-        return {"number": bisect(listed, at), "total": len(listed), "address": self.address(at), "filters": filters}
+        return {
+            "number": bisect(listed, at),
+            "total": len(listed),
+            "address": self.address(at),
+            "filters": filters,
+        }
 
     def _act(self, at: int, body: bytes) -> _Response:
         """Execute an action of the page."""
@@ -231,13 +272,20 @@ class ReviewPage:
         with suppress(ValueError, RecursionError):
             sent = json.loads(body)
         match sent if at >= 0 else None:
-            case {"do": "mark", "points": str(points), "comment": str(comment), "shown": str(shown), **more} if (
-                at < len(session.places)
-            ):
+            case {
+                "do": "mark",
+                "points": str(points),
+                "comment": str(comment),
+                "shown": str(shown),
+                **more,
+            } if at < len(session.places):
                 return self._mark(at, points, comment.strip(), shown, to=str(more.get("to")))
-            case {"do": "filter", "criterion": str(criterion), "section": str(section), "state": str(state)} if (
-                state in STATES
-            ):
+            case {
+                "do": "filter",
+                "criterion": str(criterion),
+                "section": str(section),
+                "state": str(state),
+            } if state in STATES:
                 session.show_only(ReviewFilter(criterion, section, state))
                 at = session.following()
             case {"do": "again"}:
@@ -256,7 +304,9 @@ class ReviewPage:
         return _json(go=self.address(at))
 
     def _mark(self, at: int, points: str, comment: str, shown: str, *, to: str) -> _Response:
-        """Save a mark, or return those of others that it would replace. `question` is the next one of the student."""
+        """Save a mark, or return those of others that it would replace. `question` is the next one
+        of the student.
+        """
         session = self.session
         open_item(session.book, session.item_at(at))  # what has moved or changed cannot be marked
         replaced = session.mark(at, points, comment, shown)
@@ -265,7 +315,11 @@ class ReviewPage:
             return _json(newer=pages.mark_text(replaced[0]) + more)
         if replaced is None:
             return _json(error=_CHANGED, go=self.address(at))
-        return _json(go=self.address(session.next_question(at) if to == "question" else session.following(at)))
+        return _json(
+            go=self.address(
+                session.next_question(at) if to == "question" else session.following(at)
+            )
+        )
 
     def address(self, at: int) -> str:
         """Return the address of an item below that of the server."""
@@ -281,15 +335,23 @@ class ReviewPage:
 
 
 def _html(page: str, status: HTTPStatus = HTTPStatus.OK) -> _Response:
-    return _Response(page.encode("utf-8", "backslashreplace"), "text/html; charset=utf-8", status, policy=_PAGE_POLICY)
+    return _Response(
+        page.encode("utf-8", "backslashreplace"),
+        "text/html; charset=utf-8",
+        status,
+        policy=_PAGE_POLICY,
+    )
 
 
 def _json(status: HTTPStatus = HTTPStatus.OK, **answer: object) -> _Response:
     return _Response(json.dumps(answer).encode(), "application/json", status)
 
 
-def review_in_browser(session: ReviewSession, port: int, terminal: Terminal, *, opens: bool = True) -> str:
-    """Serve the review page until Ctrl-C, write the grades, and return a summary; it `opens` the page in the browser.
+def review_in_browser(
+    session: ReviewSession, port: int, terminal: Terminal, *, opens: bool = True
+) -> str:
+    """Serve the review page until Ctrl-C, write the grades, and return a summary; it `opens` the
+    page in the browser.
 
     Raises InputError.
     """
@@ -299,15 +361,26 @@ def review_in_browser(session: ReviewSession, port: int, terminal: Terminal, *, 
     with LocalServer(page, port) as server:
         if is_open_in_libreoffice(session.file):
             shown = printable_path(session.file)
-            terminal.warn(f"{shown} is open in LibreOffice: close it, because saving it there would remove new marks")
+            terminal.warn(
+                f"{shown} is open in LibreOffice: close it, because saving it there would "
+                "remove new marks"
+            )
         address = f"{server.url}{page.address(session.following())}"
         for number in _ENDINGS:
             if signal.getsignal(number) is signal.SIG_DFL:  # else it is ignored, as after nohup
                 signal.signal(number, signal.default_int_handler)
         with suppress(KeyboardInterrupt):
             terminal.print(f"{address}\n")
-            with opened_in_browser(address, session.folder / _LINK) if opens else nullcontext(False) as is_open:
-                how = "the page opens in the browser" if is_open else "open this address in a browser on this machine"
+            with (
+                opened_in_browser(address, session.folder / _LINK)
+                if opens
+                else nullcontext(False) as is_open
+            ):
+                how = (
+                    "the page opens in the browser"
+                    if is_open
+                    else "open this address in a browser on this machine"
+                )
                 terminal.warn(f"{how}; Ctrl-C ends the review, all marks are kept")
                 server.serve_forever()
     write_grades(Gradebook(session.folder))

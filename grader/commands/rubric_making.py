@@ -1,4 +1,6 @@
-"""Write a rubric from a reference solution, and test a rubric: its reference, equivalents, samples and mutants."""
+"""Write a rubric from a reference solution, and test a rubric: its reference, equivalents, samples
+and mutants.
+"""
 
 import os
 import re
@@ -22,7 +24,11 @@ from grader.errors import GraderError, InputError
 from grader.files.reading import URDF_LIMIT
 from grader.grading.rubric import Rubric
 from grader.package.package import MANIFEST
-from grader.report.rubric_test_result import render_rubric_test, render_rubric_test_json, unexamined_line
+from grader.report.rubric_test_result import (
+    render_rubric_test,
+    render_rubric_test_json,
+    unexamined_line,
+)
 from grader.robot.kinematics import Configuration
 from grader.submission.opening import STANDARD_INPUT, open_submission
 from grader.submission.packages import is_backup, package_around
@@ -37,7 +43,9 @@ _GROUP, _SECONDS = 20, 60.0  # mutants that a worker grades at once, and how lon
 
 
 def write_rubric(file: Path, reference: str, warn: Warn, *, force: bool) -> str:
-    """Write a rubric of a reference's facts; return what it contains, omits, and the next step. Raises GraderError."""
+    """Write a rubric of a reference's facts; return what it contains, omits, and the next step.
+    Raises GraderError.
+    """
     _check_target(file, force=force)
     if reference == STANDARD_INPUT:
         raise GraderError("--from takes a file or folder, which the rubric names as its reference")
@@ -45,7 +53,9 @@ def write_rubric(file: Path, reference: str, warn: Warn, *, force: bool) -> str:
     solution = _solution(submission, reference, warn)
     made = draft(submission, solution, _rubric_head(file, reference, submission), file)
     if len(made.data) > URDF_LIMIT:
-        raise GraderError(f"the reference has too many facts for a rubric: {len(made.rubric.criteria)} criteria")
+        raise GraderError(
+            f"the reference has too many facts for a rubric: {len(made.rubric.criteria)} criteria"
+        )
     save_bytes(file, made.data)
     return "".join(f"{printable(line)}\n" for line in _result_lines(file, made))
 
@@ -61,13 +71,18 @@ def _check_target(file: Path, *, force: bool) -> None:
 
 
 def _solution(submission: Submission, reference: str, warn: Warn) -> Solution | None:
-    """Return the robot of the reference, which ROS 2 must load; None of packages without one. Raises GraderError."""
+    """Return the robot of the reference, which ROS 2 must load; None of packages without one.
+    Raises GraderError.
+    """
     shown = printable_path(reference)
     match submission.urdf:
         case Absent() if submission.packages:
             return None
         case Absent():
-            raise InputError(f"{shown} has neither a URDF nor a package: no file has a <robot>, none is a package.xml")
+            raise InputError(
+                f"{shown} has neither a URDF nor a package: no file has a <robot>, none is "
+                "a package.xml"
+            )
         case Unreadable(reason=reason):
             raise InputError(reason)
         case Read(reading=reading, loaded=loaded):
@@ -80,19 +95,28 @@ def _solution(submission: Submission, reference: str, warn: Warn) -> Solution | 
                 warn(f"{found.location.path}:{found.location.line}: {found.code}: {found.message}")
     others = [file.path for file in submission.other_candidates if not file.path.endswith(MANIFEST)]
     if others:
-        warn(f"the rubric is made from {submission.path}; other candidates: {enumerated(others, _MAX_NAMED)}")
+        warn(
+            f"the rubric is made from {submission.path}; other candidates: "
+            f"{enumerated(others, _MAX_NAMED)}"
+        )
     return Solution(submission, reading, Configuration(reading.robot))
 
 
 def _open_reference(reference: str) -> Submission:
-    """Return the reference as a submission in which all of its packages are graded, the one with the URDF first."""
+    """Return the reference as a submission in which all of its packages are graded, the one with
+    the URDF first.
+    """
     submission = open_submission(reference, Lab(_URDF))
     main = package_around(submission.packages, submission.path) or submission.package
-    packages = [it.name for it in submission.packages if it is not main and not is_backup(it.folder)]
+    packages = [
+        it.name for it in submission.packages if it is not main and not is_backup(it.folder)
+    ]
     if main is None or not packages:
         return submission
     urdf = (submission.path or _URDF).removeprefix(main.path(""))
-    return open_submission(reference, Lab(urdf, packages=tuple(dict.fromkeys([main.name, *packages]))))
+    return open_submission(
+        reference, Lab(urdf, packages=tuple(dict.fromkeys([main.name, *packages])))
+    )
 
 
 def _rubric_head(file: Path, reference: str, submission: Submission) -> Head:
@@ -108,7 +132,9 @@ def _rubric_head(file: Path, reference: str, submission: Submission) -> Head:
 
 
 def _relative(reference: Path, folder: Path) -> str:
-    """Return the path of the reference as a rubric in a folder names it; raise GraderError if it is no text."""
+    """Return the path of the reference as a rubric in a folder names it; raise GraderError if it is
+    no text.
+    """
     try:
         path = os.path.relpath(reference.resolve(), folder.resolve())
     except ValueError:  # on another drive
@@ -121,9 +147,15 @@ def _relative(reference: Path, folder: Path) -> str:
 
 
 def _result_lines(file: Path, made: RubricDraft) -> Iterator[str]:
-    yield f"wrote {printable_path(file)}: {rubric_summary(made.rubric)}; its reference gets full marks"
+    yield (
+        f"wrote {printable_path(file)}: {rubric_summary(made.rubric)}; its reference gets full "
+        "marks"
+    )
     if made.rubric.reference.startswith(("..", "/")):
-        yield f"note: the reference is {made.rubric.reference}, outside the rubric's folder: move both together"
+        yield (
+            f"note: the reference is {made.rubric.reference}, outside the rubric's folder: move "
+            "both together"
+        )
     yield from (f"omitted: {line}" for line in _omission_lines(made.omissions))
     paths, count = Trial(made.rubric).unexamined()
     if paths:
@@ -149,16 +181,27 @@ def test_rubric(
     least = read_threshold(fail_under)[0] if fail_under is not None else 0
     rubric = load(name)
     samples = read_samples(folder) if folder is not None else None
-    with terminal.show_class(f"Testing {rubric.id}") as show, Processes(processors(), _SECONDS) as executor:
+    with (
+        terminal.show_class(f"Testing {rubric.id}") as show,
+        Processes(processors(), _SECONDS) as executor,
+    ):
         progress = lambda done, total: show(Progress(total, done))  # noqa: E731
         result = run_rubric_test(rubric, samples, progress, partial(_graded, executor, rubric))
-    text = render_rubric_test_json(result) if is_json else render_rubric_test(result, terminal.screen().width)
+    text = (
+        render_rubric_test_json(result)
+        if is_json
+        else render_rubric_test(result, terminal.screen().width)
+    )
     is_passed = result.is_sound and result.score >= least
     code = ExitCode.PASSED if is_passed else ExitCode.FAILED
     return text, ExitCode.FAULT if result.is_faulty else code
 
 
-def _graded(executor: Processes, rubric: Rubric, mutants: Sequence[Mutant]) -> Iterator[MutantOutcome]:
+def _graded(
+    executor: Processes, rubric: Rubric, mutants: Sequence[Mutant]
+) -> Iterator[MutantOutcome]:
     """Yield the outcomes of mutants, which are graded in groups. Raises WorkerError."""
     groups = [mutants[at : at + _GROUP] for at in range(0, len(mutants), _GROUP)]
-    return chain.from_iterable(executor.map(partial(mutant_outcomes, rubric.data, str(rubric.path)), groups))
+    return chain.from_iterable(
+        executor.map(partial(mutant_outcomes, rubric.data, str(rubric.path)), groups)
+    )

@@ -18,7 +18,9 @@ DEFAULT_RUBRIC = "lab6"  # of the command line
 
 
 def load(name: str, answers: Path | None = None) -> "Rubric":
-    """Return a rubric, with model answers if their file is named. Raises RubricError or InputError."""
+    """Return a rubric, with model answers if their file is named. Raises RubricError or
+    InputError.
+    """
     if answers is None:
         from grader.grading.rubric import load_rubric
 
@@ -32,7 +34,9 @@ def list_rubrics() -> str:
     """Return a line for each rubric that comes with the grader."""
     from grader.grading.rubric import load_rubric, shipped_rubrics
 
-    return "".join(f"{rubric.id}  {rubric_summary(rubric)}\n" for rubric in map(load_rubric, shipped_rubrics()))
+    return "".join(
+        f"{rubric.id}  {rubric_summary(rubric)}\n" for rubric in map(load_rubric, shipped_rubrics())
+    )
 
 
 def rubric_summary(rubric: "Rubric") -> str:
@@ -43,13 +47,17 @@ def rubric_summary(rubric: "Rubric") -> str:
 def _size(rubric: "Rubric") -> str:
     from grader.grading.criterion import worth
 
-    return f"{counted(len(rubric.criteria), 'criterion', 'criteria')}, {worth(rubric.criteria).text}"
+    return (
+        f"{counted(len(rubric.criteria), 'criterion', 'criteria')}, {worth(rubric.criteria).text}"
+    )
 
 
 def files_of(name: str, answers: Path | None = None) -> list[Path]:
-    """Return the files and folders that a rubric is read from: its own file, its model answers, its reference.
+    """Return the files and folders that a rubric is read from: its own file, its model answers, its
+    reference.
 
-    It is only its own file if there is a mistake in it. Of a reference in the rubric's own folder it is only the URDF.
+    It is only its own file if there is a mistake in it. Of a reference in the rubric's own folder
+    it is only the URDF.
     """
     from grader.grading.rubric import find_rubric, load_rubric
 
@@ -62,37 +70,55 @@ def files_of(name: str, answers: Path | None = None) -> list[Path]:
             found.append(file.parent / rubric.answers)
         if rubric.reference:
             place = file.parent / rubric.reference
-            found.append(place / rubric.urdf if place.resolve() in file.resolve().parents else place)
+            found.append(
+                place / rubric.urdf if place.resolve() in file.resolve().parents else place
+            )
     return found
 
 
 def copy(name: str, folder: Path) -> str:
-    """Copy the files of a shipped rubric; return what was written, and the next step. Raises GraderError."""
+    """Copy the files of a shipped rubric; return what was written, and the next step. Raises
+    GraderError.
+    """
     from shutil import copyfile, copytree, ignore_patterns
 
     from grader.grading.rubric import load_rubric, shipped_rubrics
 
     file = shipped_rubrics().get(name)
     if file is None:
-        raise GraderError(f"{printable_path(name)} is not a rubric of the grader: {', '.join(shipped_rubrics())}")
-    copies = {source: folder / name / source.relative_to(file.parent) for source in files_of(name) if source.exists()}
+        raise GraderError(
+            f"{printable_path(name)} is not a rubric of the grader: {', '.join(shipped_rubrics())}"
+        )
+    copies = {
+        source: folder / name / source.relative_to(file.parent)
+        for source in files_of(name)
+        if source.exists()
+    }
     if there := [*filter(os.path.lexists, copies.values())]:
         raise GraderError(f"{printable_path(there[0])} exists already: nothing was copied")
     for source, target in copies.items():
         make_folder(target.parent)
         if source.is_dir():
-            copytree(source, target, ignore=ignore_patterns("__pycache__"))  # pip compiles the files of a package
+            copytree(
+                source, target, ignore=ignore_patterns("__pycache__")
+            )  # pip compiles the files of a package
         else:
             copyfile(source, target)
-    if not (file.parent / load_rubric(name).answers).exists():  # students have the package, without the answers
+    if not (
+        file.parent / load_rubric(name).answers
+    ).exists():  # students have the package, without the answers
         text = copies[file].read_text(encoding="utf-8")
         copies[file].write_text(re.sub(r"(?m)^answers = .*\n", "", text), encoding="utf-8")
-    lines = [*map(str, copies.values()), f"next: change it, then `grader rubric check {shell_quoted(copies[file])}`"]
+    lines = [
+        *map(str, copies.values()),
+        f"next: change it, then `grader rubric check {shell_quoted(copies[file])}`",
+    ]
     return "".join(f"{printable(line)}\n" for line in lines)
 
 
 def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
-    """Check a rubric; return a summary and the exit code: 1 if criteria cannot be decided on the reference solution.
+    """Check a rubric; return a summary and the exit code: 1 if criteria cannot be decided on the
+    reference solution.
 
     Raises RubricError if the reference loses points.
     """
@@ -118,11 +144,15 @@ def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
 
 
 def bundle(platform: str, output: Path, name: str) -> str:
-    """Write the autograder zip for a platform; return what to do next, in two lines. Raises GraderError."""
+    """Write the autograder zip for a platform; return what to do next, in two lines. Raises
+    GraderError.
+    """
     from grader.bundle.gradescope import autograder_zip
 
     if output.suffix.lower() != ".zip":
-        raise GraderError(f"{platform} takes a zip: give a name that ends in .zip, not {str(output)!r}")
+        raise GraderError(
+            f"{platform} takes a zip: give a name that ends in .zip, not {str(output)!r}"
+        )
     rubric = load(name)
     save_bytes(output, autograder_zip(rubric))
     lines = f"wrote {output}: {rubric_summary(rubric)}", f"next: {_next_step(rubric)}"
@@ -133,10 +163,15 @@ def _next_step(rubric: "Rubric") -> str:
     from grader.checks.manual import MANUAL_CHECKS
     from grader.grading.criterion import worth
 
-    asked = (criterion for criterion in rubric.criteria if criterion.check.function in MANUAL_CHECKS)
+    asked = (
+        criterion for criterion in rubric.criteria if criterion.check.function in MANUAL_CHECKS
+    )
     manual = [criterion for criterion in asked if criterion.adjustment is None]
     points = worth(manual)
-    step = f"upload it under Configure Autograder; autograder points: {format_points(rubric.points - points.points)}"
+    step = (
+        "upload it under Configure Autograder; autograder points: "
+        f"{format_points(rubric.points - points.points)}"
+    )
     if not manual:
         return step
     listed = ", ".join(f"{criterion.id} ({worth((criterion,)).short})" for criterion in manual)

@@ -1,4 +1,6 @@
-"""grader grade --watch: grade again whenever a file changes, and show last what changed in the report."""
+"""grader grade --watch: grade again whenever a file changes, and show last what changed in the
+report.
+"""
 
 import gc
 import os
@@ -49,8 +51,8 @@ def watch(request: GradeRequest, terminal: Terminal) -> None:
     A submission or rubric that cannot be read is reported, and graded again after the next change.
 
     Raises:
-        GraderError: What no change of a file corrects: wrong usage, an unknown rubric, standard output that is closed,
-            a report that cannot be saved.
+        GraderError: What no change of a file corrects: wrong usage, an unknown rubric, standard
+            output that is closed, a report that cannot be saved.
     """
     watched = _watched(request)
     rubric = files_of(request.rubric, request.answers) if request.saves else ()
@@ -59,7 +61,9 @@ def watch(request: GradeRequest, terminal: Terminal) -> None:
     gc.enable()  # unlike other commands, this one may run for hours
     last: Report | None = None
     terminal.warn(f"watching {printable_path(request.path)}; stop with Ctrl-C")
-    for besides in _changes(watched, frozenset(os.path.realpath(file) for _, file in request.saves)):
+    for besides in _changes(
+        watched, frozenset(os.path.realpath(file) for _, file in request.saves)
+    ):
         try:
             result = grade_submission(request, terminal.warn)
         except (InputError, MachineError, RubricError) as error:
@@ -73,12 +77,15 @@ def watch(request: GradeRequest, terminal: Terminal) -> None:
 
 
 def _watched(request: GradeRequest) -> list[Path]:
-    """Return what is watched: the submission, and a rubric that is no shipped one. Raises GraderError."""
+    """Return what is watched: the submission, and a rubric that is no shipped one. Raises
+    GraderError.
+    """
     if request.path in ("", "-"):
         raise GraderError("--watch takes a file or folder: standard input is read only once")
     if request.output_format is not Format.TERMINAL:
         raise GraderError(
-            f"--watch prints in the format terminal only: use --save {request.output_format}=FILE instead of --format"
+            "--watch prints in the format terminal only: use --save "
+            f"{request.output_format}=FILE instead of --format"
         )
     if request.fix is not None:
         raise GraderError("--watch writes no fix: use --fix without it")
@@ -122,7 +129,10 @@ def comparison_lines(before: Report, after: Report) -> list[str]:
     lines = [f"{format_points(before.score)} -> {_score(after)}{_gain(after.score - before.score)}"]
     for change in (*_CHANGES.values(), "changed"):
         known = [(one, old.get(one.criterion.id)) for one in kinds.get(change, ())]
-        named = [printable(new.criterion.id) + _gain(new.points - (was.points if was else 0)) for new, was in known]
+        named = [
+            printable(new.criterion.id) + _gain(new.points - (was.points if was else 0))
+            for new, was in known
+        ]
         if named:
             lines.append(f"{change}: {enumerated(named, _MAX_NAMED)}")
     return lines
@@ -149,8 +159,8 @@ def _gain(points: Decimal) -> str:
 def _changes(watched: Sequence[Path], own: Collection[str] = ()) -> Iterator[list[Path]]:
     """Yield at once and after every change of the watched files and folders, without end.
 
-    What is yielded is a list for the files that were read besides, which are watched from then on. `own` are the real
-    paths of files that do not count: the reports that are written.
+    What is yielded is a list for the files that were read besides, which are watched from then on.
+    `own` are the real paths of files that do not count: the reports that are written.
     """
     besides: list[Path] = []
     seen: _Stamps | None = None
@@ -158,7 +168,9 @@ def _changes(watched: Sequence[Path], own: Collection[str] = ()) -> Iterator[lis
     while True:
         start = time.monotonic()
         now = _stamps([*watched, *besides], own)
-        if seen is None or before == now != seen:  # what changed since the last look may be half written
+        if (
+            seen is None or before == now != seen
+        ):  # what changed since the last look may be half written
             yield besides
             seen = {**_stamps(besides, own), **now}
         before = now
@@ -166,7 +178,9 @@ def _changes(watched: Sequence[Path], own: Collection[str] = ()) -> Iterator[lis
 
 
 def _stamps(paths: Iterable[Path], own: Collection[str] = ()) -> _Stamps:
-    """Return what identifies each file and its content; of a folder, each file and folder that a grading looks at."""
+    """Return what identifies each file and its content; of a folder, each file and folder that a
+    grading looks at.
+    """
     found: _Stamps = {}
     for path in paths:
         names: Iterable[str] = ()
@@ -185,5 +199,9 @@ def _stamp(path: Path) -> tuple[int, ...] | None:
         status = path.stat()
         known = status.st_dev, status.st_ino, status.st_mode
         # A folder changes with each report that is written into it.
-        return known if path.is_dir() else (*known, status.st_size, status.st_mtime_ns, status.st_ctime_ns)
+        return (
+            known
+            if path.is_dir()
+            else (*known, status.st_size, status.st_mtime_ns, status.st_ctime_ns)
+        )
     return None

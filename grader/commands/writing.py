@@ -1,4 +1,5 @@
-"""Where commands write: the terminal, standard output, and files, which are replaced as a whole or not at all.
+"""Where commands write: the terminal, standard output, and files, which are replaced as a whole or
+not at all.
 
 No file is written through a symlink of a submission, and none over the gradebook.
 """
@@ -26,8 +27,13 @@ if TYPE_CHECKING:
 Warn = Callable[[str], None]
 # Shows the progress of a pass over a class, whose work is named.
 _ShowClass = Callable[[str], AbstractContextManager[Callable[["Progress"], None]]]
-CHECKOUTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")  # the repository that GitHub Actions and GitLab CI checked out
-_TEMPORARY = re.compile(r"\.[0-9a-f]{16}(?:-([0-9]+))?\.tmp")  # with the number of the process that writes it
+CHECKOUTS = (
+    "GITHUB_WORKSPACE",
+    "CI_PROJECT_DIR",
+)  # the repository that GitHub Actions and GitLab CI checked out
+_TEMPORARY = re.compile(
+    r"\.[0-9a-f]{16}(?:-([0-9]+))?\.tmp"
+)  # with the number of the process that writes it
 _MAX_SYMLINKS = 40  # in one path, as in Linux
 
 
@@ -41,7 +47,9 @@ class Terminal(NamedTuple):
 
 
 def write_stdout(text: str | bytes) -> None:
-    """Write to standard output; bytes unchanged, text in its encoding. Raises InputError if it is closed."""
+    """Write to standard output; bytes unchanged, text in its encoding. Raises InputError if it is
+    closed.
+    """
     stream = sys.stdout
     if stream is None:
         raise InputError("cannot write the report: standard output is closed")
@@ -49,7 +57,9 @@ def write_stdout(text: str | bytes) -> None:
         if hasattr(stream, "buffer"):
             stream.flush()
             encoding = stream.encoding or "utf-8"
-            stream.buffer.write(text if isinstance(text, bytes) else text.encode(encoding, "backslashreplace"))
+            stream.buffer.write(
+                text if isinstance(text, bytes) else text.encode(encoding, "backslashreplace")
+            )
         else:
             stream.write(text if isinstance(text, str) else text.decode())
         stream.flush()
@@ -59,22 +69,29 @@ def write_stdout(text: str | bytes) -> None:
         raise InputError(f"cannot write the report: standard output: {error.strerror}") from None
 
 
-def save(path: Path, text: str, submissions: Sequence[Path | str] = (), mode: int | None = None) -> None:
+def save(
+    path: Path, text: str, submissions: Sequence[Path | str] = (), mode: int | None = None
+) -> None:
     """Write a text file in UTF-8, as `save_bytes` does."""
     save_bytes(path, text.encode("utf-8", "backslashreplace"), submissions, mode)
 
 
-def save_bytes(path: Path, data: bytes, submissions: Sequence[Path | str] = (), mode: int | None = None) -> None:
+def save_bytes(
+    path: Path, data: bytes, submissions: Sequence[Path | str] = (), mode: int | None = None
+) -> None:
     """Write a file atomically, as `save_all` does; a new one gets the permissions `mode`."""
     save_all({path: data}, submissions, mode)
 
 
-def save_all(files: Mapping[Path, bytes], submissions: Sequence[Path | str] = (), mode: int | None = None) -> None:
+def save_all(
+    files: Mapping[Path, bytes], submissions: Sequence[Path | str] = (), mode: int | None = None
+) -> None:
     """Write files, each atomically, and none before all are written beside their places.
 
-    A path that is not a regular file, such as a pipe or a device, is written to directly. A symlink is followed unless
-    it is in one of the submissions, which are folders and files that students made. A new file gets the permissions
-    `mode`; one that is replaced keeps its own. Raises InputError if a file cannot be written: then none has changed.
+    A path that is not a regular file, such as a pipe or a device, is written to directly. A symlink
+    is followed unless it is in one of the submissions, which are folders and files that students
+    made. A new file gets the permissions `mode`; one that is replaced keeps its own. Raises
+    InputError if a file cannot be written: then none has changed.
     """
     temporaries: dict[Path, Path] = {}
     try:
@@ -88,7 +105,9 @@ def save_all(files: Mapping[Path, bytes], submissions: Sequence[Path | str] = ()
             with _as_input_error(path):
                 if path in temporaries:
                     temporaries[path].replace(os.path.realpath(path))
-                elif is_stdout(path):  # also if that is redirected to a file: printed text goes there as well
+                elif is_stdout(
+                    path
+                ):  # also if that is redirected to a file: printed text goes there as well
                     write_stdout(data)
                 else:
                     with path.open("wb") as file:
@@ -116,15 +135,25 @@ def make_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"cannot make the folder {printable_path(folder)}: {error.strerror}") from None
+        raise InputError(
+            f"cannot make the folder {printable_path(folder)}: {error.strerror}"
+        ) from None
 
 
 def _write_beside(target: Path, data: bytes, mode: int | None) -> Path:
-    """Write a file that is to replace another one beside it, with its permissions, and return its path."""
+    """Write a file that is to replace another one beside it, with its permissions, and return its
+    path.
+    """
     _remove_strays(target.parent)
     # An unpredictable name, created exclusively: no student can prepare a file or symlink there.
     temporary = target.with_name(f".{os.urandom(8).hex()}-{os.getpid()}.tmp")
-    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
+    flags = (
+        os.O_WRONLY
+        | os.O_CREAT
+        | os.O_EXCL
+        | getattr(os, "O_NOFOLLOW", 0)
+        | getattr(os, "O_BINARY", 0)
+    )
     try:
         with os.fdopen(os.open(temporary, flags, 0o666), "wb") as file:
             file.write(data)
@@ -168,15 +197,18 @@ def _sync(handle: int) -> None:
     try:
         os.fsync(handle)
     except OSError as error:
-        if error.errno not in (errno.EINVAL, errno.ENOTSUP):  # some file systems, such as those of FUSE, cannot
+        if error.errno not in (
+            errno.EINVAL,
+            errno.ENOTSUP,
+        ):  # some file systems, such as those of FUSE, cannot
             raise
 
 
 def refuse_symlinks(path: Path, submissions: Sequence[Path | str] = ()) -> None:
     """Raise InputError if a path leads through a symlink that a student may have made.
 
-    These are the symlinks in the folder of a submission, or beside a URDF, or in the repository that a CI job checked
-    out.
+    These are the symlinks in the folder of a submission, or beside a URDF, or in the repository
+    that a CI job checked out.
     """
     folders = set(_student_folders(submissions))
     for symlink in _symlinks(path):
@@ -199,7 +231,9 @@ def _student_folders(submissions: Sequence[Path | str]) -> Iterator[Path]:
 
 
 def _symlinks(path: Path) -> Iterator[Path]:
-    """Yield every symlink on the way to a file, and the file if it is one; the parents of each are no symlinks."""
+    """Yield every symlink on the way to a file, and the file if it is one; the parents of each are
+    no symlinks.
+    """
     absolute = path.absolute()
     here, rest, count = Path(absolute.anchor), list(reversed(absolute.parts[1:])), 0
     while rest and count <= _MAX_SYMLINKS:
@@ -217,18 +251,25 @@ def _symlinks(path: Path) -> Iterator[Path]:
 
 
 def refuse_inputs(option: str, path: Path, inputs: Iterable[Path]) -> None:
-    """Raise InputError if a file that an option names is one of the inputs, or exists in one that is a folder."""
+    """Raise InputError if a file that an option names is one of the inputs, or exists in one that
+    is a folder.
+    """
     real = Path(os.path.realpath(path))
     for found in inputs:
-        if is_same_file(path, found) or (real.exists() and Path(os.path.realpath(found)) in real.parents):
+        if is_same_file(path, found) or (
+            real.exists() and Path(os.path.realpath(found)) in real.parents
+        ):
             shown = printable_path(path)
             raise InputError(
-                f"cannot write {shown}: the command also reads or writes it; name another file for {option}"
+                f"cannot write {shown}: the command also reads or writes it; name another "
+                f"file for {option}"
             )
 
 
 def is_same_file(path: Path, other: Path) -> bool:
-    """Return whether two paths lead to one file, by symlinks or hard links as well; it need not exist yet."""
+    """Return whether two paths lead to one file, by symlinks or hard links as well; it need not
+    exist yet.
+    """
     try:
         return os.path.realpath(path) == os.path.realpath(other) or path.samefile(other)
     except (OSError, ValueError):  # one of them does not exist
@@ -238,7 +279,9 @@ def is_same_file(path: Path, other: Path) -> bool:
 def is_stdout(path: Path) -> bool:
     """Return whether a path is standard output, such as /dev/stdout."""
     try:
-        return sys.stdout is not None and os.path.samestat(path.stat(), os.fstat(sys.stdout.fileno()))
+        return sys.stdout is not None and os.path.samestat(
+            path.stat(), os.fstat(sys.stdout.fileno())
+        )
     except (OSError, ValueError):
         return False
 
@@ -247,5 +290,6 @@ def missing_folder(path: Path) -> InputError:
     """Return the error for a file whose folder does not exist."""
     folder = printable(str(path.parent))
     return InputError(
-        f"cannot write {printable(str(path))}: there is no folder {folder} (create it with `mkdir -p {folder}`)"
+        f"cannot write {printable(str(path))}: there is no folder {folder} (create it with "
+        f"`mkdir -p {folder}`)"
     )

@@ -28,12 +28,20 @@ CONVERTED = (".docx", ".pdf")  # whose text a separate process reads
 MAX_SECONDS = 20.0  # for all Word and PDF files of a submission
 _TEXT_LIMIT, _DOCUMENT_LIMIT = 1024 * 1024, 32 * 1024 * 1024  # bytes
 _MAX_FILES, _MAX_CONVERTED = 40, 8
-_NO_ANSWERS = {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md", "top_level.txt", "SOURCES.txt"}
-# The beginning of a file without answers: of another format, or a report of the grader, which repeats questions and
-# answers.
+_NO_ANSWERS = {
+    "CMakeLists.txt",
+    "requirements.txt",
+    "LICENSE.txt",
+    "LICENSE.md",
+    "top_level.txt",
+    "SOURCES.txt",
+}
+# The beginning of a file without answers: of another format, or a report of the grader, which
+# repeats questions and answers.
 _OTHER = re.compile(
     r"\s*<(?:\?xml|!--|robot|launch|package)"  # XML with the ending .txt
-    # "lab6: my_robot.urdf" and "24.5 of 30 points: ...", or the grade, below it: the report as text and in Markdown
+    # "lab6: my_robot.urdf" and "24.5 of 30 points: ...", or the grade, below it: the report as text
+    # and in Markdown
     r"|(?:# )?\S+: [^\n]*\n\s*(?:\*\*)?(?:All automatic checks passed: |No mistakes found: )?"
     r"[\d.]+ (?:of|/) [\d.]+ points?\b"
     r"|::notice title=[\d.]+ / "  # the report for GitHub Actions
@@ -53,7 +61,9 @@ class TextDocument(NamedTuple):
         return bisect_right(self.pages, line) or None
 
     def has_picture(self, start: int = 0, end: int | None = None) -> bool:
-        """Return whether there is a picture between two lines; in a PDF, on the pages with these lines."""
+        """Return whether there is a picture between two lines; in a PDF, on the pages with these
+        lines.
+        """
         if self.file.suffix == ".pdf" and end is not None:
             first, last = self.page(start) or 1, self.page(max(start, end - 1)) or 1
             start = self.pages[first - 1]
@@ -84,9 +94,11 @@ class _Unread(NamedTuple):
 
 
 class DocumentCollection:
-    """The documents of a submission. Each is read once; Word and PDF files share one budget of time.
+    """The documents of a submission. Each is read once; Word and PDF files share one budget of
+    time.
 
-    `converted` are the texts of Word and PDF files by path; those that are given are not read again.
+    `converted` are the texts of Word and PDF files by path; those that are given are not read
+    again.
     """
 
     def __init__(self, tree: Tree, converted: Mapping[str, str] = MappingProxyType({})) -> None:
@@ -98,20 +110,30 @@ class DocumentCollection:
         self._named: dict[tuple[str, ...], tuple[list[TextDocument], list[_Unread]]] = {}
         self._headings: dict[tuple[str, frozenset[Pattern]], tuple[Heading, ...]] = {}
 
-    def headings(self, document: TextDocument, patterns: Collection[Pattern] = ()) -> tuple[Heading, ...]:
-        """Return the headings of a document; `patterns` are the words of headings besides the usual ones."""
+    def headings(
+        self, document: TextDocument, patterns: Collection[Pattern] = ()
+    ) -> tuple[Heading, ...]:
+        """Return the headings of a document; `patterns` are the words of headings besides the
+        usual ones.
+        """
         key = (document.file.path, frozenset(patterns))
         if key not in self._headings:
-            self._headings[key] = find_headings(document.lines, stem(document.file.name), sorted(key[1]))
+            self._headings[key] = find_headings(
+                document.lines, stem(document.file.name), sorted(key[1])
+            )
         return self._headings[key]
 
     @property
     def read(self) -> tuple[str, ...]:
         """The paths of the documents that were read."""
-        return tuple(path for path, found in self._read_files.items() if isinstance(found, TextDocument))
+        return tuple(
+            path for path, found in self._read_files.items() if isinstance(found, TextDocument)
+        )
 
     def named(self, patterns: Sequence[str]) -> tuple[list[TextDocument], list[_Unread]]:
-        """Return the documents whose names match one of the patterns, and what of them was not read, and why."""
+        """Return the documents whose names match one of the patterns, and what of them was not
+        read, and why.
+        """
         key = tuple(patterns)
         if key not in self._named:
             self._named[key] = self._find(key)
@@ -122,7 +144,11 @@ class DocumentCollection:
         unread: list[_Unread] = []
         matching = _names_like(patterns)
         files = self.tree.files.values()
-        chosen = [file for file in files if file.name not in _NO_ANSWERS and matching.match(file.name.lower())]
+        chosen = [
+            file
+            for file in files
+            if file.name not in _NO_ANSWERS and matching.match(file.name.lower())
+        ]
         for file in chosen[:_MAX_FILES]:
             document = self.document(file)
             if isinstance(document, _Unread):
@@ -130,14 +156,21 @@ class DocumentCollection:
             elif document is not None:
                 read.append(document)
                 if document.limit:
-                    unread.append(_Unread(file.path, f"{file.path} after {document.limit}, the limit for a document"))
+                    unread.append(
+                        _Unread(
+                            file.path,
+                            f"{file.path} after {document.limit}, the limit for a document",
+                        )
+                    )
         if len(chosen) > _MAX_FILES:
             rest = f"{len(chosen) - _MAX_FILES} documents after the first {_MAX_FILES}, the limit"
             unread.append(_Unread("", rest))
         return read, unread
 
     def document(self, file: File) -> TextDocument | _Unread | None:
-        """Return a document, the reason why it was not read, or None for a file that contains no answers."""
+        """Return a document, the reason why it was not read, or None for a file that contains no
+        answers.
+        """
         if file.path not in self._read_files:
             self._read_files[file.path] = self._read_document(file)
         return self._read_files[file.path]
@@ -162,7 +195,9 @@ class DocumentCollection:
                     self.converted[file.path] = self._convert(file).decode("utf-8", "replace")
                 return self.converted[file.path]
             case ".doc" | ".odt" | ".rtf" | ".pages" | ".ipynb" | ".pptx" | ".odp":
-                raise InputError(f"{file.path} has a format that is not supported: open it yourself")
+                raise InputError(
+                    f"{file.path} has a format that is not supported: open it yourself"
+                )
             case _:
                 data = file.read(_TEXT_LIMIT)
         if data.startswith((b"\xff\xfe", b"\xfe\xff")):
@@ -173,13 +208,16 @@ class DocumentCollection:
             return data.decode("cp1252", "replace")
 
     def _convert(self, file: File) -> bytes:
-        """Return the text of a Word or PDF file, from a separate process within the remaining time."""
+        """Return the text of a Word or PDF file, from a separate process within the remaining
+        time.
+        """
         budget = f"the Word and PDF files take longer than {MAX_SECONDS:g} s in all"
         late = InputError(f"{file.path} was not read: {budget}; needs manual grading")
         if self._seconds <= 0:
             raise late
         data = file.read(_DOCUMENT_LIMIT)
-        # -P: modules are imported neither from the current folder, which may be the student's, nor from our own.
+        # -P: modules are imported neither from the current folder, which may be the student's, nor
+        # from our own.
         limits = str(ceil(self._seconds)), str(os.getpid())
         command = [sys.executable, "-P", str(converter.__file__), file.suffix[1:], *limits]
         began = time.monotonic()
@@ -189,20 +227,26 @@ class DocumentCollection:
             raise late from None
         except OSError as error:
             MachineError.check(error, file.path)
-            raise InputError(f"{file.path} could not be read on this machine: open it yourself") from None
+            raise InputError(
+                f"{file.path} could not be read on this machine: open it yourself"
+            ) from None
         finally:
             self._seconds -= time.monotonic() - began
         if converter.is_out_of_time(code):
             raise late
         if code == converter.MISSING:
-            raise InputError(f"{file.path} is read only with the grader's extra `documents`: open it yourself")
+            raise InputError(
+                f"{file.path} is read only with the grader's extra `documents`: open it yourself"
+            )
         if code:
             raise InputError(f"{file.path} cannot be read; it may be damaged: open it yourself")
         return output
 
     def _run(self, command: list[str], data: bytes) -> tuple[int, bytes]:
         """Return the exit code and the output of a converter."""
-        with TemporaryFile() as file:  # not a pipe: after a timeout, `communicate` would not write the rest into it
+        with (
+            TemporaryFile() as file
+        ):  # not a pipe: after a timeout, `communicate` would not write the rest into it
             file.write(data)
             file.seek(0)
             done = subprocess.run(
@@ -218,7 +262,8 @@ class DocumentCollection:
 
 def _document_of(file: File, text: str) -> TextDocument:
     """Return the document that a text makes."""
-    # Lines as git and editors count them: `splitlines` also breaks at form feeds and separators of Unicode.
+    # Lines as git and editors count them: `splitlines` also breaks at form feeds and separators of
+    # Unicode.
     text = text.replace("\r\n", "\n").replace("\r", "\n").removesuffix("\n")
     lines = text.split("\n", MAX_LINES)
     limit = f"line {MAX_LINES}" if len(lines) > MAX_LINES else ""
@@ -229,7 +274,9 @@ def _document_of(file: File, text: str) -> TextDocument:
     breaks = [index for index, line in enumerate(lines) if line == converter.PAGE_BREAK]
     if len(breaks) >= converter.MAX_PAGES:
         limit = f"page {converter.MAX_PAGES}"
-    return TextDocument(file, ["" if line == converter.PAGE_BREAK else line for line in lines], (0, *breaks), limit)
+    return TextDocument(
+        file, ["" if line == converter.PAGE_BREAK else line for line in lines], (0, *breaks), limit
+    )
 
 
 @lru_cache(maxsize=256)

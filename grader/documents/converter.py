@@ -1,7 +1,8 @@
 """Convert a Word or PDF file from standard input to text on standard output, in a separate process.
 
-Pages and pictures are marked. A crafted file of either format can use unlimited time or memory, so the grader stops the
-process after a time. The converter limits itself as well, and ends with the process that started it, however that ends.
+Pages and pictures are marked. A crafted file of either format can use unlimited time or memory, so
+the grader stops the process after a time. The converter limits itself as well, and ends with the
+process that started it, however that ends.
 """
 
 import io
@@ -17,7 +18,8 @@ from typing import Any
 MISSING = 3  # exit code where the package that reads the format is not installed
 MAX_PAGES = 100
 PAGE_BREAK = "\f"  # a line of its own before every page but the first
-PICTURE = "\ufffc"  # a line of its own after the text that a picture is below, or at the end of its page
+# a line of its own after the text that a picture is below, or at the end of its page
+PICTURE = "\ufffc"
 _MAX_TEXT = 1024 * 1024
 _MIN_WORDS = 2  # in a line, on average
 _MAX_PLACED = 20_000  # characters of a page whose words are joined by their positions
@@ -29,7 +31,9 @@ _PR_SET_PDEATHSIG = 1
 
 
 def main() -> int:
-    """Convert one document. Arguments: `docx` or `pdf`, seconds of processor time, process id of the parent."""
+    """Convert one document. Arguments: `docx` or `pdf`, seconds of processor time, process id of
+    the parent.
+    """
     kind, seconds, parent = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
     _end_with_parent(parent, seconds)
     _limit(seconds)
@@ -45,12 +49,16 @@ def main() -> int:
 
 
 def is_out_of_time(code: int) -> bool:
-    """Return whether an exit code says that the converter has reached its limit of processor time."""
+    """Return whether an exit code says that the converter has reached its limit of processor
+    time.
+    """
     return code < 0 and code == -getattr(signal, "SIGXCPU", 0)
 
 
 def _end_with_parent(parent: int, seconds: int) -> None:
-    """End this process when its parent has ended: by the kernel on Linux, elsewhere after so many seconds."""
+    """End this process when its parent has ended: by the kernel on Linux, elsewhere after so many
+    seconds.
+    """
     if sys.platform == "linux":
         import ctypes
 
@@ -79,7 +87,9 @@ def _limit(seconds: int) -> None:
 
 
 def _docx(data: bytes) -> bytes:
-    """Return a line for each paragraph or row of a table, with the page breaks that Word rendered and pictures."""
+    """Return a line for each paragraph or row of a table, with the page breaks that Word rendered
+    and pictures.
+    """
     lines: list[str] = []
     text, after = "", list[str]()
     for name, own, is_in_row in _elements(data):
@@ -101,9 +111,11 @@ def _docx(data: bytes) -> bytes:
 
 
 def _elements(data: bytes) -> Iterator[tuple[str, str, bool]]:
-    """Yield the name and text of each element of a Word file at its end, and whether it is in a row of a table.
+    """Yield the name and text of each element of a Word file at its end, and whether it is in a row
+    of a table.
 
-    Copies that Word adds for older versions are omitted. Raises ValueError if the unpacked size exceeds the limit.
+    Copies that Word adds for older versions are omitted. Raises ValueError if the unpacked size
+    exceeds the limit.
     """
     from lxml import etree
 
@@ -112,7 +124,9 @@ def _elements(data: bytes) -> Iterator[tuple[str, str, bool]]:
         if sum(info.file_size for info in archive.infolist()) > _MAX_UNPACKED:
             raise ValueError("it unpacks to more than a text document")
         with archive.open("word/document.xml") as file:
-            for event, element in etree.iterparse(file, ("start", "end"), resolve_entities=False, no_network=True):
+            for event, element in etree.iterparse(
+                file, ("start", "end"), resolve_entities=False, no_network=True
+            ):
                 name = str(element.tag).rpartition("}")[2]
                 if name in around:
                     around[name] += 1 if event == "start" else -1
@@ -146,18 +160,27 @@ def _pdf(data: bytes) -> bytes:
 
 
 def _page_text(page: Any) -> str:
-    """Return the text of a page; if most lines are one word (PDFs of Google Docs), the words are joined by position."""
+    """Return the text of a page; if most lines are one word (PDFs of Google Docs), the words are
+    joined by position.
+    """
     text: str = page.extract_text()
     words = text.split()
-    if _MIN_WORDS * len([line for line in text.split("\n") if line.strip()]) <= len(words) or len(text) > _MAX_PLACED:
+    if (
+        _MIN_WORDS * len([line for line in text.split("\n") if line.strip()]) <= len(words)
+        or len(text) > _MAX_PLACED
+    ):
         return text
     with suppress(Exception):  # of a crafted page, also MemoryError
         # Narrow columns keep every space between words that are placed one by one.
         placed = page.extract_text(
-            extraction_mode="layout", layout_mode_space_vertically=False, layout_mode_scale_weight=_WEIGHT
+            extraction_mode="layout",
+            layout_mode_space_vertically=False,
+            layout_mode_scale_weight=_WEIGHT,
         )
         joined = "\n".join(" ".join(line.split()) for line in placed.split("\n"))
-        if len("".join(joined.split())) >= _MOST * len("".join(words)):  # it omits rotated text and forms
+        if len("".join(joined.split())) >= _MOST * len(
+            "".join(words)
+        ):  # it omits rotated text and forms
             return joined
     return text
 

@@ -1,4 +1,6 @@
-"""Pictures and other evidence in a submission: found by name or headings in documents, and described, never graded."""
+"""Pictures and other evidence in a submission: found by name or headings in documents, and
+described, never graded.
+"""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -10,11 +12,15 @@ from grader.documents.headings import Heading, Label, is_about, matches, read_la
 from grader.files.tree import File, Tree
 from grader.text import cut
 
-_PICTURES = frozenset({".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg"})
+_PICTURES = frozenset(
+    {".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg"}
+)
 EVIDENCE = _PICTURES | {".pdf", ".mp4", ".mov", ".webm", ".mkv", ".avi"}
 _COPY = re.compile(r"(?<=\d)\s*\(\d{1,3}\)$")  # the number of a copy: Task1_Step8 (1).png
 DOCUMENTS = ("*.pdf", "*.docx")  # which may have evidence below their headings
-_PRELAB = re.compile(r"(?<![^\W\d_])pre[\W_]?lab", re.IGNORECASE)  # work before the lab, which has no evidence of it
+_PRELAB = re.compile(
+    r"(?<![^\W\d_])pre[\W_]?lab", re.IGNORECASE
+)  # work before the lab, which has no evidence of it
 _MAX_SHOWN = 60  # characters of a heading
 
 
@@ -22,7 +28,8 @@ _MAX_SHOWN = 60  # characters of a heading
 class EvidenceFile:
     """One file of evidence, and its size in bytes.
 
-    Of evidence inside a document, `heading` is what it is below, and `page` where that is, if it is known.
+    Of evidence inside a document, `heading` is what it is below, and `page` where that is, if it is
+    known.
     """
 
     path: str
@@ -67,11 +74,12 @@ class FoundEvidence(NamedTuple):
 def find_evidence(
     files: Sequence[LabelledFile], names: Sequence[str], documents: DocumentCollection | None = None
 ) -> FoundEvidence:
-    """Return the evidence that one of these names labels: `task 1 step 8`, or plain words such as `webcam`.
+    """Return the evidence that one of these names labels: `task 1 step 8`, or plain words such as
+    `webcam`.
 
-    Files with the label come first. Without one, headings of Word and PDF files with a picture below them count. Not
-    certain are labels without a task, headings without a picture, documents that were not read or have pictures without
-    headings, and everything of a pre-lab.
+    Files with the label come first. Without one, headings of Word and PDF files with a picture
+    below them count. Not certain are labels without a task, headings without a picture, documents
+    that were not read or have pictures without headings, and everything of a pre-lab.
     """
     wanted = [read_label(name) for name in names]
     exact = [it for it in files if any(matches(label, it.label) for label in wanted)]
@@ -79,25 +87,44 @@ def find_evidence(
         return FoundEvidence(as_evidence(certain))
     headings = _headings_about(documents, wanted) if documents is not None else []
     inside = [
-        (_evidence_below(document, head), _is_certain(label, document, head)) for document, head, label in headings
+        (_evidence_below(document, head), _is_certain(label, document, head))
+        for document, head, label in headings
     ]
-    if found := [file for file, is_certain in inside if is_certain and not _PRELAB.search(file.path)]:
+    if found := [
+        file for file, is_certain in inside if is_certain and not _PRELAB.search(file.path)
+    ]:
         return FoundEvidence(tuple(found))
-    without_task = [it for it in files if any(label.steps and label.steps <= it.label.steps for label in wanted)]
+    without_task = [
+        it for it in files if any(label.steps and label.steps <= it.label.steps for label in wanted)
+    ]
     perhaps = [*exact, *(it for it in without_task if it.label.task is None)]
     return FoundEvidence(
-        (), (*as_evidence(perhaps), *(it for it, _ in inside), *_unlisted_documents(documents, perhaps))
+        (),
+        (
+            *as_evidence(perhaps),
+            *(it for it, _ in inside),
+            *_unlisted_documents(documents, perhaps),
+        ),
     )
 
 
-def _unlisted_documents(documents: DocumentCollection | None, listed: Sequence[LabelledFile]) -> Iterator[EvidenceFile]:
+def _unlisted_documents(
+    documents: DocumentCollection | None, listed: Sequence[LabelledFile]
+) -> Iterator[EvidenceFile]:
     paths = {labelled.file.path for labelled in listed}
-    return (EvidenceFile(it.path, it.size) for it in _whole_documents(documents) if it.path not in paths)
+    return (
+        EvidenceFile(it.path, it.size) for it in _whole_documents(documents) if it.path not in paths
+    )
 
 
-def headed(documents: DocumentCollection, names: Sequence[str]) -> list[tuple[TextDocument, Heading]]:
+def headed(
+    documents: DocumentCollection, names: Sequence[str]
+) -> list[tuple[TextDocument, Heading]]:
     """Return the headings of documents with the first of these labels that occurs."""
-    return [(document, head) for document, head, _ in _headings_about(documents, [read_label(name) for name in names])]
+    return [
+        (document, head)
+        for document, head, _ in _headings_about(documents, [read_label(name) for name in names])
+    ]
 
 
 def _headings_about(
@@ -105,12 +132,16 @@ def _headings_about(
 ) -> list[tuple[TextDocument, Heading, Label]]:
     read, _ = documents.named(DOCUMENTS)
     heads = [(document, head) for document in read for head in _step_headings(documents, document)]
-    found = ([(document, head, label) for document, head in heads if is_about(label, head)] for label in wanted)
+    found = (
+        [(document, head, label) for document, head in heads if is_about(label, head)]
+        for label in wanted
+    )
     return next(filter(None, found), [])
 
 
 def _whole_documents(documents: DocumentCollection | None) -> list[File]:
-    """Return the documents that may hold any evidence: those not read, and those with pictures without headings.
+    """Return the documents that may hold any evidence: those not read, and those with pictures
+    without headings.
 
     A pre-lab has none.
     """
@@ -128,13 +159,21 @@ def _names_steps(documents: DocumentCollection, document: TextDocument) -> bool:
 
 
 def _step_headings(documents: DocumentCollection, document: TextDocument) -> list[Heading]:
-    return [head for head in documents.headings(document) if not (head.is_mention or head.is_item or head.pattern)]
+    return [
+        head
+        for head in documents.headings(document)
+        if not (head.is_mention or head.is_item or head.pattern)
+    ]
 
 
 def _is_certain(wanted: Label, document: TextDocument, head: Heading) -> bool:
-    """Return whether a picture is below a heading that names a step in words: "18." may be a line of the handout."""
+    """Return whether a picture is below a heading that names a step in words: "18." may be a line
+    of the handout.
+    """
     names = read_label(head.text[:_MAX_SHOWN])
-    is_named = bool(names.steps) or names.task is not None or not (wanted.steps or wanted.task is not None)
+    is_named = (
+        bool(names.steps) or names.task is not None or not (wanted.steps or wanted.task is not None)
+    )
     return is_named and document.has_picture(head.start, head.end)
 
 

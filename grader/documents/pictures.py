@@ -1,4 +1,6 @@
-"""Pictures and PDF files that a browser shows safely. Their type is that of their bytes, never of their names."""
+"""Pictures and PDF files that a browser shows safely. Their type is that of their bytes, never of
+their names.
+"""
 
 import re
 from collections.abc import Iterator
@@ -43,7 +45,9 @@ _OTHER = "it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF: open it yo
 
 
 class EmbeddedPicture(NamedTuple):
-    """A picture or PDF of a submission: where it is, its type, and its bytes; `page` of a PDF is shown first."""
+    """A picture or PDF of a submission: where it is, its type, and its bytes; `page` of a PDF is
+    shown first.
+    """
 
     where: str
     kind: _ImageType
@@ -78,11 +82,15 @@ def read_picture(file: File) -> EmbeddedPicture | NotShown:
     except InputError as error:
         return NotShown(file.path, error.reason if isinstance(error, FileError) else str(error))
     kind = _image_type(data)
-    return EmbeddedPicture(file.path, kind, data) if kind is not None else NotShown(file.path, _OTHER)
+    return (
+        EmbeddedPicture(file.path, kind, data) if kind is not None else NotShown(file.path, _OTHER)
+    )
 
 
 def pictures_in_word(file: File) -> Iterator[EmbeddedPicture | NotShown]:
-    """Yield the pictures of a Word file in the order of their names, which is that of their insertion."""
+    """Yield the pictures of a Word file in the order of their names, which is that of their
+    insertion.
+    """
     try:
         stored = TemporaryFile()  # noqa: SIM115  its tree closes it
         stored.write(file.read(_MAX_DOCUMENT))
@@ -97,4 +105,7 @@ def pictures_in_word(file: File) -> Iterator[EmbeddedPicture | NotShown]:
 
 
 def _too_large(size: int) -> str:
-    return f"it is larger than {MAX_BYTES >> 20} MiB, the limit for a picture ({size / 1e6:.0f} MB): open it yourself"
+    return (
+        f"it is larger than {MAX_BYTES >> 20} MiB, the limit for a picture ({size / 1e6:.0f} "
+        "MB): open it yourself"
+    )

@@ -1,6 +1,7 @@
 """A zip or tar as a file tree, read where it is: nothing is unpacked to a place with a name.
 
-Bounded in members, size, ratio and nesting. A name that leads out, a device or a link is ignored and named.
+Bounded in members, size, ratio and nesting. A name that leads out, a device or a link is ignored
+and named.
 """
 
 import bz2
@@ -47,20 +48,29 @@ ARCHIVE_ERRORS = (
 _MAX_DIRECTORY_SIZE = 16 * 1024 * 1024  # bytes of a zip's table of contents
 _ENCRYPTED = 0x1  # flag bits of a member
 _UTF8 = 0x800
-_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # the others unpack without a bound, or are not known at all
+_METHODS = (
+    zipfile.ZIP_STORED,
+    zipfile.ZIP_DEFLATED,
+)  # the others unpack without a bound, or are not known at all
 _Opener = Callable[[], AbstractContextManager[IO[bytes]]]
 _IN_MEMORY = 16 * 1024 * 1024  # bytes
 _CHUNK = 1024 * 1024  # bytes
 _DECOMPRESSORS: dict[str, Any] = {"gz": gzip.open, "bz2": bz2.open, "xz": lzma.open}
 
 
-def read_archive(file: IO[bytes], kind: str, name: str, allowance: limits.Allowance | None = None) -> Tree:
-    """Return the files in an archive. `file` is closed with the tree, or at once if it cannot be read (InputError)."""
+def read_archive(
+    file: IO[bytes], kind: str, name: str, allowance: limits.Allowance | None = None
+) -> Tree:
+    """Return the files in an archive. `file` is closed with the tree, or at once if it cannot be
+    read (InputError).
+    """
     allowance = allowance or limits.Allowance()
     with ExitStack() as opened:
         opened.callback(file.close)
         if kind in ("7z", "rar"):
-            raise FileError(name, f"is a {kind} archive, which is not supported: submit a .zip or .tar.gz")
+            raise FileError(
+                name, f"is a {kind} archive, which is not supported: submit a .zip or .tar.gz"
+            )
         try:
             size = file.seek(0, io.SEEK_END)
             file.seek(0)
@@ -73,14 +83,18 @@ def read_archive(file: IO[bytes], kind: str, name: str, allowance: limits.Allowa
                 file = stored
             tree = tree_of(zip_members(file) if kind == "zip" else _tar_members(file), name, limit)
         except ARCHIVE_ERRORS as error:
-            raise FileError(name, f"cannot be read as an archive: {error_text(error, name)}") from None
+            raise FileError(
+                name, f"cannot be read as an archive: {error_text(error, name)}"
+            ) from None
         sizes = (member.size for member in tree.files.values())
         allowance.spend(name, unpacked=sum(size for size in sizes if size <= limits.MAX_FILE_SIZE))
         weakref.finalize(tree, opened.pop_all().close)
     return tree
 
 
-def _decompress(source: IO[bytes], to: IO[bytes], name: str, limit: int, allowance: limits.Allowance) -> None:
+def _decompress(
+    source: IO[bytes], to: IO[bytes], name: str, limit: int, allowance: limits.Allowance
+) -> None:
     """Decompress a tar up to a limit."""
     total = 0
     while chunk := source.read(_CHUNK):
@@ -93,7 +107,9 @@ def _decompress(source: IO[bytes], to: IO[bytes], name: str, limit: int, allowan
 
 
 class ArchiveMember(NamedTuple):
-    """One entry of an archive. `reason` says why one of kind other is not read; `open` gives the content of a file."""
+    """One entry of an archive. `reason` says why one of kind other is not read; `open` gives the
+    content of a file.
+    """
 
     path: str
     kind: Literal["file", "folder", "link", "other"]
@@ -102,8 +118,12 @@ class ArchiveMember(NamedTuple):
     reason: str = ""
 
 
-def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX_UNPACKED_SIZE) -> Tree:
-    """Return the file tree that the members of an archive make; raises InputError if they are too many or too large."""
+def tree_of(
+    members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX_UNPACKED_SIZE
+) -> Tree:
+    """Return the file tree that the members of an archive make; raises InputError if they are too
+    many or too large.
+    """
     found: dict[str, ArchiveMember] = {}
     ignored: list[IgnoredFile] = []
     generated: set[str] = set()
@@ -119,7 +139,9 @@ def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX
         elif path:
             found[path] = member
     if environments := {path.rpartition("/")[0] for path in found if path.endswith("/pyvenv.cfg")}:
-        found = {path: member for path, member in found.items() if environments.isdisjoint(parents(path))}
+        found = {
+            path: member for path, member in found.items() if environments.isdisjoint(parents(path))
+        }
     folders = [path for path, member in found.items() if member.kind == "folder"]
     files = [
         File(path, member.size, keep_small(partial(_read_member, member, path)))
@@ -145,7 +167,9 @@ def _path_in_tree(member: ArchiveMember) -> str | IgnoredFile:
 
 
 def _check_limits(members: Iterable[ArchiveMember], name: str, limit: int) -> list[ArchiveMember]:
-    """Return the members; raises InputError for too many, or too much in those that are not ignored for their size."""
+    """Return the members; raises InputError for too many, or too much in those that are not ignored
+    for their size.
+    """
     listed: list[ArchiveMember] = []
     total = 0
     for member in members:
@@ -239,7 +263,9 @@ def _open_tar_member(archive: tarfile.TarFile, info: tarfile.TarInfo) -> IO[byte
 
 
 def safe_path(name: str) -> str | None:
-    """Return a member's name as a printable path inside the archive; empty for its root; None where it leads out."""
+    """Return a member's name as a printable path inside the archive; empty for its root; None where
+    it leads out.
+    """
     plain = name.replace("\\", "/")
     if plain.startswith("/") or plain[1:2] == ":" or ".." in plain.split("/"):
         return None
@@ -247,6 +273,8 @@ def safe_path(name: str) -> str | None:
 
 
 def error_text(error: BaseException, shown: str) -> str:
-    """Return what an error of an archive says, fit for a message; raises MachineError if that is not the cause."""
+    """Return what an error of an archive says, fit for a message; raises MachineError if that is
+    not the cause.
+    """
     MachineError.check(error, shown)
     return printable_path(" ".join(str(error).split())[:200]) or type(error).__name__

@@ -28,7 +28,14 @@ from grader.files.archive import (
     zip_members,
 )
 from grader.files.folder import file_at, read_folder
-from grader.files.limits import ARCHIVES, BUILD_FOLDERS, IGNORED_FOLDERS, LITTER, ignored_part, is_generated
+from grader.files.limits import (
+    ARCHIVES,
+    BUILD_FOLDERS,
+    IGNORED_FOLDERS,
+    LITTER,
+    ignored_part,
+    is_generated,
+)
 from grader.files.opening import NOT_AN_ARCHIVE, archive_kind, outer_tree
 from grader.files.reading import open_regular, read_capped, read_error
 from grader.files.tree import IS_LINK, Tree, make_tree
@@ -46,7 +53,9 @@ _IN_MEMORY = 16 * 1024 * 1024
 
 
 class Children(NamedTuple):
-    """The names in one folder, unsorted. `refused` are names that are not read, each with its reason."""
+    """The names in one folder, unsorted. `refused` are names that are not read, each with its
+    reason.
+    """
 
     folders: list[str]
     files: list[str]
@@ -54,7 +63,9 @@ class Children(NamedTuple):
 
 
 def _is_litter(name: str) -> bool:
-    """Return whether a file is not worth reporting: hidden, or left by an operating system or a tool."""
+    """Return whether a file is not worth reporting: hidden, or left by an operating system or a
+    tool.
+    """
     return name.startswith(".") or name in _NOT_REPORTED
 
 
@@ -68,7 +79,9 @@ class ClassDirectory:
         self._root, self._top = root, os.fspath(root)
 
     def children(self, folder: str, limit: int | None = None) -> Children:
-        """Return the names in a folder, at most `limit`; none if it cannot be opened, but InputError for the top."""
+        """Return the names in a folder, at most `limit`; none if it cannot be opened, but
+        InputError for the top.
+        """
         found = Children([], [], [])
         try:
             with os.scandir(f"{self._top}/{folder}" if folder else self._top) as entries:
@@ -101,10 +114,14 @@ class ClassDirectory:
         paths = {printable_path(inner): path for path, inner in named.items()}
         ignored = {inner: part for inner in paths if (part := ignored_part(inner))}
         files = [
-            file_at(Path(self._root, paths[inner]), inner, str(self._root)) for inner in paths if inner not in ignored
+            file_at(Path(self._root, paths[inner]), inner, str(self._root))
+            for inner in paths
+            if inner not in ignored
         ]
         generated = sorted(inner for inner in ignored if is_generated(inner))
-        return make_tree(name, files, (), generated=generated, unseen=ignored.values() - ignored.keys())
+        return make_tree(
+            name, files, (), generated=generated, unseen=ignored.values() - ignored.keys()
+        )
 
     def read(self, path: str, limit: int) -> bytes:
         """Return the bytes of one file of at most `limit` bytes."""
@@ -116,7 +133,9 @@ class ClassDirectory:
         return os.fdopen(open_regular(Path(self._root, path), top=str(self._root)), "rb")
 
     def archive(self, path: str, digest: "hashlib._Hash") -> Tree | None:
-        """Return the files of an archive, whose bytes update the digest; None for a file of another kind."""
+        """Return the files of an archive, whose bytes update the digest; None for a file of another
+        kind.
+        """
         tree = outer_tree(Path(self._root, path), str(self._root))
         try:
             with self.raw(path) if tree is not None else BytesIO() as file:
@@ -143,7 +162,8 @@ def _add_entry(entry: "os.DirEntry[str]", found: Children) -> None:
 
 
 class ClassZip:
-    """An open zip of many submissions; paths are those of its `members`, with forward slashes. Raises InputError.
+    """An open zip of many submissions; paths are those of its `members`, with forward slashes.
+    Raises InputError.
 
     `outside` are the members that lead out of it, and cannot be read.
     """
@@ -163,7 +183,9 @@ class ClassZip:
                 if len(self.members) + len(self.outside) > _MAX_MEMBERS:
                     raise FileError(self._shown, f"contains more than {_MAX_MEMBERS} files")
         except ARCHIVE_ERRORS as error:
-            raise FileError(self._shown, f"cannot be read as an archive: {error_text(error, self._shown)}") from None
+            raise FileError(
+                self._shown, f"cannot be read as an archive: {error_text(error, self._shown)}"
+            ) from None
         self._names = sorted(self.members)
 
     def children(self, folder: str, limit: int | None = None) -> Children:
@@ -190,13 +212,18 @@ class ClassZip:
         for path, member in self.members.items():
             _add_member(path.split("/"), member.kind, folders)
             if len(folders) > _MAX_FOLDERS:
-                raise InputError(f"{self._shown} contains more than {_MAX_FOLDERS} folders, the limit")
+                raise InputError(
+                    f"{self._shown} contains more than {_MAX_FOLDERS} folders, the limit"
+                )
         return folders
 
     def folder(self, path: str) -> Tree:
         """Return the files below a folder."""
         start = f"{path}/"
-        first, end = bisect_left(self._names, start), bisect_left(self._names, f"{path}0")  # 0 comes after /
+        first, end = (
+            bisect_left(self._names, start),
+            bisect_left(self._names, f"{path}0"),
+        )  # 0 comes after /
         below = {name.removeprefix(start): self.members[name] for name in self._names[first:end]}
         return self._tree(below, path.rpartition("/")[2])
 
@@ -221,7 +248,9 @@ class ClassZip:
         return self._member(path).open()
 
     def archive(self, path: str, digest: "hashlib._Hash") -> Tree | None:
-        """Return the files of an archive in it, whose bytes update the digest; None for a file of another kind."""
+        """Return the files of an archive in it, whose bytes update the digest; None for a file of
+        another kind.
+        """
         member, name = self._member(path), path.rpartition("/")[2]
         if member.kind != "file":
             raise FileError(name, member.reason or NOT_REGULAR)
@@ -258,7 +287,9 @@ class ClassZip:
 
 
 def _copy_archive(member: ArchiveMember, to: IO[bytes], digest: "hashlib._Hash") -> str | None:
-    """Copy an archive and update the digest; return its kind, or None for a file that is not an archive."""
+    """Copy an archive and update the digest; return its kind, or None for a file that is not an
+    archive.
+    """
     with member.open() as content:
         chunk = content.read(_CHUNK)
         kind = archive_kind(chunk[:512])

@@ -22,14 +22,23 @@ _MAX_GENERATED = 10_000  # files of builds that are looked through for those of 
 def read_folder(folder: Path, top: str = "") -> Tree:
     """Return the files of a folder. Raises InputError if it cannot be read or contains too many.
 
-    Below `top`, a folder around it, no symlink on its path is followed; by default the folder itself is trusted.
+    Below `top`, a folder around it, no symlink on its path is followed; by default the folder
+    itself is trusted.
 
-    Ignored and named: symlinks, folders that cannot be opened, and anything that is neither file nor folder. Silently
+    Ignored and named: symlinks, folders that cannot be opened, and anything that is neither file
+    nor folder. Silently
     ignored: folders of builds and tools, virtual environments, hidden files.
     """
     walk = _Walk(folder, top)
     walk.run()
-    return make_tree(walk.name, walk.files, walk.folders, sorted(walk.ignored), sorted(walk.generated), walk.unseen)
+    return make_tree(
+        walk.name,
+        walk.files,
+        walk.folders,
+        sorted(walk.ignored),
+        sorted(walk.generated),
+        walk.unseen,
+    )
 
 
 class _Walk:
@@ -41,7 +50,9 @@ class _Walk:
         self._top = os.path.realpath(folder)
         self.name = printable_path(Path(self._top).name or "submission")
         self._trusted = os.path.realpath(top) if top else self._top
-        if top and self._top != os.path.normpath(f"{self._trusted}{os.fspath(folder).removeprefix(top)}"):
+        if top and self._top != os.path.normpath(
+            f"{self._trusted}{os.fspath(folder).removeprefix(top)}"
+        ):
             raise FileError(printable_path(folder.name), IS_LINK)
         self._count = 0
         self.files: list[File] = []
@@ -86,7 +97,11 @@ class _Walk:
         elif entry.is_file():
             place = f"{self._top}/{path}"
             self.files.append(
-                File(shown, _size(entry, shown), keep_small(partial(_read_file, place, shown, self._trusted)))
+                File(
+                    shown,
+                    _size(entry, shown),
+                    keep_small(partial(_read_file, place, shown, self._trusted)),
+                )
             )
         else:
             self._ignore(shown, "is not a regular file, and was not read")
@@ -104,7 +119,9 @@ class _Walk:
                 raise read_error(error, self._shown) from None
             if error.errno != errno.ENOTCONN:  # a mount of something else, which has ended
                 MachineError.check(error, printable_path(where))
-            self._ignore(printable_path(where), f"is a folder that cannot be opened: {error.strerror}")
+            self._ignore(
+                printable_path(where), f"is a folder that cannot be opened: {error.strerror}"
+            )
             return []
 
 
@@ -118,7 +135,8 @@ def _size(entry: "os.DirEntry[str]", shown: str) -> int:
 
 
 def file_at(path: Path, name: str, top: str) -> File:
-    """Return a single file under its name in a submission; raises InputError if it is a symlink or missing.
+    """Return a single file under its name in a submission; raises InputError if it is a symlink or
+    missing.
 
     Below the folder `top` no symlink is followed.
     """
@@ -132,7 +150,9 @@ def file_at(path: Path, name: str, top: str) -> File:
 
 
 def _generated_files(folder: Path, path: str) -> list[str]:
-    """Return the files of packages below a build folder: they are named in the report, never read."""
+    """Return the files of packages below a build folder: they are named in the report, never
+    read.
+    """
     found: list[str] = []
     seen = 0
     with suppress(RecursionError):  # os.walk raises it for folders nested a thousand deep
@@ -147,7 +167,9 @@ def _generated_files(folder: Path, path: str) -> list[str]:
 
 
 def _read_file(path: str, shown: str, top: str, limit: int, *, first: bool = False) -> bytes:
-    """Return the bytes of a file; messages use its name in the submission, so they are the same on every machine."""
+    """Return the bytes of a file; messages use its name in the submission, so they are the same on
+    every machine.
+    """
     if first:
         return read_start(path, limit, shown, top)
     return read_capped(path, limit, shown=shown, top=top, advice=advice_for(shown))

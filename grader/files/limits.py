@@ -1,4 +1,5 @@
-"""What is read of a submission: what the names of files tell, parts that no student wrote, and limits.
+"""What is read of a submission: what the names of files tell, parts that no student wrote, and
+limits.
 
 Robots, packages and archives are known by their names.
 """
@@ -13,12 +14,23 @@ BUILD_FOLDERS = frozenset({"build", "install", "log"})
 # And those with a pyvenv.cfg.
 IGNORED_FOLDERS = BUILD_FOLDERS | {"node_modules", "site-packages", "__pycache__", "__MACOSX"}
 # The ends of the names of files that a build copies, and that a submission may lack.
-_COPIED = (".urdf", ".xacro", ".rviz", "launch.py", "launch.xml", "launch.yaml", "launch.yml", "/package.xml")
+_COPIED = (
+    ".urdf",
+    ".xacro",
+    ".rviz",
+    "launch.py",
+    "launch.xml",
+    "launch.yaml",
+    "launch.yml",
+    "/package.xml",
+)
 LITTER = frozenset({"Thumbs.db", "desktop.ini", "Icon\r"})  # of an operating system
 MAX_FILES = 50_000  # and as many folders, in a submission
 MAX_FILE_SIZE = 64 * 1024 * 1024  # bytes of one file of a submission: a larger one is ignored
 MAX_ARCHIVE_SIZE = 1024 * 1024 * 1024  # bytes of an archive, and of its decompressed data
-MAX_UNPACKED_SIZE = 512 * 1024 * 1024  # bytes of the files in an archive, without those that are too large and ignored
+MAX_UNPACKED_SIZE = (
+    512 * 1024 * 1024
+)  # bytes of the files in an archive, without those that are too large and ignored
 MAX_ARCHIVES = 20  # in an archive or folder
 MAX_NESTED = 3  # archives inside each other
 MAX_RATIO = 200  # of the content of an archive to its own size
@@ -27,7 +39,9 @@ HARMLESS_SIZE = 32 * 1024 * 1024  # bytes that an archive may contain regardless
 
 
 def ignored_part(path: str) -> str | None:
-    """Return how far a path leads to something ignored: a folder of tools or of a build, or a hidden folder or file."""
+    """Return how far a path leads to something ignored: a folder of tools or of a build, or a
+    hidden folder or file.
+    """
     *folders, name = path.split("/")
     for index, folder in enumerate(folders):
         if folder in IGNORED_FOLDERS or folder.startswith("."):
@@ -69,11 +83,16 @@ def files_limit_error(name: str) -> InputError:
 
 def archive_size_error(name: str) -> FileError:
     """Return the error for an archive of more than `MAX_ARCHIVE_SIZE` bytes."""
-    return FileError(name, f"is larger than {size_text(MAX_ARCHIVE_SIZE)}, the limit for an archive")
+    return FileError(
+        name, f"is larger than {size_text(MAX_ARCHIVE_SIZE)}, the limit for an archive"
+    )
 
 
 def unpacked_limit_error(name: str, limit: int) -> FileError:
     """Return the error for an archive that would unpack to more than a limit."""
     ratio = f", {MAX_RATIO} times its own size" if HARMLESS_SIZE < limit < MAX_UNPACKED_SIZE else ""
-    reason = f"would unpack to more than {size_text(limit)}, the limit for an archive{ratio}, and was not read"
+    reason = (
+        f"would unpack to more than {size_text(limit)}, the limit for an archive{ratio}, and "
+        "was not read"
+    )
     return FileError(name, reason)

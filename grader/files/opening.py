@@ -25,13 +25,18 @@ _SIGNATURES = {
 
 
 def archive_kind(start: bytes) -> str | None:
-    """Return the kind of archive that the first 512 bytes of a file show: zip, tar, gz, bz2, xz, 7z, rar, or None."""
+    """Return the kind of archive that the first 512 bytes of a file show: zip, tar, gz, bz2, xz,
+    7z, rar, or None.
+    """
     tar = "tar" if start[257:262] == b"ustar" else None
-    return next((kind for signature, kind in _SIGNATURES.items() if start.startswith(signature)), tar)
+    return next(
+        (kind for signature, kind in _SIGNATURES.items() if start.startswith(signature)), tar
+    )
 
 
 def open_tree(path: Path, is_opened: Callable[[str], bool] = lambda _: False) -> Tree | None:
-    """Return the files at a path, including those in its archives; None for a single file that is not an archive.
+    """Return the files at a path, including those in its archives; None for a single file that is
+    not an archive.
 
     `is_opened` is that of `with_inner`.
     """
@@ -40,7 +45,8 @@ def open_tree(path: Path, is_opened: Callable[[str], bool] = lambda _: False) ->
 
 
 def outer_tree(path: Path, top: str = "") -> Tree | None:
-    """Return the files at a path, without opening archives in it; None for a single file that is not an archive.
+    """Return the files at a path, without opening archives in it; None for a single file that is
+    not an archive.
 
     Below the folder `top` no symlink is followed. Raises InputError.
     """
@@ -85,7 +91,9 @@ def with_inner(
     allowance: limits.Allowance | None = None,
     depth: int = 0,
 ) -> Tree:
-    """Return the tree with what is in its archives; beside a package and a URDF, only in those that are."""
+    """Return the tree with what is in its archives; beside a package and a URDF, only in those that
+    are.
+    """
     archives = _archives_to_open(tree, is_opened)
     if not archives:
         return tree
@@ -117,13 +125,26 @@ def _archives_to_open(tree: Tree, is_opened: Callable[[str], bool]) -> list[File
     return archives
 
 
-def _combined_tree(name: str, parts: Sequence[tuple[str, Tree]], unopened: Sequence[IgnoredFile]) -> Tree:
+def _combined_tree(
+    name: str, parts: Sequence[tuple[str, Tree]], unopened: Sequence[IgnoredFile]
+) -> Tree:
     """Return one tree of several, each with the start of its paths."""
     return make_tree(
         name,
-        [file._replace(path=start + file.path) for start, part in parts for file in part.files.values()],
+        [
+            file._replace(path=start + file.path)
+            for start, part in parts
+            for file in part.files.values()
+        ],
         [start + folder for start, part in parts for folder in part.folders],
-        [*(file._replace(path=start + file.path) for start, part in parts for file in part.ignored), *unopened],
+        [
+            *(
+                file._replace(path=start + file.path)
+                for start, part in parts
+                for file in part.ignored
+            ),
+            *unopened,
+        ],
         [start + path for start, part in parts for path in part.generated],
         [start + folder for start, part in parts for folder in part.unseen],
         tuple(part for _, part in parts),
@@ -137,7 +158,9 @@ def _open_inner(archive: File, allowance: limits.Allowance, depth: int) -> Tree:
     from grader.files.archive import read_archive
 
     if depth >= limits.MAX_NESTED:
-        raise FileError(archive.path, "is an archive inside an archive, nested too deep to be opened")
+        raise FileError(
+            archive.path, "is an archive inside an archive, nested too deep to be opened"
+        )
     allowance.archives -= 1
     if allowance.archives < 0:
         raise FileError(archive.path, "was not opened: there are too many archives")
@@ -147,7 +170,9 @@ def _open_inner(archive: File, allowance: limits.Allowance, depth: int) -> Tree:
     allowance.spend(archive.path, unpacked=archive.size)
     stored = TemporaryFile()  # noqa: SIM115  its tree closes it
     stored.write(archive.read(limits.MAX_FILE_SIZE))
-    return with_inner(read_archive(stored, kind, archive.path, allowance), allowance=allowance, depth=depth + 1)
+    return with_inner(
+        read_archive(stored, kind, archive.path, allowance), allowance=allowance, depth=depth + 1
+    )
 
 
 def without_endings(path: str) -> str:

@@ -1,4 +1,6 @@
-"""Read a student's files: regular files only, never more than a limit, never outside the submission."""
+"""Read a student's files: regular files only, never more than a limit, never outside the
+submission.
+"""
 
 import errno
 import os
@@ -19,7 +21,12 @@ from grader.text import printable_path, size_text
 
 URDF_LIMIT = 1024 * 1024  # bytes
 # O_NONBLOCK: opening a FIFO would block. Anything but a regular file is refused before it is read.
-_FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
+_FLAGS = (
+    os.O_RDONLY
+    | getattr(os, "O_NONBLOCK", 0)
+    | getattr(os, "O_BINARY", 0)
+    | getattr(os, "O_CLOEXEC", 0)
+)
 _FOLDER = os.O_RDONLY | getattr(os, "O_DIRECTORY", 0) | getattr(os, "O_CLOEXEC", 0)
 _OPENS_IN_FOLDERS = os.open in os.supports_dir_fd and hasattr(os, "O_NOFOLLOW")
 _MAX_SIBLINGS = 1000  # names in a folder that are compared with a missing one
@@ -27,25 +34,37 @@ _ADVICE = " for a URDF (--max-size raises it)"
 
 
 def shipped_folder(*names: str) -> Path:
-    """Return a folder that comes with the grader: in a wheel it is in the package, in a checkout next to it."""
+    """Return a folder that comes with the grader: in a wheel it is in the package, in a checkout
+    next to it.
+    """
     package = Path(__file__).resolve().parent.parent
-    return next(filter(Path.is_dir, (package / names[-1], package.parent.joinpath(*names))), package)
+    return next(
+        filter(Path.is_dir, (package / names[-1], package.parent.joinpath(*names))), package
+    )
 
 
 def read_capped(
-    path: Path | str, limit: int = URDF_LIMIT, *, shown: str = "", top: str = "", advice: str = _ADVICE
+    path: Path | str,
+    limit: int = URDF_LIMIT,
+    *,
+    shown: str = "",
+    top: str = "",
+    advice: str = _ADVICE,
 ) -> bytes:
-    """Return the bytes of a regular file of at most `limit` bytes; raises InputError in one sentence for anything else.
+    """Return the bytes of a regular file of at most `limit` bytes; raises InputError in one
+    sentence for anything else.
 
-    `shown` is its name in messages (default: the path), and `advice` ends the one about a file that is too large. Below
-    the folder `top` no symlink is followed.
+    `shown` is its name in messages (default: the path), and `advice` ends the one about a file that
+    is too large. Below the folder `top` no symlink is followed.
     """
     shown = shown or shown_below(path, top)
     return capped(read_start(path, limit + 1, shown, top), limit, shown, advice)
 
 
 def read_start(path: Path | str, count: int, shown: str = "", top: str = "") -> bytes:
-    """Return the first bytes of a regular file; the other arguments and errors are those of `read_capped`."""
+    """Return the first bytes of a regular file; the other arguments and errors are those of
+    `read_capped`.
+    """
     handle = open_regular(path, shown, top)
     try:
         return _read_handle(handle, count)
@@ -56,7 +75,9 @@ def read_start(path: Path | str, count: int, shown: str = "", top: str = "") -> 
 
 
 def read_error(error: OSError, shown: str) -> InputError:
-    """Return the error for a file that cannot be read; raises MachineError if the file is not the cause."""
+    """Return the error for a file that cannot be read; raises MachineError if the file is not
+    the cause.
+    """
     MachineError.check(error, shown)
     return InputError(f"cannot read {shown}: {error.strerror or error}")
 
@@ -83,7 +104,9 @@ def open_regular(path: Path | str, shown: str = "", top: str = "") -> int:
 
 
 def _open_below(top: str, path: str) -> int:
-    """Open `path`, which begins with `top`, folder by folder: a symlink on it, created at any moment, is an OSError."""
+    """Open `path`, which begins with `top`, folder by folder: a symlink on it, created at any
+    moment, is an OSError.
+    """
     if not _OPENS_IN_FOLDERS:
         return _open_and_verify(top, path)
     start = top.rstrip("/") + "/"
@@ -104,9 +127,13 @@ def _open_below(top: str, path: str) -> int:
 
 
 def _open_and_verify(top: str, path: str) -> int:
-    """Open a file if the system cannot open it folder by folder (Windows), and verify that no symlink led to it."""
+    """Open a file if the system cannot open it folder by folder (Windows), and verify that no
+    symlink led to it.
+    """
     handle = os.open(path, _FLAGS)
-    real, plain, inside = map(os.path.normcase, (os.path.realpath(path), os.path.normpath(path), os.path.realpath(top)))
+    real, plain, inside = map(
+        os.path.normcase, (os.path.realpath(path), os.path.normpath(path), os.path.realpath(top))
+    )
     is_inside = real.startswith(inside.rstrip(os.sep) + os.sep)
     if real == plain and is_inside and os.path.samestat(Path(real).stat(), os.fstat(handle)):
         return handle
@@ -140,13 +167,19 @@ def sha256_of(data: bytes) -> str:
 
 @cache
 def _sha256() -> Callable[[bytes], Any]:
-    """Return the interpreter's own SHA-256, as `random` does, unless OpenSSL is loaded: loading that takes long."""
-    small = () if "hashlib" in sys.modules else ("_sha2", "_sha256")  # of Python 3.12, of Python 3.11
+    """Return the interpreter's own SHA-256, as `random` does, unless OpenSSL is loaded: loading
+    that takes long.
+    """
+    small = (
+        () if "hashlib" in sys.modules else ("_sha2", "_sha256")
+    )  # of Python 3.12, of Python 3.11
     return import_module(next(filter(find_spec, small), "hashlib")).sha256  # type: ignore[no-any-return]
 
 
 def not_there(path: Path) -> InputError:
-    """Return the error for a path that does not exist, with the existing name closest to its first wrong part."""
+    """Return the error for a path that does not exist, with the existing name closest to its
+    first wrong part.
+    """
     from grader.names import closest  # late: most paths are correct
 
     wrong = path
@@ -154,7 +187,10 @@ def not_there(path: Path) -> InputError:
         wrong = wrong.parent
     siblings: list[str] = []
     with suppress(OSError, ValueError):
-        siblings = [printable_path(sibling.name) for sibling in islice(wrong.parent.iterdir(), _MAX_SIBLINGS)]
+        siblings = [
+            printable_path(sibling.name)
+            for sibling in islice(wrong.parent.iterdir(), _MAX_SIBLINGS)
+        ]
     guess = closest(printable_path(wrong.name), siblings)
     hint = "" if path.is_absolute() else " (relative to the current folder)"
     if guess is not None:
@@ -170,7 +206,9 @@ def advice_for(path: str) -> str:
 
 
 def capped(data: bytes, limit: int, shown: str, advice: str = _ADVICE) -> bytes:
-    """Return the bytes that were read of a file; raises InputError if they are more than the limit."""
+    """Return the bytes that were read of a file; raises InputError if they are more than the
+    limit.
+    """
     if len(data) > limit:
         raise InputError(f"{shown} is larger than {size_text(limit)}, the limit{advice}")
     return data

@@ -15,14 +15,18 @@ _SMALL = 4096  # bytes
 
 
 class _ContentReader(Protocol):
-    """Gives the bytes of a file: of at most `limit` bytes (InputError beyond), or only the first `limit` of them."""
+    """Gives the bytes of a file: of at most `limit` bytes (InputError beyond), or only the first
+    `limit` of them.
+    """
 
     def __call__(self, limit: int, *, first: bool = False) -> bytes:
         """Return the bytes."""
 
 
 def keep_small(read: _ContentReader) -> _ContentReader:
-    """Return a reader that keeps the bytes of a small file: a search looks into it before it is read."""
+    """Return a reader that keeps the bytes of a small file: a search looks into it before it is
+    read.
+    """
     whole = b""
 
     def content(limit: int, *, first: bool = False) -> bytes:
@@ -37,7 +41,9 @@ def keep_small(read: _ContentReader) -> _ContentReader:
 
 
 class IgnoredFile(NamedTuple):
-    """A file or folder that is not read, and why: `is encrypted`. What `is_closed` may have to be graded."""
+    """A file or folder that is not read, and why: `is encrypted`. What `is_closed` may have to
+    be graded.
+    """
 
     path: str
     reason: str
@@ -48,7 +54,9 @@ class IgnoredFile(NamedTuple):
 
 
 class File(NamedTuple):
-    """One regular file; `path` is relative to the submission, with forward slashes, and printable."""
+    """One regular file; `path` is relative to the submission, with forward slashes, and
+    printable.
+    """
 
     path: str
     size: int
@@ -67,7 +75,9 @@ class File(NamedTuple):
         return name[dot:].lower() if 0 < dot < len(name) - 1 else ""
 
 
-@dataclass(frozen=True, eq=False, repr=False)  # no slots: finalizers of archives need weak references to it
+@dataclass(
+    frozen=True, eq=False, repr=False
+)  # no slots: finalizers of archives need weak references to it
 class Tree:
     """The files of a submission, and its folders."""
 
@@ -90,20 +100,33 @@ class Tree:
         return [path for path in sorted(self.unseen) if not ignored_part(f"{path}/")]
 
     def read(self, path: str, limit: int) -> bytes | None:
-        """Return the bytes of a file; None where there is none, or none that can be read within a limit."""
+        """Return the bytes of a file; None where there is none, or none that can be read within a
+        limit.
+        """
         try:
             return self.files[path].read(limit) if path in self.files else None
         except InputError:
             return None
 
     def only(self, belongs: Callable[[str], bool]) -> "Tree":
-        """Return the tree of only the files, folders and notes whose paths belong; a folder's path ends in a slash."""
+        """Return the tree of only the files, folders and notes whose paths belong; a folder's path
+        ends in a slash.
+        """
         files = {path: file for path, file in self.files.items() if belongs(path)}
         folders, unseen = (
-            frozenset(path for path in paths if belongs(f"{path}/")) for paths in (self.folders, self.unseen)
+            frozenset(path for path in paths if belongs(f"{path}/"))
+            for paths in (self.folders, self.unseen)
         )
         ignored = tuple(file for file in self.ignored if belongs(file.path))
-        return Tree(self.name, files, folders, ignored, tuple(filter(belongs, self.generated)), unseen, (self,))
+        return Tree(
+            self.name,
+            files,
+            folders,
+            ignored,
+            tuple(filter(belongs, self.generated)),
+            unseen,
+            (self,),
+        )
 
     def below(self, folder: str) -> "Tree":
         """Return the files of one folder as a separate tree; their paths are relative to it."""
@@ -129,22 +152,29 @@ def make_tree(
     unseen: Iterable[str] = (),
     kept: tuple[object, ...] = (),
 ) -> Tree:
-    """Return a tree of these files; folders that only their paths name are added. Raises InputError for too many.
+    """Return a tree of these files; folders that only their paths name are added. Raises InputError
+    for too many.
 
     A file that is too large is ignored: it is named, and never read.
     """
     by_path = {file.path: file for file in sorted(files, key=lambda file: file.path)}
     large = [_too_large(file) for file in by_path.values() if file.size > limits.MAX_FILE_SIZE]
-    by_path |= {file.path: by_path[file.path]._replace(read=partial(_refuse, file)) for file in large}
+    by_path |= {
+        file.path: by_path[file.path]._replace(read=partial(_refuse, file)) for file in large
+    }
     named = frozenset(folders)
     everything = named | _folders_above([*by_path, *named], name)
     ignored = tuple(dict.fromkeys([*ignored, *large]))
-    return Tree(name, by_path, everything, ignored, tuple(generated), frozenset(unseen) - everything, kept)
+    return Tree(
+        name, by_path, everything, ignored, tuple(generated), frozenset(unseen) - everything, kept
+    )
 
 
 def _too_large(file: File) -> IgnoredFile:
     limit = f"{limits.MAX_FILE_SIZE >> 20} MiB, the limit for one file"
-    return IgnoredFile(file.path, f"({file.size / 1e6:.0f} MB) is larger than {limit}, and was ignored")
+    return IgnoredFile(
+        file.path, f"({file.size / 1e6:.0f} MB) is larger than {limit}, and was ignored"
+    )
 
 
 def _refuse(file: IgnoredFile, limit: int, *, first: bool = False) -> bytes:
@@ -175,7 +205,9 @@ def overlaid(tree: Tree, files: Mapping[str, bytes | None]) -> Tree:
     """Return a file tree with other content of some files; None for one that is no longer there."""
     kept = [file for path, file in tree.files.items() if path not in files]
     new = [_file_of(path, data) for path, data in files.items() if data is not None]
-    return make_tree(tree.name, (*kept, *new), tree.folders, tree.ignored, tree.generated, tree.unseen, (tree,))
+    return make_tree(
+        tree.name, (*kept, *new), tree.folders, tree.ignored, tree.generated, tree.unseen, (tree,)
+    )
 
 
 def _file_of(path: str, data: bytes) -> File:

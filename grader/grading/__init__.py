@@ -1,5 +1,5 @@
 """Points: the rubric, the grade, the report. The only layer that knows what a fact is worth.
 
-It imports `checks` and everything below. Begin with `grade.py`, then `deciding.py` and `report.py`; `hints/`
-searches edits.
+It imports `checks` and everything below. Begin with `grade.py`, then `deciding.py` and `report.py`;
+`hints/` searches edits.
 """

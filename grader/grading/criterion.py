@@ -1,4 +1,6 @@
-"""The rows of a rubric: criteria with what they are worth, parts, evidence, the late penalty, ignored mutants."""
+"""The rows of a rubric: criteria with what they are worth, parts, evidence, the late penalty,
+ignored mutants.
+"""
 
 from collections.abc import Iterable, Mapping
 from datetime import datetime
@@ -13,7 +15,9 @@ DEADLINE = "deadline"  # likewise: a deadline of the student
 
 
 class Carried(NamedTuple):
-    """Error carried forward: points are kept where one of `causes` failed and the check, another fact, passes."""
+    """Error carried forward: points are kept where one of `causes` failed and the check, another
+    fact, passes.
+    """
 
     causes: tuple[str, ...]
     check: Check
@@ -32,7 +36,10 @@ class Adjustment(NamedTuple):
     @property
     def message(self) -> str:
         """What is adjusted, and why."""
-        return f"{'Points given to all students' if self.action == 'full' else 'Not counted'}: {self.reason}"
+        return (
+            f"{'Points given to all students' if self.action == 'full' else 'Not counted'}: "
+            f"{self.reason}"
+        )
 
 
 class Criterion(NamedTuple):
@@ -50,13 +57,18 @@ class Criterion(NamedTuple):
     position: int = 0  # in the rubric, from 0
     answer: str = ""  # the model answer; empty unless the rubric was loaded with its answers
     carried: tuple[Carried, ...] = ()
-    at: Mapping[str, float] = {}  # the positions of joints in which the robot is examined, degrees or metres; else 0
+    at: Mapping[
+        str, float
+    ] = {}  # the positions of joints in which the robot is examined, degrees or metres; else 0
     args: Mapping[str, str] = {}  # launch arguments under which the submission is examined
-    has_selectors: bool = False  # whether arguments name links by their place in the tree, or joints by their links
+    # whether arguments name links by their place in the tree, or joints by their links
+    has_selectors: bool = False
     bonus: bool = False  # whether the points are extra credit, not part of the maximum
     adjustment: Adjustment | None = None  # after grading; then manual marks do not count
     package: str = ""  # the name of the package that it is about; empty for the one with the robot
-    choices: Mapping[str, Decimal] = {}  # usual deductions for manual grading: comments, and points below 0
+    choices: Mapping[
+        str, Decimal
+    ] = {}  # usual deductions for manual grading: comments, and points below 0
 
     @property
     def maximum(self) -> Decimal:
@@ -102,7 +114,9 @@ def worth(criteria: Iterable[Criterion]) -> _Worth:
 
 
 class Part(NamedTuple):
-    """A task of the lab. `needs` is the required input: a urdf, a package, or all files of the submission."""
+    """A task of the lab. `needs` is the required input: a urdf, a package, or all files of the
+    submission.
+    """
 
     id: str
     title: str
@@ -110,7 +124,9 @@ class Part(NamedTuple):
 
 
 class Evidence(NamedTuple):
-    """Evidence that the lab asks for. `names` are labels in the name of its file, in any spelling: "task 1 step 8"."""
+    """Evidence that the lab asks for. `names` are labels in the name of its file, in any spelling:
+    "task 1 step 8".
+    """
 
     id: str
     part: str
@@ -119,10 +135,11 @@ class Evidence(NamedTuple):
 
 
 class Late(NamedTuple):
-    """The late penalty, in percent of the maximum for each day begun after the deadline and the grace period.
+    """The late penalty, in percent of the maximum for each day begun after the deadline and the
+    grace period.
 
-    The penalty lowers no grade below `floor_percent` of the maximum, and does not change lower grades. `due` has a time
-    zone.
+    The penalty lowers no grade below `floor_percent` of the maximum, and does not change lower
+    grades. `due` has a time zone.
     """
 
     percent_per_day: Decimal

@@ -8,7 +8,8 @@ from grader.problems import Problem
 from grader.robot import urdf_problems
 from grader.source import Location, Source
 
-# Problems that explain a measurement at the same place, and those with which ROS 2 drops a part of a link.
+# Problems that explain a measurement at the same place, and those with which ROS 2 drops a part of
+# a link.
 _EXPLAINING = (
     urdf_problems.BAD_COLOUR,
     urdf_problems.COLOUR_COUNT,
@@ -29,7 +30,11 @@ _INSIDE = {
 _DROPPING = {
     "inertial": (urdf_problems.BAD_INERTIAL,),
     "visual": (urdf_problems.BAD_VISUAL, urdf_problems.BAD_INERTIAL),
-    "collision": (urdf_problems.BAD_COLLISION, urdf_problems.BAD_VISUAL, urdf_problems.BAD_INERTIAL),
+    "collision": (
+        urdf_problems.BAD_COLLISION,
+        urdf_problems.BAD_VISUAL,
+        urdf_problems.BAD_INERTIAL,
+    ),
 }
 
 
@@ -46,10 +51,11 @@ def explain(
     part: str = "",
     link: str = "",
 ) -> Outcome:
-    """Return a failure with the problem that explains it: why ROS 2 drops a part of a link, or a mistake at its place.
+    """Return a failure with the problem that explains it: why ROS 2 drops a part of a link, or a
+    mistake at its place.
 
-    `source` is the file in which that place may be an element: a mistake inside it explains the failure, too, if it is
-    about what the check `looks_at`. A `part` of a `link` may be missing.
+    `source` is the file in which that place may be an element: a mistake inside it explains the
+    failure, too, if it is about what the check `looks_at`. A `part` of a `link` may be missing.
     """
     if outcome.problem:  # the check has said it
         return outcome
@@ -58,11 +64,25 @@ def explain(
     if dropped is not None:
         inner = next(_inside(dropped.location, problems, source), dropped)  # because of this
         message = f"{outcome.message}: {inner.message}"
-        return outcome._replace(message=message, location=dropped.location, mistake=mistake, problem=dropped.message)
+        return outcome._replace(
+            message=message, location=dropped.location, mistake=mistake, problem=dropped.message
+        )
     place = outcome.location
-    at_place = [it for it in problems if it.location == place and _explains(it, outcome, is_part=part in _DROPPING)]
-    about = [it for it in problems if it.kind is not urdf_problems.MISSPELT or _is_about(it.subject, looks_at)]
-    inside = [*_inside(place, about, source, is_of_link="material" in looks_at)] if part not in _OUTSIDE else []
+    at_place = [
+        it
+        for it in problems
+        if it.location == place and _explains(it, outcome, is_part=part in _DROPPING)
+    ]
+    about = [
+        it
+        for it in problems
+        if it.kind is not urdf_problems.MISSPELT or _is_about(it.subject, looks_at)
+    ]
+    inside = (
+        [*_inside(place, about, source, is_of_link="material" in looks_at)]
+        if part not in _OUTSIDE
+        else []
+    )
     for problem in problems:
         if problem in at_place or problem in inside:
             message = f"{outcome.message} ({problem.code}: {problem.message})"
@@ -73,12 +93,16 @@ def explain(
 
 
 def _is_about(tag: str, looks_at: Collection[str]) -> bool:
-    """Return whether a mistake in an element may explain what a check finds: a colour explains no shape."""
+    """Return whether a mistake in an element may explain what a check finds: a colour explains no
+    shape.
+    """
     return tag not in _LOOKS or "material" in looks_at
 
 
 def _explains(problem: Problem, outcome: Outcome, *, is_part: bool) -> bool:
-    """Return whether a problem at the place of a failure explains it; of a missing part, only what precedes ROS 2."""
+    """Return whether a problem at the place of a failure explains it; of a missing part, only what
+    precedes ROS 2.
+    """
     if problem.kind.is_before_ros:
         return True
     is_of_axis = problem.kind is urdf_problems.DEFAULT_AXIS and outcome.unit == "deg"
@@ -86,9 +110,15 @@ def _explains(problem: Problem, outcome: Outcome, *, is_part: bool) -> bool:
 
 
 def _inside(
-    place: Location | None, problems: Sequence[Problem], source: Source | None, *, is_of_link: bool = False
+    place: Location | None,
+    problems: Sequence[Problem],
+    source: Source | None,
+    *,
+    is_of_link: bool = False,
 ) -> Iterator[Problem]:
-    """Yield the problems in the element at a place, or in the link that it is of, that explain what is around them."""
+    """Yield the problems in the element at a place, or in the link that it is of, that explain what
+    is around them.
+    """
     candidates = [it for it in problems if it.kind in _INSIDE and it.location != place]
     if place is None or source is None or not candidates:
         return
@@ -104,7 +134,9 @@ def _inside(
 
 
 def _element_offsets(place: Location, source: Source, *, is_of_link: bool = False) -> range:
-    """Return the offsets of the element at a place, or of its link; only of the tag if an attribute is there."""
+    """Return the offsets of the element at a place, or of its link; only of the tag if an attribute
+    is there.
+    """
     if place.path != source.path:
         return range(0)
     text, at = source.text, source.offset(place.line, place.column)
@@ -113,4 +145,6 @@ def _element_offsets(place: Location, source: Source, *, is_of_link: bool = Fals
         start = at = text.rfind("<link", 0, start)
     if text.startswith("<robot", start):  # everything is inside
         return range(0)
-    return range(start, markup.element_end(text, start) if start == at else markup.head_end(text, start)[0])
+    return range(
+        start, markup.element_end(text, start) if start == at else markup.head_end(text, start)[0]
+    )

@@ -1,4 +1,6 @@
-"""Model answers: those in a rubric, and those in a separate file, so that students can have the rubric."""
+"""Model answers: those in a rubric, and those in a separate file, so that students can have the
+rubric.
+"""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -17,8 +19,8 @@ from grader.text import printable_path
 def load_with_answers(name: str, file: Path | None = None) -> Rubric:
     """Load a rubric by its id or path with its model answers; raise RubricError or InputError.
 
-    Those outside of the rubric are in a file, or in the one that the rubric names, which may not exist: see
-    `missing_answers`.
+    Those outside of the rubric are in a file, or in the one that the rubric names, which may not
+    exist: see `missing_answers`.
     """
     path = find_rubric(name)
     rubric = read_rubric(read_capped(path, advice=""), path, answers=True)
@@ -52,11 +54,16 @@ def missing_answers(rubric: Rubric) -> str:
     if not rubric.answers or file.exists():
         return ""
     place = rubric.place_of(("answers",))
-    return f"{place}: the answers file {printable_path(file)} does not exist, so no model answers are shown"
+    return (
+        f"{place}: the answers file {printable_path(file)} does not exist, so no model answers "
+        "are shown"
+    )
 
 
 def _with_answers(rubric: Rubric, answers: Mapping[str, str]) -> Rubric:
-    """Return the rubric with these model answers, by the ids of their criteria, in addition to its own."""
+    """Return the rubric with these model answers, by the ids of their criteria, in addition to its
+    own.
+    """
     criteria = (row._replace(answer=answers.get(row.id, row.answer)) for row in rubric.criteria)
     return replace(rubric, criteria=tuple(criteria))
 
@@ -70,10 +77,14 @@ def _find_complaints(rubric: Rubric, table: Mapping[str, Any]) -> list[tuple[Tom
     complaints: list[tuple[TomlPath, str]] = []
     for name, value in table.items():
         if name not in questions:
-            guess = did_you_mean(name, questions) or f"; there are: {', '.join(questions) or 'none'}"
+            guess = (
+                did_you_mean(name, questions) or f"; there are: {', '.join(questions) or 'none'}"
+            )
             complaints.append(((name,), f"the rubric {rubric.id} has no question {name!r}{guess}"))
         elif not isinstance(value, str):
             complaints.append(((name,), f"the answer to {name} must be a string"))
         elif questions[name].answer:
-            complaints.append(((name,), f"the answer to {name} is already in the rubric: remove one of the two"))
+            complaints.append(
+                ((name,), f"the answer to {name} is already in the rubric: remove one of the two")
+            )
     return complaints

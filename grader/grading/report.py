@@ -22,7 +22,9 @@ _NOTHING = Decimal(0)
 
 
 class ManualMark(NamedTuple):
-    """A manual mark or override: the points of a criterion, the name of the grader if given, and a comment."""
+    """A manual mark or override: the points of a criterion, the name of the grader if given, and a
+    comment.
+    """
 
     points: Decimal
     by: str
@@ -37,7 +39,9 @@ class ManualComment(NamedTuple):
 
 
 class Hint(NamedTuple):
-    """A change of the submission that was tried: with it the criteria in `gains` pass, and none that passed fails."""
+    """A change of the submission that was tried: with it the criteria in `gains` pass, and none
+    that passed fails.
+    """
 
     message: str  # the change, in a sentence
     at: Location
@@ -53,7 +57,8 @@ class Result(NamedTuple):
     """The outcome of a criterion, and what decides its points besides.
 
     >>> from grader.grading.rubric import load_rubric
-    >>> result = Result(load_rubric("lab6").criteria[0], Outcome("failed", "the robot has no <link>"))
+    >>> outcome = Outcome("failed", "the robot has no <link>")
+    >>> result = Result(load_rubric("lab6").criteria[0], outcome)
     >>> result, result.points, result.outcome.message
     (<Result urdf-loads: failed, 0/3>, Decimal('0'), 'the robot has no <link>')
     """
@@ -63,19 +68,26 @@ class Result(NamedTuple):
     because: str | None = None  # the criterion that a skip is due to
     traceback: str = ""  # of a fault, for the maintainers
     manual_mark: ManualMark | None = None
-    carried: str = ""  # the criterion whose mistake alone makes this one fail, so that its points are given
+    # the criterion whose mistake alone makes this one fail, so that its points are given
+    carried: str = ""
     hint: Hint | None = None  # criteria that one edit makes pass have the same
     comment: ManualComment | None = None  # of a grader, without points
 
     def __repr__(self) -> str:
-        """Return the criterion, the status and the points, which is what one wants to see of a list of results."""
-        return f"<Result {self.criterion.id}: {self.outcome.status}, {self.points}/{self.criterion.points}>"
+        """Return the criterion, the status and the points, which is what one wants to see of a list
+        of results.
+        """
+        return (
+            f"<Result {self.criterion.id}: {self.outcome.status}, "
+            f"{self.points}/{self.criterion.points}>"
+        )
 
     @property
     def points(self) -> Decimal:
         """The points earned: those of the manual mark, else all or none.
 
-        All points are earned if the check passed, an error is carried forward, or an adjustment gives them.
+        All points are earned if the check passed, an error is carried forward, or an adjustment
+        gives them.
         """
         if self.manual_mark is not None:
             return self.manual_mark.points
@@ -84,7 +96,9 @@ class Result(NamedTuple):
 
     @property
     def why_given(self) -> str:
-        """Why the outcome does not decide the points: the adjustment, or an error carried forward; empty if it does."""
+        """Why the outcome does not decide the points: the adjustment, or an error carried forward;
+        empty if it does.
+        """
         if self.manual_mark is not None:
             return ""
         if self.criterion.adjustment is not None:
@@ -95,18 +109,24 @@ class Result(NamedTuple):
 
     @property
     def is_adjusted(self) -> bool:
-        """Return whether the rubric adjusts the criterion: the outcome and manual marks do not count."""
+        """Return whether the rubric adjusts the criterion: the outcome and manual marks do not
+        count.
+        """
         return self.criterion.adjustment is not None
 
     @property
     def is_lost(self) -> bool:
         """Return whether the criterion has no points because of a mistake."""
-        return self.outcome.status in ("failed", "skipped") and not (self.carried or self.is_adjusted)
+        return self.outcome.status in ("failed", "skipped") and not (
+            self.carried or self.is_adjusted
+        )
 
     @property
     def is_open(self) -> bool:
         """Return whether the criterion still needs manual grading."""
-        return self.outcome.status == "pending" and self.manual_mark is None and not self.is_adjusted
+        return (
+            self.outcome.status == "pending" and self.manual_mark is None and not self.is_adjusted
+        )
 
 
 class EvidenceResult(NamedTuple):
@@ -118,7 +138,8 @@ class EvidenceResult(NamedTuple):
 
 
 class Grade(NamedTuple):
-    """A student's grade in a class: the points that count, None if excused, and the late penalty in them (0 or less).
+    """A student's grade in a class: the points that count, None if excused, and the late penalty in
+    them (0 or less).
 
     `is_final` says that a final mark replaces the points of the criteria.
     """
@@ -131,13 +152,14 @@ class Grade(NamedTuple):
 class Report(NamedTuple):
     """The points of one submission under one rubric, and everything that is said about them.
 
-    `grade` makes it, `hinted` adds hints to its results, and a class adds marks and the grade of the student. Each
-    format of `grader.report` lays it out; none of them decides anything.
+    `grade` makes it, `hinted` adds hints to its results, and a class adds marks and the grade of
+    the student. Each format of `grader.report` lays it out; none of them decides anything.
 
     >>> from grader.grading.grade import grade
     >>> from grader.grading.rubric import load_rubric
     >>> from grader.submission.opening import read_submission
-    >>> report = grade(load_rubric("lab6"), read_submission(b'<robot name="r"/>', identity="ash", path="r.urdf"))
+    >>> submission = read_submission(b'<robot name="r"/>', identity="ash", path="r.urdf")
+    >>> report = grade(load_rubric("lab6"), submission)
     >>> report
     <Report ash: lab6, 0/70, 0 points need manual grading>
     >>> report.score, report.results[0]
@@ -155,7 +177,9 @@ class Report(NamedTuple):
     other_pictures: "tuple[EvidenceFile, ...]" = ()  # that no piece of evidence asks for
     notes: tuple[str, ...] = ()  # sentences on how the submission was read
     another_robot: str = ""  # why the robot looks like that of another lab; empty if it does not
-    by_convention: frozenset[str] = frozenset()  # the criteria that one decision on all frames costs; no hint is on one
+    by_convention: frozenset[str] = (
+        frozenset()
+    )  # the criteria that one decision on all frames costs; no hint is on one
     hints_complete: bool = True  # whether the search for hints ended before its budget did
     version: str = __version__  # of the grader
     grade: Grade | None = None  # in a class, where a person or the late penalty changes the score
@@ -169,7 +193,9 @@ class Report(NamedTuple):
 
     @property
     def all_notes(self) -> tuple[str, ...]:
-        """The notes, the first on a robot that looks like another one, the last on hints that are missing."""
+        """The notes, the first on a robot that looks like another one, the last on hints that are
+        missing.
+        """
         notes = list(self.notes)
         if self.another_robot:
             notes.insert(0, self.another_robot)
@@ -184,32 +210,48 @@ class Report(NamedTuple):
 
     @property
     def counting(self) -> Decimal | None:
-        """The points that count for the student: the grade, else the score; None for an excused student."""
+        """The points that count for the student: the grade, else the score; None for an excused
+        student.
+        """
         return self.grade.points if self.grade is not None else self.score
 
     @property
     def is_bare(self) -> bool:
-        """Whether the criteria say nothing: the student is excused, or the submission could not be read."""
+        """Whether the criteria say nothing: the student is excused, or the submission could not be
+        read.
+        """
         return self.counting is None or bool(self.submission.unread and not self.submission.path)
 
     @property
     def open_points(self) -> Decimal:
-        """The points that need manual grading and can change what counts: none with a final mark or an excuse."""
+        """The points that need manual grading and can change what counts: none with a final mark or
+        an excuse.
+        """
         is_decided = self.grade is not None and (self.grade.is_final or self.grade.points is None)
         return _NOTHING if is_decided else self.pending
 
     @property
     def unearned(self) -> tuple[Result, ...]:
         """The automatic criteria that did not pass, except adjusted ones and extra credit."""
-        automatic = (result for result in self.results if result.criterion.check.function not in MANUAL_CHECKS)
-        counting = (result for result in automatic if not (result.is_adjusted or result.criterion.bonus))
+        automatic = (
+            result
+            for result in self.results
+            if result.criterion.check.function not in MANUAL_CHECKS
+        )
+        counting = (
+            result for result in automatic if not (result.is_adjusted or result.criterion.bonus)
+        )
         return tuple(result for result in counting if result.outcome.status != "passed")
 
     @property
     def pending_automatic(self) -> list[Result]:
-        """The automatic criteria that need manual grading here, because their subject could not be read."""
+        """The automatic criteria that need manual grading here, because their subject could not be
+        read.
+        """
         return [
-            result for result in self.results if result.is_open and result.criterion.check.function not in MANUAL_CHECKS
+            result
+            for result in self.results
+            if result.is_open and result.criterion.check.function not in MANUAL_CHECKS
         ]
 
     @property
@@ -234,8 +276,12 @@ class Report(NamedTuple):
 
     @property
     def fault(self) -> str:
-        """The message of the first failure of a check or the grader, except on adjusted criteria; empty without one."""
-        errored = (one for one in self.results if one.outcome.status == "errored" and not one.is_adjusted)
+        """The message of the first failure of a check or the grader, except on adjusted criteria;
+        empty without one.
+        """
+        errored = (
+            one for one in self.results if one.outcome.status == "errored" and not one.is_adjusted
+        )
         return next((one.outcome.message for one in errored), "")
 
 
@@ -244,7 +290,9 @@ def without_gifts(results: Iterable[Result], submission: Submission) -> tuple[Re
     if not submission.unread:
         return tuple(results)
     return tuple(
-        one._replace(criterion=one.criterion._replace(adjustment=None)) if one.criterion.is_given else one
+        one._replace(criterion=one.criterion._replace(adjustment=None))
+        if one.criterion.is_given
+        else one
         for one in results
     )
 

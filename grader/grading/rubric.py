@@ -1,4 +1,6 @@
-"""A rubric: the facts that are checked, and their points. It is loaded strictly: all mistakes are reported at once."""
+"""A rubric: the facts that are checked, and their points. It is loaded strictly: all mistakes are
+reported at once.
+"""
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -29,7 +31,9 @@ _LIST = "(`grader rubric list` lists the rubrics that come with the grader)"
 
 
 class ReferenceSolution:
-    """A rubric's own solution; no more is read than is needed. Properties raise InputError where it cannot be read."""
+    """A rubric's own solution; no more is read than is needed. Properties raise InputError where it
+    cannot be read.
+    """
 
     def __init__(self, path: Path, lab: Lab, error: Callable[[str], InputError]) -> None:
         """`error` makes one of what is wrong with the reference, with the line that names it."""
@@ -76,8 +80,8 @@ class ReferenceSolution:
 class Rubric:
     """A lab as data: which facts are checked, in which order, and what each is worth.
 
-    `load_rubric` reads it from a TOML file, and refuses it with all mistakes at once. Grading runs its criteria in
-    file order; reports, the gradebook and the commands on rubrics read the rest.
+    `load_rubric` reads it from a TOML file, and refuses it with all mistakes at once. Grading runs
+    its criteria in file order; reports, the gradebook and the commands on rubrics read the rest.
 
     >>> rubric = load_rubric("lab6")
     >>> [(part.id, part.needs) for part in rubric.parts][:2]
@@ -95,12 +99,15 @@ class Rubric:
     data: bytes = field(repr=False)  # of the file
     path: Path = field(compare=False)  # of the file
     package: str = ""  # the name of the graded package
-    packages: tuple[str, ...] = ()  # the names of all packages that criteria are about, if there are several
+    packages: tuple[
+        str, ...
+    ] = ()  # the names of all packages that criteria are about, if there are several
     evidence: tuple[Evidence, ...] = ()
     late: Late | None = None
     answers: str = ""  # the path of the file with the model answers, if any
     folders: tuple[str, ...] = ()  # the names of the lab's folder in a repository of several labs
-    without_urdf: str = ""  # what criteria are with evidence, but no URDF: "manual", or "failed", as where it is empty
+    # what criteria are with evidence, but no URDF: "manual", or "failed", as where it is empty
+    without_urdf: str = ""
     without_package: str = ""  # the same without a package
     hints: HintLevel = "cause"  # the most that hints tell
     ignored: tuple[Ignored, ...] = ()  # mutants that `grader rubric test` lets pass
@@ -121,7 +128,9 @@ class Rubric:
     @property
     def base(self) -> str:
         """The link that criteria measure in most often; empty if they name none."""
-        names = (name for row in self.criteria for name in texts_in(row.arguments.get("relative_to", ())))
+        names = (
+            name for row in self.criteria for name in texts_in(row.arguments.get("relative_to", ()))
+        )
         return max(sorted(Counter(names).items()), key=lambda it: it[1], default=("", 0))[0]
 
     @property
@@ -165,7 +174,9 @@ class Rubric:
                 return part
         known = [part.id for part in self.parts]
         guess = did_you_mean(name, known) or f"; it has: {', '.join(known)}"
-        raise InputError(f"the rubric {self.id} has no part {name!r}{guess} (see `{self.shown_by}`)")
+        raise InputError(
+            f"the rubric {self.id} has no part {name!r}{guess} (see `{self.shown_by}`)"
+        )
 
 
 def _line_in(data: bytes, file: Path, path: TomlPath) -> int:
@@ -180,7 +191,10 @@ def _lines_of(data: bytes, file: Path) -> dict[TomlPath, int]:
 @cache
 def shipped_rubrics() -> Mapping[str, Path]:
     """Return the rubrics that come with the grader, by id."""
-    return {path.parent.name: path for path in sorted(shipped_folder("rubrics").glob(f"*/{RUBRIC_FILE}"))}
+    return {
+        path.parent.name: path
+        for path in sorted(shipped_folder("rubrics").glob(f"*/{RUBRIC_FILE}"))
+    }
 
 
 def find_rubric(name: str) -> Path:
@@ -191,7 +205,9 @@ def find_rubric(name: str) -> Path:
     if not name:
         raise RubricError((f"the name of the rubric is empty {_LIST}",))
     path = Path(name)
-    if path.suffix == ".toml" or path.name != name:  # a bare word is an id, never a file of the submission
+    if (
+        path.suffix == ".toml" or path.name != name
+    ):  # a bare word is an id, never a file of the submission
         return path
     guess = did_you_mean(name, shipped) or f"; write ./{printable_path(name)} for a file"
     raise RubricError((f"there is no rubric {name!r}{guess} {_LIST}",))
@@ -210,7 +226,9 @@ def load_rubric(name: str | Path) -> Rubric:
 
 
 def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
-    """Return the rubric in the bytes of a file, with or without the model answers in it; raise RubricError."""
+    """Return the rubric in the bytes of a file, with or without the model answers in it; raise
+    RubricError.
+    """
     valid = _validate(data, path)
     rubric = valid.rubric
     found = enumerate(zip(valid.criteria, valid.bound, valid.carried, strict=True))
@@ -253,7 +271,9 @@ def _validate(data: bytes, path: Path) -> Validation:
 def _links_named(bound: Iterable[BoundCheck]) -> Iterator[str]:
     """Yield the names of links in the arguments of checks."""
     for check, given in bound:
-        own = LINK_ARGUMENTS if "robot" in check.examined else ("links",)  # names_agree has another `of`
+        own = (
+            LINK_ARGUMENTS if "robot" in check.examined else ("links",)
+        )  # names_agree has another `of`
         names = texts_in([value for key, value in given.items() if key in own])
         yield from (name for name in names if name and not is_selector(name))
 
@@ -262,7 +282,12 @@ def _reference_solution(rubric: TomlRow, path: Path, data: bytes) -> ReferenceSo
     if not rubric.get("reference"):
         return None
     place, package = path.parent / rubric["reference"], rubric.get("package", "")
-    lab = Lab(rubric.get("urdf", _URDF), package, rubric.get("folders", ()), packages=rubric.get("packages", ()))
+    lab = Lab(
+        rubric.get("urdf", _URDF),
+        package,
+        rubric.get("folders", ()),
+        packages=rubric.get("packages", ()),
+    )
 
     def error(what: str) -> InputError:
         line, name = _line_in(data, path, ("reference",)), rubric["id"]
@@ -275,14 +300,26 @@ def _reference_solution(rubric: TomlRow, path: Path, data: bytes) -> ReferenceSo
 
 
 def _make_criterion(
-    position: int, row: TomlRow, bound: BoundCheck, carried: Sequence[BoundCarried], *, answers: bool
+    position: int,
+    row: TomlRow,
+    bound: BoundCheck,
+    carried: Sequence[BoundCarried],
+    *,
+    answers: bool,
 ) -> Criterion:
     check, arguments = bound[0], dict(bound[1])
     # Nothing that lists or passes on a criterion's arguments may see the model answer.
     answer = arguments.pop("answer", "") if check.function is answered else ""
     own = {key: value for key, value in row.items() if key not in ("check", "with", "carried")}
-    own |= {"check": check, "arguments": arguments, "position": position, "answer": answer if answers else ""}
-    own["has_selectors"] = any(map(is_selector, texts_in((arguments, *(given for _, _, given in carried)))))
+    own |= {
+        "check": check,
+        "arguments": arguments,
+        "position": position,
+        "answer": answer if answers else "",
+    }
+    own["has_selectors"] = any(
+        map(is_selector, texts_in((arguments, *(given for _, _, given in carried))))
+    )
     return Criterion(**own, carried=tuple(Carried(*one) for one in carried))
 
 

@@ -1,7 +1,7 @@
 """Read a TOML file and its tables; all mistakes in it are one error, each with its line.
 
-tomllib does not report the lines of keys, so a mistake in a value is collected with the path of its key, and the lines
-are found in the text. Values are converted by the type of their key.
+tomllib does not report the lines of keys, so a mistake in a value is collected with the path of its
+key, and the lines are found in the text. Values are converted by the type of their key.
 """
 
 import re
@@ -21,10 +21,11 @@ TomlRow = dict[str, Any]
 _NOTHING: Mapping[str, Any] = {}
 
 
-_MAX_DEPTH = 20  # keys in a path: no rubric nests deeper, and the paths of a deeper key grow with its square
+# keys in a path: no rubric nests deeper, and the paths of a deeper key grow with its square
+_MAX_DEPTH = 20
 
 _TOKEN = r"""(?sx)
-      "{3}(?:\\.|[^\\])*?"{3}(?!")      # several lines: of up to five quotes at the end, the last three close it
+      "{3}(?:\\.|[^\\])*?"{3}(?!")      # several lines; the last three of five quotes close it
     | '{3}.*?'{3}(?!')                # the same, without escapes
     | "(?:\\.|[^"\\\n])*"             # "30\" wide"
     | '[^'\n]*'                       # 'C:\labs'
@@ -35,26 +36,43 @@ _TOKEN = r"""(?sx)
     """
 # tomllib stores each beginning of a dotted key: memory that grows with the square of its parts.
 _LONG_KEY = re.compile(
-    rf"""(?m)(?:^|[\[{{,])[ \t]*+((?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{_MAX_DEPTH}}})"""
+    r"""(?m)(?:^|[\[{,])[ \t]*+"""
+    r"""((?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+)"""
+    rf"""{{{_MAX_DEPTH}}})"""
 )
 _MAX_COMPLAINTS, _MAX_PLACES = 1000, 6  # lines about one file; places of one mistake
 _MAX_WIDTH = 100  # characters of a line that are shown on each side of a mistake
 _PLACE = r" \(at (?:line (\d+), column (\d+)|end of document)\)$"
-_CLOSING = {"Unterminated string": '"""', 'Expected "\'"': "'", "Expected \"'''\"": "'''"}  # what an error misses
+_CLOSING = {
+    "Unterminated string": '"""',
+    'Expected "\'"': "'",
+    "Expected \"'''\"": "'''",
+}  # what an error misses
 _TWICE = "this table is already given above"
-_SAID = {"Cannot overwrite a value": "this key is given twice", "Cannot declare": _TWICE, "Cannot mutate": _TWICE}
-# What usually is wrong where TOML cannot be read: a pattern of the line, in which \0 is the place of the error.
+_SAID = {
+    "Cannot overwrite a value": "this key is given twice",
+    "Cannot declare": _TWICE,
+    "Cannot mutate": _TWICE,
+}
+# What usually is wrong where TOML cannot be read: a pattern of the line, in which \0 is the place
+# of the error.
 _SLIPS = (
     ("\0[“”„‟‘’«]|[“”„‟]\\s*\0$", "typographic quotes: write straight ones"),
     (r"""^[^"']*("[^"\\]*|'[^']*)\0$""", "a text in quotes does not end on its line"),
     (r'"""\0\S', 'these quotes end a text that begins above: one before does not end in """'),
     (r'"\0\w', r"quotes in a text: write \" for them, or single quotes around it"),
-    (r"\{[^}]*\0$", "a table in braces is one line: write [criterion.with] above, and each key on a line below"),
+    (
+        r"\{[^}]*\0$",
+        "a table in braces is one line: write [criterion.with] above, and each key on a line below",
+    ),
     ("\0(True|False)", "true and false have small letters"),
     (r"\d\0,\d", "a number has a decimal point, no comma"),
     (r"\\.\0", r"in double quotes, \ begins an escape: write / in a path"),
     (r"^\s*\[(part|criterion|evidence)\0?\]", "write double brackets: [[{0}]]"),
-    (r"^\s*\[\[(part|criterion|evidence)\0\]\]", "an earlier [{0}] has single brackets: write [[{0}]]"),
+    (
+        r"^\s*\[\[(part|criterion|evidence)\0\]\]",
+        "an earlier [{0}] has single brackets: write [[{0}]]",
+    ),
 )
 _MAX_GUESSES = 50  # searches for a similar name in one rubric: each takes its time
 _MAX_SHOWN = 40  # characters of a value
@@ -82,7 +100,9 @@ def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
 
 
 def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Path) -> None:
-    """Raise RubricError with a line for each complaint, in the order of the file, if there are any."""
+    """Raise RubricError with a line for each complaint, in the order of the file, if there are
+    any.
+    """
     if complaints:
         lines, shown = key_lines(text), printable_path(path)
         found = one_line_each(path, [(line_of(lines, at), what) for at, what in complaints])
@@ -92,32 +112,52 @@ def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Pat
 
 
 def one_line_each(path: Path, found: Iterable[tuple[int, str]]) -> list[str]:
-    """Return what was found in a file by its lines; what several lines share once, with all of them."""
+    """Return what was found in a file by its lines; what several lines share once, with all of
+    them.
+    """
     places: dict[str, list[int]] = {}
     for line, what in sorted(found, key=lambda it: it[0]):
         places.setdefault(what, []).append(line)
-    return [f"{printable_path(path)}:{line}: {what}{_also(other)}" for what, (line, *other) in places.items()]
+    return [
+        f"{printable_path(path)}:{line}: {what}{_also(other)}"
+        for what, (line, *other) in places.items()
+    ]
 
 
 def _also(lines: Sequence[int]) -> str:
     """Return the other lines of the same mistake, as a clause."""
     numbers = [str(line) for line in dict.fromkeys(lines)]
-    return f" (also line{'s' if len(numbers) > 1 else ''} {enumerated(numbers, _MAX_PLACES)})" if numbers else ""
+    return (
+        f" (also line{'s' if len(numbers) > 1 else ''} {enumerated(numbers, _MAX_PLACES)})"
+        if numbers
+        else ""
+    )
 
 
 def _syntax_mistake(error: str, text: str) -> str:
-    """Return the place of the mistake that a message of tomllib is about, what it means, and the line."""
+    """Return the place of the mistake that a message of tomllib is about, what it means, and the
+    line.
+    """
     text = text.replace("\r\n", "\n")
     lines = text.split("\n")
     said, line, column, _ = re.split(_PLACE, error)
     row, at = (int(line), int(column)) if line else (len(lines), len(lines[-1]) + 1)
-    if (opened := text.rfind(_CLOSING.get(said, "\0"))) >= 0:  # else the place is the end of the file
+    if (
+        opened := text.rfind(_CLOSING.get(said, "\0"))
+    ) >= 0:  # else the place is the end of the file
         row, at = text.count("\n", 0, opened) + 1, opened - text.rfind("\n", 0, opened)
         said = "a text in quotes begins here and does not end"
     said = next((words for start, words in _SAID.items() if said.startswith(start)), said)
-    before, after = lines[row - 1][max(0, at - _MAX_WIDTH) : at - 1], lines[row - 1][at - 1 : at + _MAX_WIDTH]
+    before, after = (
+        lines[row - 1][max(0, at - _MAX_WIDTH) : at - 1],
+        lines[row - 1][at - 1 : at + _MAX_WIDTH],
+    )
     marked = "\0".join(part.replace("\0", " ") for part in (before, after))
-    meant = (words.format(*slip.groups()) for pattern, words in _SLIPS if (slip := re.search(pattern, marked)))
+    meant = (
+        words.format(*slip.groups())
+        for pattern, words in _SLIPS
+        if (slip := re.search(pattern, marked))
+    )
     around = (before + after).strip() or "an empty line"
     return f"{row}:{at}: {next(meant, said[0].lower() + said[1:])}: {printable(around)}"
 
@@ -131,7 +171,9 @@ def _why_not_utf8(data: bytes, at: int) -> str:
 
 
 def key_lines(text: str) -> dict[TomlPath, int]:
-    """Return the line of every table header and key of a valid TOML text, by its path; arrays count from 0."""
+    """Return the line of every table header and key of a valid TOML text, by its path; arrays
+    count from 0.
+    """
     lines: dict[TomlPath, int] = {(): 1}
     for line, path in _statement_paths(text):
         for length in range(len(path)):
@@ -146,7 +188,9 @@ def _statement_paths(text: str) -> Iterator[tuple[int, TomlPath]]:
     for line, tokens in _split_statements(text):
         if tokens[0] == "[":
             is_array = tokens[1] == "["
-            table = _table_path(_key_names(tokens[1 + is_array : tokens.index("]")]), counts, is_array=is_array)
+            table = _table_path(
+                _key_names(tokens[1 + is_array : tokens.index("]")]), counts, is_array=is_array
+            )
             yield line, table
         else:
             yield line, (*table, *_key_names(tokens[: tokens.index("=")]))
@@ -192,7 +236,9 @@ def _split_statements(text: str) -> list[tuple[int, list[str]]]:
 def _key_names(tokens: list[str]) -> list[str]:
     """Return the keys that tokens stand for, quoted ones without their quotes."""
     names = [token for token in tokens if token != "."][:_MAX_DEPTH]
-    return [next(iter(tomllib.loads(f"{token}=0"))) if token[0] in "\"'" else token for token in names]
+    return [
+        next(iter(tomllib.loads(f"{token}=0"))) if token[0] in "\"'" else token for token in names
+    ]
 
 
 class KeyTable(NamedTuple):
@@ -222,7 +268,11 @@ class KeyTable(NamedTuple):
     def one_or_more(self) -> TomlType:
         """The type of one such table, or several."""
         schema = {**self.schema, **self.rows.schema, "type": ["object", "array"]}
-        return simple_type("a table, or several", schema, lambda value: isinstance(value, dict) or _are_tables(value))
+        return simple_type(
+            "a table, or several",
+            schema,
+            lambda value: isinstance(value, dict) or _are_tables(value),
+        )
 
 
 def _are_tables(value: Any) -> bool:
@@ -236,8 +286,12 @@ class TomlRowReader:
         self.complaints: list[tuple[TomlPath, str]] = []
         self._guesses = _MAX_GUESSES
 
-    def row(self, where: TomlPath, row: TomlRow, table: KeyTable, defaults: Mapping[str, Any] = _NOTHING) -> TomlRow:
-        """Return the valid values of a table, converted; complain of the others and of missing ones."""
+    def row(
+        self, where: TomlPath, row: TomlRow, table: KeyTable, defaults: Mapping[str, Any] = _NOTHING
+    ) -> TomlRow:
+        """Return the valid values of a table, converted; complain of the others and of missing
+        ones.
+        """
         parsed: TomlRow = {**defaults}
         for key, value in row.items():
             if key not in table.keys:
@@ -256,7 +310,9 @@ class TomlRowReader:
         return parsed
 
     def guess(self, name: str, known: Iterable[str]) -> str:
-        """Return which known name a misspelt one may mean, as a clause; empty if none is similar."""
+        """Return which known name a misspelt one may mean, as a clause; empty if none is
+        similar.
+        """
         self._guesses -= 1
         return did_you_mean(name, known) if self._guesses >= 0 else ""
 
@@ -283,10 +339,16 @@ def toml_literal(value: Any) -> str:
 
             text = json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
         case Mapping():
-            text = f"{{ {', '.join(assignment(key, item) for key, item in value.items())} }}" if value else "{}"
+            text = (
+                f"{{ {', '.join(assignment(key, item) for key, item in value.items())} }}"
+                if value
+                else "{}"
+            )
         case list() | tuple():
             text = f"[{', '.join(map(toml_literal, value))}]"
-        case int() if value.bit_length() > _MAX_BITS:  # Python refuses to write numbers of thousands of digits
+        case int() if (
+            value.bit_length() > _MAX_BITS
+        ):  # Python refuses to write numbers of thousands of digits
             text = "a number with too many digits"
         case _:
             text = str(value)

@@ -1,4 +1,6 @@
-"""Edits that hints propose: made for the elements of a text, applied to it, and to the files of a submission."""
+"""Edits that hints propose: made for the elements of a text, applied to it, and to the files of
+a submission.
+"""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -23,15 +25,17 @@ _PIECE = re.compile(r"(\s*)(\S+)")
 class Proposal(NamedTuple):
     """An edit that may undo a mistake, in the words and with the order in which it is tried.
 
-    The generators of `generators.py` make proposals from the difference to the reference solution, from the student's
-    own numbers, and from the files of a package. The search grades the submission with each, and makes those that gain
-    points a `FoundHint`.
+    The generators of `generators.py` make proposals from the difference to the reference solution,
+    from the student's own numbers, and from the files of a package. The search grades the
+    submission with each, and makes those that gain points a `FoundHint`.
 
     >>> from grader.source import Source
     >>> source = Source("a.urdf", '<origin rpy="1.57 0 0"/>')
-    >>> found = Proposal((with_attribute(source, 0, "rpy", "-1.57 0 0"),), "the sign of the roll of the origin")
+    >>> edit = with_attribute(source, 0, "rpy", "-1.57 0 0")
+    >>> found = Proposal((edit,), "the sign of the roll of the origin")
     >>> found.edits
-    (Edit(path='a.urdf', line=1, column=9, old='rpy="1.57 0 0"', new='rpy="-1.57 0 0"', renamed=''),)
+    (Edit(path='a.urdf', line=1, column=9, old='rpy="1.57 0 0"', new='rpy="-1.57 0 0"',
+    renamed=''),)
     >>> edited(source.text, source.path, found.edits)
     '<origin rpy="-1.57 0 0"/>'
     """
@@ -39,7 +43,8 @@ class Proposal(NamedTuple):
     edits: Edits
     cause: str  # what is wrong, for a hint at the level `cause`
     link: str = ""  # that is moved or changed
-    rank: int = 0  # of equal gains, a lower one is taken first: the reference's values before other numbers
+    # of equal gains, a lower one is taken first: the reference's values before other numbers
+    rank: int = 0
     way: int = 0  # counts the ways to make the same change in xacro, the most plausible first
     shared: frozenset[str] = frozenset()  # the links that come from the same text of xacro
 
@@ -55,14 +60,17 @@ class Proposal(NamedTuple):
 
 
 class FoundHint(NamedTuple):
-    """What a hint says: an edit that gains points when it is graded, or words for a part that is missing."""
+    """What a hint says: an edit that gains points when it is graded, or words for a part that is
+    missing.
+    """
 
     proposal: Proposal
     gains: Mapping[str, Decimal]  # the criteria that pass with it, each with the points
     certainty: Certainty = "preferred"
     is_late: bool = False  # whether the gains are those after the edits of earlier hints
     words: str = ""  # that say what is missing, for which there is no edit
-    alternative: Proposal | None = None  # another edit that cannot be told apart: both are named, neither is made
+    # another edit that cannot be told apart: both are named, neither is made
+    alternative: Proposal | None = None
 
     @property
     def edits(self) -> Edits:
@@ -88,7 +96,10 @@ def with_attribute(source: Source, start: int, attribute: str, value: str) -> Ed
     if found is None:
         end = markup.name_end(source.text, start)
         return source.edit(start, end, f'{source.text[start:end]} {attribute}="{value}"')
-    head, tail = source.text[found.start : found.value_start], source.text[found.value_end : found.end]
+    head, tail = (
+        source.text[found.start : found.value_start],
+        source.text[found.value_end : found.end],
+    )
     return source.edit(found.start, found.end, f"{head}{value}{tail}")
 
 
@@ -107,32 +118,49 @@ def with_child(source: Source, start: int, xml: str) -> Edit:
 
 
 def without_element(source: Source, start: int) -> Edit:
-    """Return the edit that removes the element at an offset, with its line where nothing else is on it."""
+    """Return the edit that removes the element at an offset, with its line where nothing else is
+    on it.
+    """
     end = markup.element_end(source.text, start)
     indent = markup.indentation(source.text, start)
     line = start - len(indent)
-    is_alone = source.text[end : end + 2].startswith(("\n", "\r\n")) and (line == 0 or source.text[line - 1] == "\n")
-    return source.edit(line, source.text.find("\n", end) + 1, "") if is_alone else source.edit(start, end, "")
+    is_alone = source.text[end : end + 2].startswith(("\n", "\r\n")) and (
+        line == 0 or source.text[line - 1] == "\n"
+    )
+    return (
+        source.edit(line, source.text.find("\n", end) + 1, "")
+        if is_alone
+        else source.edit(start, end, "")
+    )
 
 
 def with_element(source: Source, start: int, xml: str) -> Edit:
     """Return the edit that replaces the element at an offset by another one."""
     newline = "\r\n" if "\r\n" in source.text else "\n"
     indent = markup.indentation(source.text, start)
-    return source.edit(start, markup.element_end(source.text, start), markup.indented(xml, indent, newline))
+    return source.edit(
+        start, markup.element_end(source.text, start), markup.indented(xml, indent, newline)
+    )
 
 
 def merged(old: str, new: str) -> str:
-    """Return a new list of numbers with those that stay, and the space between all, as the old text writes them."""
+    """Return a new list of numbers with those that stay, and the space between all, as the old
+    text writes them.
+    """
     before, after = _PIECE.findall(old), new.split()
     if len(before) != len(after):
         return new
     pieces = zip(before, after, strict=True)
-    return "".join((" " if space.strip(" ") else space) + _merge_one(piece, other) for (space, piece), other in pieces)
+    return "".join(
+        (" " if space.strip(" ") else space) + _merge_one(piece, other)
+        for (space, piece), other in pieces
+    )
 
 
 def _merge_one(old: str, new: str) -> str:
-    """Return the new number, written as the old one where it is the same or only its sign changes."""
+    """Return the new number, written as the old one where it is the same or only its sign
+    changes.
+    """
     try:
         before, after = float(old), float(new)
     except ValueError:
@@ -145,7 +173,9 @@ def _merge_one(old: str, new: str) -> str:
 
 
 def edited(text: str, path: str, edits: Iterable[Edit]) -> str | None:
-    """Return the text of a file after edits; None if they overlap, or if the text is not what they replace."""
+    """Return the text of a file after edits; None if they overlap, or if the text is not what they
+    replace.
+    """
     source = Source(path, text)
     pieces: list[str] = []
     position = 0
@@ -158,10 +188,14 @@ def edited(text: str, path: str, edits: Iterable[Edit]) -> str | None:
 
 
 def _offsets(source: Source, edits: Iterable[Edit]) -> list[tuple[int, Edit]]:
-    return sorted(((source.offset(edit.line, edit.column), edit) for edit in edits), key=lambda pair: pair[0])
+    return sorted(
+        ((source.offset(edit.line, edit.column), edit) for edit in edits), key=lambda pair: pair[0]
+    )
 
 
-_Files = Mapping[str, bytes | None]  # the new content of files by path; None for one that is no longer there
+_Files = Mapping[
+    str, bytes | None
+]  # the new content of files by path; None for one that is no longer there
 
 
 def edited_files(submission: Submission, edits: Iterable[Edit]) -> _Files | None:
@@ -191,12 +225,18 @@ def content(submission: Submission, path: str) -> bytes | None:
 
 
 def with_urdf(submission: Submission, files: _Files) -> Submission:
-    """Return a submission with only the URDF read again: for edits of the URDF and of xacro that it includes."""
+    """Return a submission with only the URDF read again: for edits of the URDF and of xacro that it
+    includes.
+    """
     urdf = submission.urdf
     assert isinstance(urdf, Read)
     is_renamed = files.get(urdf.path, b"") is None
     path = next((new for new, data in files.items() if data is not None and is_renamed), urdf.path)
-    whole_tree = overlaid(submission.whole_tree, files) if submission.whole_tree.files else submission.whole_tree
+    whole_tree = (
+        overlaid(submission.whole_tree, files)
+        if submission.whole_tree.files
+        else submission.whole_tree
+    )
     surroundings = submission.surroundings(Budget(), whole_tree)
     read = read_as_ros(files.get(path) or urdf.data, path, surroundings)
     return replace(submission, urdf=read, whole_tree=whole_tree, budget=surroundings.budget)

@@ -1,8 +1,10 @@
-"""The generators of hints: what may undo a mistake of a robot or a package, in the order in which it is tried.
+"""The generators of hints: what may undo a mistake of a robot or a package, in the order in which
+it is tried.
 
-`STAGES` is the list. A stage gets the situation and the criteria that still lose points, and yields generators of
-proposals, each of one kind. The search grades all proposals of a stage before it takes the best, so that a later stage
-is asked only for what the earlier ones left. Missing links and joints get hints in words: no edit writes them.
+`STAGES` is the list. A stage gets the situation and the criteria that still lose points, and yields
+generators of proposals, each of one kind. The search grades all proposals of a stage before it
+takes the best, so that a later stage is asked only for what the earlier ones left. Missing links
+and joints get hints in words: no edit writes them.
 """
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -42,7 +44,9 @@ _MAX_SIMILAR, _MAX_NAMED = 2, 4
 
 
 class Situation:
-    """A submission beside the reference solution; `draft` is its robot, and `difference` that to the reference's."""
+    """A submission beside the reference solution; `draft` is its robot, and `difference` that to
+    the reference's.
+    """
 
     def __init__(
         self,
@@ -51,7 +55,9 @@ class Situation:
         reference: Draft | None,
         package: "Callable[[str], Package | None]",
     ) -> None:
-        """`wanted` are the links that the rubric names, `reference` and `package` give the robot and packages of it."""
+        """`wanted` are the links that the rubric names, `reference` and `package` give the robot
+        and packages of it.
+        """
         self.submission, self.reference_package = submission, package
         self.reading: Reading | None = None
         self.draft: Draft | None = None
@@ -69,7 +75,9 @@ class Situation:
 
     @cached_property
     def has_reversed(self) -> bool:
-        """Whether the parent and the child of a joint are exchanged: the poses around it are no ones to correct."""
+        """Whether the parent and the child of a joint are exchanged: the poses around it are no
+        ones to correct.
+        """
         return self.difference is not None and bool(reversed_joints(self.difference))
 
     @property
@@ -98,7 +106,9 @@ Stage = Callable[[Situation, _Lost], Iterator[Iterable[Proposal]]]
 
 
 def _of_reference(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
-    """What undoes a slip, then what differs from the other side of the robot, and from the reference."""
+    """What undoes a slip, then what differs from the other side of the robot, and from the
+    reference.
+    """
     draft, difference = situation.draft, situation.difference
     subjects = {criterion.check.subject for criterion in lost}
     if situation.reading is not None and draft is not None and "urdf" in subjects:
@@ -111,8 +121,12 @@ def _of_reference(situation: Situation, lost: _Lost) -> Iterator[Iterable[Propos
         yield _proposals(situation, in_another_unit(difference))
         yield _proposals(situation, of_siblings(difference, links or ()))
         pieces = difference.pieces
-        if links is not None:  # those of the links that criteria name come first: there may be more than can be tried
-            pieces = sorted(pieces, key=lambda it: links.index(it.link) if it.link in links else len(links))
+        if (
+            links is not None
+        ):  # those of the links that criteria name come first: there may be more than can be tried
+            pieces = sorted(
+                pieces, key=lambda it: links.index(it.link) if it.link in links else len(links)
+            )
         yield _proposals(situation, pieces, links)
 
 
@@ -122,16 +136,23 @@ def _of_package(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal
     for name in dict.fromkeys(criterion.package for criterion in own):
         submission = situation.submission.with_package(name) if name else situation.submission
         if submission.package is not None:
-            from grader.hints.package_edits import package_proposals  # late: a robot on its own needs none
+            from grader.hints.package_edits import (
+                package_proposals,
+            )  # late: a robot on its own needs none
 
             wanted = [(it.check.about.looks_at, it.arguments) for it in own if it.package == name]
-            yield from package_proposals(submission.package, situation.reference_package(name), wanted)
+            yield from package_proposals(
+                submission.package, situation.reference_package(name), wanted
+            )
         yield from _of_names(situation, [it for it in own if it.package == name])
 
 
 def _of_names(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
     for criterion in [it for it in lost if it.check.name in ("names_agree", "parameter_is")]:
-        from grader.hints.name_edits import name_proposals, value_proposals  # late: few rubrics ask for names
+        from grader.hints.name_edits import (
+            name_proposals,
+            value_proposals,
+        )  # late: few rubrics ask for names
 
         if criterion.check.name == "names_agree":
             reference = situation.reference_package(criterion.package)
@@ -149,14 +170,24 @@ def _of_own_numbers(situation: Situation, lost: _Lost) -> Iterator[Iterable[Prop
 
 def _of_links(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
     """All values of the reference of a link and its joint, or of one element."""
-    if situation.difference is not None and any(criterion.check.subject == "robot" for criterion in lost):
+    if situation.difference is not None and any(
+        criterion.check.subject == "robot" for criterion in lost
+    ):
         links = _links_of(lost, situation.difference)
         yield _proposals(situation, whole_links(situation.difference), links)
         yield _proposals(situation, whole_elements(situation.difference), links)
 
 
-# What is tried, in this order; the reference and the package again, after the edits that were found.
-STAGES: tuple[Stage, ...] = (_of_reference, _of_package, _of_own_numbers, _of_links, _of_reference, _of_package)
+# What is tried, in this order; the reference and the package again, after the edits that were
+# found.
+STAGES: tuple[Stage, ...] = (
+    _of_reference,
+    _of_package,
+    _of_own_numbers,
+    _of_links,
+    _of_reference,
+    _of_package,
+)
 
 
 def _proposals(
@@ -171,16 +202,23 @@ def _proposals(
             shared = situation.draft.shared(piece.sets)
             for way, edits in enumerate(situation.draft.ways(piece.sets)):
                 if edits or piece.edits:
-                    yield Proposal((*edits, *piece.edits), piece.cause, piece.link, piece.rank, way, shared)
+                    yield Proposal(
+                        (*edits, *piece.edits), piece.cause, piece.link, piece.rank, way, shared
+                    )
 
 
 def _links_of(criteria: Iterable[Criterion], difference: RobotDifference) -> list[str] | None:
-    """Return the links whose joints and shapes decide criteria, with all above them; None if all may."""
+    """Return the links whose joints and shapes decide criteria, with all above them; None if all
+    may.
+    """
     found: dict[str, None] = {}
     robot, reference = difference.draft.robot, difference.reference.robot
     posed = Configuration(robot)
     for criterion in (it for it in criteria if it.check.subject in ("urdf", "robot")):
-        given = (selected_or_name(posed.robot, posed.parent_joints, name) for name in texts_in(criterion.arguments))
+        given = (
+            selected_or_name(posed.robot, posed.parent_joints, name)
+            for name in texts_in(criterion.arguments)
+        )
         named = [name for name in given if reference.has_link(name) or robot.has_link(name)]
         if not named:
             return None
@@ -205,7 +243,9 @@ def _repairs(reading: Reading) -> Iterator[Proposal]:
     draft = Draft.of(reading)
     if draft is not None and reading.undone:
         edits = tuple(edit for word in reading.undone for edit in _of_word(draft, word))
-        yield Proposal(edits, "the spelling of a word" if len(reading.undone) == 1 else "the spelling of words")
+        yield Proposal(
+            edits, "the spelling of a word" if len(reading.undone) == 1 else "the spelling of words"
+        )
 
 
 def _of_word(draft: Draft, word: Word) -> Edits:
@@ -227,7 +267,11 @@ def _with_xacro(submission: Submission) -> Iterator[Proposal]:
     from grader.hints.python_file import with_xacro  # late: most URDFs are no such file
 
     package = submission.package
-    sources = [submission.source(package.path(path)) for path in package.launch_files] if package is not None else []
+    sources = (
+        [submission.source(package.path(path)) for path in package.launch_files]
+        if package is not None
+        else []
+    )
     for source in sources:
         if source is not None:
             yield from (Proposal(edits, _RAW_XACRO) for edits in with_xacro(source))
@@ -236,8 +280,12 @@ def _with_xacro(submission: Submission) -> Iterator[Proposal]:
         yield Proposal((Edit(urdf.path, 1, 1, "", "", renamed),), _RAW_XACRO)
 
 
-def leaves_others(shared: Collection[str], passing: Iterable[Criterion], lost: Collection[Criterion]) -> bool:
-    """Return whether a criterion that passes for one call of a macro still fails for another one."""
+def leaves_others(
+    shared: Collection[str], passing: Iterable[Criterion], lost: Collection[Criterion]
+) -> bool:
+    """Return whether a criterion that passes for one call of a macro still fails for another
+    one.
+    """
     functions = {criterion.check.function for criterion in passing} if shared else set()
     return any(it.check.function in functions and it.arguments.get("link") in shared for it in lost)
 
@@ -248,19 +296,24 @@ def missing_hints(
     criteria: Mapping[str, Criterion],
     lost: Mapping[str, Decimal],
 ) -> dict[str, FoundHint]:
-    """Return a hint in words for each missing link with its joint, by the costliest criterion that it costs.
+    """Return a hint in words for each missing link with its joint, by the costliest criterion that
+    it costs.
 
     `difference` is that of the robot after all edits, `written` is the robot before them.
     """
     if difference is None or written is None or difference.draft is difference.reference:
         return {}
     found: dict[str, FoundHint] = {}
-    left = sorted(difference.missing, key=lambda part: part.tag, reverse=True)  # links first, each with its joints
+    left = sorted(
+        difference.missing, key=lambda part: part.tag, reverse=True
+    )  # links first, each with its joints
     while left:
         link, is_link = left[0].link, left[0].tag == "link"
         parts = [part for part in left if part.link == link or (is_link and part.parent == link)]
         left = [part for part in left if part not in parts]
-        robots = [name for name in lost if name not in found and criteria[name].check.subject == "robot"]
+        robots = [
+            name for name in lost if name not in found and criteria[name].check.subject == "robot"
+        ]
         own = [name for name in robots if criteria[name].arguments.get("link") == link]
         names = own or [name for name in robots if link in texts_in(criteria[name].arguments)]
         if names:
@@ -283,7 +336,10 @@ def missing_hints(
 def _hint_of_parts(written: Draft, parts: list[MissingPart]) -> FoundHint:
     first = parts[0].link if parts[0].tag == "link" else ""
     causes = enumerated([_cause_of_part(part, first) for part in parts])
-    words = f"add {enumerated([_part_in_words(part) for part in parts])}{_lines_of_similar(written, parts)}"
+    words = (
+        "add "
+        f"{enumerated([_part_in_words(part) for part in parts])}{_lines_of_similar(written, parts)}"
+    )
     verb = "is" if len(parts) == 1 else "are"
     return FoundHint(Proposal((), f"{causes} {verb} missing", parts[0].link), {}, words=words)
 

@@ -32,7 +32,9 @@ _MAX_TEXT = 240  # characters of a changed text
 
 
 class _HintedReport(NamedTuple):
-    """A report with hints, the edits of all that fit together, and the types of exceptions that cost other hints."""
+    """A report with hints, the edits of all that fit together, and the types of exceptions that
+    cost other hints.
+    """
 
     report: Report
     edits: Edits
@@ -40,7 +42,8 @@ class _HintedReport(NamedTuple):
 
 
 class Fix(NamedTuple):
-    """The files of a submission that all proven edits change, None for one that is gone, and the report on the result.
+    """The files of a submission that all proven edits change, None for one that is gone, and the
+    report on the result.
 
     `why_nothing` says why there are none.
     """
@@ -51,13 +54,17 @@ class Fix(NamedTuple):
 
 
 def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedReport:
-    """Return a report with proven hints for criteria that failed; without any where the search would take long."""
+    """Return a report with proven hints for criteria that failed; without any where the search
+    would take long.
+    """
     if submission.is_costly:
         return _HintedReport(report, (), [])
     results = {result.criterion.id: result for result in report.results}
     solution = report.rubric.solution
     trials = Trials(report.rubric, submission, results)
-    search = HintSearch(trials, _draft(solution), partial(_package, solution), report.by_convention).run()
+    search = HintSearch(
+        trials, _draft(solution), partial(_package, solution), report.by_convention
+    ).run()
     costs = costs_of(results)
     shown = {name: found for found in reversed(search.found) for name in found.gains}
     entries = {found.edits: _entry(found, shown, results, costs) for found in search.found}
@@ -72,7 +79,9 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
             text = message(found, level, submission, shown_before)
             in_words = level == "edit" and any(map(_loses_expression, found.edits))
             told = found._replace(gains={}) if in_words else found
-            hint = _hint(told, text, entry, results[name], keeps_edits=level == "edit" and not in_words)
+            hint = _hint(
+                told, text, entry, results[name], keeps_edits=level == "edit" and not in_words
+            )
             hints[name] = hint._replace(after=earlier)
     if level == "edit":
         others = enumerated(list(dict.fromkeys(entries.values())), _MAX_NAMED)
@@ -82,11 +91,15 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
                 hints[name] = Hint(f"Make the edits for {others}.", at, {})
     with_hints = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
     report = report._replace(results=tuple(with_hints), hints_complete=search.is_complete)
-    return _HintedReport(report, tuple(edit for one in _written(search.found) for edit in one.edits), trials.faults)
+    return _HintedReport(
+        report, tuple(edit for one in _written(search.found) for edit in one.edits), trials.faults
+    )
 
 
 def _written(found: Sequence[FoundHint]) -> list[FoundHint]:
-    """Return the hints whose edits may be written: none that is left to words, and none after it that may need it."""
+    """Return the hints whose edits may be written: none that is left to words, and none after it
+    that may need it.
+    """
     kept: list[FoundHint] = []
     is_cut = False
     for one in found:
@@ -98,8 +111,14 @@ def _written(found: Sequence[FoundHint]) -> list[FoundHint]:
 
 
 def _loses_expression(edit: Edit) -> bool:
-    """Return whether an edit writes a value in place of an expression of xacro: which one is better, a person knows."""
-    return edit.path.endswith(ROBOT_ENDINGS) and edit.old.count("$") > edit.new.count("$") and bool(edit.new)
+    """Return whether an edit writes a value in place of an expression of xacro: which one is
+    better, a person knows.
+    """
+    return (
+        edit.path.endswith(ROBOT_ENDINGS)
+        and edit.old.count("$") > edit.new.count("$")
+        and bool(edit.new)
+    )
 
 
 def fixed(found: _HintedReport, submission: Submission) -> Fix:
@@ -113,19 +132,33 @@ def fixed(found: _HintedReport, submission: Submission) -> Fix:
         why_nothing = "the submission is too large to search for edits"
     files = edited_files(submission, found.edits) or {}
     after = with_files(submission, files)
-    return Fix(files, grade(report.rubric, after, report.parts, is_one_of_class=not submission.is_single), why_nothing)
+    return Fix(
+        files,
+        grade(report.rubric, after, report.parts, is_one_of_class=not submission.is_single),
+        why_nothing,
+    )
 
 
 def _entry(
-    found: FoundHint, shown: Mapping[str, FoundHint], results: Mapping[str, Result], costs: Mapping[str, Decimal]
+    found: FoundHint,
+    shown: Mapping[str, FoundHint],
+    results: Mapping[str, Result],
+    costs: Mapping[str, Decimal],
 ) -> str:
-    """Return the criterion that shows a hint in a report: the one at the line that is edited, else the costliest."""
+    """Return the criterion that shows a hint in a report: the one at the line that is edited,
+    else the costliest.
+    """
 
     def rank(name: str) -> tuple[bool, bool, bool, Decimal]:
         where, at = results[name].outcome.location, found.edits[0]
         is_there = where is not None and (where.path, where.line) == (at.path, at.line)
         cost = costs.get(name, found.gains[name])
-        return name not in costs, not is_there, results[name].criterion.check.subject != "urdf", -cost
+        return (
+            name not in costs,
+            not is_there,
+            results[name].criterion.check.subject != "urdf",
+            -cost,
+        )
 
     return min([name for name in found.gains if shown.get(name) is found] or found.gains, key=rank)
 
@@ -133,12 +166,17 @@ def _entry(
 def _first_at(found: FoundHint, where: Location | None) -> FoundHint:
     """Return a hint with the edits in the line of the failure first."""
     place = (where.path, where.line) if where is not None else None
-    edits = sorted(found.proposal.edits, key=lambda it: ((it.path, it.line) != place, it.path, it.line, it.column))
+    edits = sorted(
+        found.proposal.edits,
+        key=lambda it: ((it.path, it.line) != place, it.path, it.line, it.column),
+    )
     return found._replace(proposal=found.proposal._replace(edits=tuple(edits)))
 
 
 def _hint(found: FoundHint, text: str, shown_by: str, result: Result, *, keeps_edits: bool) -> Hint:
-    places = [Location(edit.path, edit.line, edit.column) for edit in found.edits]  # of two alternatives, none
+    places = [
+        Location(edit.path, edit.line, edit.column) for edit in found.edits
+    ]  # of two alternatives, none
     at = next(iter(places), result.outcome.location or Location("", 1, 1))
     shown = (found.edits, found.proposal.cause) if keeps_edits else ((), "")
     return Hint(text, at, found.gains, *shown, shown_by, found.certainty)
@@ -152,7 +190,9 @@ def _draft(reference: ReferenceSolution | None) -> Draft | None:
 
 
 def _package(reference: ReferenceSolution | None, name: str) -> "Package | None":
-    """Return the package of the reference solution, or that of this name if the rubric has several."""
+    """Return the package of the reference solution, or that of this name if the rubric has
+    several.
+    """
     with suppress(InputError):
         submission = reference.submission if reference is not None else None
         if submission is not None:
@@ -160,12 +200,19 @@ def _package(reference: ReferenceSolution | None, name: str) -> "Package | None"
     return None
 
 
-def message(found: FoundHint, level: HintLevel, submission: Submission, earlier: Sequence[str]) -> str:
-    """Return the hint in a sentence, which need not name the URDF. `earlier` are criteria whose hints come first."""
+def message(
+    found: FoundHint, level: HintLevel, submission: Submission, earlier: Sequence[str]
+) -> str:
+    """Return the hint in a sentence, which need not name the URDF. `earlier` are criteria whose
+    hints come first.
+    """
     if found.words:
         text = _of_missing(found, level)
     elif found.alternative is not None:
-        each = [found._replace(proposal=it, alternative=None) for it in (found.proposal, found.alternative)]
+        each = [
+            found._replace(proposal=it, alternative=None)
+            for it in (found.proposal, found.alternative)
+        ]
         one, other = (message(it, level, submission, ()).removesuffix(".") for it in each)
         both = f"{one}, or {other[0].lower()}{other[1:]}: both work, so look which one is meant"
         text = both if one != other else one
@@ -176,7 +223,10 @@ def message(found: FoundHint, level: HintLevel, submission: Submission, earlier:
     else:
         text = f"check {_texts_to_check(found.edits, submission)}"
     if earlier:
-        return f"After the edit{'s' if len(earlier) > 1 else ''} for {enumerated(earlier, _MAX_NAMED)}, {text}."
+        return (
+            f"After the edit{'s' if len(earlier) > 1 else ''} for "
+            f"{enumerated(earlier, _MAX_NAMED)}, {text}."
+        )
     return f"{text[0].upper()}{text[1:]}."
 
 
@@ -217,7 +267,10 @@ def _places(edits: Sequence[Edit], submission: Submission) -> str:
     texts = []
     for path, lines in files.items():
         numbers = sorted(set(lines))
-        named = f"line{'s' if len(numbers) > 1 else ''} {enumerated([str(line) for line in numbers], _MAX_LINES)}"
+        named = (
+            f"line{'s' if len(numbers) > 1 else ''} "
+            f"{enumerated([str(line) for line in numbers], _MAX_LINES)}"
+        )
         texts.append(named if path == submission.path else f"{path}, {named}")
     return "; ".join(texts)
 
@@ -227,9 +280,14 @@ def _calls(edits: Sequence[Edit], source: "ExpandedSource", main: str | None) ->
     from grader.hints.xacro_edits import ExpandedEdits  # late: most robots are not xacro
 
     every = ExpandedEdits(source)
-    macros = {name: calls for edit in edits for name, calls in every.calls(edit).items() if len(calls) > 1}
+    macros = {
+        name: calls for edit in edits for name, calls in every.calls(edit).items() if len(calls) > 1
+    }
     texts = (
-        f"the macro {name} is called in {enumerated([_at(call, main) for call in calls], _MAX_NAMED)}"
+        (
+            f"the macro {name} is called in "
+            f"{enumerated([_at(call, main) for call in calls], _MAX_NAMED)}"
+        )
         for name, calls in macros.items()
     )
     return f" ({'; '.join(texts)})" if macros else ""
@@ -240,7 +298,9 @@ def _at(place: Location | Edit, main: str | None) -> str:
 
 
 def _moves(edits: Sequence[Edit], submission: Submission) -> list[str]:
-    """Return two changes in words if they exchange texts, or if a text is removed at one place and added at another."""
+    """Return two changes in words if they exchange texts, or if a text is removed at one place and
+    added at another.
+    """
     if len(edits) != 2:
         return []
     first, second = edits
@@ -256,11 +316,20 @@ def _moves(edits: Sequence[Edit], submission: Submission) -> list[str]:
 
 def _indents(edits: Sequence[Edit], submission: Submission) -> list[str]:
     """Return what becomes of the indentation of lines, if nothing else changes."""
-    if any((edit.old + edit.new).strip(" \t") or edit.column > 1 or edit.old == edit.new for edit in edits):
+    if any(
+        (edit.old + edit.new).strip(" \t") or edit.column > 1 or edit.old == edit.new
+        for edit in edits
+    ):
         return []
     tabs, spaces = edits[0].new.count("\t"), edits[0].new.count(" ")
-    width = " and ".join(counted(*it) for it in ((tabs, "tab"), (spaces, "space")) if it[0]) or "nothing"
-    lines = f"line{'s' if len(edits) > 1 else ''} {enumerated([str(edit.line) for edit in edits], _MAX_LINES)}"
+    width = (
+        " and ".join(counted(*it) for it in ((tabs, "tab"), (spaces, "space")) if it[0])
+        or "nothing"
+    )
+    lines = (
+        f"line{'s' if len(edits) > 1 else ''} "
+        f"{enumerated([str(edit.line) for edit in edits], _MAX_LINES)}"
+    )
     path = edits[0].path
     return [f"indent {lines if path == submission.path else f'{lines} of {path}'} with {width}"]
 
@@ -304,7 +373,9 @@ def _common_start(one: Sequence[str], other: Sequence[str]) -> int:
 
 
 def _is_whole(text: str) -> bool:
-    """Return whether a text has no line break, both brackets and both quotes of each pair, and no comma before it."""
+    """Return whether a text has no line break, both brackets and both quotes of each pair, and no
+    comma before it.
+    """
     is_balanced = all(text.count(one) == text.count(other) for one, other in ("()", "[]", "{}"))
     is_quoted = text.count("'") % 2 == text.count('"') % 2 == 0
     is_end = text.lstrip().startswith((",", ")", "]", "}")) and text != ","
@@ -315,7 +386,11 @@ def _insertion(edit: Edit, submission: Submission) -> str:
     """Return the line before, after or in which a text is added, or at the end of which."""
     line, at = _line(edit, submission), _at(edit, submission.path)
     before = edit._replace(line=edit.line - 1)
-    if edit.new.endswith("\n") and not edit.path.endswith(ROBOT_ENDINGS) and _line(before, submission).strip():
+    if (
+        edit.new.endswith("\n")
+        and not edit.path.endswith(ROBOT_ENDINGS)
+        and _line(before, submission).strip()
+    ):
         return f"after {_at(before, submission.path)}"
     if edit.new.endswith("\n") or not line[: edit.column - 1].strip():
         return f"before {at}"
@@ -324,7 +399,9 @@ def _insertion(edit: Edit, submission: Submission) -> str:
 
 
 def _where(edit: Edit, submission: Submission) -> str:
-    """Return the line of an edit, and which of the texts in it is meant if it is there several times."""
+    """Return the line of an edit, and which of the texts in it is meant if it is there several
+    times.
+    """
     line = _line(edit, submission)
     number = line.count(edit.old) if edit.old else 0
     nth = line.count(edit.old, 0, edit.column - 1) + 1

@@ -1,4 +1,6 @@
-"""Edits of names that do not agree, where they are used or where they are defined, and of values of parameters."""
+"""Edits of names that do not agree, where they are used or where they are defined, and of values of
+parameters.
+"""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -24,27 +26,43 @@ _SEPARATED = re.compile(r".*[./:]")
 _MAX_REMAPPINGS = 8  # of a file
 _REMAPPINGS = re.compile(r"\bremappings\s*=\s*\[[^][]*\]")
 _PAIR = re.compile(r"""\(\s*(["'][^"'\n]+["'])\s*,\s*(["'][^"'\n]+["'])\s*,?\s*\)""")
-_FROM_TO = re.compile(r"""\bfrom\s*[=:]\s*(["']?[\w~/]+["']?)\s*,?\s*\bto\s*[=:]\s*(["']?[\w~/]+["']?)(?![^\s},>/])""")
-_WITH_ALL = (f"/{CMAKE}", f"/{MANIFEST}")  # files in which a name stands several times for one thing
+_FROM_TO = re.compile(
+    r"""\bfrom\s*[=:]\s*(["']?[\w~/]+["']?)\s*,?\s*\bto\s*[=:]\s*(["']?[\w~/]+["']?)(?![^\s},>/])"""
+)
+_WITH_ALL = (
+    f"/{CMAKE}",
+    f"/{MANIFEST}",
+)  # files in which a name stands several times for one thing
 
 
-def name_proposals(submission: Submission, family: Family, reference: Package | None) -> Iterator[Proposal]:
-    """Yield the edits with which the names of a family agree: one for all of them, else one for each.
+def name_proposals(
+    submission: Submission, family: Family, reference: Package | None
+) -> Iterator[Proposal]:
+    """Yield the edits with which the names of a family agree: one for all of them, else one for
+    each.
 
-    Of two names the one is kept that more places write, in the submission or else in the reference; if as many do, both
-    ways are proposed. A name that a file puts together from pieces has none.
+    Of two names the one is kept that more places write, in the submission or else in the reference;
+    if as many do, both ways are proposed. A name that a file puts together from pieces has none.
     """
-    workspace, others = Workspace(submission), reference.packages.values() if reference is not None else ()
+    workspace, others = (
+        Workspace(submission),
+        reference.packages.values() if reference is not None else (),
+    )
     robot = workspace.robot
     frames = [*map(attrgetter("name"), (*robot.links, *robot.joints))] if robot is not None else []
     own, known = (
-        [source for it in each for source in workspace.sources_of(it, _TEXTS)] for each in (workspace.packages, others)
+        [source for it in each for source in workspace.sources_of(it, _TEXTS)]
+        for each in (workspace.packages, others)
     )
     # A part of a path is a name of its own, a part of a topic is none.
-    pattern = r"(?<![\w-]){}(?![\w-])" if family in ("files", "programs") else r"(?<![\w/.-]){}(?![\w/-])"
+    pattern = (
+        r"(?<![\w-]){}(?![\w-])" if family in ("files", "programs") else r"(?<![\w/.-]){}(?![\w/-])"
+    )
     texts = ("\n".join([*(it.text for it in own), *frames]), "\n".join(it.text for it in known))
     spelling = _Spelling(own, texts, pattern)
-    ways = [[*_ways(submission, it.corrections, spelling)] for it in wrong_names(submission, family)]
+    ways = [
+        [*_ways(submission, it.corrections, spelling)] for it in wrong_names(submission, family)
+    ]
     yield from chain.from_iterable(ways)
     if family == "topics":
         yield from chain.from_iterable(map(_exchanged_remappings, own))
@@ -56,37 +74,51 @@ def name_proposals(submission: Submission, family: Family, reference: Package | 
 
 
 class _Spelling(NamedTuple):
-    """The files of a submission, and the texts of it and of the reference in which names are counted."""
+    """The files of a submission, and the texts of it and of the reference in which names are
+    counted.
+    """
 
     sources: Sequence[Source]
     texts: tuple[str, str]
     pattern: str  # {} stands for the name
 
     def preference(self, new: str, old: str) -> int:
-        """Return by how much more often one name is written than the other; 0 if neither text tells."""
+        """Return by how much more often one name is written than the other; 0 if neither text
+        tells.
+        """
         patterns = [re.compile(self.pattern.format(re.escape(it))) for it in (new, old)]
         own, reference = ([len(it.findall(text)) for it in patterns] for text in self.texts)
         return (own[0] - own[1] if own[0] else 0) or reference[0] - reference[1]
 
     def only_edit(self, correction: Correction) -> Edits:
-        """Return the edit of a name in the one place where the submission writes it; none where it is in several."""
+        """Return the edit of a name in the one place where the submission writes it; none where it
+        is in several.
+        """
         old, new = correction.old.strip("/"), correction.new.strip("/")
         places = [(source, span) for source in self.sources for span in _spans(source, old)]
         return tuple(source.edit(*span, new) for source, span in places) if len(places) == 1 else ()
 
 
-def _ways(submission: Submission, either: Sequence[Correction], spelling: _Spelling) -> Iterator[Proposal]:
-    """Yield the edits that make a correction, or the reverse one; none into the name that fewer places write."""
+def _ways(
+    submission: Submission, either: Sequence[Correction], spelling: _Spelling
+) -> Iterator[Proposal]:
+    """Yield the edits that make a correction, or the reverse one; none into the name that fewer
+    places write.
+    """
     made = [correction_edits(submission, it) or spelling.only_edit(it) for it in either]
     for edits in filter(None, made):
         preference = spelling.preference(edits[0].new, edits[0].old)
         is_only = len(made) == 1
         if is_only or preference > 0 or (preference == 0 and all(made)):
-            yield Proposal(edits, f"the name `{edits[0].old}`", rank=int(preference == 0 and not is_only))
+            yield Proposal(
+                edits, f"the name `{edits[0].old}`", rank=int(preference == 0 and not is_only)
+            )
 
 
 def _exchanged_remappings(source: Source) -> Iterator[Proposal]:
-    """Yield the edits that exchange both names of a remapping in a launch file: it may be written backward."""
+    """Yield the edits that exchange both names of a remapping in a launch file: it may be written
+    backward.
+    """
     lists = [it.span() for it in _REMAPPINGS.finditer(source.text)]
     pairs = [it for span in lists for it in _PAIR.finditer(source.text, *span)]
     for found in [*pairs, *_FROM_TO.finditer(source.text)][:_MAX_REMAPPINGS]:
@@ -95,7 +127,9 @@ def _exchanged_remappings(source: Source) -> Iterator[Proposal]:
 
 
 def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Iterator[Proposal]:
-    """Yield the edit that gives a parameter the value that `parameter_is` asks for, where one is written plainly."""
+    """Yield the edit that gives a parameter the value that `parameter_is` asks for, where one is
+    written plainly.
+    """
     name, meant = wanted["parameter"], wanted.get("value")
     try:
         value, at = value_of(submission, wanted["node"], name)
@@ -106,7 +140,9 @@ def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Iterat
     source, key = submission.source(at.path), re.escape(name.rpartition(".")[2])
     if source is None:
         return
-    plain = re.compile(rf"(?<![\w-]){key}[\"']?\s*:\s*[\"']?({re.escape(str(value))})(?!\w)", re.IGNORECASE)
+    plain = re.compile(
+        rf"(?<![\w-]){key}[\"']?\s*:\s*[\"']?({re.escape(str(value))})(?!\w)", re.IGNORECASE
+    )
     offset = source.offset(at.line, at.column)
     found = next((it for it in plain.finditer(source.text) if it.end() > offset), None)
     if found is not None and isinstance(meant, str | int | float):
@@ -115,7 +151,9 @@ def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Iterat
 
 
 def correction_edits(submission: Submission, correction: Correction) -> Edits:
-    """Return the edits that make a correction in the text; none where the name is not written there as a whole."""
+    """Return the edits that make a correction in the text; none where the name is not written there
+    as a whole.
+    """
     at, source = correction.location, submission.source(correction.location.path)
     if source is None:
         return ()
@@ -129,19 +167,27 @@ def correction_edits(submission: Submission, correction: Correction) -> Edits:
 
 
 def _spans(source: Source, name: str) -> list[tuple[int, int]]:
-    return [it.span() for it in re.finditer(rf"(?<![\w-]){re.escape(name)}(?![\w-]|\.\w)", source.text)]
+    return [
+        it.span() for it in re.finditer(rf"(?<![\w-]){re.escape(name)}(?![\w-]|\.\w)", source.text)
+    ]
 
 
 def _as_written(old: str, new: str) -> Iterator[tuple[str, str]]:
-    """Yield two names without the slash that begins them, and without the folders or tables that both are in."""
+    """Yield two names without the slash that begins them, and without the folders or tables that
+    both are in.
+    """
     yield old.strip("/"), new.strip("/")
     shared = _SEPARATED.match(commonprefix((old, new)))  # noqa: RUF071  of names, not of paths
     if shared is not None and len(shared[0]) < min(len(old), len(new)):
         yield old[shared.end() :], new[shared.end() :]
 
 
-def _meant(text: str, name: str, spans: Sequence[tuple[int, int]], at: int) -> list[tuple[int, int]]:
-    """Return the occurrence of a name that a place is about: its key, else the first behind it, or the last before."""
+def _meant(
+    text: str, name: str, spans: Sequence[tuple[int, int]], at: int
+) -> list[tuple[int, int]]:
+    """Return the occurrence of a name that a place is about: its key, else the first behind it, or
+    the last before.
+    """
     key = re.compile(rf"{re.escape(name)}[\"']?\s*:\s*(?:\{{?\s*(?:ros__parameters|type)\s*:\s*)?")
     before, after = [it for it in spans if it[0] < at], [it for it in spans if it[0] >= at]
     if before and at - before[-1][0] < _MAX_KEY and key.fullmatch(text, before[-1][0], at):

@@ -21,19 +21,25 @@ _MAX_LAUNCH_FILES = 3
 
 @dataclass(frozen=True)
 class PackageTask:
-    """A package, the one of the reference solution, if there is one, and the texts that are given to checks."""
+    """A package, the one of the reference solution, if there is one, and the texts that are
+    given to checks.
+    """
 
     package: Package
     reference: Package | None = None
     given: frozenset[str] = field(default=frozenset())
 
     def source(self, path: str | None) -> Source | None:
-        """Return the text of a file of the package as it is; None where there is none that can be read."""
+        """Return the text of a file of the package as it is; None where there is none that can
+        be read.
+        """
         text = _text(self.package, path) if path is not None else None
         return Source(self.package.path(path or ""), text) if text is not None else None
 
     def file(self, package: Package | None, kind: str) -> str | None:
-        """Return the path of the file of a kind in a package: the one that a check names, else another one."""
+        """Return the path of the file of a kind in a package: the one that a check names, else
+        another one.
+        """
         if package is None or kind not in ("launch", "rviz"):
             return kind
         name = min((name for name in self.given if _kind_of(name) == kind), default="")
@@ -46,14 +52,22 @@ class PackageTask:
 
     def wanted(self, path: str | None) -> str | None:
         """Return the text of a file of the reference, with the student's name of the package."""
-        text = _text(self.reference, path) if self.reference is not None and path is not None else None
+        text = (
+            _text(self.reference, path) if self.reference is not None and path is not None else None
+        )
         return self.named(text) if text is not None else None
 
     def named(self, text: str) -> str:
-        """Return a text of the reference, or a path in it, with the student's name of the package."""
+        """Return a text of the reference, or a path in it, with the student's name of the
+        package.
+        """
         if self.reference is None or self.reference.name == self.package.name:
             return text
-        return re.sub(rf"(?<![\w.]){re.escape(self.reference.name)}(?![\w.])", lambda _: self.package.name, text)
+        return re.sub(
+            rf"(?<![\w.]){re.escape(self.reference.name)}(?![\w.])",
+            lambda _: self.package.name,
+            text,
+        )
 
     def renamed(self, path: str, new: str) -> Edit:
         """Return the edit that gives a file another path."""
@@ -66,7 +80,9 @@ class PackageTask:
 
 
 def _kind_of(path: str) -> str:
-    """Return the kind of a file: launch, rviz, urdf, setup.py with the files that it needs, or another file itself."""
+    """Return the kind of a file: launch, rviz, urdf, setup.py with the files that it needs, or
+    another file itself.
+    """
     if path.endswith((".rviz", ".urdf", ".xacro")):
         return "rviz" if path.endswith(".rviz") else "urdf"
     if path.endswith(ENDINGS) or is_in_launch_folder(path):
@@ -80,20 +96,32 @@ def _text(package: Package, path: str) -> str | None:
 
 
 def change(edits: Iterable[Edit], cause: str, what: str = "") -> Proposal:
-    """Return a proposal; `what` is the file in which something is wrong, if the cause does not name it."""
+    """Return a proposal; `what` is the file in which something is wrong, if the cause does not name
+    it.
+    """
     return Proposal(tuple(dict.fromkeys(edits)), f"{cause} in {what}" if what else cause)
 
 
 def file_proposals(task: PackageTask, kind: str) -> Iterator[Proposal]:
     """Yield edits that give a file the name that it has in the reference."""
-    wanted = [task.named(path) for path in task.reference.tree.files] if task.reference is not None else []
+    wanted = (
+        [task.named(path) for path in task.reference.tree.files]
+        if task.reference is not None
+        else []
+    )
     names = {posixpath.basename(path) for path in wanted} | task.given
     for path in dict.fromkeys(wanted):
         folder, name = posixpath.split(path)
         if _kind_of(path) != kind or any(_is_named(it, name, kind) for it in task.files):
             continue
-        own = [it for it in task.files if kind in (_kind_of(it), posixpath.dirname(it)) or it.startswith(f"{folder}/")]
-        yield from _rename(task, kind, name, [it for it in own if posixpath.basename(it) not in names])
+        own = [
+            it
+            for it in task.files
+            if kind in (_kind_of(it), posixpath.dirname(it)) or it.startswith(f"{folder}/")
+        ]
+        yield from _rename(
+            task, kind, name, [it for it in own if posixpath.basename(it) not in names]
+        )
 
 
 def _is_named(path: str, name: str, kind: str) -> bool:
@@ -101,8 +129,14 @@ def _is_named(path: str, name: str, kind: str) -> bool:
 
 
 def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> Iterator[Proposal]:
-    """Yield edits that give one of these files a name: the one with the most similar name first; xacro stays xacro."""
-    spare = {posixpath.basename(it): it for it in files if it.endswith(".xacro") <= name.endswith(".xacro")}
+    """Yield edits that give one of these files a name: the one with the most similar name first;
+    xacro stays xacro.
+    """
+    spare = {
+        posixpath.basename(it): it
+        for it in files
+        if it.endswith(".xacro") <= name.endswith(".xacro")
+    }
     others = [*spare][:_MAX_NAMES]
     nearest = closest(name, spare)
     if nearest is not None:
@@ -113,7 +147,9 @@ def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> It
 
 
 def package_names(task: PackageTask, new: str) -> Iterator[Proposal]:
-    """Yield edits that give the package one name in all its files, for a package that has another or several."""
+    """Yield edits that give the package one name in all its files, for a package that has another
+    or several.
+    """
     manifest, setup = task.package.manifest, task.package.installation
     if manifest is None or manifest.name is None:
         return

@@ -1,4 +1,6 @@
-"""The text of a Python file with its syntax tree and strings, for edits that change nothing else."""
+"""The text of a Python file with its syntax tree and strings, for edits that change nothing
+else.
+"""
 
 import ast
 import re
@@ -37,7 +39,9 @@ class _Literal(NamedTuple):
 
 
 class PythonFile:
-    """A Python file; offsets are in the text as the file has it, which may have other line breaks than Python sees."""
+    """A Python file; offsets are in the text as the file has it, which may have other line breaks
+    than Python sees.
+    """
 
     def __init__(self, source: Source) -> None:
         self.source = source
@@ -58,9 +62,15 @@ class PythonFile:
     @cached_property
     def literals(self) -> list[_Literal]:
         """The texts in its strings."""
-        found = ((it.start("string"), it["string"]) for it in _STRING.finditer(self.text) if it["string"])
+        found = (
+            (it.start("string"), it["string"]) for it in _STRING.finditer(self.text) if it["string"]
+        )
         quoted = ((start, text, _QUOTES.match(text)) for start, text in found)
-        spans = [(at + it.end(), at + len(text) - len(it[1])) for at, text, it in quoted if it is not None]
+        spans = [
+            (at + it.end(), at + len(text) - len(it[1]))
+            for at, text, it in quoted
+            if it is not None
+        ]
         return [_Literal(self.text[start:end], start, end) for start, end in spans]
 
     def offset(self, line: int, byte: int) -> int:
@@ -73,7 +83,9 @@ class PythonFile:
         """Return the offsets of the start and the end of a node."""
         assert node.end_lineno is not None
         assert node.end_col_offset is not None
-        return self.offset(node.lineno, node.col_offset), self.offset(node.end_lineno, node.end_col_offset)
+        return self.offset(node.lineno, node.col_offset), self.offset(
+            node.end_lineno, node.end_col_offset
+        )
 
     def segment(self, node: ast.expr | ast.stmt | ast.keyword) -> str:
         """Return the text of a node."""
@@ -118,7 +130,9 @@ class PythonFile:
         return text
 
     def plain(self, node: ast.expr) -> str:
-        """Return the code of an expression without names for its parts and in one style, to compare it."""
+        """Return the code of an expression without names for its parts and in one style, to compare
+        it.
+        """
         if node not in self._plain:
             code = self.written(node)
             tree = _expression(code)
@@ -147,7 +161,9 @@ class PythonFile:
     @cached_property
     def used(self) -> frozenset[str]:
         """The names that the file reads anywhere."""
-        return frozenset(it.id for it in self.nodes if isinstance(it, ast.Name) and isinstance(it.ctx, ast.Load))
+        return frozenset(
+            it.id for it in self.nodes if isinstance(it, ast.Name) and isinstance(it.ctx, ast.Load)
+        )
 
     @cached_property
     def imports(self) -> list[ast.Import | ast.ImportFrom]:
@@ -160,8 +176,12 @@ class PythonFile:
         return sorted(found, key=lambda node: (node.lineno, node.col_offset))
 
     def with_imports(self, names: Iterable[str]) -> list[Edit]:
-        """Return the edit that imports those of these names that have a usual meaning and are not bound."""
-        wanted = [name for name in dict.fromkeys(names) if name in USUAL_NAMES and name not in self.bound]
+        """Return the edit that imports those of these names that have a usual meaning and are not
+        bound.
+        """
+        wanted = [
+            name for name in dict.fromkeys(names) if name in USUAL_NAMES and name not in self.bound
+        ]
         body = self.parsed.tree.body if isinstance(self.parsed, Code) else []
         start = next((self.span(node)[0] for node in (*self.imports, *body)), len(self.text))
         text = "".join(sorted(map(self._import, wanted), key=lambda line: line.startswith("from")))
@@ -171,7 +191,9 @@ class PythonFile:
         module, _, own = USUAL_NAMES[name].rpartition(".")
         if own == "?glob":
             module, own = ("", "glob") if _USE.search(self.text) else ("glob", "glob")
-        return f"from {module} import {own}{self.newline}" if module else f"import {own}{self.newline}"
+        return (
+            f"from {module} import {own}{self.newline}" if module else f"import {own}{self.newline}"
+        )
 
 
 def _expression(code: str) -> ast.Expression | None:

@@ -1,4 +1,6 @@
-"""The difference between a robot and the reference's, cut into pieces: each is an edit that may undo a mistake."""
+"""The difference between a robot and the reference's, cut into pieces: each is an edit that may
+undo a mistake.
+"""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -19,13 +21,14 @@ _MOVING = ("revolute", "continuous", "prismatic", "planar")  # the types of join
 _NAMES = {("mimic", "joint"): "joint", ("joint", "name"): "joint", ("material", "name"): "material"}
 _MAX_LINKS = 400  # of a robot: more are not compared
 
-# The ranks of pieces: values of a sibling of the student's own design; the reference's; the student's own, corrected;
-# several at once, or another structure.
+# The ranks of pieces: values of a sibling of the student's own design; the reference's; the
+# student's own, corrected; several at once, or another structure.
 SIBLING, REFERENCE, OWN, STRUCTURE = range(4)
 
 
 class Piece(NamedTuple):
-    """An edit that may undo a mistake: values to set, edits of the text, or both; what is wrong, and the link.
+    """An edit that may undo a mistake: values to set, edits of the text, or both; what is wrong,
+    and the link.
 
     The `rank` orders pieces that gain as much. `around` is the element that changes.
     """
@@ -54,7 +57,8 @@ class MissingPart(NamedTuple):
 
 
 class RobotDifference:
-    """A robot beside the reference's: the pieces that lead from one to the other, and what is missing.
+    """A robot beside the reference's: the pieces that lead from one to the other, and what is
+    missing.
 
     Only `known` names are shown, because the reference has them.
     """
@@ -104,7 +108,9 @@ class RobotDifference:
         link: str = "",
         tag: str = "",
     ) -> Piece:
-        """Return a piece that changes an element, or its child with a tag; {} in the cause stands for its name."""
+        """Return a piece that changes an element, or its child with a tag; {} in the cause stands
+        for its name.
+        """
         cause = cause.replace("{}", self.draft.describe(element, tag, self.known))
         around = element if element.getparent() is self.draft.root else element.getparent()
         return Piece(cause, link or self.draft.link_of(element), sets, edits, rank, around)
@@ -124,29 +130,47 @@ class RobotDifference:
         """Return the piece that moves an element into another one."""
         text = self.draft.text(element)
         was = element.getparent()
-        cause = f"<{element.tag}> is inside <{was.tag if was is not None else ''}>; it belongs in <{parent.tag}>"
+        cause = (
+            f"<{element.tag}> is inside <{was.tag if was is not None else ''}>; it belongs in "
+            f"<{parent.tag}>"
+        )
         edits = (*self.draft.remove(element), *self.draft.insert(parent, text))
         return self.piece(element, cause, edits)._replace(around=parent)
 
     def _materials(self) -> Iterator[Piece]:
-        """Name a material as links use it, or give what a link shows the reference's colour if no material has it."""
+        """Name a material as links use it, or give what a link shows the reference's colour if no
+        material has it.
+        """
         own = {it.get("name") or "": it for it in self.draft.root.iterchildren("material")}
         uses = Counter(it.get("name") or "" for it in self.draft.root.iterfind("link//material"))
         for name in sorted(own.keys() - uses.keys()):
-            meant = near(name, [it for it, number in uses.items() if number > 1 and it not in own], "material")
+            meant = near(
+                name,
+                [it for it, number in uses.items() if number > 1 and it not in own],
+                "material",
+            )
             if meant is not None:
-                yield self.piece(own[name], "the name of {}", sets=(Set(own[name], "", "name", meant),))
+                yield self.piece(
+                    own[name], "the name of {}", sets=(Set(own[name], "", "name", meant),)
+                )
         for used in self.draft.root.iter("material"):
             link = self.reference.link(self.draft.link_of(used))
-            names = [it.get("name") or "" for it in link.iter("material")] if link is not None else []
+            names = (
+                [it.get("name") or "" for it in link.iter("material")] if link is not None else []
+            )
             like = self.reference.material(names[0]) if names else None
             colour = child_of(like, "color") if like is not None else None
             if like is None or colour is None:
                 continue
             if (used.get("name") or "") not in own:
                 yield self.of_sets([Set(used, "color", "rgba", colour.get("rgba") or "")])
-            elif all(self.draft.material(it) is None for it in (names[0], self._names["material"].get(names[0], ""))):
-                yield self.piece(used, "the material of {}", self.draft.replace(used, self.reference.text(like)))
+            elif all(
+                self.draft.material(it) is None
+                for it in (names[0], self._names["material"].get(names[0], ""))
+            ):
+                yield self.piece(
+                    used, "the material of {}", self.draft.replace(used, self.reference.text(like))
+                )
 
     def _joint_names(self) -> Iterator[Piece]:
         """Rename joints as in the reference, also where they are mimicked."""
@@ -177,9 +201,17 @@ class RobotDifference:
         for step in found:
             own, like = step.own, step.like
             match step.verb:
-                case "rename" | "unset" if new := step.other or _meant_attribute(own.tag, step.name):
-                    edits = self.draft.rename_attribute(own.of, step.name, new) if new not in own.values else ()
-                    yield self.piece(own.of, f"the name of the attribute {new} of {{}}", edits, rank=SIBLING)
+                case "rename" | "unset" if new := step.other or _meant_attribute(
+                    own.tag, step.name
+                ):
+                    edits = (
+                        self.draft.rename_attribute(own.of, step.name, new)
+                        if new not in own.values
+                        else ()
+                    )
+                    yield self.piece(
+                        own.of, f"the name of the attribute {new} of {{}}", edits, rank=SIBLING
+                    )
                 case "retag" if like is not None:
                     edits = self.draft.rename_tag(own.of, like.tag)
                     yield self.piece(own.of, f"the name of the tag <{like.tag}>", edits)
@@ -204,13 +236,19 @@ class RobotDifference:
             yield from self.each([Set(element, "", name, value) for name, value in values.items()])
 
     def _is_loose(self, element: Element) -> bool:
-        """Return whether an element names a parent of the student's own that no joint holds yet: that is what lacks."""
+        """Return whether an element names a parent of the student's own that no joint holds yet:
+        that is what lacks.
+        """
         name = element.get("link") or ""
-        is_own = element.tag == "parent" and self.draft.link(name) is not None and name not in self.known
+        is_own = (
+            element.tag == "parent" and self.draft.link(name) is not None and name not in self.known
+        )
         return is_own and self.draft.joint_of(name) is None
 
     def _rename(self, element: Element, name: str) -> Iterator[Piece]:
-        """Rename a link with all that names it, or alone; a joint; a material where it is used or defined."""
+        """Rename a link with all that names it, or alone; a joint; a material where it is used or
+        defined.
+        """
         tag, old = str(element.tag), element.get("name") or ""
         is_begun = 2 * sum(map(self.draft.robot.has_link, self.names)) >= len(self.names)
         if tag == "link" and not is_begun and old and near(old, [name], "link") is None:
@@ -219,17 +257,23 @@ class RobotDifference:
         everywhere = _rename_link(self.draft, old, name) if tag == "link" else own
         for sets in dict.fromkeys((everywhere, own)):
             if sets:
-                yield self.piece(element, f"the name of a {tag}", sets=sets, link=name if tag == "link" else "")
+                yield self.piece(
+                    element, f"the name of a {tag}", sets=sets, link=name if tag == "link" else ""
+                )
 
     def _remove(self, node: Node) -> Iterator[Piece]:
         """Remove what the reference does not have; an origin or axis gets its default."""
         element, tag = node.of, node.tag
         if tag in ("origin", "axis"):
             defaults = dict.fromkeys(node.values, "1 0 0" if tag == "axis" else "0 0 0")
-            yield from self.each([Set(element, "", name, value) for name, value in defaults.items()])
+            yield from self.each(
+                [Set(element, "", name, value) for name, value in defaults.items()]
+            )
         elif element.getparent() is self.draft.root and not self._is_twice(element):
             return
-        elif element.getparent() is not None and element.getparent().tag != "geometry":  # there the shape is replaced
+        elif (
+            element.getparent() is not None and element.getparent().tag != "geometry"
+        ):  # there the shape is replaced
             cause = f"an extra <{tag}>: {{}}" if tag not in ("link", "joint") else f"an extra {tag}"
             yield self.piece(element, cause, self.draft.remove(element), rank=STRUCTURE)
 
@@ -240,25 +284,42 @@ class RobotDifference:
     @cached_property
     def _uses(self) -> Counter[tuple[str, str, str]]:
         """How many children of the robot have a name, or move a link, by their tag."""
-        return Counter(key for child in self.draft.root.iterchildren("*") for key in _identities(child))
+        return Counter(
+            key for child in self.draft.root.iterchildren("*") for key in _identities(child)
+        )
 
     def _inner(self, parent: Element, element: Element) -> Iterator[Piece]:
-        """Add an element to another one: values of an origin or axis, another shape, or the element as it is."""
+        """Add an element to another one: values of an origin or axis, another shape, or the element
+        as it is.
+        """
         tag, own = str(element.tag), child_of(parent, str(element.tag))
         if tag in ("origin", "axis"):  # one with default values only does not count
-            values = {str(key): normal(tag, str(key), str(value)) for key, value in element.attrib.items()}
+            values = {
+                str(key): normal(tag, str(key), str(value)) for key, value in element.attrib.items()
+            }
             mine = {name: own.get(name) if own is not None else None for name in values}
             off = [name for name, value in values.items() if normal(tag, name, mine[name]) != value]
             yield from self.each([Set(parent, tag, name, values[name]) for name in off])
             return
-        shape = next((it for it in parent if parent.tag == "geometry" and it.tag in CHILDREN["geometry"]), None)
+        shape = next(
+            (it for it in parent if parent.tag == "geometry" and it.tag in CHILDREN["geometry"]),
+            None,
+        )
         if shape is None:
-            yield self.piece(parent, f"the <{tag}> of {{}} is missing", self.draft.insert(parent, self._text(element)))
+            yield self.piece(
+                parent,
+                f"the <{tag}> of {{}} is missing",
+                self.draft.insert(parent, self._text(element)),
+            )
         else:
-            yield self.piece(parent, "the shape of {}", self.draft.replace(shape, self._text(element)))
+            yield self.piece(
+                parent, "the shape of {}", self.draft.replace(shape, self._text(element))
+            )
 
     def _text(self, element: Element) -> str:
-        """Return an element of the reference with the robot's names, an undefined material with its colour."""
+        """Return an element of the reference with the robot's names, an undefined material with its
+        colour.
+        """
         name = element.get("name") or ""
         own = self._names["material" if element.tag == "material" else "joint"]
         text = self.reference.text(element)
@@ -266,13 +327,19 @@ class RobotDifference:
             for old, new in own.items():
                 text = text.replace(f'"{old}"', f'"{escaped(new)}"')
         defined = self.reference.material(name)
-        if element.tag == "material" and defined is not None and self.draft.material(own.get(name, name)) is None:
+        if (
+            element.tag == "material"
+            and defined is not None
+            and self.draft.material(own.get(name, name)) is None
+        ):
             return self.reference.text(defined)
         return text
 
 
 def _identities(element: Element) -> list[tuple[str, str, str]]:
-    """Return what no other child of the robot with this tag may have: its name, and the link that it moves."""
+    """Return what no other child of the robot with this tag may have: its name, and the link that
+    it moves.
+    """
     texts = (("name", element.get("name") or ""), ("child", end_of(element, "child")))
     return [(str(element.tag), what, text) for what, text in texts if text]
 
@@ -295,7 +362,10 @@ def _cause(sets: Sequence[Set]) -> str:
         if known is None or not known.parts:
             return what
         parts += [part or one.attribute for part in known.parts]
-        old, new = (*old, *values_of(known.default if text is None else text)), (*new, *values_of(one.value))
+        old, new = (
+            (*old, *values_of(known.default if text is None else text)),
+            (*new, *values_of(one.value)),
+        )
     return mistake_in(parts, TAGS[tag].attributes[sets[-1].attribute].unit, old, new)
 
 
@@ -308,7 +378,9 @@ def _unique(pieces: Iterable[Piece]) -> list[Piece]:
 
 
 def normal(tag: str, attribute: str, text: str | None) -> str:
-    """Return a value as it is compared: numbers without needless digits, the default where there is none."""
+    """Return a value as it is compared: numbers without needless digits, the default where there is
+    none.
+    """
     known = TAGS[tag].attributes.get(attribute) if tag in TAGS else None
     if text is None:
         text = known.default or "" if known is not None else ""
@@ -318,7 +390,9 @@ def normal(tag: str, attribute: str, text: str | None) -> str:
 
 
 def _wanted_value(step: Step) -> str | None:
-    """Return the value that a step sets: that of the reference, else the default; None if there is none."""
+    """Return the value that a step sets: that of the reference, else the default; None if there is
+    none.
+    """
     if step.verb == "set" and step.like is not None:
         return step.like.values[step.name]
     known = TAGS[step.own.tag].attributes.get(step.name) if step.own.tag in TAGS else None
@@ -331,7 +405,11 @@ def _node_of(element: Element, names: Mapping[str, Mapping[str, str]] | None = N
     values = {}
     for name, value in element.attrib.items():
         text = normal(tag, str(name), str(value))
-        if tag in TAGS and str(name) in TAGS[tag].attributes and text == normal(tag, str(name), None):
+        if (
+            tag in TAGS
+            and str(name) in TAGS[tag].attributes
+            and text == normal(tag, str(name), None)
+        ):
             continue
         values[str(name)] = (names or {}).get(_NAMES.get((tag, str(name)), ""), {}).get(text, text)
     if tag not in TAGS and not len(element) and (element.text or "").strip():
@@ -344,7 +422,11 @@ def _node_of(element: Element, names: Mapping[str, Mapping[str, str]] | None = N
 
 def _keys(element: Element, values: Mapping[str, str]) -> tuple[str, ...]:
     name = values.get("name", "") or values.get("reference", "")
-    if element.tag == "joint" and element.getparent() is not None and child_of(element, "child") is not None:
+    if (
+        element.tag == "joint"
+        and element.getparent() is not None
+        and child_of(element, "child") is not None
+    ):
         return end_of(element, "child"), name
     return (name,) if name and element.tag not in ("visual", "collision") else ()
 
@@ -366,7 +448,9 @@ def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
             names["joint"][joint.get("name") or ""] = own.get("name") or ""
     mine = [_node_of(found) for found in draft.root.iterchildren("material")]
     pairs = paired(mine, [_node_of(found) for found in reference.root.iterchildren("material")])
-    called = {like.values.get("name", ""): own_node.values.get("name") for own_node, like in pairs.both}
+    called = {
+        like.values.get("name", ""): own_node.values.get("name") for own_node, like in pairs.both
+    }
     names["material"] = {name: own_name for name, own_name in called.items() if own_name}
     return names
 
@@ -391,9 +475,13 @@ def _meant_attribute(tag: str, name: str) -> str:
 
 
 def _rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
-    """Return what gives a link another name, also where joints name it; nothing where several have the old one."""
+    """Return what gives a link another name, also where joints name it; nothing where several have
+    the old one.
+    """
     own = [link for link in draft.links() if link.get("name") == old]
     if len(own) != 1:
         return ()
-    ends = [(joint, role) for joint in draft.joints() for role in _ENDS if end_of(joint, role) == old]
+    ends = [
+        (joint, role) for joint in draft.joints() for role in _ENDS if end_of(joint, role) == old
+    ]
     return (Set(own[0], "", "name", new), *(Set(joint, role, "link", new) for joint, role in ends))

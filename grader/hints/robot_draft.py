@@ -34,7 +34,9 @@ _COMMENT = re.compile(r"[ \t]*<!--.*?-->", re.DOTALL)
 
 
 class Set(NamedTuple):
-    """A new value of an attribute: of an element, or, with a tag, of its child of this tag, which may be missing."""
+    """A new value of an attribute: of an element, or, with a tag, of its child of this tag,
+    which may be missing.
+    """
 
     owner: Element
     tag: str
@@ -48,7 +50,9 @@ class Set(NamedTuple):
 
 
 class Draft:
-    """A robot that is being edited: its elements, what they are called, and the edits of their text."""
+    """A robot that is being edited: its elements, what they are called, and the edits of their
+    text.
+    """
 
     def __init__(self, root: Element, robot: Robot, source: Source) -> None:
         self.root = root
@@ -96,7 +100,9 @@ class Draft:
         return {end_of(joint, "child"): joint for joint in reversed(list(self.joints()))}
 
     def material(self, name: str) -> Element | None:
-        """Return the first definition of a material that counts: under the robot, else in a visual."""
+        """Return the first definition of a material that counts: under the robot, else in a
+        visual.
+        """
         return self._materials.get(name)
 
     @cached_property
@@ -109,26 +115,34 @@ class Draft:
         return found
 
     def owner(self, element: Element) -> Element:
-        """Return the child of the root that an element is or is in; the root itself for the root."""
+        """Return the child of the root that an element is or is in; the root itself for the
+        root.
+        """
         while (parent := element.getparent()) is not None and parent is not self.root:
             element = parent
         return element
 
     def link_of(self, element: Element) -> str:
-        """Return the link that an element belongs to: of a joint its child; empty for a material."""
+        """Return the link that an element belongs to: of a joint its child; empty for a
+        material.
+        """
         owner = self.owner(element)
         if owner.tag == "joint":
             return end_of(owner, "child")
         return (owner.get("name") or "") if owner.tag == "link" else ""
 
     def describe(self, element: Element, tag: str = "", known: Collection[str] = ()) -> str:
-        """Return what an element, or its child with a tag, is called: the visual origin of 'lidar', if `known`."""
+        """Return what an element, or its child with a tag, is called: the visual origin of
+        'lidar', if `known`.
+        """
         owner, path = self.owner(element), [tag] if tag else []
         inner = element
         while inner is not owner and inner is not self.root:
             path.insert(0, str(inner.tag))
             inner = inner.getparent()  # type: ignore[assignment]
-        path = [name for index, name in enumerate(path) if name != "geometry" or index == len(path) - 1]
+        path = [
+            name for index, name in enumerate(path) if name != "geometry" or index == len(path) - 1
+        ]
         if owner.tag != "link" or not path:
             path.insert(0, str(owner.tag))
         name = self.link_of(owner) if owner.tag in ("link", "joint") else owner.get("name") or ""
@@ -148,7 +162,9 @@ class Draft:
 
     @cached_property
     def _expanded(self) -> "ExpandedEdits | None":
-        """The edits of the source if xacro expanded it: an element is not written there as it is read."""
+        """The edits of the source if xacro expanded it: an element is not written there as it is
+        read.
+        """
         if not self.source.is_expanded:
             return None
         from grader.hints.xacro_edits import ExpandedEdits  # late: most robots are not xacro
@@ -165,24 +181,37 @@ class Draft:
         return self._expanded.corrections(names) if self._expanded is not None else []
 
     def numbers(self, element: Element, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
-        """Return the numbers from which xacro computes an attribute, each with what makes the edit of it."""
+        """Return the numbers from which xacro computes an attribute, each with what makes the
+        edit of it.
+        """
         if self._expanded is None:
             return []
         return self._expanded.numbers(self._tags[element], attribute)
 
-    def _siblings(self, element: Element, attribute: str, sets: Iterable[Set]) -> dict[Element, str]:
+    def _siblings(
+        self, element: Element, attribute: str, sets: Iterable[Set]
+    ) -> dict[Element, str]:
         """Return the values that are set for the elements that come from the same text as one."""
         if self._expanded is None:
             return {}
         same = [self._elements[it] for it in self._expanded.siblings(self._tags[element])]
-        return {it: one.value for it in same for one in sets if one.attribute == attribute and one.element is it}
+        return {
+            it: one.value
+            for it in same
+            for one in sets
+            if one.attribute == attribute and one.element is it
+        }
 
     def shared(self, sets: Iterable[Set]) -> frozenset[str]:
-        """Return the links whose elements come from the same text of xacro as those that are set."""
+        """Return the links whose elements come from the same text of xacro as those that are
+        set.
+        """
         if self._expanded is None:
             return frozenset()
         tags = [self._tags[one.element] for one in sets if one.element is not None]
-        return frozenset(self.link_of(self._elements[it]) for tag in tags for it in self._expanded.siblings(tag))
+        return frozenset(
+            self.link_of(self._elements[it]) for tag in tags for it in self._expanded.siblings(tag)
+        )
 
     def ways(self, sets: Collection[Set]) -> list[Edits]:
         """Return the ways to set values; attributes and elements that are missing are added."""
@@ -200,13 +229,18 @@ class Draft:
                 others = self._siblings(element, one.attribute, sets)
                 done |= {(it, one.attribute) for it in others}
                 is_numeric = bool(PARTS.get(one.attribute))
-                value = merged(element.get(one.attribute) or "", one.value) if is_numeric else one.value
+                value = (
+                    merged(element.get(one.attribute) or "", one.value) if is_numeric else one.value
+                )
                 ways = self._ways_of(element, one.attribute, value, others)
                 found = [(*before, *more) for before in found for more in ways][:_MAX_WAYS]
             else:
                 attributes.setdefault(element, {})[one.attribute] = one.value
         added = [self.add_attributes(element, values) for element, values in attributes.items()]
-        added += [self.insert(owner, _empty_element(tag, values)) for (owner, tag), values in children.items()]
+        added += [
+            self.insert(owner, _empty_element(tag, values))
+            for (owner, tag), values in children.items()
+        ]
         rest = tuple(edit for edits in added for edit in edits)
         return [
             tuple(edit for edit in dict.fromkeys((*edits, *rest)) if edit.old != edit.new)
@@ -223,18 +257,29 @@ class Draft:
             return ways
         source, start = self.source.element(self._tags[element])
         pair = [markup.attribute(source.text, start, one.attribute) for one in sets]
-        texts = [source.text[it.value_start : it.value_end] for it in reversed(pair) if it is not None]
+        texts = [
+            source.text[it.value_start : it.value_end] for it in reversed(pair) if it is not None
+        ]
         wanted = [values_of(element.get(one.attribute)) for one in sets][::-1]
         if len(texts) != 2 or not all(wanted) or [values_of(one.value) for one in sets] != wanted:
             return ways
-        edits = tuple(with_attribute(source, start, it.attribute, text) for it, text in zip(sets, texts, strict=True))
+        edits = tuple(
+            with_attribute(source, start, it.attribute, text)
+            for it, text in zip(sets, texts, strict=True)
+        )
         return [*ways[:1], edits] if all("$" in text for text in texts) else [edits]
 
-    def _ways_of(self, element: Element, attribute: str, value: str, others: Mapping[Element, str]) -> list[Edits]:
-        """Return the ways to give an attribute another text, and elements that come from the same text others."""
+    def _ways_of(
+        self, element: Element, attribute: str, value: str, others: Mapping[Element, str]
+    ) -> list[Edits]:
+        """Return the ways to give an attribute another text, and elements that come from the same
+        text others.
+        """
         tag = self._tags[element]
         wanted = {tag: (element.get(attribute) or "", escaped(value))}
-        wanted |= {self._tags[it]: (it.get(attribute) or "", escaped(text)) for it, text in others.items()}
+        wanted |= {
+            self._tags[it]: (it.get(attribute) or "", escaped(text)) for it, text in others.items()
+        }
         if self._expanded is not None:
             return self._expanded.rewrites(attribute, wanted)
         source, start = self.source.element(tag)
@@ -244,11 +289,17 @@ class Draft:
         return [(with_attribute(source, start, attribute, escaped(value)),)]
 
     def exchange(self, *elements: Element, attribute: str) -> Edits:
-        """Return the edits with which two elements have the text of an attribute of each other, as it is written."""
+        """Return the edits with which two elements have the text of an attribute of each other, as
+        it is written.
+        """
         places = [self.source.element(self._tags[element]) for element in elements]
         spans = [markup.attribute(source.text, start, attribute) for source, start in places]
         pairs = zip(places, spans, strict=True)
-        texts = [source.text[it.value_start : it.value_end] for (source, _), it in pairs if it is not None]
+        texts = [
+            source.text[it.value_start : it.value_end]
+            for (source, _), it in pairs
+            if it is not None
+        ]
         if len(texts) != 2 or texts[0] == texts[1]:
             return ()
         return tuple(
@@ -257,7 +308,9 @@ class Draft:
         )
 
     def write_text(self, element: Element, text: str) -> Edits:
-        """Return the edit that gives an element another text; none where it has children, or xacro evaluates it."""
+        """Return the edit that gives an element another text; none where it has children, or xacro
+        evaluates it.
+        """
         tag = self._tags[element]
         wanted = {tag: ((element.text or "").strip(), escaped(text))}
         if self._expanded is not None:
@@ -310,7 +363,9 @@ class Draft:
     def _broken_tag(self, text: str, start: int) -> str:
         if not self.is_broken:
             return ""
-        from grader.xml.repair import broken_tag  # late: its patterns take long, and few files need them
+        from grader.xml.repair import (
+            broken_tag,
+        )  # late: its patterns take long, and few files need them
 
         return broken_tag(text, start)
 

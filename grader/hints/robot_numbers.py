@@ -1,4 +1,6 @@
-"""Numbers that a person may have meant, and what is wrong with those that are written: a sign, a unit, the order."""
+"""Numbers that a person may have meant, and what is wrong with those that are written: a sign, a
+unit, the order.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations
@@ -15,7 +17,9 @@ _SAME = 1e-6
 
 
 class _Mistake(NamedTuple):
-    """What a person does to numbers: the units, the size from which it is likely, how to undo it, and the cause."""
+    """What a person does to numbers: the units, the size from which it is likely, how to undo it,
+    and the cause.
+    """
 
     units: tuple[str, ...]
     least: float
@@ -27,7 +31,9 @@ _LENGTHS, _ANGLES, _ANY = ("m",), ("rad", "rad or m"), ()
 _MISTAKES = (
     _Mistake(_ANY, 0.0, lambda value: -value, "the sign of {}"),
     _Mistake(_ANGLES, 6.3, radians, "the unit of {}: degrees, not radians"),
-    _Mistake(_LENGTHS, LARGE, lambda value: value / 1000, "the unit of {}: millimetres, not metres"),
+    _Mistake(
+        _LENGTHS, LARGE, lambda value: value / 1000, "the unit of {}: millimetres, not metres"
+    ),
     _Mistake(_LENGTHS, LARGE, lambda value: value / 100, "the unit of {}: centimetres, not metres"),
     _Mistake(("1",), 1.1, lambda value: value / 255, "the range of {}: 0..255, not 0..1"),
     _Mistake(_LENGTHS, 0.0, lambda value: value / 2, "{}: twice the correct value"),
@@ -40,7 +46,8 @@ def mistake_in(parts: Sequence[str], unit: str, old: Values, new: Values) -> str
     if not len(parts) == len(old) == len(new):
         return "the numbers of {}"
     off = [index for index, pair in enumerate(zip(old, new, strict=True)) if not _is_same(*pair)]
-    wrong = f"{enumerated([_with_article(parts[index]) for index in off]) if len(off) < 4 else 'the numbers'} of {{}}"
+    names = [_with_article(parts[index]) for index in off]
+    wrong = f"{enumerated(names) if len(off) < 4 else 'the numbers'} of {{}}"
     for mistake in _MISTAKES:
         fits = (_is_same(mistake.correct(old[index]), new[index], 2e-3) for index in off)
         if (not mistake.units or unit in mistake.units) and off and all(fits):
@@ -55,10 +62,18 @@ def _with_article(part: str) -> str:
 
 
 def plausible(unit: str, old: Values) -> Iterator[Values]:
-    """Yield numbers that a person may have meant: another sign, another unit, twice or half of it, another order."""
+    """Yield numbers that a person may have meant: another sign, another unit, twice or half of it,
+    another order.
+    """
     for mistake in _MISTAKES:
-        if max(map(abs, old), default=0.0) >= mistake.least and (not mistake.units or unit in mistake.units):
-            for index in (index for index, value in enumerate(old) if value and not (mistake.least and len(old) > 1)):
+        if max(map(abs, old), default=0.0) >= mistake.least and (
+            not mistake.units or unit in mistake.units
+        ):
+            for index in (
+                index
+                for index, value in enumerate(old)
+                if value and not (mistake.least and len(old) > 1)
+            ):
                 yield (*old[:index], mistake.correct(old[index]), *old[index + 1 :])
             if mistake.least and len(old) > 1:
                 yield tuple(map(mistake.correct, old))

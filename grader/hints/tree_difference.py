@@ -1,7 +1,7 @@
 """The difference between two trees, such as the elements of two robots.
 
-Nodes are paired by what they are recognised by, then by likeness, and compared. Each step of the difference is
-independent of the others: a caller makes edits of the steps that it needs.
+Nodes are paired by what they are recognised by, then by likeness, and compared. Each step of the
+difference is independent of the others: a caller makes edits of the steps that it needs.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -13,7 +13,8 @@ _LAST = ("add", "remove")
 
 
 class Node(NamedTuple):
-    """A node of a tree: its tag, what it is recognised by (the most reliable first), its values, and its children.
+    """A node of a tree: its tag, what it is recognised by (the most reliable first), its values,
+    and its children.
 
     `of` is what the node is made from: an element, or a place in a file.
     """
@@ -32,10 +33,12 @@ class Node(NamedTuple):
 
 
 class Step(NamedTuple):
-    """One step from a tree to another: what happens to `own`, a node of the first tree, as in `like` of the other one.
+    """One step from a tree to another: what happens to `own`, a node of the first tree, as in
+    `like` of the other one.
 
-    set: the value `name` becomes that of `like`. unset: it goes. rename: it is called `other`. retag: the node gets the
-    tag of `like`. add: `like` is added to `own`. remove: `own` goes. move: `own` becomes a child of `parent`.
+    set: the value `name` becomes that of `like`. unset: it goes. rename: it is called `other`.
+    retag: the node gets the tag of `like`. add: `like` is added to `own`. remove: `own` goes. move:
+    `own` becomes a child of `parent`.
     """
 
     verb: Literal["set", "unset", "rename", "retag", "add", "remove", "move"]
@@ -47,7 +50,9 @@ class Step(NamedTuple):
 
 
 class _Pairs(NamedTuple):
-    """Two lists of nodes: those that belong together, those of the first alone, and those of the second alone."""
+    """Two lists of nodes: those that belong together, those of the first alone, and those of the
+    second alone.
+    """
 
     both: list[tuple[Node, Node]]
     extra: list[Node]
@@ -55,7 +60,9 @@ class _Pairs(NamedTuple):
 
 
 def steps(own: Node, like: Node) -> list[Step]:
-    """Return the steps from a tree to another: what is to move, the values, then what is to be added and removed."""
+    """Return the steps from a tree to another: what is to move, the values, then what is to be
+    added and removed.
+    """
     found = [*_steps(own, like)]
     spare = [step.own for step in found if step.verb == "remove"]
     taken: list[Node] = []
@@ -70,8 +77,14 @@ def steps(own: Node, like: Node) -> list[Step]:
             moved += [Step("move", alike, added, parent=step.own), *_steps(alike, added)]
             spare = [node for node in spare if node is not alike]
             taken.append(alike)
-    kept = [step for step in left if step.verb != "remove" or not any(node is step.own for node in taken)]
-    return moved + sorted(kept, key=lambda step: _LAST.index(step.verb) if step.verb in _LAST else -1)
+    kept = [
+        step
+        for step in left
+        if step.verb != "remove" or not any(node is step.own for node in taken)
+    ]
+    return moved + sorted(
+        kept, key=lambda step: _LAST.index(step.verb) if step.verb in _LAST else -1
+    )
 
 
 def _steps(own: Node, like: Node) -> Iterator[Step]:
@@ -100,13 +113,19 @@ def _values(own: Node, like: Node) -> Iterator[Step]:
 
 
 def paired(own: Sequence[Node], like: Sequence[Node]) -> _Pairs:
-    """Pair nodes: by tag and all keys, then by each key, then by tag and likeness, then by similar tags."""
+    """Pair nodes: by tag and all keys, then by each key, then by tag and likeness, then by similar
+    tags.
+    """
     extra, missing = [*own], [*like]
     both: list[tuple[Node, Node]] = []
     depth = max((len(node.keys) for node in (*own, *like)), default=0)
     for part in (slice(0, depth), *(slice(index, index + 1) for index in range(depth))):
         for other in [*missing]:
-            alike = [node for node in extra if node.tag == other.tag and node.keys[part] == other.keys[part]]
+            alike = [
+                node
+                for node in extra
+                if node.tag == other.tag and node.keys[part] == other.keys[part]
+            ]
             found = next(iter(alike), None) if any(other.keys[part]) else None
             if found is not None:
                 _pair(found, other, extra, missing, both)
@@ -123,24 +142,32 @@ def paired(own: Sequence[Node], like: Sequence[Node]) -> _Pairs:
     return _Pairs(in_order, extra, missing)
 
 
-def _pair(node: Node, other: Node, extra: list[Node], missing: list[Node], both: list[tuple[Node, Node]]) -> None:
+def _pair(
+    node: Node, other: Node, extra: list[Node], missing: list[Node], both: list[tuple[Node, Node]]
+) -> None:
     extra[:] = [one for one in extra if one is not node]
     missing[:] = [one for one in missing if one is not other]
     both.append((node, other))
 
 
 def _likeness(one: Node, other: Node) -> float:
-    """Return how alike two nodes are: the share of their values and of the tags in them that both have."""
+    """Return how alike two nodes are: the share of their values and of the tags in them that both
+    have.
+    """
     mine, its = _content(one), _content(other)
     return len(mine & its) / max(len(mine | its), 1)
 
 
 def _is_alike(one: Node, other: Node) -> bool:
     """Return whether a node is another one in another place."""
-    return one.tag == other.tag and (_likeness(one, other) > 0.5 or bool(set(one.keys) & set(other.keys) - {""}))
+    return one.tag == other.tag and (
+        _likeness(one, other) > 0.5 or bool(set(one.keys) & set(other.keys) - {""})
+    )
 
 
 def _content(node: Node) -> set[tuple[str, ...]]:
     return {
-        item for inner in node.walk() for item in ((inner.tag,), *((inner.tag, *pair) for pair in inner.values.items()))
+        item
+        for inner in node.walk()
+        for item in ((inner.tag,), *((inner.tag, *pair) for pair in inner.values.items()))
     }

@@ -1,10 +1,11 @@
 """The edits of the texts that the elements of an expanded xacro file come from.
 
-A value is changed where it is defined, if a name alone gives it: in a property, in the argument of a macro call, in the
-default of an argument. A number from which it is computed gets the value with which the result is the wanted one; an
-expression that defines it is negated or replaced. Else it is replaced where it is used, or given in a macro call that
-lacks it. Nothing that a YAML file gives is changed. What xacro refuses is corrected by near names, by the prefix
-xacro, and by arguments that other calls of a macro give.
+A value is changed where it is defined, if a name alone gives it: in a property, in the argument of
+a macro call, in the default of an argument. A number from which it is computed gets the value with
+which the result is the wanted one; an expression that defines it is negated or replaced. Else it is
+replaced where it is used, or given in a macro call that lacks it. Nothing that a YAML file gives is
+changed. What xacro refuses is corrected by near names, by the prefix xacro, and by arguments that
+other calls of a macro give.
 """
 
 import re
@@ -50,7 +51,9 @@ _MAX_DEFINITIONS = 12
 
 
 class _Written(NamedTuple):
-    """A text at an offset of a file, the scope in which it is evaluated, the attribute that it is in, and its name."""
+    """A text at an offset of a file, the scope in which it is evaluated, the attribute that it
+    is in, and its name.
+    """
 
     source: Source
     start: int
@@ -70,7 +73,9 @@ class _Written(NamedTuple):
 
 
 class _Use(NamedTuple):
-    """A use of a text: the scope in which it is evaluated, what it is and should be, the call of the macro it is in."""
+    """A use of a text: the scope in which it is evaluated, what it is and should be, the call of
+    the macro it is in.
+    """
 
     scope: XacroScope
     old: str
@@ -86,10 +91,14 @@ class _TextChange(NamedTuple):
 
 
 def _edits_of(changes: Iterable[_TextChange]) -> Edits | None:
-    """Return the edits that make changes, one for each attribute; None where two of them overlap."""
+    """Return the edits that make changes, one for each attribute; None where two of them
+    overlap.
+    """
     attributes: dict[tuple[str, int], list[_TextChange]] = {}
     for change in dict.fromkeys(changes):
-        attributes.setdefault((change.written.source.path, change.written.attribute[0]), []).append(change)
+        attributes.setdefault((change.written.source.path, change.written.attribute[0]), []).append(
+            change
+        )
     edits: list[Edit] = []
     for inside in attributes.values():
         source, (start, end) = inside[0].written.source, inside[0].written.attribute
@@ -111,7 +120,11 @@ def _find_text(place: ScopePlace, attribute: str, scope: XacroScope) -> _Written
     source, at = place.source.element(place.tag)
     if attribute:
         found = markup.attribute(source.text, at, attribute)
-        start, end, span = (found.value_start, found.value_end, (found.start, found.end)) if found else (0, 0, None)
+        start, end, span = (
+            (found.value_start, found.value_end, (found.start, found.end))
+            if found
+            else (0, 0, None)
+        )
     else:
         start = markup.head_end(source.text, at)[0]
         end = source.text.rfind("</", start, markup.element_end(source.text, at))
@@ -124,7 +137,9 @@ def _find_text(place: ScopePlace, attribute: str, scope: XacroScope) -> _Written
 
 
 def _definition_text(definition: Definition) -> _Written | None:
-    """Return the text that a name is defined with: of a parameter's default the part of `params`."""
+    """Return the text that a name is defined with: of a parameter's default the part of
+    `params`.
+    """
     whole = _find_text(definition.place, definition.attribute, definition.scope)
     if whole is not None and definition.attribute == "params" and whole.text != definition.text:
         found = re.search(rf"(?:^|\s){re.escape(definition.name)}\s*:?=\s*(?:\^\|?)?", whole.text)
@@ -141,14 +156,20 @@ class _Rewriter:
         self._texts = texts
 
     def ways(self, place: ScopePlace, attribute: str, uses: Sequence[_Use]) -> list[Edits]:
-        """Return the ways to change an attribute (or, without a name, the text) for its uses, the best first."""
+        """Return the ways to change an attribute (or, without a name, the text) for its uses,
+        the best first.
+        """
         text = _find_text(place, attribute, uses[0].scope)
         changed = [use for use in uses if use.old != use.new]
         if text is None or not changed:
             return []
         found: list[_TextChange] = []
         has_definition = False
-        parts = [(use, *part) for use in changed for part in _parts(text, use)] if "$" in text.text else []
+        parts = (
+            [(use, *part) for use in changed for part in _parts(text, use)]
+            if "$" in text.text
+            else []
+        )
         for use, part, old, new in parts:
             changes = self._definitions(part, use.scope, old, new)
             if not changes and self._is_loaded(part):
@@ -165,23 +186,41 @@ class _Rewriter:
         return [*dict.fromkeys([edits, *ways] if edits else ways)]
 
     def _computed(self, parts: Iterable[tuple[_Use, _Written, str, str]]) -> list[Edits]:
-        """Return the edits of what parts of a text are computed from: of one definition for each part."""
-        each = [islice(self._origins(part, use.scope, old, new), _MAX_ORIGINS) for use, part, old, new in parts]
+        """Return the edits of what parts of a text are computed from: of one definition for each
+        part.
+        """
+        each = [
+            islice(self._origins(part, use.scope, old, new), _MAX_ORIGINS)
+            for use, part, old, new in parts
+        ]
         return [edits for changes in zip(*each, strict=False) if (edits := _edits_of(changes))]
 
     def _origins(
         self, text: _Written, scope: XacroScope, old: str, new: str, depth: int = _MAX_DEPTH
     ) -> Iterator[_TextChange]:
-        """Yield the changes of one definition with which a text has another value: numbers, then expressions."""
+        """Yield the changes of one definition with which a text has another value: numbers, then
+        expressions.
+        """
         defined = self._defined(text, scope, old, new)
         if defined is None:
-            names = [name for name in _NAME.findall(text.text) if depth and self._of_name(name, scope) is not None]
+            names = [
+                name
+                for name in _NAME.findall(text.text)
+                if depth and self._of_name(name, scope) is not None
+            ]
             for name in [*dict.fromkeys(names)][:_MAX_ORIGINS]:
                 for was, value in self._solved(text, name, scope, old, new):
                     alone = text._replace(text=f"${{{name}}}")
                     found = self._origins(alone, scope, was, value, depth - 1)
-                    keeps_sign = was.startswith("-") == value.startswith("-") or was in ("1.0", "-1.0")
-                    yield from (change for change in found if _may_change(change.written, keeps_sign=keeps_sign))
+                    keeps_sign = was.startswith("-") == value.startswith("-") or was in (
+                        "1.0",
+                        "-1.0",
+                    )
+                    yield from (
+                        change
+                        for change in found
+                        if _may_change(change.written, keeps_sign=keeps_sign)
+                    )
             return
         own, inside, was, value = defined
         parts = _parts(own, _Use(inside, was, value))
@@ -196,8 +235,12 @@ class _Rewriter:
                 yield _TextChange(part, negated(part.text))
             yield _TextChange(part, after)
 
-    def _solved(self, text: _Written, name: str, scope: XacroScope, old: str, new: str) -> Iterator[tuple[str, str]]:
-        """Yield the number that a name stands for, and the one with which a linear expression has another value."""
+    def _solved(
+        self, text: _Written, name: str, scope: XacroScope, old: str, new: str
+    ) -> Iterator[tuple[str, str]]:
+        """Yield the number that a name stands for, and the one with which a linear expression
+        has another value.
+        """
         inside = XacroScope(scope)
 
         def value_with(number: float) -> float:
@@ -208,14 +251,18 @@ class _Rewriter:
             at = float(self._texts.written(self._texts.find(name, scope)))
             first = value_with(at)
             found = at + (float(new) - first) / (value_with(at + 1) - first)
-            is_solved = _is_equal(old, repr(first)) and isclose(value_with(found), float(new), abs_tol=1e-9)
+            is_solved = _is_equal(old, repr(first)) and isclose(
+                value_with(found), float(new), abs_tol=1e-9
+            )
         except (EvaluationSignal, ArithmeticError, ValueError, TypeError):
             return
         if is_solved:
             yield repr(at), format_number(found)
 
     def _in_calls(self, text: _Written, changed: Sequence[_Use]) -> list[Edits]:
-        """Return the edits that give a parameter, of which a text is the default, in the calls of its macro."""
+        """Return the edits that give a parameter, of which a text is the default, in the calls
+        of its macro.
+        """
         name = text.text[2:-1].strip() if text.text.startswith("${") else ""
         definition = self._of_name(name, changed[0].scope)
         if definition is None or definition.attribute != "params":
@@ -225,7 +272,9 @@ class _Rewriter:
         return [tuple(with_attribute(source, start, name, new) for source, start, new in each)]
 
     def _literal(self, text: _Written, changed: Sequence[_Use]) -> list[Edits]:
-        """Return the edit that writes a value where it is used; none where uses differ, or a YAML file gives it."""
+        """Return the edit that writes a value where it is used; none where uses differ, or a
+        YAML file gives it.
+        """
         around = {_around(text, use) for use in changed}
         if len(around) == 1 and "" not in around:
             edits = _edits_of([_TextChange(text, around.pop())])
@@ -234,16 +283,25 @@ class _Rewriter:
             return []
         parts = _parts(text, changed[0])
         if len(parts) == 2 and parts[0][1:] == parts[1][:0:-1]:  # two expressions are exchanged
-            edits = _edits_of([_TextChange(parts[0][0], parts[1][0].text), _TextChange(parts[1][0], parts[0][0].text)])
+            edits = _edits_of(
+                [
+                    _TextChange(parts[0][0], parts[1][0].text),
+                    _TextChange(parts[1][0], parts[0][0].text),
+                ]
+            )
         else:
             written, _, new = parts[0] if len(parts) == 1 else (text, "", changed[0].new)
-            edits = _edits_of([_TextChange(written, new if "$" in written.text else merged(written.text, new))])
+            edits = _edits_of(
+                [_TextChange(written, new if "$" in written.text else merged(written.text, new))]
+            )
         return [edits] if edits else []
 
     def _definitions(
         self, text: _Written, scope: XacroScope, old: str, new: str, depth: int = _MAX_DEPTH
     ) -> list[_TextChange]:
-        """Return the changes of what defines the one name in a text, with which the text has another value."""
+        """Return the changes of what defines the one name in a text, with which the text has
+        another value.
+        """
         defined = self._defined(text, scope, old, new) if depth else None
         if defined is None:
             return []
@@ -257,10 +315,14 @@ class _Rewriter:
     def _defined(
         self, text: _Written, scope: XacroScope, old: str, new: str
     ) -> tuple[_Written, XacroScope, str, str] | None:
-        """Return the definition of the one name that gives a text, its scope, and what it is and should be."""
+        """Return the definition of the one name that gives a text, its scope, and what it is and
+        should be.
+        """
         found = _ALONE.fullmatch(text.text)
         before, after = (found["before"], found["after"]) if found else ("", "")
-        is_inside = new.startswith(before) and new.endswith(after) and len(new) > len(before) + len(after)
+        is_inside = (
+            new.startswith(before) and new.endswith(after) and len(new) > len(before) + len(after)
+        )
         if found is None or not is_inside:
             return None
         inner, was = (it[len(before) : len(it) - len(after)] for it in (new, old))
@@ -269,7 +331,11 @@ class _Rewriter:
         name = found["argument"]
         definition = self._texts.defaults.get(name) if name else self._of_name(found["name"], scope)
         own = _definition_text(definition) if definition is not None else None
-        return (own, definition.scope, was, inner) if definition is not None and own is not None else None
+        return (
+            (own, definition.scope, was, inner)
+            if definition is not None and own is not None
+            else None
+        )
 
     def _rewritten(self, own: _Written, value: str) -> _TextChange:
         """Return the change of a definition to a value, which stays in quotes."""
@@ -310,17 +376,25 @@ class _Rewriter:
     def numbers(self, place: ScopePlace, attribute: str, scope: XacroScope) -> list[_Written]:
         """Return the texts that define numbers from which an attribute is computed."""
         text = _find_text(place, attribute, scope)
-        return [it for it in self.definitions(text) if _NUMBER.fullmatch(it.text)] if text is not None else []
+        return (
+            [it for it in self.definitions(text) if _NUMBER.fullmatch(it.text)]
+            if text is not None
+            else []
+        )
 
 
 def _may_change(text: _Written, *, keeps_sign: bool) -> bool:
-    """Return whether a definition is an argument in a call, or a number that keeps its sign, as a length does."""
+    """Return whether a definition is an argument in a call, or a number that keeps its sign, as
+    a length does.
+    """
     is_argument = text.key is not None and text.key[2] not in _NO_CALL
     return is_argument or (keeps_sign and bool(_NUMBER.fullmatch(text.text)))
 
 
 def _parts(text: _Written, use: _Use) -> list[tuple[_Written, str, str]]:
-    """Return the parts of a text that should be others, each with what it is and should be: words, or the whole."""
+    """Return the parts of a text that should be others, each with what it is and should be:
+    words, or the whole.
+    """
     tokens = [text.part(*found.span()) for found in _TOKEN.finditer(text.text)]
     old, new = use.old.split(), use.new.split()
     if len(tokens) != len(old) or len(old) != len(new) or len(tokens) < 2:
@@ -329,13 +403,19 @@ def _parts(text: _Written, use: _Use) -> list[tuple[_Written, str, str]]:
 
 
 def _around(text: _Written, use: _Use) -> str:
-    """Return a text with another one around its only expression, whose value stays: ${side}_joint; empty if it goes."""
+    """Return a text with another one around its only expression, whose value stays:
+    ${side}_joint; empty if it goes.
+    """
     found = _ALONE.fullmatch(text.text)
     if found is None or not (found["before"] or found["after"]):
         return ""
     value = use.old[len(found["before"]) : len(use.old) - len(found["after"])]
     expression = text.text[len(found["before"]) : len(text.text) - len(found["after"])]
-    return use.new.replace(value, expression) if value.isidentifier() and use.new.count(value) == 1 else ""
+    return (
+        use.new.replace(value, expression)
+        if value.isidentifier() and use.new.count(value) == 1
+        else ""
+    )
 
 
 def _is_equal(one: str, other: str) -> bool:
@@ -347,7 +427,9 @@ def _is_equal(one: str, other: str) -> bool:
 
 
 def _conditions(source: Source, known: Sequence[str]) -> list[Edits]:
-    """Return the edits that correct a text in quotes in the condition of an <xacro:if> or <xacro:unless>: 'rigth'."""
+    """Return the edits that correct a text in quotes in the condition of an <xacro:if> or
+    <xacro:unless>: 'rigth'.
+    """
     found: list[Edits] = []
     for tag in re.finditer(r"<xacro:(?:if|unless)\b", source.text):
         value = markup.attribute(source.text, tag.start(), "value")
@@ -364,25 +446,35 @@ def _conditions(source: Source, known: Sequence[str]) -> list[Edits]:
 
 
 class ExpandedEdits:
-    """Makes the edits of an expanded xacro file; elements are named by their indices in the expanded document."""
+    """Makes the edits of an expanded xacro file; elements are named by their indices in the
+    expanded document.
+    """
 
     def __init__(self, source: ExpandedSource) -> None:
         self._source = source
 
     def rewrites(self, attribute: str, wanted: Mapping[int, tuple[str, str]]) -> list[Edits]:
-        """Return the ways to give an attribute (or, without a name, the text) of elements of one place other values."""
+        """Return the ways to give an attribute (or, without a name, the text) of elements of one
+        place other values.
+        """
         place = self._source.nodes[next(iter(wanted))].place
         scope = place.scope or XacroScope()
         uses = []
         for tag in self.siblings(next(iter(wanted))):
             node = self._source.nodes[tag]
-            text = node.attributes.get(attribute, "") if attribute else "".join(map(str, node.children)).strip()
+            text = (
+                node.attributes.get(attribute, "")
+                if attribute
+                else "".join(map(str, node.children)).strip()
+            )
             call = node.place.calls[-1][1] if node.place.calls else None
             uses.append(_Use(node.place.scope or scope, *wanted.get(tag, (text, text)), call))
         return self._rewriter.ways(place, attribute, uses)
 
     def numbers(self, tag: int, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
-        """Return the numbers from which an attribute is computed, each with what makes the edit of its definition."""
+        """Return the numbers from which an attribute is computed, each with what makes the edit
+        of its definition.
+        """
 
         def changing(written: _Written) -> Callable[[str], Edits]:
             return lambda new: _edits_of([_TextChange(written, new)]) or ()
@@ -392,7 +484,9 @@ class ExpandedEdits:
         return [(it.text.strip(), changing(it)) for it in found]
 
     def siblings(self, tag: int) -> list[int]:
-        """Return the indices of the expanded elements that come from the same place of the source."""
+        """Return the indices of the expanded elements that come from the same place of the
+        source.
+        """
         place = self._source.nodes[tag].place
         return self._by_place[place.source.path, place.tag]
 
@@ -404,12 +498,17 @@ class ExpandedEdits:
         return found
 
     def corrections(self, names: Sequence[str]) -> list[Proposal]:
-        """Return edits that may correct undeclared and undefined names, calls of macros, and conditions.
+        """Return edits that may correct undeclared and undefined names, calls of macros, and
+        conditions.
 
         `names` are those that the reference and the format have.
         """
         written = Source(self._source.path, self._source.text)
-        found = [Proposal(self._source.corrected, "what xacro refuses")] if self._source.corrected else []
+        found = (
+            [Proposal(self._source.corrected, "what xacro refuses")]
+            if self._source.corrected
+            else []
+        )
         found += _corrections(written, self._source.documents, self._source.refused)
         given = sorted({word for name in names for word in name.split("_")})
         for document in self._source.documents.values():
@@ -423,7 +522,9 @@ class ExpandedEdits:
         if not edit.old:
             return {}
         for node in self._source.nodes:
-            place = node.place.at(next((it for it in node.attributes if it and edit.old.startswith(f"{it}=")), None))
+            place = node.place.at(
+                next((it for it in node.attributes if it and edit.old.startswith(f"{it}=")), None)
+            )
             if node.place.calls and place[:3] == edit[:3]:
                 name, call = node.place.calls[-1]
                 found.setdefault(name, {})[call.at()] = None
@@ -434,8 +535,12 @@ class ExpandedEdits:
         return _Rewriter(self._source.texts)
 
 
-def _corrections(document: Source, files: Mapping[str, XacroNode], refusals: Sequence[Refusal]) -> Iterator[Proposal]:
-    """Yield the edits that may correct what xacro refuses in a document with the files that it includes."""
+def _corrections(
+    document: Source, files: Mapping[str, XacroNode], refusals: Sequence[Refusal]
+) -> Iterator[Proposal]:
+    """Yield the edits that may correct what xacro refuses in a document with the files that it
+    includes.
+    """
     text = document.text
     if "xmlns:xacro" not in text and "xacro:" in text:
         _, start = document.element(0)
@@ -448,11 +553,17 @@ def _corrections(document: Source, files: Mapping[str, XacroNode], refusals: Seq
         if node.tag in _PREFIXED or node.tag in macros:
             edits = tuple(tags_of(node.place, node.tag, f"xacro:{node.tag}"))
             yield Proposal(edits, f"<{node.tag}> without xacro:")
-    named = [it for it in refusals if isinstance(it[0], XacroFails) and (it[0].unknown is not None or it[0].lacking)]
+    named = [
+        it
+        for it in refusals
+        if isinstance(it[0], XacroFails) and (it[0].unknown is not None or it[0].lacking)
+    ]
     for error, place, attribute in named[:_MAX_NAMES]:
         assert isinstance(error, XacroFails)
         if error.unknown is not None:
             for edits in respellings(place, attribute, error.unknown):
                 yield Proposal(edits, "a name that xacro does not know")
-        for edits, values in values_of_other_calls(place, nodes, error.lacking) if error.lacking else ():
+        for edits, values in (
+            values_of_other_calls(place, nodes, error.lacking) if error.lacking else ()
+        ):
             yield Proposal(edits, f"this call gives no value for {' and '.join(values)}")

@@ -1,4 +1,6 @@
-"""Conditions in a package.xml, such as $ROS_VERSION == 2 (REP 149), as catkin_pkg's `evaluate_condition` reads them."""
+"""Conditions in a package.xml, such as $ROS_VERSION == 2 (REP 149), as catkin_pkg's
+`evaluate_condition` reads them.
+"""
 
 import ast
 import re
@@ -9,18 +11,28 @@ from operator import eq, ge, gt, le, lt, ne
 _VARIABLES = {"ROS_VERSION": "2", "ROS_DISTRO": "jazzy", "ROS_PYTHON_VERSION": "3"}
 _TERM = r"""(\$[A-Za-z0-9_]+|[A-Za-z0-9_-]+|"[^"\n\r]*"|'[^'\n\r]*')"""
 _COMPARISON = re.compile(rf"{_TERM}\s*(==|!=|>=|>|<=|<)\s*{_TERM}")
-_COMPARE: Mapping[str, Callable[[str, str], bool]] = {"==": eq, "!=": ne, ">=": ge, ">": gt, "<=": le, "<": lt}
+_COMPARE: Mapping[str, Callable[[str, str], bool]] = {
+    "==": eq,
+    "!=": ne,
+    ">=": ge,
+    ">": gt,
+    "<=": le,
+    "<": lt,
+}
 _BETWEEN = re.compile(r"(?:and|or|[()\s])*")  # what stands between comparisons
 _MAX_LENGTH = 1_000  # characters
 
 
 def evaluate_condition(condition: str | None) -> bool | None:
-    """Return whether a condition holds in ROS 2 Jazzy; True without one, None for one that is not valid."""
+    """Return whether a condition holds in ROS 2 Jazzy; True without one, None for one that is not
+    valid.
+    """
     if condition is None:
         return True
     if len(condition) > _MAX_LENGTH or not _BETWEEN.fullmatch(_COMPARISON.sub("", condition)):
         return None
-    # With each comparison replaced by what it is, the rest is Python: `and` binds closer than `or` in both.
+    # With each comparison replaced by what it is, the rest is Python: `and` binds closer than `or`
+    # in both.
     decided = _COMPARISON.sub(lambda found: f" {_compare(*found.groups())} ", condition)
     try:
         return _decide(ast.parse(" ".join(decided.split()), mode="eval").body)

@@ -1,4 +1,6 @@
-"""The programs of a Python package: the entry points that its setup.py names, and whether their functions exist."""
+"""The programs of a Python package: the entry points that its setup.py names, and whether their
+functions exist.
+"""
 
 import ast
 import re
@@ -12,7 +14,9 @@ from grader.python.parse import Code, bound_in, parse
 from grader.source import Location
 from grader.text import enumerated
 
-_ENTRY = re.compile(r"\s*([^=\s]+)\s*=\s*(\w+(?:\.\w+)*)\s*(?::\s*(\w+)(?:\.\w+)*\s*)?(?:\[.*)?", re.ASCII)
+_ENTRY = re.compile(
+    r"\s*([^=\s]+)\s*=\s*(\w+(?:\.\w+)*)\s*(?::\s*(\w+)(?:\.\w+)*\s*)?(?:\[.*)?", re.ASCII
+)
 _MAX_NAMED = 5  # names in a message
 
 
@@ -26,7 +30,9 @@ class _EntryPoint(NamedTuple):
 
 
 class EntryFault(NamedTuple):
-    """Why a program certainly does not start, where setup.py names it, and the word in it that may mean another one."""
+    """Why a program certainly does not start, where setup.py names it, and the word in it that
+    may mean another one.
+    """
 
     message: str
     location: Location
@@ -35,7 +41,9 @@ class EntryFault(NamedTuple):
 
 
 def entry_points(package: Package) -> list[_EntryPoint]:
-    """Return the entry points that are known: those of console_scripts in setup.py that are written as texts."""
+    """Return the entry points that are known: those of console_scripts in setup.py that are
+    written as texts.
+    """
     setup = package.installation
     groups = setup.entry_points if setup is not None else None
     scripts = groups.get("console_scripts") if isinstance(groups, dict) else None
@@ -43,12 +51,16 @@ def entry_points(package: Package) -> list[_EntryPoint]:
     for script in scripts if isinstance(scripts, list | tuple) else ():
         parts = _ENTRY.fullmatch(script) if isinstance(script, str) else None
         if parts is not None:
-            found.append(_EntryPoint(parts[1], parts[2], parts[3] or "", _place_of(package, parts[1])))
+            found.append(
+                _EntryPoint(parts[1], parts[2], parts[3] or "", _place_of(package, parts[1]))
+            )
     return found
 
 
 def _place_of(package: Package, name: str) -> Location:
-    """Return where setup.py writes an entry point; where it calls setup() if the text is computed."""
+    """Return where setup.py writes an entry point; where it calls setup() if the text is
+    computed.
+    """
     setup = package.installation
     assert setup is not None
     written = re.search(rf"""(?<=['"])[ \t]*{re.escape(name)}[ \t]*=""", setup.source.text)
@@ -58,8 +70,8 @@ def _place_of(package: Package, name: str) -> Location:
 def entry_fault(package: Package, name: str) -> EntryFault | None:
     """Return why a program certainly does not start; None where that is not known.
 
-    Its module or the function in it is not there. Modules of other packages are not known, nor is what a module does to
-    its own names: a star import, `exec`, `globals()`.
+    Its module or the function in it is not there. Modules of other packages are not known, nor is
+    what a module does to its own names: a star import, `exec`, `globals()`.
     """
     setup, named = package.installation, [it for it in entry_points(package) if it.name == name]
     if setup is None or len(named) != 1 or package.tree.links or setup.unknown:
@@ -72,10 +84,20 @@ def entry_fault(package: Package, name: str) -> EntryFault | None:
     names = _certain_names(code) if code is not None else None
     if not entry.function or names is None or entry.function in names:
         return None
-    parts = [node for node in code.tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)] if code else []
+    parts = (
+        [node for node in code.tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)]
+        if code
+        else []
+    )
     functions = [node.name for node in parts if isinstance(node, ast.FunctionDef)]
     only = functions[0] if len(functions) == 1 else ""
-    return _fault(entry, f"{path} has no {entry.function!r}", entry.function, [node.name for node in parts], only)
+    return _fault(
+        entry,
+        f"{path} has no {entry.function!r}",
+        entry.function,
+        [node.name for node in parts],
+        only,
+    )
 
 
 def read_module(package: Package, path: str) -> Code | None:
@@ -88,20 +110,32 @@ def read_module(package: Package, path: str) -> Code | None:
 def _module_path(package: Package, module: str) -> str | None:
     """Return the file of a module by its full name; None where the package has none."""
     stem = module.replace(".", "/")
-    return next((path for path in (f"{stem}/__init__.py", f"{stem}.py") if path in package.tree.files), None)
+    return next(
+        (path for path in (f"{stem}/__init__.py", f"{stem}.py") if path in package.tree.files), None
+    )
 
 
 def _lacks_module(package: Package, module: str) -> bool:
-    """Return whether importing a module certainly fails: its parent packages are here, and none of them has it."""
+    """Return whether importing a module certainly fails: its parent packages are here, and none of
+    them has it.
+    """
     top, stem = module.partition(".")[0], module.replace(".", "/")
     tree = package.tree
     names = {path: path.rpartition("/")[2] for path in (*tree.files, *tree.folders, *tree.unseen)}
-    homes = [path for path, name in names.items() if name == top and not path.startswith("resource/")]
+    homes = [
+        path for path, name in names.items() if name == top and not path.startswith("resource/")
+    ]
     if not homes:  # no other package of ROS 2 installs a Python package of this name
-        return top == package.name and not any(name.startswith((f"{top}.py", f"{top}.so")) for name in names.values())
-    if homes != [top] or any(path == stem or path.startswith((f"{stem}.", f"{stem}/")) for path in names):
+        return top == package.name and not any(
+            name.startswith((f"{top}.py", f"{top}.so")) for name in names.values()
+        )
+    if homes != [top] or any(
+        path == stem or path.startswith((f"{stem}.", f"{stem}/")) for path in names
+    ):
         return False
-    inits = [path for path in tree.files if path.endswith("/__init__.py") and stem.startswith(path[:-11])]
+    inits = [
+        path for path in tree.files if path.endswith("/__init__.py") and stem.startswith(path[:-11])
+    ]
     codes = [read_module(package, path) for path in inits]
     return all(code is not None and _certain_names(code) is not None for code in codes)
 
@@ -111,14 +145,22 @@ def _missing_module(package: Package, entry: _EntryPoint) -> EntryFault:
     others = [
         path.removeprefix(f"{folder}/").removesuffix(".py")
         for path in package.tree.files
-        if path.rpartition("/")[0] == folder and path.endswith(".py") and not path.endswith("__init__.py")
+        if path.rpartition("/")[0] == folder
+        and path.endswith(".py")
+        and not path.endswith("__init__.py")
     ]
     own = entry.name if entry.name in others else ""
-    return _fault(entry, f"there is no module {entry.module}", entry.module.rpartition(".")[2], others, own)
+    return _fault(
+        entry, f"there is no module {entry.module}", entry.module.rpartition(".")[2], others, own
+    )
 
 
-def _fault(entry: _EntryPoint, message: str, written: str, known: list[str], own: str = "") -> EntryFault:
-    """Return the fault of an entry point, with the name that may be meant, else the names that there are."""
+def _fault(
+    entry: _EntryPoint, message: str, written: str, known: list[str], own: str = ""
+) -> EntryFault:
+    """Return the fault of an entry point, with the name that may be meant, else the names that
+    there are.
+    """
     meant = closest(written, known) or own or None
     if meant is not None:
         message += f"; did you mean {meant!r}?"
@@ -130,7 +172,9 @@ def _fault(entry: _EntryPoint, message: str, written: str, known: list[str], own
 def _certain_names(code: Code) -> frozenset[str] | None:
     """Return the names that a module may bind; None if it may bind others."""
     nodes = [*ast.walk(code.tree)]
-    if binds_unseen(nodes) or any(isinstance(node, ast.alias) and node.name == "*" for node in nodes):
+    if binds_unseen(nodes) or any(
+        isinstance(node, ast.alias) and node.name == "*" for node in nodes
+    ):
         return None
     shared = {name for node in nodes if isinstance(node, ast.Global) for name in node.names}
     return bound_in(code.tree) | shared

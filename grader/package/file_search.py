@@ -1,4 +1,6 @@
-"""What searches of a setup.py find in its package, by glob, pathlib, os and setuptools, from the list of its files."""
+"""What searches of a setup.py find in its package, by glob, pathlib, os and setuptools, from the
+list of its files.
+"""
 
 import posixpath
 import re
@@ -30,8 +32,8 @@ from grader.python.values import (
     path_text,
 )
 
-# The file system lists a folder, and Python a set, in any order: a result that depends on the order differs between
-# these.
+# The file system lists a folder, and Python a set, in any order: a result that depends on the order
+# differs between these.
 ORDERS = ("sorted", "reversed", "rotated")
 _MAGIC = re.compile(r"[*?\[]")
 _SLASHES = re.compile(r"//+(?=[^/]*[*?\[][^/]*$)")  # those before other names are in the result
@@ -54,7 +56,9 @@ class EmptyGlob(NamedTuple):
 
 
 class PackageListing:
-    """The folders of a file tree, listed in one of the possible orders. Paths are relative to the tree's root."""
+    """The folders of a file tree, listed in one of the possible orders. Paths are relative to the
+    tree's root.
+    """
 
     def __init__(self, tree: Tree, budget: Budget | None = None, order: str = ORDERS[0]) -> None:
         self.tree = tree
@@ -85,7 +89,9 @@ class PackageListing:
         return values
 
     def record(self, pattern: str, found: list[Value], at: Position) -> list[Value]:
-        """Keep the position of a search for each path that it found, up to a limit, and return the paths."""
+        """Keep the position of a search for each path that it found, up to a limit, and return the
+        paths.
+        """
         self.positions |= dict.fromkeys(map(str, found[:_MAX_RECORDED]), at)
         if not found:
             self.empty[EmptyGlob(pattern, at)] = None
@@ -100,13 +106,21 @@ class PackageListing:
         return found
 
     def modules(self) -> frozenset[str]:
-        """Return the names of the modules and packages beside setup.py, which are imported before any other."""
-        files = (name.removesuffix(".py") for name in self._children.get("", ()) if name.endswith(".py"))
-        packages = (name for name in self._children.get("", ()) if f"{name}/__init__.py" in self.files)
+        """Return the names of the modules and packages beside setup.py, which are imported before
+        any other.
+        """
+        files = (
+            name.removesuffix(".py") for name in self._children.get("", ()) if name.endswith(".py")
+        )
+        packages = (
+            name for name in self._children.get("", ()) if f"{name}/__init__.py" in self.files
+        )
         return frozenset((*files, *packages)) - {"setup"}
 
     def real(self, path: str) -> str | None:
-        """Return the file or folder at a path, without dots; None where there is nothing. Raises Undetermined."""
+        """Return the file or folder at a path, without dots; None where there is nothing. Raises
+        Undetermined.
+        """
         if path.startswith("/"):
             raise Undetermined(_OUTSIDE)
         here = ""
@@ -129,8 +143,8 @@ class PackageListing:
     def glob(self, pattern: str, *, recursive: bool = False, above: str = "") -> list[str]:
         """Return the paths that glob.glob finds, as it writes them. Raises Undetermined.
 
-        `recursive` lets ** match any number of folders; `above` is the absolute path of the tree's root, which precedes
-        each path.
+        `recursive` lets ** match any number of folders; `above` is the absolute path of the tree's
+        root, which precedes each path.
         """
         if pattern.startswith("/"):
             raise Undetermined(_OUTSIDE)
@@ -142,7 +156,9 @@ class PackageListing:
         return [start + path for path in found if start + path]
 
     def path_glob(self, folder: str, pattern: str) -> list[str]:
-        """Return the paths below a folder that pathlib's glob finds in Python 3.12. Raises Undetermined."""
+        """Return the paths below a folder that pathlib's glob finds in Python 3.12. Raises
+        Undetermined.
+        """
         parts = [part for part in pattern.split("/") if part not in ("", ".")]
         parts = [part for part, after in pairwise([*parts, ""]) if (part, after) != ("**", "**")]
         odd = any("**" in part and part != "**" for part in parts) or pattern.startswith("/")
@@ -152,18 +168,31 @@ class PackageListing:
         if start not in self.folders:
             return []
         folders_only = [""] if parts[-1] == "**" else []
-        found = self._search([*parts, *folders_only], recursive=True, hidden=True, folder=start or "")
+        found = self._search(
+            [*parts, *folders_only], recursive=True, hidden=True, folder=start or ""
+        )
         return [path.rstrip("/") for path in found]
 
     def _search(
         self, parts: list[str], *, recursive: bool = False, hidden: bool = False, folder: str = ""
     ) -> list[str]:
-        """Return the paths below a folder that consist of such names; with an empty one at the end, those of folders.
+        """Return the paths below a folder that consist of such names; with an empty one at the end,
+        those of folders.
 
-        Wildcards match names that begin with a dot only if `hidden`. Raises Undetermined, also for what nobody writes.
+        Wildcards match names that begin with a dot only if `hidden`. Raises Undetermined, also for
+        what nobody writes.
         """
-        several = recursive and "**" in parts and (parts.count("**") > 1 or any(it.startswith(".") for it in parts))
-        if several or "" in parts[:-1] or {".", ".."} & {*parts} or sum(map(len, parts)) > _MAX_PATTERN:
+        several = (
+            recursive
+            and "**" in parts
+            and (parts.count("**") > 1 or any(it.startswith(".") for it in parts))
+        )
+        if (
+            several
+            or "" in parts[:-1]
+            or {".", ".."} & {*parts}
+            or sum(map(len, parts)) > _MAX_PATTERN
+        ):
             raise Undetermined(_UNUSUAL)
         self.budget.charge(1 + 2 * len(self._paths))
         place = parts.index("**") if recursive and "**" in parts else None
@@ -171,7 +200,13 @@ class PackageListing:
         start = f"{folder}/" if folder else ""
         if any(pattern.leads_to(names) for names in _names_below(start, self._unseen)):
             raise Undetermined(_IGNORED)
-        return self.ordered(["/".join(names) for names in _names_below(start, self._paths) if pattern.matches(names)])
+        return self.ordered(
+            [
+                "/".join(names)
+                for names in _names_below(start, self._paths)
+                if pattern.matches(names)
+            ]
+        )
 
 
 class _Pattern(NamedTuple):
@@ -186,14 +221,18 @@ class _Pattern(NamedTuple):
         if self.place is not None:
             count = len(names) - len(tests) + 1
             tests = [*tests[: self.place], *[tests[self.place]] * count, *tests[self.place + 1 :]]
-        return len(tests) == len(names) and all(test(name) for test, name in zip(tests, names, strict=True))
+        return len(tests) == len(names) and all(
+            test(name) for test, name in zip(tests, names, strict=True)
+        )
 
     def leads_to(self, names: list[str]) -> bool:
         """Return whether a search looks into a folder."""
         tests = self.tests[:-1]
         if self.place is not None:
             tests = [*tests[: self.place], *[self.tests[self.place]] * len(names)]
-        return len(names) <= len(tests) and all(test(name) for test, name in zip(tests, names, strict=False))
+        return len(names) <= len(tests) and all(
+            test(name) for test, name in zip(tests, names, strict=False)
+        )
 
 
 def _names_below(start: str, paths: Iterable[str]) -> Iterator[list[str]]:
@@ -213,7 +252,9 @@ def _name_test(part: str, *, hidden: bool) -> Callable[[str], object]:
 
 
 def file_functions(listing: PackageListing, root: str) -> FunctionTable:
-    """Return the functions by full name; `root` is the absolute path that represents the package's folder."""
+    """Return the functions by full name; `root` is the absolute path that represents the package's
+    folder.
+    """
     folder = _PackageFolder(listing, root)
     functions: dict[str, Callable[[Evaluation, Call], Value]] = {
         "glob.glob": folder.glob,
@@ -237,11 +278,16 @@ def file_functions(listing: PackageListing, root: str) -> FunctionTable:
     for name, test in tests.items():
         functions[f"pathlib.Path.{name}"] = partial(folder.test, test)
         functions[f"os.path.{name.replace('_', '')}"] = partial(folder.test, test)
-    return {name: partial(_evaluate_search, function, listing) for name, function in functions.items()}
+    return {
+        name: partial(_evaluate_search, function, listing) for name, function in functions.items()
+    }
 
 
 def _evaluate_search(
-    function: Callable[[Evaluation, Call], Value], listing: PackageListing, evaluation: Evaluation, call: Call
+    function: Callable[[Evaluation, Call], Value],
+    listing: PackageListing,
+    evaluation: Evaluation,
+    call: Call,
 ) -> Value:
     """Evaluate a search, charge it and record whether the order of files in a folder matters."""
     known([call.args, [*call.kwargs.values()]])
@@ -279,11 +325,20 @@ class _PackageFolder:
     def glob(self, _: Evaluation, call: Call) -> Value:
         pattern, recursive = call.argument(0, "pathname"), call.kwargs.get("recursive", False)
         if isinstance(pattern, PurePosixPath):
-            raise EvaluationFails("glob takes a string, and this is a path: write str(...) around it")
-        if not call.kwargs.keys() <= {*_GLOB_OPTIONS} or len(call.args) + ("pathname" in call.kwargs) != 1:
-            raise EvaluationFails("glob takes one pattern, and the options recursive, root_dir and include_hidden")
+            raise EvaluationFails(
+                "glob takes a string, and this is a path: write str(...) around it"
+            )
+        if (
+            not call.kwargs.keys() <= {*_GLOB_OPTIONS}
+            or len(call.args) + ("pathname" in call.kwargs) != 1
+        ):
+            raise EvaluationFails(
+                "glob takes one pattern, and the options recursive, root_dir and include_hidden"
+            )
         if not isinstance(pattern, str):
-            raise EvaluationFails(f"glob takes a string, and this is of the type {type(pattern).__name__}")
+            raise EvaluationFails(
+                f"glob takes a string, and this is of the type {type(pattern).__name__}"
+            )
         if call.kwargs.keys() & {*_GLOB_OPTIONS[2:]}:
             raise Undetermined("these options of glob are not evaluated")
         if pattern == self.root:
@@ -330,7 +385,9 @@ class _PackageFolder:
         return Items(self._steps(evaluation, self.real(call.args[0]), str(call.args[0])))
 
     def _steps(self, evaluation: Evaluation, real: str | None, spelled: str) -> Iterator[Value]:
-        """Yield the steps of os.walk: the caller may change the list of folders before the next step."""
+        """Yield the steps of os.walk: the caller may change the list of folders before the next
+        step.
+        """
         if real is None or real not in self.listing.folders:
             return
         evaluation.budget.charge(10)
@@ -340,7 +397,9 @@ class _PackageFolder:
         folders = [name for name, path in paths.items() if path in self.listing.folders]
         yield (spelled, folders, [name for name in paths if name not in folders])
         for name in folders:
-            yield from self._steps(evaluation, self.real(_path_below(real, name)), posixpath.join(spelled, name))
+            yield from self._steps(
+                evaluation, self.real(_path_below(real, name)), posixpath.join(spelled, name)
+            )
 
     def open(self, evaluation: Evaluation, call: Call) -> Value:
         path, mode = call.argument(0, "file"), call.argument(1, "mode")
@@ -377,14 +436,18 @@ class _PackageFolder:
 
 def _find_packages(listing: PackageListing, _: Evaluation, call: Call) -> Value:
     """Return the folders with an __init__.py; those without need other rules."""
-    where, exclude, include = (call.argument(place, name) for place, name in enumerate(("where", "exclude", "include")))
+    where, exclude, include = (
+        call.argument(place, name) for place, name in enumerate(("where", "exclude", "include"))
+    )
     exclude, include = () if exclude is None else exclude, ["*"] if include is None else include
     is_known = where in (None, ".", "./") and call.kwargs.keys() <= {"where", "exclude", "include"}
     is_listed = isinstance(exclude, list | tuple) and isinstance(include, list | tuple)
     if not is_known or "namespace" in call.name or not is_listed:
         return Unknown("which packages there are is not evaluated", call.at)
     return [
-        name for name in _package_names(listing, "") if _matches_any(name, include) and not _matches_any(name, exclude)
+        name
+        for name in _package_names(listing, "")
+        if _matches_any(name, include) and not _matches_any(name, exclude)
     ]
 
 

@@ -1,4 +1,6 @@
-"""The problems of a package's files, whatever they are graded on, with their codes and locations."""
+"""The problems of a package's files, whatever they are graded on, with their codes and
+locations.
+"""
 
 from collections.abc import Iterable, Iterator
 from fnmatch import fnmatchcase
@@ -18,7 +20,9 @@ _MAX_NAMED = 3  # files that a message names
 
 
 def package_problems(package: Package) -> tuple[Problem, ...]:
-    """Return the problems of package.xml, setup.py, launch files and RViz files, each file's sorted by location."""
+    """Return the problems of package.xml, setup.py, launch files and RViz files, each file's sorted
+    by location.
+    """
     found: list[Problem] = []
     if package.manifest is not None:
         found += _sort(package.manifest.problems)
@@ -32,7 +36,9 @@ def package_problems(package: Package) -> tuple[Problem, ...]:
 
 
 def _sort(problems: Iterable[Problem]) -> list[Problem]:
-    return sorted(problems, key=lambda it: (it.location.line, it.location.column, it.code, it.message))
+    return sorted(
+        problems, key=lambda it: (it.location.line, it.location.column, it.code, it.message)
+    )
 
 
 def _setup_problems(package: Package, setup: Installation) -> Iterator[Problem]:
@@ -46,7 +52,10 @@ def _setup_problems(package: Package, setup: Installation) -> Iterator[Problem]:
     for stop in setup.stops:
         yield Problem(kinds.SETUP_STOPS, stop.message + stop.hint, setup.location(stop.at))
     for empty in setup.empty:
-        message = f"the pattern {empty.pattern!r} in {setup.file} matches no file{why_no_match(package, empty.pattern)}"
+        message = (
+            f"the pattern {empty.pattern!r} in {setup.file} matches no "
+            f"file{why_no_match(package, empty.pattern)}"
+        )
         yield Problem(kinds.EMPTY_GLOB, message, setup.location(empty.at))
     for argument in setup.ignored:
         yield Problem(kinds.IGNORED_ARGUMENT, argument.message, setup.location(setup.called_at))
@@ -58,7 +67,9 @@ def _setup_problems(package: Package, setup: Installation) -> Iterator[Problem]:
 
 
 def _naming_problems(package: Package, setup: Installation) -> Iterator[Problem]:
-    """Yield what is wrong with the package's name in setup.py, and with the entries that register the package."""
+    """Yield what is wrong with the package's name in setup.py, and with the entries that register
+    the package.
+    """
     start, targets = setup.location(setup.called_at), setup.installed()
     declared = package.manifest.name if package.manifest is not None else None
     is_known = not (setup.unknown or setup.stops)
@@ -67,13 +78,19 @@ def _naming_problems(package: Package, setup: Installation) -> Iterator[Problem]
         yield Problem(kinds.OTHER_NAME, message, start)
         is_known = False  # the entries are missing under one of the two names in any case
     if is_known and RESOURCE_INDEX + package.name not in targets:
-        message = f"data_files has no entry for the resource index: resource/{package.name} is not installed"
+        message = (
+            f"data_files has no entry for the resource index: resource/{package.name} is not "
+            "installed"
+        )
         yield Problem(kinds.NO_MARKER, message, start)
     if is_known and f"share/{package.name}/package.xml" not in targets:
         message = f"data_files does not install package.xml in share/{package.name}"
         yield Problem(kinds.NO_MANIFEST_ENTRY, message, start)
     elif not is_known and MANIFEST not in targets.values() and MANIFEST not in setup.source.text:
-        message = f"setup.py does not name package.xml, which data_files should install in share/{package.name}"
+        message = (
+            "setup.py does not name package.xml, which data_files should install in "
+            f"share/{package.name}"
+        )
         yield Problem(kinds.NO_MANIFEST_ENTRY, message, start)
 
 
@@ -93,13 +110,21 @@ def _launch_problems(launch: Launch) -> Iterator[Problem]:
 
 
 def why_no_match(package: Package, pattern: str) -> str:
-    """Return the end of a message on a pattern of setup.py that matches no file: why, or which files there are."""
+    """Return the end of a message on a pattern of setup.py that matches no file: why, or which
+    files there are.
+    """
     if "\\" in pattern:
         return ": separate the parts of a path with /, not with \\"
     folder, _, name = pattern.rpartition("/")
     if folder and folder not in package.tree.folders:
-        return f", because there is no folder {folder!r}{did_you_mean(folder, package.tree.folders)}"
-    files = [path for path in package.tree.files if name.strip("*") and fnmatchcase(path.rpartition("/")[2], name)]
+        return (
+            f", because there is no folder {folder!r}{did_you_mean(folder, package.tree.folders)}"
+        )
+    files = [
+        path
+        for path in package.tree.files
+        if name.strip("*") and fnmatchcase(path.rpartition("/")[2], name)
+    ]
     files = files or [path for path in package.tree.files if path.rpartition("/")[0] == folder]
     if not files:
         return f", because the folder {folder!r} is empty"

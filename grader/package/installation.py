@@ -1,4 +1,6 @@
-"""What a build of a package installs, as far as it is certain: the result of its setup.py or CMakeLists.txt."""
+"""What a build of a package installs, as far as it is certain: the result of its setup.py or
+CMakeLists.txt.
+"""
 
 import posixpath
 from dataclasses import dataclass
@@ -12,7 +14,9 @@ from grader.source import Location, Source
 
 
 class InstalledFile(NamedTuple):
-    """One installed file: its path in the package, its path below the prefix, and the position that installs it."""
+    """One installed file: its path in the package, its path below the prefix, and the position that
+    installs it.
+    """
 
     source: str
     target: str
@@ -43,46 +47,63 @@ class IgnoredArgument(NamedTuple):
     @property
     def message(self) -> str:
         """What is wrong with it, as a sentence."""
-        return f"setup() has no argument {self.name}" + (f"; did you mean {self.meant}?" if self.meant else "")
+        return f"setup() has no argument {self.name}" + (
+            f"; did you mean {self.meant}?" if self.meant else ""
+        )
 
 
 @dataclass(frozen=True, slots=True)
 class Installation:
-    """The result of a setup.py or CMakeLists.txt. `fault` is set if it cannot be parsed: nothing else is known then.
+    """The result of a setup.py or CMakeLists.txt. `fault` is set if it cannot be parsed: nothing
+    else is known then.
 
-    What certainly stops a setup.py is read as if it was fixed, and a misspelt data_files as what it means: `copies` are
-    the files that are installed then.
+    What certainly stops a setup.py is read as if it was fixed, and a misspelt data_files as what it
+    means: `copies` are the files that are installed then.
     """
 
     source: Source
     fault: SyntaxFault | None = None
     name: str | None = None
     copies: tuple[InstalledFile, ...] = ()
-    programs: tuple[str, ...] = ()  # the paths below the prefix of what a build makes and `ros2 run` may start
+    programs: tuple[
+        str, ...
+    ] = ()  # the paths below the prefix of what a build makes and `ros2 run` may start
     stops: tuple[InstallError, ...] = ()
     empty: tuple[EmptyGlob, ...] = ()
     faults: tuple[PythonError, ...] = ()
-    unknown: tuple[Unknown, ...] = ()  # with any of these, a file that is not among the copies may be installed as well
-    doubt: Unknown | None = None  # the first that is not evaluated, so that the file may not get to its end
+    unknown: tuple[
+        Unknown, ...
+    ] = ()  # with any of these, a file that is not among the copies may be installed as well
+    # the first that is not evaluated, so that the file may not get to its end
+    doubt: Unknown | None = None
     is_called: bool = True
     called_at: Position = START
     entry_points: Value = None  # what setup() is given
     ignored: tuple[IgnoredArgument, ...] = ()  # arguments that setup() does not have
     scripts_folder: str = "bin"  # below the prefix, for console_scripts
-    scripts: tuple[str, ...] = ()  # likewise, of files that CMake installs with the right to execute them
+    scripts: tuple[
+        str, ...
+    ] = ()  # likewise, of files that CMake installs with the right to execute them
     packages: tuple[str, ...] = ()  # the Python packages, as far as they are known
 
     def has_program(self, name: str, package: str) -> bool | None:
-        """Return whether a build installs a program where `ros2 run` looks for it; None where this is not known."""
+        """Return whether a build installs a program where `ros2 run` looks for it; None where this
+        is not known.
+        """
         if self.fault is not None:
             return None
         path = f"lib/{package}/{name}"
         if path in self.programs or path in self.installed():
-            # CMake takes the right to execute from the files of install(FILES ...) and install(DIRECTORY ...).
+            # CMake takes the right to execute from the files of install(FILES ...) and
+            # install(DIRECTORY ...).
             return path in (*self.programs, *self.scripts) or not self.is_cmake
         points = self.entry_points if self.entry_points is not None else {}
         scripts = points.get("console_scripts", []) if isinstance(points, dict) else None
-        if not isinstance(scripts, list) or not all(isinstance(script, str) for script in scripts) or self.unknown:
+        if (
+            not isinstance(scripts, list)
+            or not all(isinstance(script, str) for script in scripts)
+            or self.unknown
+        ):
             return None
         is_listed = name in [script.partition("=")[0].strip() for script in scripts]
         return is_listed and self.scripts_folder == f"lib/{package}"
@@ -106,11 +127,16 @@ class Installation:
         """Why the file is not read, as part of a sentence; empty if it is."""
         if self.fault is None:
             return ""
-        return f"{'CMake' if self.is_cmake else 'Python'} cannot read {self.file}: {self.fault.message}"
+        return (
+            f"{'CMake' if self.is_cmake else 'Python'} cannot read {self.file}: "
+            f"{self.fault.message}"
+        )
 
     @property
     def unread(self) -> str:
-        """Why it is not known what the file does, as part of a sentence; empty if it is, or if it certainly fails."""
+        """Why it is not known what the file does, as part of a sentence; empty if it is, or if it
+        certainly fails.
+        """
         if self.fault is None or self.fault.sure:
             return ""
         return f"{self.file} cannot be read ({self.fault.message})"

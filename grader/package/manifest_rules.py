@@ -1,6 +1,7 @@
 """What the tools of ROS 2 refuse in a package.xml: colcon then builds the package as plain Python.
 
-The rules, their order and their words are those of catkin_pkg 1.1, `parse_package` and `Package.validate`.
+The rules, their order and their words are those of catkin_pkg 1.1, `parse_package` and
+`Package.validate`.
 """
 
 import re
@@ -17,7 +18,8 @@ _Children = Mapping[str, Sequence[Element]]
 _NAME = re.compile(r"[a-zA-Z0-9][a-zA-Z0-9_-]*\n?")
 _VERSION = re.compile(r"[0-9]+\.[0-9]+\.[0-9]+\n?")
 _EMAIL = re.compile(
-    r"[-a-zA-Z0-9_%+]+(\.[-a-zA-Z0-9_%+]+)*@[-a-zA-Z0-9%]+(\.[-a-zA-Z0-9%]+)*\.[a-zA-Z]{2,}\n?", re.ASCII
+    r"[-a-zA-Z0-9_%+]+(\.[-a-zA-Z0-9_%+]+)*@[-a-zA-Z0-9%]+(\.[-a-zA-Z0-9%]+)*\.[a-zA-Z]{2,}\n?",
+    re.ASCII,
 )
 _VERSIONS = ("version_lt", "version_lte", "version_eq", "version_gte", "version_gt")
 _DEPENDS = ("build_depend", "buildtool_depend", "test_depend", "conflict", "replace")
@@ -33,7 +35,9 @@ _STANDS_FOR = {
 
 
 def find_refusals(root: Element) -> Iterator[_Refusal]:
-    """Yield why the tools of ROS 2 refuse a package.xml with this root, and where; nothing if they accept it."""
+    """Yield why the tools of ROS 2 refuse a package.xml with this root, and where; nothing if they
+    accept it.
+    """
     children: dict[str, list[Element]] = defaultdict(list)
     for element in root.iterchildren("*"):
         children[tag_of(element)].append(element)
@@ -43,7 +47,10 @@ def find_refusals(root: Element) -> Iterator[_Refusal]:
         version = 3
     for tag in ("name", "version", "description"):
         if len(children.get(tag, ())) != 1:
-            yield f'The manifest must contain exactly one "{tag}" tag', (children.get(tag) or [root])[-1]
+            yield (
+                f'The manifest must contain exactly one "{tag}" tag',
+                (children.get(tag) or [root])[-1],
+            )
     if len(children.get("export", ())) > 1:
         yield 'The manifest must not contain more than one "export" tags', children["export"][1]
     yield from _redundant_dependencies(children, version)
@@ -65,7 +72,9 @@ def text_of(element: Element) -> str:
 
 
 def email_of(person: Element) -> str:
-    """Return the email of a maintainer or author, without the quotes that a quoted git configuration puts around it."""
+    """Return the email of a maintainer or author, without the quotes that a quoted git
+    configuration puts around it.
+    """
     return (person.get("email") or "").strip("\"'")
 
 
@@ -87,7 +96,11 @@ def _key_of(dependency: Element) -> tuple[str | None, ...]:
 
 
 def _redundant_dependencies(children: _Children, version: int) -> Iterator[_Refusal]:
-    general, tags, words = "depend", _STANDS_FOR["depend"], "The generic dependency on '{}' is redundant with: {}"
+    general, tags, words = (
+        "depend",
+        _STANDS_FOR["depend"],
+        "The generic dependency on '{}' is redundant with: {}",
+    )
     if version == 1:
         general, tags = "test_depend", ("build_depend", "run_depend")
         words = 'The test dependency on "{}" is redundant with: {}'
@@ -127,7 +140,10 @@ def _unknown_parts(root: Element, children: _Children, version: int) -> Iterator
     for tag, elements in children.items():
         if tag not in known:
             yield (
-                f"The manifest (with format version {version}) must not contain the following tags: {tag}",
+                (
+                    f"The manifest (with format version {version}) must not contain the "
+                    f"following tags: {tag}"
+                ),
                 elements[0],
             )
             continue
@@ -135,18 +151,26 @@ def _unknown_parts(root: Element, children: _Children, version: int) -> Iterator
             yield from _unknown_attributes(element, known[tag])
             inner = [tag_of(child) for child in element.iterchildren("*")]
             if inner and tag not in ("description", "export"):
-                yield f'The "{tag}" tag must not contain the following children: {enumerated(inner)}', element
+                yield (
+                    f'The "{tag}" tag must not contain the following children: {enumerated(inner)}',
+                    element,
+                )
 
 
 def _unknown_attributes(element: Element, known: Sequence[str]) -> Iterator[_Refusal]:
     unknown = [name for name in map(str, element.attrib) if name not in known and "}" not in name]
     if unknown:
-        words = f'The "{tag_of(element)}" tag must not have the following attributes: {enumerated(unknown)}'
+        words = (
+            f'The "{tag_of(element)}" tag must not have the following attributes: '
+            f"{enumerated(unknown)}"
+        )
         yield words, element
 
 
 def _invalid_texts(root: Element, children: _Children) -> Iterator[_Refusal]:
-    """Yield what `Package.validate` refuses: an invalid name, version or email, a text or element that is missing."""
+    """Yield what `Package.validate` refuses: an invalid name, version or email, a text or element
+    that is missing.
+    """
     for element in children.get("name", ()):
         yield from _invalid_names(element)
     for element in children.get("version", ()):
@@ -175,9 +199,18 @@ def _invalid_versions(element: Element) -> Iterator[_Refusal]:
     if not version:
         yield "Package version must not be empty", element
     elif not _VERSION.fullmatch(version):
-        yield f'Package version "{version}" does not follow version conventions: write three numbers, as 0.1.0', element
+        yield (
+            (
+                f'Package version "{version}" does not follow version conventions: write three '
+                "numbers, as 0.1.0"
+            ),
+            element,
+        )
     if compatibility and not _VERSION.fullmatch(compatibility):
-        yield f"Package compatibility version '{compatibility}' does not follow version conventions", element
+        yield (
+            f"Package compatibility version '{compatibility}' does not follow version conventions",
+            element,
+        )
 
 
 def _invalid_emails(person: Element) -> Iterator[_Refusal]:
@@ -197,9 +230,15 @@ def _own_dependencies(children: _Children, version: int) -> Iterator[_Refusal]:
         for element in children.get(tag, ()):
             if text_of(element) in names:
                 kinds = enumerated([f'"{kind}"' for kind in _STANDS_FOR.get(tag, (tag,))])
-                yield f"The package must not {kinds} on a package with the same name as this package", element
+                yield (
+                    f"The package must not {kinds} on a package with the same name as this package",
+                    element,
+                )
     groups = {text_of(element) for element in children.get("member_of_group", ())}
     for element in children.get("group_depend", ()):
         if text_of(element) in groups:
-            words = "The package must not 'group_depend' on a package which it also declares to be a member of"
+            words = (
+                "The package must not 'group_depend' on a package which it also declares to be "
+                "a member of"
+            )
             yield words, element

@@ -1,4 +1,5 @@
-"""The nodes of a package that are written in Python: what they declare and open, read from the text and never run.
+"""The nodes of a package that are written in Python: what they declare and open, read from the text
+and never run.
 
 Only what is written as a text, number or constant is known.
 What is opened under a condition is listed as well; actions and the topics of tf2 are not.
@@ -24,38 +25,71 @@ _MAX_MODULES = 100
 _MAX_FIRST_LINE = 100  # bytes
 _NODES = frozenset(
     f"rclpy.{name}"
-    for name in ("node.Node", "Node", "lifecycle.Node", "lifecycle.LifecycleNode", "lifecycle.node.Node")
+    for name in (
+        "node.Node",
+        "Node",
+        "lifecycle.Node",
+        "lifecycle.LifecycleNode",
+        "lifecycle.node.Node",
+    )
 )
 _CREATES = frozenset({"rclpy.create_node", *_NODES})
 _Kind = Literal["publisher", "subscription", "service", "client", "action client"]
 _KINDS: dict[str, _Kind] = {
-    "create_publisher": "publisher", "create_lifecycle_publisher": "publisher", "create_subscription": "subscription",
-    "create_service": "service", "create_client": "client",
-}  # fmt: skip
+    "create_publisher": "publisher",
+    "create_lifecycle_publisher": "publisher",
+    "create_subscription": "subscription",
+    "create_service": "service",
+    "create_client": "client",
+}
 _READS = ("get_parameter", "get_parameter_or", "has_parameter")
 _METHODS = frozenset({*_KINDS, *_READS, "declare_parameter", "declare_parameters", "create_timer"})
 # What may be given a node, and declares and opens nothing but actions and the topics of tf2.
 _HARMLESS = frozenset(
-    {"spin", "spin_once", "spin_until_future_complete", "add_node", "remove_node", "super", "isinstance", "print",
-     "hasattr", "getattr", "ActionServer", "TransformListener", "TransformBroadcaster",
-     "StaticTransformBroadcaster"}
-)  # fmt: skip
-# Makes a node in the same process by itself, for which launch gives parameters: moveit_py of moveit2.
+    {
+        "spin",
+        "spin_once",
+        "spin_until_future_complete",
+        "add_node",
+        "remove_node",
+        "super",
+        "isinstance",
+        "print",
+        "hasattr",
+        "getattr",
+        "ActionServer",
+        "TransformListener",
+        "TransformBroadcaster",
+        "StaticTransformBroadcaster",
+    }
+)
+# Makes a node in the same process by itself, for which launch gives parameters: moveit_py of
+# moveit2.
 _MAKES_A_NODE = ("moveit.planning.MoveItPy", "moveit.MoveItPy")
-# By rclpy/qos.py of Jazzy, as qos_profile_NAME and as QoSPresetProfiles.NAME.value: depth, reliability, durability.
+# By rclpy/qos.py of Jazzy, as qos_profile_NAME and as QoSPresetProfiles.NAME.value: depth,
+# reliability, durability.
 _PROFILES = {
-    "sensor_data": (5, "best_effort", "volatile"), "services_default": (10, "reliable", "volatile"),
-    "parameters": (1000, "reliable", "volatile"), "system_default": (None, "system_default", "system_default"),
-}  # fmt: skip
+    "sensor_data": (5, "best_effort", "volatile"),
+    "services_default": (10, "reliable", "volatile"),
+    "parameters": (1000, "reliable", "volatile"),
+    "system_default": (None, "system_default", "system_default"),
+}
 # The policies that are told apart, by the group that older names begin with.
 _GROUPS = {
-    "reliable": "reliability", "best_effort": "reliability", "transient_local": "durability", "volatile": "durability",
-}  # fmt: skip
+    "reliable": "reliability",
+    "best_effort": "reliability",
+    "transient_local": "durability",
+    "volatile": "durability",
+}
 # Arguments of Node that let it accept other parameters, or change its names; None is for **.
 _OPTIONS = (
-    None, "namespace", "cli_args", "parameter_overrides", "allow_undeclared_parameters",
+    None,
+    "namespace",
+    "cli_args",
+    "parameter_overrides",
+    "allow_undeclared_parameters",
     "automatically_declare_parameters_from_overrides",
-)  # fmt: skip
+)
 
 
 class _Qos(NamedTuple):
@@ -67,7 +101,9 @@ class _Qos(NamedTuple):
 
 
 class Endpoint(NamedTuple):
-    """A publisher, subscription, service or client, also of an action. `type` is a full name: std_msgs.msg.Float32."""
+    """A publisher, subscription, service or client, also of an action. `type` is a full name:
+    std_msgs.msg.Float32.
+    """
 
     kind: _Kind
     type: str | None
@@ -111,7 +147,8 @@ _Fact = Endpoint | NodeParameter | Timer | _Doubt | _Name
 
 @dataclass(frozen=True, slots=True)
 class PythonNode:
-    """A node: a subclass of rclpy's Node, or what rclpy.create_node makes; then `class_name` is empty.
+    """A node: a subclass of rclpy's Node, or what rclpy.create_node makes; then `class_name` is
+    empty.
 
     With `doubts`, it may declare or open more than is listed.
     """
@@ -134,7 +171,9 @@ class _Program(NamedTuple):
 
 
 class PythonNodes(NamedTuple):
-    """The nodes of a package, and its programs. With `doubts`, a node may declare or open more, or be missing."""
+    """The nodes of a package, and its programs. With `doubts`, a node may declare or open more,
+    or be missing.
+    """
 
     nodes: tuple[PythonNode, ...]
     programs: tuple[_Program, ...]
@@ -153,7 +192,9 @@ def read_nodes(package: Package) -> PythonNodes:
             modules[name] = _Module(code, name, is_package=path.endswith("/__init__.py"))
     bases = {full: found for module in modules.values() for full, found in module.bases.items()}
     kinds = set(_NODES)
-    while more := {full for full, found in bases.items() if full not in kinds and kinds.intersection(found)}:
+    while more := {
+        full for full, found in bases.items() if full not in kinds and kinds.intersection(found)
+    }:
         kinds |= more
     nodes = [node for module in modules.values() for node in module.read_nodes(kinds)]
     doubts += (doubt for module in modules.values() for doubt in module.doubts)
@@ -161,7 +202,9 @@ def read_nodes(package: Package) -> PythonNodes:
 
 
 def _module_paths(package: Package) -> dict[str, str]:
-    """Return the files of the installed modules by their full names; those of installed programs by their paths."""
+    """Return the files of the installed modules by their full names; those of installed programs
+    by their paths.
+    """
     setup = package.installation
     if setup is None:
         return {}
@@ -173,14 +216,18 @@ def _module_paths(package: Package) -> dict[str, str]:
         for path in files
         if path.rpartition("/")[0] in packages
     }
-    return dict([*found.items(), *((it.source, it.source) for it in _scripts(package))][:_MAX_MODULES])
+    return dict(
+        [*found.items(), *((it.source, it.source) for it in _scripts(package))][:_MAX_MODULES]
+    )
 
 
 def _scripts(package: Package) -> list[InstalledFile]:
     """Return the Python files that a build installs as programs."""
     copies = package.installation.copies if package.installation is not None else ()
     lib = f"lib/{package.name}/"
-    return [copy for copy in copies if copy.target.startswith(lib) and _is_python(package, copy.source)]
+    return [
+        copy for copy in copies if copy.target.startswith(lib) and _is_python(package, copy.source)
+    ]
 
 
 def _is_python(package: Package, path: str) -> bool:
@@ -189,22 +236,32 @@ def _is_python(package: Package, path: str) -> bool:
         start = package.tree.files[path].read(_MAX_FIRST_LINE, first=True)
     except InputError:
         return False
-    return path.endswith(".py") or (start.startswith(b"#!") and b"python" in start.partition(b"\n")[0])
+    return path.endswith(".py") or (
+        start.startswith(b"#!") and b"python" in start.partition(b"\n")[0]
+    )
 
 
-def _programs(package: Package, modules: "dict[str, _Module]", nodes: Sequence[PythonNode]) -> Iterator[_Program]:
+def _programs(
+    package: Package, modules: "dict[str, _Module]", nodes: Sequence[PythonNode]
+) -> Iterator[_Program]:
     """Yield the entry points, and the files that are programs, with the nodes that they create."""
     for entry in entry_points(package):
-        yield _Program(entry.name, _created_by(modules, nodes, entry.module, entry.function), entry.location)
+        yield _Program(
+            entry.name, _created_by(modules, nodes, entry.module, entry.function), entry.location
+        )
     for copy in _scripts(package):
         at = Location(package.path(copy.source), 1, 1)
-        yield _Program(copy.target.rpartition("/")[2], _created_by(modules, nodes, copy.source, ""), at)
+        yield _Program(
+            copy.target.rpartition("/")[2], _created_by(modules, nodes, copy.source, ""), at
+        )
 
 
 def _created_by(
     modules: "dict[str, _Module]", nodes: Sequence[PythonNode], module: str, function: str
 ) -> tuple[PythonNode, ...]:
-    """Return the nodes that a function creates, also in those that it calls; without a name, the module's body."""
+    """Return the nodes that a function creates, also in those that it calls; without a name, the
+    module's body.
+    """
     found: dict[Location, PythonNode] = {}
     pending, seen = [f"{module}.{function}"], set[str]()
     while pending:
@@ -214,7 +271,9 @@ def _created_by(
             continue
         seen.add(name)
         for called, at in owner.calls_in(name.rpartition(".")[2]):
-            found |= {it.location: it for it in nodes if at == it.location or called == it.class_name}
+            found |= {
+                it.location: it for it in nodes if at == it.location or called == it.class_name
+            }
             pending.append(called)
     return tuple(found.values())
 
@@ -224,7 +283,9 @@ def _calls_of(nodes: Sequence[ast.AST]) -> list[ast.Call]:
 
 
 class _Part(NamedTuple):
-    """A function or method, or the module without these: its calls, its scope and the place of its class."""
+    """A function or method, or the module without these: its calls, its scope and the place of
+    its class.
+    """
 
     name: str
     calls: Sequence[ast.Call]
@@ -233,7 +294,9 @@ class _Part(NamedTuple):
 
 
 class _Module:
-    """A module: first its scopes and the bases of its classes, then, once all nodes are known, their calls."""
+    """A module: first its scopes and the bases of its classes, then, once all nodes are known,
+    their calls.
+    """
 
     def __init__(self, code: Code, name: str, *, is_package: bool) -> None:
         self._code, self._name = code, name
@@ -247,13 +310,20 @@ class _Module:
         body = own_nodes(code.tree)
         scope = self._constants.bound(body, Scope({}))
         for part in body:
-            if isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef) and part.name in scope.names:
+            if (
+                isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
+                and part.name in scope.names
+            ):
                 scope.names[part.name] = QualifiedName(f"{name}.{part.name}")
         self._parts.append(_Part("", _calls_of(body), scope))
         for part in body:
             if isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef):
                 inner = [*ast.walk(part)]
-                self._parts.append(_Part(part.name, _calls_of(inner), self._constants.bound(inner, Scope({}, scope))))
+                self._parts.append(
+                    _Part(
+                        part.name, _calls_of(inner), self._constants.bound(inner, Scope({}, scope))
+                    )
+                )
             elif isinstance(part, ast.ClassDef):
                 self._add_class(part, scope)
 
@@ -277,7 +347,9 @@ class _Module:
             for name in [name for name in local.names if name.startswith("self.")]:
                 value = local.names.pop(name)
                 is_first = name not in attributes.names
-                attributes.names[name] = value if is_first else Unknown("it is not bound once", START)
+                attributes.names[name] = (
+                    value if is_first else Unknown("it is not bound once", START)
+                )
             self._parts.append(_Part(method.name, _calls_of(nodes), local, at))
 
     def read_nodes(self, kinds: Collection[str]) -> list[PythonNode]:
@@ -285,18 +357,26 @@ class _Module:
         for at, full in self._classes.items():
             if full in kinds:
                 is_own = _NODES.issuperset(self.bases[full])
-                self._facts[at] = [] if is_own else [_Doubt("what another base class does is not added", at)]
+                self._facts[at] = (
+                    [] if is_own else [_Doubt("what another base class does is not added", at)]
+                )
         calls = [(part, call) for part in self._parts for call in part.calls]
         for part, call in calls:
             if self._called(part, call) in _CREATES:
-                self._facts[self._at(call)] = [_Name(_text(self._argument(part, call, 0, "node_name")))]
+                self._facts[self._at(call)] = [
+                    _Name(_text(self._argument(part, call, 0, "node_name")))
+                ]
         for part, call in calls:
             self._read_call(part, call)
             if self._called(part, call) in _MAKES_A_NODE:
                 for facts in self._facts.values():
-                    facts.append(_Doubt("another node takes the parameters of the process", self._at(call)))
+                    facts.append(
+                        _Doubt("another node takes the parameters of the process", self._at(call))
+                    )
         if self._constants.budget.left < 0:
-            self.doubts.append(_Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1)))
+            self.doubts.append(
+                _Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1))
+            )
         return [self._node(at, facts) for at, facts in self._facts.items()]
 
     def _node(self, at: Location, facts: "Sequence[_Fact]") -> PythonNode:
@@ -312,7 +392,9 @@ class _Module:
         )
 
     def calls_in(self, function: str) -> Iterator[tuple[str, Location]]:
-        """Yield the full name and place of each call in a function of the module, or in its body."""
+        """Yield the full name and place of each call in a function of the module, or in its
+        body.
+        """
         for part in self._parts:
             if part.name == function and part.of is None:
                 yield from ((self._called(part, call), self._at(call)) for call in part.calls)
@@ -323,7 +405,9 @@ class _Module:
         return f"{found.name}{dot}{rest}" if isinstance(found, QualifiedName) else ""
 
     def _argument(self, part: _Part, call: ast.Call, position: int, name: str) -> Value:
-        """Return an argument of a call; None where it is missing, Unknown where * or ** may give it."""
+        """Return an argument of a call; None where it is missing, Unknown where * or ** may give
+        it.
+        """
         given: list[ast.expr | None] = [it.value for it in call.keywords if it.arg == name]
         if any(isinstance(it, ast.Starred) for it in call.args[: position + 1]):
             return Unknown("it is unpacked", position_of(call))
@@ -338,19 +422,27 @@ class _Module:
         if name == "self":
             return part.of if part.of in self._facts else None
         value = constant_in(part.scope, name)
-        at = location_in(self._code.source, value.at) if isinstance(value, Call) and value.name in _CREATES else None
+        at = (
+            location_in(self._code.source, value.at)
+            if isinstance(value, Call) and value.name in _CREATES
+            else None
+        )
         return at if at in self._facts else None
 
     def _read_call(self, part: _Part, call: ast.Call) -> None:
         """Add what a call declares or opens to the facts of its node."""
         match call.func:
-            case ast.Attribute(value=owner, attr="__init__") if part.name == "__init__" and part.of in self._facts:
+            case ast.Attribute(value=owner, attr="__init__") if (
+                part.name == "__init__" and part.of in self._facts
+            ):
                 self._facts[part.of] += self._read_init(part, call, owner)
             case ast.Attribute(value=owner, attr=method) if method in _METHODS:
                 at = self._receiver(part, owner)
                 facts = self._facts.get(at) if at is not None else None
                 if facts is None:
-                    self.doubts.append(_Doubt(f"the node of this {method}() is not known", self._at(call)))
+                    self.doubts.append(
+                        _Doubt(f"the node of this {method}() is not known", self._at(call))
+                    )
                 else:
                     facts += self._read_method(part, call, method)
             case function:
@@ -365,7 +457,12 @@ class _Module:
     def _action_client(self, part: _Part, call: ast.Call) -> Endpoint:
         made = self._argument(part, call, 1, "action_type")
         name = _text(self._argument(part, call, 2, "action_name"))
-        return Endpoint("action client", made.name if isinstance(made, QualifiedName) else None, name, self._at(call))
+        return Endpoint(
+            "action client",
+            made.name if isinstance(made, QualifiedName) else None,
+            name,
+            self._at(call),
+        )
 
     def _read_init(self, part: _Part, call: ast.Call, owner: ast.expr) -> "Iterator[_Fact]":
         """Yield the name that a class gives its node, if its base is rclpy's Node itself."""
@@ -389,7 +486,9 @@ class _Module:
             made = argument(0, "msg_type" if is_topic else "srv_type")
             name = _text(argument(1, "topic" if is_topic else "srv_name"))
             qos = argument(2 if kind == "publisher" else 3, "qos_profile") if is_topic else None
-            yield Endpoint(kind, made.name if isinstance(made, QualifiedName) else None, name, at, _qos(qos))
+            yield Endpoint(
+                kind, made.name if isinstance(made, QualifiedName) else None, name, at, _qos(qos)
+            )
         elif method == "create_timer":
             period = argument(0, "timer_period_sec")
             yield Timer(float(period) if isinstance(period, int | float) else None, at)
@@ -399,7 +498,9 @@ class _Module:
             is_declared = method == "declare_parameter"
             default = argument(1, "value") if is_declared else None
             is_plain = argument(2, "descriptor") is None
-            yield NodeParameter(_text(argument(0, "name")), _default(default), at, is_declared, is_plain)
+            yield NodeParameter(
+                _text(argument(0, "name")), _default(default), at, is_declared, is_plain
+            )
 
 
 def _text(value: Value) -> str | None:
@@ -422,7 +523,9 @@ def _declared(namespace: Value, parameters: Value, at: Location) -> Iterator[Nod
         name, default = (*item, None)[:2] if isinstance(item, tuple) and item else (None, item)
         is_known = isinstance(name, str) and isinstance(namespace, str | None)
         is_plain = isinstance(item, tuple) and len(item) < 3
-        yield NodeParameter(f"{before}{name}" if is_known else None, _default(default), at, is_plain=is_plain)
+        yield NodeParameter(
+            f"{before}{name}" if is_known else None, _default(default), at, is_plain=is_plain
+        )
 
 
 def _qos(value: Value) -> _Qos:
@@ -433,7 +536,9 @@ def _qos(value: Value) -> _Qos:
         case int():
             return _Qos(value, "reliable", "volatile")
         case QualifiedName(name=name) if name.startswith("rclpy.qos."):
-            profile = name.removesuffix(".value").rpartition(".")[2].lower().removeprefix("qos_profile_")
+            profile = (
+                name.removesuffix(".value").rpartition(".")[2].lower().removeprefix("qos_profile_")
+            )
             return _Qos(*_PROFILES.get(profile, ()))
         case Call(name="rclpy.qos.QoSProfile", kwargs=given):
             depth = given.get("depth")
@@ -446,7 +551,13 @@ def _qos(value: Value) -> _Qos:
 
 
 def _policy(value: Value) -> str | None:
-    """Return a policy by its name in rclpy.qos, as ReliabilityPolicy.BEST_EFFORT; None where it is not known."""
+    """Return a policy by its name in rclpy.qos, as ReliabilityPolicy.BEST_EFFORT; None where it is
+    not known.
+    """
     name = value.name.rpartition(".")[2].lower() if isinstance(value, QualifiedName) else ""
-    names = (policy for policy, group in _GROUPS.items() if name in (policy, f"rmw_qos_policy_{group}_{policy}"))
+    names = (
+        policy
+        for policy, group in _GROUPS.items()
+        if name in (policy, f"rmw_qos_policy_{group}_{policy}")
+    )
     return next(names, None)

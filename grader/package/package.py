@@ -1,4 +1,6 @@
-"""A ROS 2 package of a submission: its files are read one by one when they are needed, each once, and never run."""
+"""A ROS 2 package of a submission: its files are read one by one when they are needed, each
+once, and never run.
+"""
 
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -9,7 +11,14 @@ from typing import TYPE_CHECKING
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.files.tree import IS_LINK, Tree
 from grader.names import closest
-from grader.package.launch.places import ENDINGS, PREFIX, SHARE, is_in_launch_folder, is_launch_named, launch_stem
+from grader.package.launch.places import (
+    ENDINGS,
+    PREFIX,
+    SHARE,
+    is_in_launch_folder,
+    is_launch_named,
+    launch_stem,
+)
 from grader.python.budget import PYTHON_LIMIT, Budget
 from grader.source import Location, Source
 from grader.text import enumerated, was_not_committed
@@ -28,20 +37,36 @@ RESOURCE_INDEX = "share/ament_index/resource_index/packages/"
 NO_PACKAGE = "the submission has no ROS 2 package: there is no package.xml"
 _RVIZ_LIMIT = 512 * 1024  # bytes
 _MAX_LAUNCHES = 10
-# What ros2 launch imports: an installed folder of this name is found before it, on the PYTHONPATH of a workspace.
-_OF_ROS_IN_PYTHON = ("launch", "launch_ros", "launch_xml", "launch_yaml", "rclpy", "ament_index_python", "ros2launch",
-                     "ros2cli", "osrf_pycommon", "yaml")  # fmt: skip
+# What ros2 launch imports: an installed folder of this name is found before it, on the PYTHONPATH
+# of a workspace.
+_OF_ROS_IN_PYTHON = (
+    "launch",
+    "launch_ros",
+    "launch_xml",
+    "launch_yaml",
+    "rclpy",
+    "ament_index_python",
+    "ros2launch",
+    "ros2cli",
+    "osrf_pycommon",
+    "yaml",
+)
 # What a file of a kind is called in messages, and how its name ends.
-_KINDS = {"urdf": ("URDF", (".urdf", ".xacro")), "rviz": ("RViz file", (".rviz",)), "launch": ("launch file", ENDINGS)}
+_KINDS = {
+    "urdf": ("URDF", (".urdf", ".xacro")),
+    "rviz": ("RViz file", (".rviz",)),
+    "launch": ("launch file", ENDINGS),
+}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Package:
     """One ROS 2 package of a submission, whose files are read and never run.
 
-    `submission/packages.py` finds the packages of a submission, and says which one is graded. Checks ask it what a
-    build installs, what its launch files start, and what RViz shows; launch files and xacro ask it for the files around
-    them. Each file is evaluated when it is first needed, and once.
+    `submission/packages.py` finds the packages of a submission, and says which one is graded.
+    Checks ask it what a build installs, what its launch files start, and what RViz shows; launch
+    files and xacro ask it for the files around them. Each file is evaluated when it is first
+    needed, and once.
 
     >>> from grader.files.tree import make_tree, overlaid
     >>> from grader.submission.packages import read_packages
@@ -76,23 +101,35 @@ class Package:
         return path.startswith(self.path(""))
 
     def under(self, arguments: "Mapping[str, str]") -> "Package":
-        """Return the package with its launch files under these arguments; the rest is not read again."""
+        """Return the package with its launch files under these arguments; the rest is not read
+        again.
+        """
         found = replace(self, arguments=arguments)
-        found.__dict__.update((name, value) for name, value in vars(self).items() if name not in vars(found))
+        found.__dict__.update(
+            (name, value) for name, value in vars(self).items() if name not in vars(found)
+        )
         return found
 
     @property
     def name(self) -> str:
-        """The name that ROS 2 finds it by; without a package.xml, that of setup.py or of the folder."""
+        """The name that ROS 2 finds it by; without a package.xml, that of setup.py or of the
+        folder.
+        """
         if self.manifest is not None and self.manifest.name is not None:
             return self.manifest.name
-        return (self.installation and self.installation.name) or PurePosixPath(self.folder or self.tree.name).name
+        return (self.installation and self.installation.name) or PurePosixPath(
+            self.folder or self.tree.name
+        ).name
 
     def find(self, name: str) -> "Package | None":
-        """Return the package of the submission that ROS 2 finds by a name: this one, if it has the name."""
+        """Return the package of the submission that ROS 2 finds by a name: this one, if it has
+        the name.
+        """
         if name == self.name:
             return self
-        return self.packages.get(name) or next((it for it in self.packages.values() if name in it.names), None)
+        return self.packages.get(name) or next(
+            (it for it in self.packages.values() if name in it.names), None
+        )
 
     def depends_on(self, name: str) -> bool:
         """Return whether its package.xml depends on a package of this name."""
@@ -100,32 +137,46 @@ class Package:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """The names that ROS 2 finds it by: its own, and those that setup.py installs in the resource index."""
+        """The names that ROS 2 finds it by: its own, and those that setup.py installs in the
+        resource index.
+        """
         return tuple(dict.fromkeys([self.name, *self.registered]))
 
     @cached_property
     def registered(self) -> tuple[str, ...]:
         """The names that setup.py registers it by: those of its files in the resource index."""
-        return tuple(path.removeprefix(RESOURCE_INDEX) for path in self.installed if path.startswith(RESOURCE_INDEX))
+        return tuple(
+            path.removeprefix(RESOURCE_INDEX)
+            for path in self.installed
+            if path.startswith(RESOURCE_INDEX)
+        )
 
     @cached_property
     def share(self) -> str:
-        """The folder below the prefix where ros2 looks for its files: by the lab's name if it has it, else its own."""
+        """The folder below the prefix where ros2 looks for its files: by the lab's name if it
+        has it, else its own.
+        """
         return f"share/{self.lab_name if self.lab_name in self.names else self.name}/"
 
     @property
     def is_cmake(self) -> bool:
         """Return whether CMake, not setup.py, installs the package."""
-        return CMAKE in self.tree.files and (SETUP not in self.tree.files or self.build_file == CMAKE)
+        return CMAKE in self.tree.files and (
+            SETUP not in self.tree.files or self.build_file == CMAKE
+        )
 
     @property
     def build_file(self) -> str:
-        """Return the file that should install the package, by its package.xml: setup.py or CMakeLists.txt."""
+        """Return the file that should install the package, by its package.xml: setup.py or
+        CMakeLists.txt.
+        """
         return SETUP if self._build_type in ("ament_python", "") else CMAKE
 
     @property
     def missing_build_file(self) -> str:
-        """What a package without a build file lacks, in words: that of its build type, or either."""
+        """What a package without a build file lacks, in words: that of its build type, or
+        either.
+        """
         return f"{SETUP} or {CMAKE}" if self._build_type in ("catkin", "") else self.build_file
 
     @property
@@ -147,12 +198,16 @@ class Package:
             data = file.read(PYTHON_LIMIT)
         except InputError as error:
             source = Source(own, "")
-            return Installation(source, SyntaxFault(source, str(error), Location(own, 1, 1), sure=False))
+            return Installation(
+                source, SyntaxFault(source, str(error), Location(own, 1, 1), sure=False)
+            )
         if self.is_cmake:
             from grader.package.cmake.reader import read_cmake
 
             declared = (self.manifest.name if self.manifest is not None else None) or ""
-            return read_cmake(data.decode("utf-8", "replace"), own, self.tree, declared, self.budget)
+            return read_cmake(
+                data.decode("utf-8", "replace"), own, self.tree, declared, self.budget
+            )
         from grader.package.setup_py import read_setup
 
         return read_setup(data, own, self.tree, self.budget)
@@ -164,14 +219,24 @@ class Package:
 
     @cached_property
     def shadows_ros(self) -> str:
-        """The name of a Python package that a build installs and that ros2 launch imports in place of its own."""
-        packages = self.installation.packages if self.installation is not None and not self.installation.unknown else ()
+        """The name of a Python package that a build installs and that ros2 launch imports in place
+        of its own.
+        """
+        packages = (
+            self.installation.packages
+            if self.installation is not None and not self.installation.unknown
+            else ()
+        )
         return next((name for name in packages if name in _OF_ROS_IN_PYTHON), "")
 
     @cached_property
     def launch_files(self) -> tuple[str, ...]:
-        """The paths of its launch files: by their names, or because they are in a folder named launch."""
-        return tuple(path for path in self.tree.files if path.endswith(ENDINGS) or is_in_launch_folder(path))
+        """The paths of its launch files: by their names, or because they are in a folder named
+        launch.
+        """
+        return tuple(
+            path for path in self.tree.files if path.endswith(ENDINGS) or is_in_launch_folder(path)
+        )
 
     @cached_property
     def rviz_files(self) -> tuple[str, ...]:
@@ -179,12 +244,19 @@ class Package:
         return tuple(path for path in self.tree.files if path.lower().endswith(".rviz"))
 
     def built(self, kind: str, name: str = "") -> str:
-        """Return the end of a message on a missing file if a build has one of that kind, or the one of that name."""
+        """Return the end of a message on a missing file if a build has one of that kind, or the one
+        of that name.
+        """
         shares = [f"/{folder}/{self.name}/" for folder in ("build", "install", "share")]
         copied = (path for path in self.generated if any(share in f"/{path}" for share in shares))
         endings = (f"/{name}",) if name else _KINDS[kind][1]
         return next(
-            (was_not_committed(path) for path in copied if (path if name else path.lower()).endswith(endings)), ""
+            (
+                was_not_committed(path)
+                for path in copied
+                if (path if name else path.lower()).endswith(endings)
+            ),
+            "",
         )
 
     def missing(self, kind: str) -> MissingElement | NotDecided:
@@ -192,26 +264,49 @@ class Package:
         word, endings = _KINDS[kind]
         if self.tree.links:
             return NotDecided(f"the {word} may be in {self.tree.links[0]}, which {IS_LINK}")
-        has_folder = kind != "launch" or any(it.rpartition("/")[2] == kind for it in self.tree.folders)
+        has_folder = kind != "launch" or any(
+            it.rpartition("/")[2] == kind for it in self.tree.folders
+        )
         folder = "" if has_folder else ", and there is no folder launch"
-        message = f"the package has no {word}: no file ends in {enumerated(endings[:3], word='or')}{folder}"
-        return MissingElement(f"{word} in the package", "", message=message, detail=self.built(kind), absent=word)
+        message = (
+            f"the package has no {word}: no file ends in "
+            f"{enumerated(endings[:3], word='or')}{folder}"
+        )
+        return MissingElement(
+            f"{word} in the package", "", message=message, detail=self.built(kind), absent=word
+        )
 
     def without_data_files(self, message: str) -> MissingElement:
-        """Return the error for a setup.py that gives setup() no data_files, because of this mistake."""
+        """Return the error for a setup.py that gives setup() no data_files, because of this
+        mistake.
+        """
         setup = self.installation
         at = setup.location(setup.called_at) if setup is not None else None
-        return MissingElement("data_files", self.folder, message=message, location=at, problem=message, costs_once=True)
+        return MissingElement(
+            "data_files",
+            self.folder,
+            message=message,
+            location=at,
+            problem=message,
+            costs_once=True,
+        )
 
     def launch_file(self, name: str) -> str | None:
-        """Return the launch file of this name, if need be in another language; else the closest name's; else any."""
-        files = sorted(self.launch_files, key=lambda path: (path.rpartition("/")[2] != name, path.count("/"), path))
+        """Return the launch file of this name, if need be in another language; else the closest
+        name's; else any.
+        """
+        files = sorted(
+            self.launch_files,
+            key=lambda path: (path.rpartition("/")[2] != name, path.count("/"), path),
+        )
         named = [path for path in files if is_launch_named(path, name)]
         if named:
             return named[0]
         names = {path.rpartition("/")[2]: path for path in reversed(files)}
         stem = launch_stem(name)
-        similar = closest(name, names) or next((other for other in names if launch_stem(other) == stem), None)
+        similar = closest(name, names) or next(
+            (other for other in names if launch_stem(other) == stem), None
+        )
         if similar:
             return names[similar]
         return files[0] if files else None
@@ -227,7 +322,8 @@ class Package:
         try:
             data = self.tree.files[path].read(PYTHON_LIMIT) if text is None else text
             installed = next(
-                (it for it, source in self.installed.items() if source == path), f"share/{self.name}/{path}"
+                (it for it, source in self.installed.items() if source == path),
+                f"share/{self.name}/{path}",
             )
             launch = read_launch(data, own, installed, self, self.arguments)
         except InputError as error:
@@ -259,50 +355,90 @@ class Package:
 
     def rviz_file(self, name: str, launch: "Launch | None") -> str | None:
         """Return the RViz file that the launch file opens; else the one of this name; else any."""
-        wanted = min(self.rviz_files, key=lambda it: (it.rpartition("/")[2] != name, it.count("/"), it), default=None)
+        wanted = min(
+            self.rviz_files,
+            key=lambda it: (it.rpartition("/")[2] != name, it.count("/"), it),
+            default=None,
+        )
         return (self.rviz_opened(launch) if launch is not None else None) or wanted
 
     def rviz_opened(self, launch: "Launch") -> str | None:
-        """Return the RViz file that a launch file opens, also by a wrong folder: that is another error."""
+        """Return the RViz file that a launch file opens, also by a wrong folder: that is another
+        error.
+        """
         paths = [reference.path for reference in launch.named("rviz") if reference.path is not None]
-        installed = [source for path in paths if (source := self.source_of(path)) in self.rviz_files]
+        installed = [
+            source for path in paths if (source := self.source_of(path)) in self.rviz_files
+        ]
         names = {path.rpartition("/")[2] for path in paths}
-        return next(iter([*installed, *(it for it in self.rviz_files if it.rpartition("/")[2] in names)]), None)
+        return next(
+            iter([*installed, *(it for it in self.rviz_files if it.rpartition("/")[2] in names)]),
+            None,
+        )
 
     def source_of(self, path: str) -> str | None:
-        """Return the file of the package that a build installs at a path, which begins with the prefix's stand-in."""
+        """Return the file of the package that a build installs at a path, which begins with the
+        prefix's stand-in.
+        """
         shares = tuple(f"{SHARE}/{name}/" for name in self.names)
-        return self.installed.get(path.removeprefix(f"{PREFIX}/")) if path.startswith(shares) else None
+        return (
+            self.installed.get(path.removeprefix(f"{PREFIX}/")) if path.startswith(shares) else None
+        )
 
     @property
     def _all(self) -> "tuple[Package, ...]":
         return self, *self.packages.values()
 
     def has_package(self, name: str) -> bool:
-        """Return whether a package certainly is on the machine: submitted, declared as needed, or part of ROS 2."""
+        """Return whether a package certainly is on the machine: submitted, declared as needed, or
+        part of ROS 2.
+        """
         from grader.package.launch.nodes import is_of_ros  # late: as the readers of launch files
 
         # rosdep installs what any package of a workspace needs.
-        return self.find(name) is not None or any(it.depends_on(name) for it in self._all) or is_of_ros(name)
+        return (
+            self.find(name) is not None
+            or any(it.depends_on(name) for it in self._all)
+            or is_of_ros(name)
+        )
 
     def has_program(self, package: str, name: str) -> bool | None:
-        """Return whether a package has a program, as far as its setup.py tells; one that is not known has it."""
-        from grader.package.launch.programs import lacks_program  # late: as the readers of launch files
+        """Return whether a package has a program, as far as its setup.py tells; one that is not
+        known has it.
+        """
+        from grader.package.launch.programs import (
+            lacks_program,
+        )  # late: as the readers of launch files
 
         owner = self.find(package)
         if owner is None:
             return not lacks_program(package, name)
-        return owner.installation.has_program(name, package) if owner.installation is not None else None
+        return (
+            owner.installation.has_program(name, package)
+            if owner.installation is not None
+            else None
+        )
 
     def files_in(self, folder: str) -> "Sequence[str] | None":
-        """Return the names of the files that builds install in a folder below the prefix; None if not all are known."""
+        """Return the names of the files that builds install in a folder below the prefix; None if
+        not all are known.
+        """
         owner = self.find(folder.removeprefix("share/").partition("/")[0])
-        if owner is None or owner.installation is None or owner.installation.fault or owner.installation.unknown:
+        if (
+            owner is None
+            or owner.installation is None
+            or owner.installation.fault
+            or owner.installation.unknown
+        ):
             return None
-        return tuple(path.rpartition("/")[2] for path in owner.installed if path.rpartition("/")[0] == folder)
+        return tuple(
+            path.rpartition("/")[2] for path in owner.installed if path.rpartition("/")[0] == folder
+        )
 
     def open_installed(self, path: str) -> tuple[bytes, str] | None:
-        """Return what a build of any submitted package installs at a path below the prefix, with the file's path."""
+        """Return what a build of any submitted package installs at a path below the prefix, with
+        the file's path.
+        """
         for package in (package for package in self.packages.values() if path in package.installed):
             with suppress(InputError):
                 source = package.installed[path]

@@ -1,4 +1,6 @@
-"""The kinds of problems of the files around a URDF. docs/examples/ explains each one: pkg.toml, lch.toml, rvz.toml."""
+"""The kinds of problems of the files around a URDF. docs/examples/ explains each one: pkg.toml,
+lch.toml, rvz.toml.
+"""
 
 from grader.problems import Kind, Severity, kinds_in
 
@@ -15,11 +17,17 @@ OTHER_NAME = _kind("PKG005", "warning", "Different package names in package.xml 
 QUOTED_EMAIL = _kind("PKG006", "warning", "Email in quotes in package.xml")
 SETUP_SYNTAX = _kind("PKG010", "error", "Syntax error in setup.py or CMakeLists.txt")
 SETUP_NAME = _kind("PKG011", "error", "Error that stops setup.py")
-SETUP_STOPS = _kind("PKG012", "error", "Something in setup.py or CMakeLists.txt that a build does not accept")
-EMPTY_GLOB = _kind("PKG013", "warning", "Pattern in setup.py or CMakeLists.txt that matches no file")
+SETUP_STOPS = _kind(
+    "PKG012", "error", "Something in setup.py or CMakeLists.txt that a build does not accept"
+)
+EMPTY_GLOB = _kind(
+    "PKG013", "warning", "Pattern in setup.py or CMakeLists.txt that matches no file"
+)
 NO_MARKER = _kind("PKG014", "warning", "No entry for the resource index")
 NO_MANIFEST_ENTRY = _kind("PKG015", "warning", "package.xml is not installed")
-SETUP_UNKNOWN = _kind("PKG016", "note", "Cannot be determined statically in setup.py or CMakeLists.txt")
+SETUP_UNKNOWN = _kind(
+    "PKG016", "note", "Cannot be determined statically in setup.py or CMakeLists.txt"
+)
 IGNORED_ARGUMENT = _kind("PKG017", "warning", "Argument that setup() does not have")
 LAUNCH_SYNTAX = _kind("LCH001", "error", "Unreadable launch file")
 LAUNCH_FAULT = _kind("LCH002", "error", "Error that stops a launch file")

@@ -1,4 +1,6 @@
-"""RViz configuration files: the fixed frame and the enabled displays, as RViz of ROS 2 reads them."""
+"""RViz configuration files: the fixed frame and the enabled displays, as RViz of ROS 2 reads
+them.
+"""
 
 from collections.abc import Iterator
 from contextlib import suppress
@@ -37,7 +39,9 @@ class Display:
     def is_enabled(self) -> bool:
         """Whether it is enabled itself, whatever its group is."""
         # rviz_common's Display::load sets Value first, and then Enabled.
-        return _switched_on(self.node.get("Enabled"), default=_switched_on(self.node.get("Value"), default=False))
+        return _switched_on(
+            self.node.get("Enabled"), default=_switched_on(self.node.get("Value"), default=False)
+        )
 
     @property
     def hides_links(self) -> str:
@@ -48,7 +52,11 @@ class Display:
                 return "its Alpha is 0"
         tables = links.value.values() if links is not None and isinstance(links.value, dict) else ()
         shown = [value for link in tables if (value := link.get("Value")) is not None]
-        return "all its links are off" if shown and not any(_switched_on(it, default=True) for it in shown) else ""
+        return (
+            "all its links are off"
+            if shown and not any(_switched_on(it, default=True) for it in shown)
+            else ""
+        )
 
     @property
     def location(self) -> Location:
@@ -58,7 +66,9 @@ class Display:
 
 @dataclass(frozen=True, slots=True)
 class RvizFile:
-    """The content of an RViz file. `fault` is set where it cannot be read: nothing else is known then."""
+    """The content of an RViz file. `fault` is set where it cannot be read: nothing else is known
+    then.
+    """
 
     source: Source
     fault: Problem | None
@@ -79,7 +89,9 @@ class RvizFile:
         for display in self.displays:
             if display.package == "rviz":
                 kind = display.kind
-                message = f"rviz/{kind} is a class of ROS 1; in ROS 2 it is rviz_default_plugins/{kind}"
+                message = (
+                    f"rviz/{kind} is a class of ROS 1; in ROS 2 it is rviz_default_plugins/{kind}"
+                )
                 found.append(Problem(kinds.ROS1_CLASS, message, display.location))
         if not any(display.kind == "TF" and display.enabled for display in self.displays):
             start = Location(self.source.path, 1, 1)
@@ -112,14 +124,18 @@ def read_rviz(data: bytes, path: str) -> RvizFile:
 
 
 def _switched_on(node: YamlNode | None, *, default: bool) -> bool:
-    """Return a setting as RViz reads it: everything but false, 0 and the empty text is on (QVariant::toBool)."""
+    """Return a setting as RViz reads it: everything but false, 0 and the empty text is on
+    (QVariant::toBool).
+    """
     if node is None or node.text is None:
         return default
     return node.text.lower() not in ("false", "0", "")
 
 
 def _displays(root: YamlNode) -> Iterator[Display]:
-    """Yield the displays of the root group and of the groups in it; in a disabled group they are disabled."""
+    """Yield the displays of the root group and of the groups in it; in a disabled group they are
+    disabled.
+    """
     listed = root.get("Displays")
     is_on = _switched_on(root.get("Enabled"), default=_switched_on(root.get("Value"), default=True))
     pending = [(node, is_on) for node in listed.items] if listed is not None else []

@@ -1,7 +1,7 @@
 """The files that a build installs by a package's setup.py, which is evaluated, never run.
 
-`data_files` is read in the order of setuptools' install_data. Whether the build succeeds at all also depends on the
-other arguments of setup(), on setup.cfg and on pyproject.toml.
+`data_files` is read in the order of setuptools' install_data. Whether the build succeeds at all
+also depends on the other arguments of setup(), on setup.cfg and on pyproject.toml.
 """
 
 import ast
@@ -42,16 +42,49 @@ from grader.text import enumerated
 _MAX_GUESSES = 10
 _ROOT = f"/{PACKAGE_FOLDER}"
 _SETUPS = ("setuptools.setup", "distutils.core.setup", "?.setup")
-# The arguments that name the Python packages; without one, setuptools searches for packages, but not in the folders
-# below, those of `FlatLayoutPackageFinder.DEFAULT_EXCLUDE`.
+# The arguments that name the Python packages; without one, setuptools searches for packages, but
+# not in the folders below, those of `FlatLayoutPackageFinder.DEFAULT_EXCLUDE`.
 _PACKAGES = ("packages", "py_modules", "ext_modules", "package_dir")
 _NO_PACKAGES = frozenset(
-    {"ci", "bin", "debian", "doc", "docs", "documentation", "manpages", "news", "newsfragments", "changelog", "test",
-     "tests", "unit_test", "unit_tests", "example", "examples", "scripts", "tools", "util", "utils", "python", "build",
-     "benchmark", "benchmarks", "exercise", "exercises", "htmlcov", "tasks", "dist", "venv", "env", "requirements",
-     "fabfile", "site_scons"}
-)  # fmt: skip
-# PEP 440, as packaging.version has it; the name and value of an entry point, as importlib.metadata has them.
+    {
+        "ci",
+        "bin",
+        "debian",
+        "doc",
+        "docs",
+        "documentation",
+        "manpages",
+        "news",
+        "newsfragments",
+        "changelog",
+        "test",
+        "tests",
+        "unit_test",
+        "unit_tests",
+        "example",
+        "examples",
+        "scripts",
+        "tools",
+        "util",
+        "utils",
+        "python",
+        "build",
+        "benchmark",
+        "benchmarks",
+        "exercise",
+        "exercises",
+        "htmlcov",
+        "tasks",
+        "dist",
+        "venv",
+        "env",
+        "requirements",
+        "fabfile",
+        "site_scons",
+    }
+)
+# PEP 440, as packaging.version has it; the name and value of an entry point, as importlib.metadata
+# has them.
 _VERSION = re.compile(
     r"\s*v?(?:\d+!)?\d+(?:\.\d+)*(?:[-_.]?(?:alpha|a|beta|b|preview|pre|c|rc)[-_.]?\d*)?"
     r"(?:-\d+|[-_.]?(?:post|rev|r)[-_.]?\d*)?(?:[-_.]?dev[-_.]?\d*)?(?:\+[a-z0-9]+(?:[-_.][a-z0-9]+)*)?\s*",
@@ -59,25 +92,78 @@ _VERSION = re.compile(
 )
 _ENTRY_POINT = re.compile(r"\s*[^=\s][^=]*=\s*[\w.]+\s*(?::\s*[\w.]+\s*)?(?:\[.*\]\s*)?")
 _REQUIREMENT = re.compile(
-    r"\s*[A-Za-z0-9](?:[\w.-]*[A-Za-z0-9])?(?:\[[\w, -]*\])?(?:\s*(?:[<>~!=]=?|===)\s*[\w.*+!-]+\s*,?)*\s*"
+    r"\s*[A-Za-z0-9](?:[\w.-]*[A-Za-z0-9])?(?:\[[\w, "
+    r"-]*\])?(?:\s*(?:[<>~!=]=?|===)\s*[\w.*+!-]+\s*,?)*\s*"
 )
-_TEXTS = ("name", "description", "long_description", "author", "author_email", "maintainer", "maintainer_email", "url",
-          "license", "download_url", "long_description_content_type", "python_requires", "test_suite")  # fmt: skip
+_TEXTS = (
+    "name",
+    "description",
+    "long_description",
+    "author",
+    "author_email",
+    "maintainer",
+    "maintainer_email",
+    "url",
+    "license",
+    "download_url",
+    "long_description_content_type",
+    "python_requires",
+    "test_suite",
+)
 # The arguments whose faults are found below.
 _CHECKED = ("version", "packages", "py_modules", "data_files", "entry_points")
 # The other arguments that setuptools 68 knows, and those that well-known plug-ins add.
 _OTHERS = (
-    "package_dir", "ext_modules", "ext_package", "scripts", "script_name", "script_args", "cmdclass", "command_options",
-    "options", "libraries", "include_dirs", "headers", "provides", "requires", "obsoletes", "license_file",
-    "license_files", "project_urls", "namespace_packages", "exclude_package_data", "eager_resources",
-    "dependency_links", "features", "test_loader", "test_runner", "use_2to3", "convert_2to3_doctests", "distclass",
-    "licence", "provides_extras", "contact", "contact_email", "fullname", "password", "verbose", "dry_run", "help",
-    "src_root", "use_scm_version", "cffi_modules", "pbr", "rust_extensions", "use_incremental", "cmake_args",
+    "package_dir",
+    "ext_modules",
+    "ext_package",
+    "scripts",
+    "script_name",
+    "script_args",
+    "cmdclass",
+    "command_options",
+    "options",
+    "libraries",
+    "include_dirs",
+    "headers",
+    "provides",
+    "requires",
+    "obsoletes",
+    "license_file",
+    "license_files",
+    "project_urls",
+    "namespace_packages",
+    "exclude_package_data",
+    "eager_resources",
+    "dependency_links",
+    "features",
+    "test_loader",
+    "test_runner",
+    "use_2to3",
+    "convert_2to3_doctests",
+    "distclass",
+    "licence",
+    "provides_extras",
+    "contact",
+    "contact_email",
+    "fullname",
+    "password",
+    "verbose",
+    "dry_run",
+    "help",
+    "src_root",
+    "use_scm_version",
+    "cffi_modules",
+    "pbr",
+    "rust_extensions",
+    "use_incremental",
+    "cmake_args",
     "cmake_install_dir",
-)  # fmt: skip
+)
 _AT_HAND = frozenset({"setuptools", "wheel"})  # what setup_requires may name without a download
-# The sections of setup.cfg that concern a build: of these, the options that are known to be accepted. setuptools 68
-# takes a dash for an underscore, with a warning (dist.py, `warn_dash_deprecation`).
+# The sections of setup.cfg that concern a build: of these, the options that are known to be
+# accepted. setuptools 68 takes a dash for an underscore, with a warning (dist.py,
+# `warn_dash_deprecation`).
 _SECTIONS = {"develop": {"script_dir", "install_scripts"}, "install": {"install_scripts"}}
 _OF_TOOLS = re.compile(
     r"flake8|pycodestyle|pydocstyle|pep8|pep257|mypy\b.*|isort|pylint|yapf|black|tool:.*|coverage:.*|bdist_wheel|sdist|test"
@@ -88,35 +174,54 @@ _Finding = str | Unknown
 
 
 def read_setup(data: bytes, path: str, tree: Tree, budget: Budget | None = None) -> Installation:
-    """Evaluate the setup.py of a package with these files; its work is charged to the budget. Never raises.
+    """Evaluate the setup.py of a package with these files; its work is charged to the budget. Never
+    raises.
 
-    The file system lists a folder in any order. If there are several files, other orders are evaluated as well. colcon
-    runs the file twice, with __file__ as "setup.py" and as an absolute path. What differs between these is unknown.
+    The file system lists a folder in any order. If there are several files, other orders are
+    evaluated as well. colcon runs the file twice, with __file__ as "setup.py" and as an absolute
+    path. What differs between these is unknown.
     """
     code = parse(data, path)
     if isinstance(code, SyntaxFault):
         return Installation(code.source, code)
     budget = budget or Budget()
-    strings = [node for node in ast.walk(code.tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
-    written = {str(node.value): position_of(node) for node in reversed(strings)}  # the first of several counts
+    strings = [
+        node
+        for node in ast.walk(code.tree)
+        if isinstance(node, ast.Constant) and isinstance(node.value, str)
+    ]
+    written = {
+        str(node.value): position_of(node) for node in reversed(strings)
+    }  # the first of several counts
     listing = PackageListing(tree, budget, ORDERS[0])
     setups = [_evaluate_setup(code, listing, written, "setup.py")]
     if "__file__" in code.source.text:
-        setups.append(_evaluate_setup(code, PackageListing(tree, budget, ORDERS[0]), written, f"{_ROOT}/setup.py"))
+        setups.append(
+            _evaluate_setup(
+                code, PackageListing(tree, budget, ORDERS[0]), written, f"{_ROOT}/setup.py"
+            )
+        )
     orders = ORDERS[1:] if listing.order_matters else ()
-    setups += [_evaluate_setup(code, PackageListing(tree, budget, order), written, "setup.py") for order in orders]
+    setups += [
+        _evaluate_setup(code, PackageListing(tree, budget, order), written, "setup.py")
+        for order in orders
+    ]
     results = {(it.name, frozenset(it.copies), it.is_called, bool(it.faults)) for it in setups}
     doubts = [unknown for it in setups[1:] for unknown in it.unknown]
     if len(results) == 1 and not doubts:
         return setups[0]
-    doubt = Unknown("the result depends on the order of the files in a folder, or on __file__", START)
+    doubt = Unknown(
+        "the result depends on the order of the files in a folder, or on __file__", START
+    )
     if doubts:
         doubt = doubts[0]
     unknown = tuple(dict.fromkeys([*setups[0].unknown, doubt]))
     return replace(setups[0], name=None, copies=(), stops=(), unknown=unknown, doubt=doubt)
 
 
-def _evaluate_setup(code: Code, listing: PackageListing, written: dict[str, Position], file: str) -> Installation:
+def _evaluate_setup(
+    code: Code, listing: PackageListing, written: dict[str, Position], file: str
+) -> Installation:
     """Evaluate a file with folders listed in some order; `file` is what __file__ is."""
     data_files = _DataFiles(listing, _ROOT, written, is_first=file == "setup.py")
     calls: list[Call] = []
@@ -128,11 +233,21 @@ def _evaluate_setup(code: Code, listing: PackageListing, written: dict[str, Posi
 
     def write(_: Evaluation, call: Call) -> None:
         if "file" not in call.kwargs:
-            data_files.stop("setup.py prints something, and colcon reads what it prints: print to sys.stderr", call.at)
-        elif not isinstance(call.kwargs["file"], QualifiedName) or call.kwargs["file"].name != "sys.stderr":
+            data_files.stop(
+                "setup.py prints something, and colcon reads what it prints: print to sys.stderr",
+                call.at,
+            )
+        elif (
+            not isinstance(call.kwargs["file"], QualifiedName)
+            or call.kwargs["file"].name != "sys.stderr"
+        ):
             raise Undetermined("this use of print is not evaluated", call.at, is_final=True)
 
-    functions = {**standard_functions(_ROOT), **file_functions(listing, _ROOT), **dict.fromkeys(_SETUPS, setup)}
+    functions = {
+        **standard_functions(_ROOT),
+        **file_functions(listing, _ROOT),
+        **dict.fromkeys(_SETUPS, setup),
+    }
     interpreter = Interpreter(
         {**functions, "builtins.print": write},
         {"__file__": file},
@@ -180,7 +295,10 @@ def _read_call(data_files: "_DataFiles", call: Call) -> None:
         data_files.read(entries, call.at)
     of_files = [*_file_findings(data_files.listing, call.at)]
     is_configured = any(isinstance(finding, Unknown) for finding in of_files)
-    for finding in (*_argument_findings(call.kwargs, data_files.listing, call.at, is_configured), *of_files):
+    for finding in (
+        *_argument_findings(call.kwargs, data_files.listing, call.at, is_configured),
+        *of_files,
+    ):
         if isinstance(finding, str):
             data_files.stop(finding, call.at)
         else:
@@ -198,7 +316,9 @@ class _DataFiles:
     copies: list[InstalledFile] = field(default_factory=list)
     stops: list[InstallError] = field(default_factory=list)
     unknown: list[Unknown] = field(default_factory=list)  # what is installed as well, or elsewhere
-    doubts: list[Unknown] = field(default_factory=list)  # with these, whether the build succeeds is not known either
+    doubts: list[Unknown] = field(
+        default_factory=list
+    )  # with these, whether the build succeeds is not known either
     ignored: list[IgnoredArgument] = field(default_factory=list)
 
     def read(self, entries: Value, at: Position) -> None:
@@ -217,7 +337,9 @@ class _DataFiles:
         several = [copy for copy in self.copies if len(sources[copy.target]) > 1]
         self.copies = [copy for copy in self.copies if len(sources[copy.target]) == 1]
         for target, at in {copy.target: copy.at for copy in several}.items():
-            reason = f"several files are installed as {target}: {enumerated(sorted(sources[target]))}"
+            reason = (
+                f"several files are installed as {target}: {enumerated(sorted(sources[target]))}"
+            )
             self.unknown.append(Unknown(reason, at))
 
     def _origin(self, path: str, at: Position) -> Position:
@@ -233,7 +355,9 @@ class _DataFiles:
         self.stops.append(InstallError(path, reason, self._origin(path, at)))
 
     def _entry(self, entry: Value, at: Position) -> None:
-        """Add an entry, which colcon takes as a file, or as a tuple of a folder and a list of files."""
+        """Add an entry, which colcon takes as a file, or as a tuple of a folder and a list of
+        files.
+        """
         match entry:
             case str():
                 self._file(entry, "", at)
@@ -251,10 +375,14 @@ class _DataFiles:
                 for folder, files in entry.items() if isinstance(entry, dict) else ():
                     self._folder(folder, files, at)
             case (*folders, list() as files) if all(isinstance(it, str) for it in folders):
-                self.stop("an entry of data_files is not a tuple of a folder and a list of files", at)
+                self.stop(
+                    "an entry of data_files is not a tuple of a folder and a list of files", at
+                )
                 self._folder(posixpath.join("", *folders), files, at)
             case _:
-                self.stop("an entry of data_files is not a tuple of a folder and a list of files", at)
+                self.stop(
+                    "an entry of data_files is not a tuple of a folder and a list of files", at
+                )
 
     def _folder(self, folder: Value, files: Value, at: Position) -> None:
         if isinstance(folder, PurePosixPath):
@@ -265,7 +393,13 @@ class _DataFiles:
         elif folder.startswith(self.root):
             self._give_up(None, "a target in the package itself is not supported", at)
         elif folder.startswith("/"):
-            self.stop(f"the folder {folder!r} is absolute; colcon takes one below the prefix, such as share/...", at)
+            self.stop(
+                (
+                    f"the folder {folder!r} is absolute; colcon takes one below the prefix, "
+                    "such as share/..."
+                ),
+                at,
+            )
             self._files(files, folder.strip("/"), at)
         elif ".." in folder.split("/") or len(folder) > MAX_PATH:
             self._give_up(None, f"the target {folder[:MAX_PATH]} is not supported", at)
@@ -273,9 +407,13 @@ class _DataFiles:
             self._files(files, folder, at)
 
     def _files(self, files: Value, folder: str, at: Position) -> None:
-        """Add the files of an entry; what is no list stops the build, and is read as the list that is meant."""
+        """Add the files of an entry; what is no list stops the build, and is read as the list that
+        is meant.
+        """
         if isinstance(files, str) and files:
-            self.stop("the files of an entry are a string, not a list: write [...] around it", at, files)
+            self.stop(
+                "the files of an entry are a string, not a list: write [...] around it", at, files
+            )
             files = [files] if files in self.listing.files else []
         elif isinstance(files, Items | tuple):
             self._not_list(files, at)
@@ -285,21 +423,33 @@ class _DataFiles:
             return
         for file in files:
             self._file(file, folder, at)
-            for inner in file if isinstance(file, list) else ():  # a list in the list, which stops the build
+            for inner in (
+                file if isinstance(file, list) else ()
+            ):  # a list in the list, which stops the build
                 self._file(inner, folder, at)
 
     def _not_list(self, files: Value, at: Position) -> None:
         if isinstance(files, Items):
-            self.stop("the files of an entry are an iterator, not a list: write list(...) around it", at)
+            self.stop(
+                "the files of an entry are an iterator, not a list: write list(...) around it", at
+            )
         elif isinstance(files, (*PLAIN, QualifiedName, Function)):
             kind = type(files).__name__
-            self.stop(f"the files of an entry are of the type {kind}, not a list: write list(...) around it", at)
+            self.stop(
+                (
+                    f"the files of an entry are of the type {kind}, not a list: write list(...) "
+                    "around it"
+                ),
+                at,
+            )
         else:
             self._give_up(files, "the files of an entry are not evaluated", at)
 
     def _not_text(self, value: Value, what: str, at: Position) -> None:
         if isinstance(value, PurePosixPath):
-            self.stop(f"{what} is a path, and colcon takes strings only: write str(...) around it", at)
+            self.stop(
+                f"{what} is a path, and colcon takes strings only: write str(...) around it", at
+            )
         elif isinstance(value, (*PLAIN, Items, QualifiedName, Function)):
             self.stop(f"{what} is not a string: is a bracket misplaced?", at)
         else:
@@ -325,7 +475,9 @@ class _DataFiles:
             path = self.listing.real(text)
         except Undetermined:
             if text.startswith("/"):
-                self.stop("the path is absolute, and colcon takes paths in the package only", at, text)
+                self.stop(
+                    "the path is absolute, and colcon takes paths in the package only", at, text
+                )
             else:
                 self._give_up(None, f"{text} is outside of the package, or ignored", at)
             return
@@ -354,10 +506,16 @@ class _DataFiles:
         return True
 
     def _narrower(self, folder: str) -> str:
-        """Return the hint about a pattern that matches the other files next to a folder, but not the folder."""
+        """Return the hint about a pattern that matches the other files next to a folder, but not
+        the folder.
+        """
         above = posixpath.dirname(folder)
         names = self.listing.names(above) if above else []
-        beside = [posixpath.splitext(name)[1] for name in names if posixpath.join(above, name) in self.listing.files]
+        beside = [
+            posixpath.splitext(name)[1]
+            for name in names
+            if posixpath.join(above, name) in self.listing.files
+        ]
         if not any(beside):
             return ""
         most_common = max(sorted(set(beside) - {""}), key=beside.count)
@@ -367,24 +525,44 @@ class _DataFiles:
 def _argument_findings(
     kwargs: Mapping[str, Value], listing: PackageListing, at: Position, is_configured: bool
 ) -> Iterator[_Finding]:
-    """Yield what is wrong with the arguments of setup() besides data_files, and what of them is not evaluated."""
+    """Yield what is wrong with the arguments of setup() besides data_files, and what of them is not
+    evaluated.
+    """
     for name, value in kwargs.items():
-        if name not in _CHECKED and value is not None and not (name in _USUAL and _USUAL[name](value)):
-            yield unknown_in(value) or Unknown(f"this value of {name} in setup() is not evaluated", at)
+        if (
+            name not in _CHECKED
+            and value is not None
+            and not (name in _USUAL and _USUAL[name](value))
+        ):
+            yield unknown_in(value) or Unknown(
+                f"this value of {name} in setup() is not evaluated", at
+            )
     yield from _version_findings(kwargs, at)
     yield from _entry_point_findings(kwargs, at)
     yield from _package_findings(kwargs, listing, at)
     modules = kwargs.get("py_modules") or []
-    if not _is_list(modules) or any(f"{name.replace('.', '/')}.py" not in listing.files for name in modules):
+    if not _is_list(modules) or any(
+        f"{name.replace('.', '/')}.py" not in listing.files for name in modules
+    ):
         yield Unknown("this value of py_modules is not evaluated", at)
-    if not is_configured and all(kwargs.get(name) is None for name in _PACKAGES) and "src" not in listing.folders:
+    if (
+        not is_configured
+        and all(kwargs.get(name) is None for name in _PACKAGES)
+        and "src" not in listing.folders
+    ):
         yield from _discovery_findings(listing)
 
 
 def _ignored_arguments(kwargs: Mapping[str, Value]) -> list[IgnoredArgument]:
-    """Return the arguments that setuptools does not know, each with the missing one that it may mean."""
+    """Return the arguments that setuptools does not know, each with the missing one that it may
+    mean.
+    """
     known = {*_USUAL, *_CHECKED, *_OTHERS}
-    return [IgnoredArgument(name, closest(name, known - kwargs.keys())) for name in kwargs if name not in known]
+    return [
+        IgnoredArgument(name, closest(name, known - kwargs.keys()))
+        for name in kwargs
+        if name not in known
+    ]
 
 
 def _is_list(value: Value) -> bool:
@@ -400,12 +578,18 @@ def _are_requirements(value: Value) -> bool:
 # Whether setuptools certainly accepts the value of an argument.
 _USUAL: Mapping[str, Callable[[Value], bool]] = {
     **dict.fromkeys(_TEXTS, lambda it: isinstance(it, str | Unknown)),
-    **dict.fromkeys(("keywords", "classifiers", "platforms"), lambda it: isinstance(it, str) or _is_list(it)),
+    **dict.fromkeys(
+        ("keywords", "classifiers", "platforms"), lambda it: isinstance(it, str) or _is_list(it)
+    ),
     **dict.fromkeys(("zip_safe", "include_package_data"), lambda it: isinstance(it, bool)),
     **dict.fromkeys(("install_requires", "tests_require"), _are_requirements),
-    "setup_requires": lambda it: _are_requirements(it) and _AT_HAND.issuperset([it] if isinstance(it, str) else it),
+    "setup_requires": lambda it: (
+        _are_requirements(it) and _AT_HAND.issuperset([it] if isinstance(it, str) else it)
+    ),
     "extras_require": lambda it: isinstance(it, dict) and all(map(_are_requirements, it.values())),
-    "package_data": lambda it: isinstance(it, dict) and all(map(_is_list, it.values())) and _is_list([*it]),
+    "package_data": lambda it: (
+        isinstance(it, dict) and all(map(_is_list, it.values())) and _is_list([*it])
+    ),
 }
 
 
@@ -422,7 +606,9 @@ def _entry_point_findings(kwargs: Mapping[str, Value], at: Position) -> Iterator
     groups = kwargs.get("entry_points")
     if groups is None:
         return
-    is_plain = isinstance(groups, dict) and all(isinstance(group, list | tuple) for group in groups.values())
+    is_plain = isinstance(groups, dict) and all(
+        isinstance(group, list | tuple) for group in groups.values()
+    )
     if not is_plain or unknown_in(groups) is not None:
         yield unknown_in(groups) or Unknown("these entry points are not evaluated", at)
         return
@@ -433,7 +619,9 @@ def _entry_point_findings(kwargs: Mapping[str, Value], at: Position) -> Iterator
             yield f"the entry point {line!r} is not valid: write name = package.module:function"
 
 
-def _package_findings(kwargs: Mapping[str, Value], listing: PackageListing, at: Position) -> Iterator[_Finding]:
+def _package_findings(
+    kwargs: Mapping[str, Value], listing: PackageListing, at: Position
+) -> Iterator[_Finding]:
     packages = kwargs.get("packages")
     if isinstance(packages, list | tuple) and all(isinstance(it, str) for it in packages):
         for name in packages:
@@ -445,10 +633,17 @@ def _package_findings(kwargs: Mapping[str, Value], listing: PackageListing, at: 
 
 def _discovery_findings(listing: PackageListing) -> Iterator[_Finding]:
     """Yield the error of setuptools where it searches for packages and finds several."""
-    folders = [name for name in listing.names("") if name in listing.folders and name.isidentifier()]
-    found = sorted(name for name in folders if name not in _NO_PACKAGES and not name.startswith("_"))
+    folders = [
+        name for name in listing.names("") if name in listing.folders and name.isidentifier()
+    ]
+    found = sorted(
+        name for name in folders if name not in _NO_PACKAGES and not name.startswith("_")
+    )
     if len(found) > 1:
-        yield f"packages=[...] is missing, and setuptools cannot choose between the folders {enumerated(found)}"
+        yield (
+            "packages=[...] is missing, and setuptools cannot choose between the folders "
+            f"{enumerated(found)}"
+        )
 
 
 def _file_findings(listing: PackageListing, at: Position) -> Iterator[_Finding]:
@@ -482,11 +677,15 @@ def _cfg_findings(text: str, at: Position) -> Iterator[_Finding]:
 
 
 def _packages_in(value: Value) -> tuple[str, ...]:
-    return tuple(it for it in value if isinstance(it, str)) if isinstance(value, list | tuple) else ()
+    return (
+        tuple(it for it in value if isinstance(it, str)) if isinstance(value, list | tuple) else ()
+    )
 
 
 def _scripts_folder(listing: PackageListing) -> str:
-    """Return the folder below the prefix that console_scripts are installed to; bin unless setup.cfg names another."""
+    """Return the folder below the prefix that console_scripts are installed to; bin unless
+    setup.cfg names another.
+    """
     parser, file = ConfigParser(), listing.files.get("setup.cfg")
     try:
         parser.read_string(file.read(_MAX_SETTINGS).decode() if file is not None else "")

@@ -1,8 +1,10 @@
-"""One tree of names, values and places for the files of a package: YAML, and XML such as SDF, SRDF and package.xml.
+"""One tree of names, values and places for the files of a package: YAML, and XML such as SDF, SRDF
+and package.xml.
 
-A path names entries in it. In YAML, dots separate keys, in XML slashes: `a.b`, `world/model/@name`. As in parameters of
-ROS 2, a key may itself have dots: `limits.joint1.max` is found nested, as one key, or partly so. A list is looked
-through, and `rows[key=value].b`, or `model[@name='box']/pose`, takes the entries with this value.
+A path names entries in it. In YAML, dots separate keys, in XML slashes: `a.b`, `world/model/@name`.
+As in parameters of ROS 2, a key may itself have dots: `limits.joint1.max` is found nested, as one
+key, or partly so. A list is looked through, and `rows[key=value].b`, or `model[@name='box']/pose`,
+takes the entries with this value.
 """
 
 import re
@@ -33,7 +35,8 @@ _Place = Location | LazyLocation
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Entry:
-    """An entry of a tree: an element, attribute, key or row, with its text, what it contains, and its place.
+    """An entry of a tree: an element, attribute, key or row, with its text, what it contains, and
+    its place.
 
     The name of an attribute begins with @, that of the root and of a row of YAML is empty.
     """
@@ -77,19 +80,25 @@ def steps_of(path: str, *, is_xml: bool) -> list[Step]:
     for part in parts if path not in ("", ".") else ():
         match = _STEP.fullmatch(part)
         if match is not None and part not in ("", "."):
-            conditions = ((key, one or two or three) for key, one, two, three in _CONDITION.findall(match[2]))
+            conditions = (
+                (key, one or two or three) for key, one, two, three in _CONDITION.findall(match[2])
+            )
             found.append(Step(match[1], tuple(conditions)))
     return found
 
 
 class Search:
-    """Finds entries by paths, with a limit on the entries that are looked at: those of YAML may have many parents."""
+    """Finds entries by paths, with a limit on the entries that are looked at: those of YAML may
+    have many parents.
+    """
 
     def __init__(self) -> None:
         self._budget = Budget(_MAX_LOOKED_AT)
 
     def find(self, entry: Entry, steps: Sequence[Step]) -> list[Entry]:
-        """Return the entries at a path in an entry, in the order of the file. Raises NotDecided for too many."""
+        """Return the entries at a path in an entry, in the order of the file. Raises NotDecided for
+        too many.
+        """
         try:
             return [*self._find(entry, steps)]
         except OutOfBudget:
@@ -99,7 +108,10 @@ class Search:
         """Return whether an entry contains the values of a step."""
         for key, value in step.conditions:
             found = self.find(entry, steps_of(key, is_xml=entry.is_xml))
-            if not any(it.text is not None and matches_value(readable(it.text), value, _EXACT) for it in found):
+            if not any(
+                it.text is not None and matches_value(readable(it.text), value, _EXACT)
+                for it in found
+            ):
                 return False
         return True
 
@@ -114,7 +126,9 @@ class Search:
         for count in range(1, 2 if entry.is_xml else len(steps) + 1):
             if steps and not any(step.conditions for step in steps[: count - 1]):
                 name = ".".join(step.name for step in steps[:count])
-                yield from self._find_below([it for it in children if it.name == name], steps[count - 1 :])
+                yield from self._find_below(
+                    [it for it in children if it.name == name], steps[count - 1 :]
+                )
 
     def _find_below(self, named: Sequence[Entry], steps: Sequence[Step]) -> Iterator[Entry]:
         """Yield the entries at the other steps in those that the first step names."""
@@ -169,15 +183,25 @@ def _entries_of(node: "YamlNode") -> list[Entry]:
 def read_tree(package: Package, file: str) -> Entry:
     """Return the tree of a file of a package, which is found by the end of its path.
 
-    Raises MissingElement for a file that is not there or is broken, NotDecided for one that cannot be read.
+    Raises MissingElement for a file that is not there or is broken, NotDecided for one that cannot
+    be read.
     """
     files = package.tree.files
-    found = [file] if file in files else [path for path in files if path.endswith(f"/{file.strip('/')}")]
+    found = (
+        [file]
+        if file in files
+        else [path for path in files if path.endswith(f"/{file.strip('/')}")]
+    )
     if len(found) > 1:
-        raise NotDecided(f"several files are called {file}: {', '.join(found[:3])}", "several files have the name")
+        raise NotDecided(
+            f"several files are called {file}: {', '.join(found[:3])}",
+            "several files have the name",
+        )
     if not found:
         message, meant = f"the package has no file {file!r}", did_you_mean(file, files)
-        raise MissingElement("file", file, message=message, detail=meant, absent="" if meant else file)
+        raise MissingElement(
+            "file", file, message=message, detail=meant, absent="" if meant else file
+        )
     from grader.package.yaml_nodes import YamlFault, read_yaml  # late: the robot needs no YAML
 
     [path], own = found, package.path(found[0])
@@ -190,7 +214,9 @@ def read_tree(package: Package, file: str) -> Entry:
         return _yaml_entry(read_yaml(data, own)) if kind == "YAML" else _read_xml(data, own)
     except (YamlFault, XmlFault) as fault:
         message = f"{path} is not readable as {kind}: {fault}"
-        raise MissingElement("readable file", path, message=message, location=fault.location) from None
+        raise MissingElement(
+            "readable file", path, message=message, location=fault.location
+        ) from None
 
 
 def _read_xml(data: bytes, path: str) -> Entry:

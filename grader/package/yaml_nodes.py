@@ -1,4 +1,6 @@
-"""YAML with the location of each value, read by event: neither depth nor aliases use unlimited time or memory."""
+"""YAML with the location of each value, read by event: neither depth nor aliases use unlimited time
+or memory.
+"""
 
 import re
 from collections.abc import Iterator
@@ -16,10 +18,24 @@ _MAX_ALIASES = 1000
 _MAX_DEPTH = 200  # the parser gets slower with each open bracket
 _TAGS = frozenset(
     f"tag:yaml.org,2002:{name}"
-    for name in ("null", "bool", "int", "float", "str", "seq", "map", "binary", "timestamp", "omap", "pairs", "set")
+    for name in (
+        "null",
+        "bool",
+        "int",
+        "float",
+        "str",
+        "seq",
+        "map",
+        "binary",
+        "timestamp",
+        "omap",
+        "pairs",
+        "set",
+    )
 )
 _DEEP = "the file is too deeply nested"
-_TOO_DEEP = "exceeded maximum nesting depth"  # of newer versions of libyaml, which look ahead of the events
+# of newer versions of libyaml, which look ahead of the events
+_TOO_DEEP = "exceeded maximum nesting depth"
 
 
 class YamlFault(Exception):
@@ -32,7 +48,9 @@ class YamlFault(Exception):
 
 @dataclass(frozen=True, eq=False, slots=True)
 class YamlNode:
-    """A value with its location: a text, a list or a mapping. An alias is the same object as its anchor."""
+    """A value with its location: a text, a list or a mapping. An alias is the same object as its
+    anchor.
+    """
 
     source: Source
     mark: Any  # PyYAML's; a Location is made only on demand
@@ -40,7 +58,9 @@ class YamlNode:
     quoted: bool = False  # a text in quotes, which is a string even if it is true or 1
     end_mark: Any = None  # of a text
     key_marks: dict[str, Any] = field(default_factory=dict)  # of a mapping
-    replaced: list[tuple[str, "YamlNode"]] = field(default_factory=list)  # values of keys that are written again
+    replaced: list[tuple[str, "YamlNode"]] = field(
+        default_factory=list
+    )  # values of keys that are written again
 
     @property
     def location(self) -> Location:
@@ -57,7 +77,9 @@ class YamlNode:
         """Return the node at a path of keys, None where there is none."""
         node: YamlNode | None = self
         for key in keys:
-            node = node.value.get(key) if node is not None and isinstance(node.value, dict) else None
+            node = (
+                node.value.get(key) if node is not None and isinstance(node.value, dict) else None
+            )
         return node
 
     def key_location(self, *keys: str) -> Location:
@@ -80,7 +102,9 @@ class YamlNode:
 
     @property
     def pairs(self) -> "list[tuple[str, YamlNode]]":
-        """The keys of a mapping with their values, also those that are written again, as rcl reads them."""
+        """The keys of a mapping with their values, also those that are written again, as rcl reads
+        them.
+        """
         return [*self.replaced, *self.value.items()] if isinstance(self.value, dict) else []
 
     @property
@@ -90,7 +114,9 @@ class YamlNode:
 
 
 def yaml_value(text: str) -> Any:
-    """Return the value of a short YAML text: a number, a text, a list. Raises ValueError if it has none."""
+    """Return the value of a short YAML text: a number, a text, a list. Raises ValueError if it has
+    none.
+    """
     try:
         return yaml.load(text, Loader=_LOADER)  # noqa: S506  a safe loader
     except (yaml.YAMLError, RecursionError) as error:
@@ -98,25 +124,33 @@ def yaml_value(text: str) -> Any:
 
 
 def check_one_document(text: str, path: str) -> None:
-    """Raise YamlFault for what yaml.safe_load refuses besides: a second document, and a tag that it does not know."""
+    """Raise YamlFault for what yaml.safe_load refuses besides: a second document, and a tag that it
+    does not know.
+    """
     source, documents, depth = Source(path, text), 0, 0
     try:
         for count, event in enumerate(yaml.parse(text, Loader=_LOADER)):
             documents += isinstance(event, yaml.DocumentStartEvent)
-            depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+            depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(
+                event, yaml.CollectionEndEvent
+            )
             tag = getattr(event, "tag", None)
             if count > _MAX_EVENTS or depth > _MAX_DEPTH:
                 return
             if documents > 1:
                 raise YamlFault("a second document begins", _location_of(source, event.start_mark))
             if tag not in (None, "!") and tag not in _TAGS:
-                raise YamlFault(f"the tag {tag[:40]} is not known", _location_of(source, event.start_mark))
+                raise YamlFault(
+                    f"the tag {tag[:40]} is not known", _location_of(source, event.start_mark)
+                )
     except yaml.YAMLError:
         return  # which is reported where the nodes are read
 
 
 def read_yaml(data: bytes, path: str) -> YamlNode:
-    """Return the first document of a YAML text; an empty text is an empty mapping. Raises YamlFault."""
+    """Return the first document of a YAML text; an empty text is an empty mapping. Raises
+    YamlFault.
+    """
     is_wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
     text = data.decode("utf-16" if is_wide else "utf-8", "replace")
     source = Source(path, text)
@@ -138,20 +172,26 @@ def read_yaml(data: bytes, path: str) -> YamlNode:
 def first_alias(source: Source) -> tuple[str, Location] | None:
     """Return the name and the place of the first alias in a text that is YAML; None without one."""
     may_have_one = _LIKE_AN_ALIAS.search(source.text) is not None
-    for event in yaml.parse(source.text.removeprefix("\ufeff"), Loader=_LOADER) if may_have_one else ():
+    for event in (
+        yaml.parse(source.text.removeprefix("\ufeff"), Loader=_LOADER) if may_have_one else ()
+    ):
         if isinstance(event, yaml.AliasEvent):
             return event.anchor or "", _location_of(source, event.start_mark)
     return None
 
 
 def _location_of(source: Source, mark: Any) -> Location:
-    """Return the location of a mark by its offset: the lines of YAML also end at separators of Unicode."""
+    """Return the location of a mark by its offset: the lines of YAML also end at separators of
+    Unicode.
+    """
     return source.at(min(mark.index + source.text.startswith("\ufeff"), len(source.text)))
 
 
 def _compose_nodes(events: Iterator[yaml.Event], source: Source) -> YamlNode:
     root = YamlNode(source, next(events).start_mark, {})
-    open_nodes: list[tuple[YamlNode, list[YamlNode]]] = []  # each with the key in it whose value follows
+    open_nodes: list[
+        tuple[YamlNode, list[YamlNode]]
+    ] = []  # each with the key in it whose value follows
     anchors = _Anchors(source)
     first = True
     for count, event in enumerate(events, 1):
@@ -182,13 +222,25 @@ class _Anchors:
         self._source, self._nodes, self._aliases = source, dict[str, YamlNode](), 0
 
     def node(self, event: yaml.NodeEvent) -> YamlNode:
-        """Return the node of an event. Raises YamlFault for an alias without an anchor, and for too many."""
+        """Return the node of an event. Raises YamlFault for an alias without an anchor, and for too
+        many.
+        """
         if isinstance(event, yaml.AliasEvent):
             return self._node_of(event.anchor or "", _location_of(self._source, event.start_mark))
         if isinstance(event, yaml.ScalarEvent):
-            node = YamlNode(self._source, event.start_mark, event.value, event.style in ("'", '"'), event.end_mark)
+            node = YamlNode(
+                self._source,
+                event.start_mark,
+                event.value,
+                event.style in ("'", '"'),
+                event.end_mark,
+            )
         else:
-            node = YamlNode(self._source, event.start_mark, [] if isinstance(event, yaml.SequenceStartEvent) else {})
+            node = YamlNode(
+                self._source,
+                event.start_mark,
+                [] if isinstance(event, yaml.SequenceStartEvent) else {},
+            )
         if event.anchor:
             self._nodes[event.anchor] = node
         return node

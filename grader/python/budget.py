@@ -1,4 +1,6 @@
-"""The budget to which reading a submission is charged: the work of documents, expressions and searches."""
+"""The budget to which reading a submission is charged: the work of documents, expressions and
+searches.
+"""
 
 from collections.abc import Collection
 from pathlib import PurePosixPath
@@ -17,10 +19,12 @@ class OutOfBudget(py.EvaluationSignal):
 
 
 class Budget:
-    """The parts of documents, expressions and values that may still be produced or looked at, whatever comes of it.
+    """The parts of documents, expressions and values that may still be produced or looked at,
+    whatever comes of it.
 
-    They are charged before the work, and counted, so that a result is the same on every machine. `stand_ins` are the
-    texts that stand for folders that are not known: no value may depend on them.
+    They are charged before the work, and counted, so that a result is the same on every machine.
+    `stand_ins` are the texts that stand for folders that are not known: no value may depend on
+    them.
     """
 
     def __init__(self, limit: int = READING, stand_ins: Collection[str] = ()) -> None:
@@ -40,10 +44,13 @@ class Budget:
         """Charge parts and characters. Raises OutOfBudget."""
         self.left -= parts + characters // CHARACTERS
         if self.left < 0:
-            raise OutOfBudget(f"reading this takes more work than one submission may use ({self.limit:,} parts)")
+            raise OutOfBudget(
+                f"reading this takes more work than one submission may use ({self.limit:,} parts)"
+            )
 
     def measure(self, value: py.Value, kind: str = "plain") -> int:
-        """Charge a value and return its size: its parts, each as often as it occurs. Raises Undetermined.
+        """Charge a value and return its size: its parts, each as often as it occurs. Raises
+        Undetermined.
 
         `kind` is that of the function that is given the value.
         """
@@ -64,7 +71,9 @@ class Budget:
         return size
 
     def checked(self, value: py.Value, kind: str = "holds") -> py.Value:
-        """Return a value that was produced, once it is charged. Raises Undetermined for one that is too large."""
+        """Return a value that was produced, once it is charged. Raises Undetermined for one that
+        is too large.
+        """
         if type(value) not in (float, bool):
             self.measure(value, kind)
         if self.stand_ins and kind == "path":
@@ -72,20 +81,30 @@ class Budget:
         return value
 
     def rooted(self, value: py.Value) -> py.Value:
-        """Return a text or path in which a stand-in is at most the beginning. Raises Undetermined."""
+        """Return a text or path in which a stand-in is at most the beginning. Raises
+        Undetermined.
+        """
         for text in map(str, value if isinstance(value, tuple) else [value]):
             for stand_in in self.stand_ins:
                 rest = text.removeprefix(stand_in)
-                if stand_in.strip("/") in rest or (rest != text and not rest.startswith("/") and rest):
+                if stand_in.strip("/") in rest or (
+                    rest != text and not rest.startswith("/") and rest
+                ):
                     raise py.Undetermined(_FOLDER)
         return value
 
     def _size_alone(self, part: py.Value, kind: str) -> int:
-        """Return the size of a part beyond one. Raises Undetermined for one that is too large, or not known."""
+        """Return the size of a part beyond one. Raises Undetermined for one that is too large, or
+        not known.
+        """
         if isinstance(part, str):
             if len(part) > py.MAX_TEXT:
                 too_large("text")
-            if self.stand_ins and kind == "plain" and any(stand_in in part for stand_in in self.stand_ins):
+            if (
+                self.stand_ins
+                and kind == "plain"
+                and any(stand_in in part for stand_in in self.stand_ins)
+            ):
                 raise py.Undetermined(_FOLDER)
             return len(part) // CHARACTERS
         if isinstance(part, int):
@@ -100,6 +119,8 @@ class Budget:
             or (kind == "holds" and isinstance(part, py.OPAQUE))
         ):
             return 0
-        if isinstance(part, py.Items | py.Namespace | py.PlainFunction):  # a plain function itself refuses these
+        if isinstance(
+            part, py.Items | py.Namespace | py.PlainFunction
+        ):  # a plain function itself refuses these
             return 0
         return refuse(part, f"values of the type {type(part).__name__} are not supported")

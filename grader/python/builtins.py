@@ -9,7 +9,16 @@ from typing import Any
 
 from grader.python import values as py
 from grader.python.budget import Budget
-from grader.python.values import call_plain, checked_key, items_of, iterate, known, reason_of, str_of, too_large
+from grader.python.values import (
+    call_plain,
+    checked_key,
+    items_of,
+    iterate,
+    known,
+    reason_of,
+    str_of,
+    too_large,
+)
 
 _MAX_DIGITS = 400  # that round leaves
 _OF_SIGNATURE = re.compile(r"positional argument|keyword argument|required keyword")
@@ -20,25 +29,41 @@ _Apply = Callable[[py.Value, list[py.Value]], py.Value]
 
 
 def call(
-    function: py.Value, args: list[py.Value], kwargs: dict[str, py.Value], budget: Budget, apply: _Apply
+    function: py.Value,
+    args: list[py.Value],
+    kwargs: dict[str, py.Value],
+    budget: Budget,
+    apply: _Apply,
 ) -> py.Value:
     """Return what a call of a function of the allow-list returns."""
     if not isinstance(function, py.PlainFunction):
         budget.measure([args, list(kwargs.values())], "holds")
-        return call_plain(function, *args, **kwargs) if not callable(function) else _refuse("this call")
-    budget.measure([args, list(kwargs.values())], "holds" if function.kind == "applies" else function.kind)
+        return (
+            call_plain(function, *args, **kwargs)
+            if not callable(function)
+            else _refuse("this call")
+        )
+    budget.measure(
+        [args, list(kwargs.values())], "holds" if function.kind == "applies" else function.kind
+    )
     given = (apply, *args) if function.kind == "applies" else args
     try:
         return budget.checked(call_plain(function.run, *given, **kwargs), function.kind)
     except py.EvaluationFails as error:
-        if function.kind != "plain" and _OF_SIGNATURE.search(str(error)):  # Python's own may take other arguments
+        if function.kind != "plain" and _OF_SIGNATURE.search(
+            str(error)
+        ):  # Python's own may take other arguments
             wrong = _wrong_arguments(function, args, kwargs)
             raise py.EvaluationFails(f"TypeError: {function.name}() {wrong}") from None
         raise
 
 
-def _wrong_arguments(function: py.PlainFunction, args: list[py.Value], kwargs: dict[str, py.Value]) -> str:
-    """Return what is wrong with the arguments of Python's own function. Raises Undetermined if that is not certain."""
+def _wrong_arguments(
+    function: py.PlainFunction, args: list[py.Value], kwargs: dict[str, py.Value]
+) -> str:
+    """Return what is wrong with the arguments of Python's own function. Raises Undetermined if that
+    is not certain.
+    """
     from inspect import signature  # late: it takes long to import
 
     with suppress(ValueError):  # of a function whose signature is not known
@@ -59,7 +84,9 @@ def _refuse_function(name: str) -> Callable[..., py.Value]:
 
 def _taking_items(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
     """Return a function whose first argument is a loop's items, as list takes it: known or not."""
-    return lambda *args, **kwargs: function(*(list(iterate(value)) for value in args[:1]), *args[1:], **kwargs)
+    return lambda *args, **kwargs: function(
+        *(list(iterate(value)) for value in args[:1]), *args[1:], **kwargs
+    )
 
 
 def make_dict(*args: py.Value, **kwargs: py.Value) -> py.Value:
@@ -104,7 +131,9 @@ def _next(value: py.Value, *default: py.Value) -> py.Value:
 
 
 def _map(apply: _Apply, function: py.Value, first: py.Value, *lists: py.Value) -> py.Items:
-    return py.Items(apply(function, list(items)) for items in zip(*map(iterate, (first, *lists)), strict=False))
+    return py.Items(
+        apply(function, list(items)) for items in zip(*map(iterate, (first, *lists)), strict=False)
+    )
 
 
 def _filter(apply: _Apply, function: py.Value, values: py.Value) -> py.Items:
@@ -140,23 +169,48 @@ def _taking_known_items(function: Callable[..., py.Value]) -> Callable[..., py.V
 
 
 _HOLDING: dict[str, Callable[..., Any]] = {
-    "list": _taking_items(list), "tuple": _taking_items(tuple), "dict": make_dict, "next": _next,
-    "len": lambda value: len(_sized(value)), "reversed": lambda value: py.Items(reversed(_sized(value))),
-    "bool": lambda *args: truth(*args) if args else False, "iter": lambda value: py.Items(iterate(value)),
+    "list": _taking_items(list),
+    "tuple": _taking_items(tuple),
+    "dict": make_dict,
+    "next": _next,
+    "len": lambda value: len(_sized(value)),
+    "reversed": lambda value: py.Items(reversed(_sized(value))),
+    "bool": lambda *args: truth(*args) if args else False,
+    "iter": lambda value: py.Items(iterate(value)),
     "enumerate": lambda value, start=0: py.Items(enumerate(iterate(value), known(start))),
     "zip": lambda *values: py.Items(zip(*map(iterate, values), strict=False)),
-    "sorted": _taking_known_items(sorted), "min": _taking_known_items(min), "max": _taking_known_items(max),
-    "any": lambda items: any(map(truth, iterate(items))), "all": lambda items: all(map(truth, iterate(items))),
-}  # fmt: skip
+    "sorted": _taking_known_items(sorted),
+    "min": _taking_known_items(min),
+    "max": _taking_known_items(max),
+    "any": lambda items: any(map(truth, iterate(items))),
+    "all": lambda items: all(map(truth, iterate(items))),
+}
 _APPLYING: dict[str, Callable[..., Any]] = {"map": _map, "filter": _filter}
 _FUNCTIONS: dict[str, Callable[..., Any]] = {
-    "float": float, "int": int, "abs": abs, "ord": ord, "round": _round, "range": _range, "sum": _sum,
+    "float": float,
+    "int": int,
+    "abs": abs,
+    "ord": ord,
+    "round": _round,
+    "range": _range,
+    "sum": _sum,
     **{
         name: _refuse_function(name)
-        for name in ("complex", "divmod", "frozenset", "hash", "isinstance", "issubclass", "repr", "set", "slice",
-                     "type", "vars")
+        for name in (
+            "complex",
+            "divmod",
+            "frozenset",
+            "hash",
+            "isinstance",
+            "issubclass",
+            "repr",
+            "set",
+            "slice",
+            "type",
+            "vars",
+        )
     },
-}  # fmt: skip
+}
 BUILTINS: Mapping[str, py.PlainFunction] = {
     **{
         name: py.PlainFunction(name, function, kind, getattr(builtins, name))

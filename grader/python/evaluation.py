@@ -1,4 +1,6 @@
-"""The state of the evaluation of a file, and the calls in it: of its own functions, of the table's, and of methods."""
+"""The state of the evaluation of a file, and the calls in it: of its own functions, of the table's,
+and of methods.
+"""
 
 import ast
 import builtins
@@ -19,7 +21,9 @@ from grader.python.values import call_plain, iterate, known, reason_of
 
 
 class PythonError(NamedTuple):
-    """An error that certainly stops Python at this position: an undefined name, an import that fails."""
+    """An error that certainly stops Python at this position: an undefined name, an import that
+    fails.
+    """
 
     message: str
     at: Position
@@ -28,8 +32,18 @@ class PythonError(NamedTuple):
 NOT_EVALUATED = "is not evaluated"
 MISSING_COMMA = "a {} cannot be called: is there a comma missing before it?"
 FAILED = "Python raises an error before"  # the reason of a value that would follow
-# All parts of such an expression are evaluated before the expression itself; such a part may change something.
-_WHOLE = (ast.Name, ast.Call, ast.BinOp, ast.UnaryOp, ast.Attribute, ast.Subscript, ast.JoinedStr, ast.FormattedValue)
+# All parts of such an expression are evaluated before the expression itself; such a part may change
+# something.
+_WHOLE = (
+    ast.Name,
+    ast.Call,
+    ast.BinOp,
+    ast.UnaryOp,
+    ast.Attribute,
+    ast.Subscript,
+    ast.JoinedStr,
+    ast.FormattedValue,
+)
 _CHANGING = (ast.Call, ast.NamedExpr, ast.Await, ast.Yield, ast.YieldFrom)
 _MAX_ERRORS = 200
 _MAX_CALLS = 20_000
@@ -44,13 +58,17 @@ _TEXT_METHODS = frozenset(name for name in dir(str) if not name.startswith("_"))
 class Evaluation(Expressions):
     """The state of the evaluation of a file.
 
-    A part of an expression that is not known is Unknown: names, lists and arguments keep it, an operation with it is
-    unknown as well. Only what the table of functions lists is called. Whatever else a file calls may do anything, so
-    the evaluation stops there.
+    A part of an expression that is not known is Unknown: names, lists and arguments keep it, an
+    operation with it is unknown as well. Only what the table of functions lists is called. Whatever
+    else a file calls may do anything, so the evaluation stops there.
     """
 
-    def __init__(self, functions: py.FunctionTable, names: Mapping[str, py.Value], budget: Budget) -> None:
-        """`functions` has every function that is evaluated; `names` are bound from the beginning, such as __file__."""
+    def __init__(
+        self, functions: py.FunctionTable, names: Mapping[str, py.Value], budget: Budget
+    ) -> None:
+        """`functions` has every function that is evaluated; `names` are bound from the beginning,
+        such as __file__.
+        """
         super().__init__(self._builtin, budget)
         self.functions = functions
         self.exports: Mapping[str, Collection[str]] = {}
@@ -58,7 +76,8 @@ class Evaluation(Expressions):
         self.module = py.Scope({"__name__": "__main__", **names})
         self.errors: list[PythonError] = []
         self.calls: list[py.Call] = []  # what is recorded, in order
-        self.doubt: py.Unknown | None = None  # the first that may have failed, or stopped the evaluation
+        # the first that may have failed, or stopped the evaluation
+        self.doubt: py.Unknown | None = None
         self.at = START  # the statement that is evaluated
         self.attempts = 0  # how many try statements are around the statement
         self._depth = 0  # of calls of the file's functions
@@ -70,13 +89,17 @@ class Evaluation(Expressions):
 
     def error(self, message: str, at: Position) -> None:
         """Record once an error that certainly stops Python."""
-        if len(self.errors) < _MAX_ERRORS and all(message != error.message for error in self.errors):
+        if len(self.errors) < _MAX_ERRORS and all(
+            message != error.message for error in self.errors
+        ):
             self.errors.append(PythonError(message, at))
 
     def evaluate(self, node: ast.expr, scope: py.Scope) -> py.Value:
-        """Return the value of an expression; Unknown, with the reason, where it cannot be determined.
+        """Return the value of an expression; Unknown, with the reason, where it cannot be
+        determined.
 
-        The evaluation stops if a part of the expression may have changed something and is not evaluated.
+        The evaluation stops if a part of the expression may have changed something and is not
+        evaluated.
         """
         try:
             return self.value(node, scope)
@@ -84,7 +107,9 @@ class Evaluation(Expressions):
             unknown = py.Unknown(str(error), error.at or position_of(node))
             if unknown.reason == FAILED and not error.is_final:
                 return unknown
-            may_change = not isinstance(node, _WHOLE) and any(isinstance(part, _CHANGING) for part in ast.walk(node))
+            may_change = not isinstance(node, _WHOLE) and any(
+                isinstance(part, _CHANGING) for part in ast.walk(node)
+            )
             if error.is_final or may_change:
                 raise py.Undetermined(unknown.reason, unknown.at, is_final=True) from None
             return self.doubted(unknown)
@@ -93,7 +118,9 @@ class Evaluation(Expressions):
             return py.Unknown(FAILED, position_of(node))
 
     def _name(self, node: ast.Name, scope: py.Scope) -> py.Value:
-        """Return the value of a name. An undefined name is an error; its value is the most likely intended one."""
+        """Return the value of a name. An undefined name is an error; its value is the most likely
+        intended one.
+        """
         try:
             return scope.find(node.id)
         except KeyError:
@@ -111,11 +138,19 @@ class Evaluation(Expressions):
 
     def _builtin(self, name: str) -> py.Value:
         full = f"builtins.{name}"
-        return BUILTINS[name] if name in BUILTINS and full not in self.functions else py.QualifiedName(full)
+        return (
+            BUILTINS[name]
+            if name in BUILTINS and full not in self.functions
+            else py.QualifiedName(full)
+        )
 
     def test(self, value: py.Value, branches: Collection[ast.expr]) -> bool:
-        """Return whether a condition holds; stop if that is unknown and a branch may change something."""
-        if isinstance(value, py.Unknown | py.Call | py.QualifiedName | py.BoundMethod) and not py.is_object(value):
+        """Return whether a condition holds; stop if that is unknown and a branch may change
+        something.
+        """
+        if isinstance(
+            value, py.Unknown | py.Call | py.QualifiedName | py.BoundMethod
+        ) and not py.is_object(value):
             nodes = (node for branch in branches for node in ast.walk(branch))
             if any(isinstance(node, _CHANGING) for node in nodes):
                 reason = f"a condition {NOT_EVALUATED}: {reason_of(value)}"
@@ -145,10 +180,14 @@ class Evaluation(Expressions):
             raise py.Undetermined(reason, position_of(node), is_final=True)
         for key, item in value.items():
             if not isinstance(key, str) or key in kwargs:
-                raise py.EvaluationFails(f"TypeError: ** unpacks the key {key!r}, which is no text or given twice")
+                raise py.EvaluationFails(
+                    f"TypeError: ** unpacks the key {key!r}, which is no text or given twice"
+                )
             kwargs[key] = item
 
-    def called(self, function: py.Value, args: list[py.Value], kwargs: dict[str, py.Value], node: ast.expr) -> py.Value:
+    def called(
+        self, function: py.Value, args: list[py.Value], kwargs: dict[str, py.Value], node: ast.expr
+    ) -> py.Value:
         """Return the value of a call of any value."""
         return self.call_value(function, py.Call("", args, kwargs, position_of(node)))
 
@@ -161,7 +200,9 @@ class Evaluation(Expressions):
                 found = self.call_function(function, made)
             case py.QualifiedName(name=name):
                 if name == "glob":
-                    self.error("glob is a module here and cannot be called: write glob.glob(...)", made.at)
+                    self.error(
+                        "glob is a module here and cannot be called: write glob.glob(...)", made.at
+                    )
                 made.name = "glob.glob" if name in ("glob", "?glob") else name
                 found = self._by_name(made)
             case py.BoundMethod(owner=py.Call() as owner, name=name):
@@ -182,12 +223,19 @@ class Evaluation(Expressions):
         return found
 
     def _plain(self, function: py.PlainFunction, made: py.Call) -> py.Value:
-        """Return the value of Python's own function; stop where it would call others, or use up an iterator."""
+        """Return the value of Python's own function; stop where it would call others, or use up an
+        iterator.
+        """
         try:
-            return call(function, made.args, made.kwargs, self.budget, partial(self._apply, made.at))
+            return call(
+                function, made.args, made.kwargs, self.budget, partial(self._apply, made.at)
+            )
         except py.Undetermined as error:
             given = (*made.args, *made.kwargs.values())
-            if any(isinstance(value, py.Function | py.BoundMethod | py.QualifiedName | py.Items) for value in given):
+            if any(
+                isinstance(value, py.Function | py.BoundMethod | py.QualifiedName | py.Items)
+                for value in given
+            ):
                 raise py.Undetermined(str(error), error.at or made.at, is_final=True) from None
             raise
 
@@ -197,26 +245,38 @@ class Evaluation(Expressions):
     def _by_name(self, made: py.Call) -> py.Value:
         """Return the value of a call of something outside of the file, by the table."""
         function = self.functions.get(made.name)
-        if function is None and made.name.startswith("?."):  # an undefined name, which is an error already
+        if function is None and made.name.startswith(
+            "?."
+        ):  # an undefined name, which is an error already
             return py.Unknown(FAILED, made.at)
         if function is None:
             reason = f"{made.name.removeprefix('builtins.')} {NOT_EVALUATED}"
             raise py.Undetermined(reason, made.at, is_final=True)
-        return self.call_value(function, made) if isinstance(function, py.PlainFunction) else function(self, made)
+        return (
+            self.call_value(function, made)
+            if isinstance(function, py.PlainFunction)
+            else function(self, made)
+        )
 
     def _method(self, owner: py.Value, name: str, made: py.Call) -> py.Value:
-        """Return the value of a method. Of what is not known, only a method of texts is known to change nothing."""
+        """Return the value of a method. Of what is not known, only a method of texts is known to
+        change nothing.
+        """
         if isinstance(owner, PurePosixPath) and f"pathlib.Path.{name}" in self.functions:
             made.name, made.args = f"pathlib.Path.{name}", [owner, *made.args]
             return self._by_name(made)
-        if any(isinstance(owner, kind) and name in names for kind, names in _CHANGING_METHODS.items()):
+        if any(
+            isinstance(owner, kind) and name in names for kind, names in _CHANGING_METHODS.items()
+        ):
             return self._change(owner, name, made)
         found = method(owner, name, self.budget)
         if found is not None:
             return self.call_value(found, made)
         if isinstance(owner, py.Unknown) and (name in _TEXT_METHODS or owner.reason == FAILED):
             raise py.Undetermined(owner.reason, owner.at)
-        raise py.Undetermined(f"the method {name} of this value {NOT_EVALUATED}", made.at, is_final=True)
+        raise py.Undetermined(
+            f"the method {name} of this value {NOT_EVALUATED}", made.at, is_final=True
+        )
 
     def _change(self, owner: py.Value, name: str, made: py.Call) -> py.Value:
         """Run a method that changes a list or dict: Python's own."""
@@ -226,10 +286,18 @@ class Evaluation(Expressions):
             args, kwargs = made.args, made.kwargs
             if name == "sort":
                 arguments = [owner, *args]
-                owner[:] = call(BUILTINS["sorted"], arguments, kwargs, self.budget, partial(self._apply, made.at))
+                owner[:] = call(
+                    BUILTINS["sorted"],
+                    arguments,
+                    kwargs,
+                    self.budget,
+                    partial(self._apply, made.at),
+                )
                 return None
             if name in ("extend", "update"):
-                args = [value if isinstance(value, dict) else list(iterate(value)) for value in args]
+                args = [
+                    value if isinstance(value, dict) else list(iterate(value)) for value in args
+                ]
             elif name != "append":
                 known(args if name not in ("insert", "setdefault") else args[:1])
             return self.budget.checked(call_plain(getattr(owner, name), *args, **kwargs))
@@ -242,7 +310,9 @@ class Evaluation(Expressions):
     def call_function(self, function: py.Function, made: py.Call) -> py.Value:
         """Return the value of a call of a function of the file."""
         if self._depth == _MAX_DEPTH:
-            raise py.Undetermined(f"a function that calls others so deeply {NOT_EVALUATED}", made.at, is_final=True)
+            raise py.Undetermined(
+                f"a function that calls others so deeply {NOT_EVALUATED}", made.at, is_final=True
+            )
         scope = py.Scope(self._bound_parameters(function, made), function.scope, function.local)
         self._depth += 1
         try:
@@ -256,12 +326,26 @@ class Evaluation(Expressions):
         positional = [parameter.arg for parameter in (*parameters.posonlyargs, *parameters.args)]
         names = {*positional, *(parameter.arg for parameter in parameters.kwonlyargs)}
         given = dict(zip(positional, made.args, strict=False))
-        others = {name: value for name, value in made.kwargs.items() if name not in names or name in given}
+        others = {
+            name: value for name, value in made.kwargs.items() if name not in names or name in given
+        }
         missing = sorted(names - given.keys() - made.kwargs.keys() - function.defaults.keys())
-        if missing or (len(made.args) > len(positional) and not parameters.vararg) or (others and not parameters.kwarg):
-            what = f"the argument {missing[0]!r} is missing" if missing else "there is one argument too many"
+        if (
+            missing
+            or (len(made.args) > len(positional) and not parameters.vararg)
+            or (others and not parameters.kwarg)
+        ):
+            what = (
+                f"the argument {missing[0]!r} is missing"
+                if missing
+                else "there is one argument too many"
+            )
             self.error(f"{what} in this call", made.at)
-        bound = {**dict.fromkeys(names, py.Unknown("an argument is missing", made.at)), **function.defaults, **given}
+        bound = {
+            **dict.fromkeys(names, py.Unknown("an argument is missing", made.at)),
+            **function.defaults,
+            **given,
+        }
         bound |= {name: value for name, value in made.kwargs.items() if name in names}
         if parameters.vararg:
             bound[parameters.vararg.arg] = tuple(made.args[len(positional) :])
@@ -270,9 +354,15 @@ class Evaluation(Expressions):
         return bound
 
     def _binary(self, node: ast.BinOp, scope: py.Scope) -> py.Value:
-        """Return the value of a binary operator; of an object in the table it is its method for division."""
+        """Return the value of a binary operator; of an object in the table it is its method for
+        division.
+        """
         left, right = self.evaluate(node.left, scope), self.evaluate(node.right, scope)
-        if isinstance(node.op, ast.Div) and isinstance(left, py.Call) and f"{left.name}.__truediv__" in self.functions:
+        if (
+            isinstance(node.op, ast.Div)
+            and isinstance(left, py.Call)
+            and f"{left.name}.__truediv__" in self.functions
+        ):
             made = py.Call("", [right], {}, position_of(node))
             return self.call_value(py.BoundMethod(left, "__truediv__"), made)
         return operate(node.op, left, right, self.budget)
@@ -281,7 +371,9 @@ class Evaluation(Expressions):
 
 
 def record(evaluation: Evaluation, made: py.Call) -> py.Call:
-    """Record a call that is not evaluated further, and return it as its result: a function for the table."""
+    """Record a call that is not evaluated further, and return it as its result: a function for the
+    table.
+    """
     if len(evaluation.calls) < _MAX_CALLS:
         evaluation.calls.append(made)
         if made.owner is not None:

@@ -1,7 +1,8 @@
 """The value of an expression: Python's own, from an allow-list.
 
-It either is Python's value, or Python certainly raises an error, or it cannot be determined statically. Nothing
-outside of the allow-list is reached. `files` adds what an expression in a file can do besides.
+It either is Python's value, or Python certainly raises an error, or it cannot be determined
+statically. Nothing outside of the allow-list is reached. `files` adds what an expression in a file
+can do besides.
 """
 
 import ast
@@ -21,9 +22,11 @@ _OF_NODE = 2  # what evaluating a part of an expression is charged
 
 
 def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
-    """Return the value of an expression. `find` returns the value of a name, and raises as this function does.
+    """Return the value of an expression. `find` returns the value of a name, and raises as this
+    function does.
 
-    Raises EvaluationFails where Python raises an error, Undetermined where the value cannot be determined, OutOfBudget.
+    Raises EvaluationFails where Python raises an error, Undetermined where the value cannot be
+    determined, OutOfBudget.
     """
     text = text.strip()
     if len(text) > _MAX_LENGTH:
@@ -42,11 +45,15 @@ def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
 
 _kept = lru_cache(1_000)(parse_expression)
 # What makes a value that no function has measured yet.
-_MAKES_VALUES = frozenset({ast.Constant, ast.UnaryOp, ast.List, ast.Tuple, ast.ListComp, ast.Set, ast.Dict})
+_MAKES_VALUES = frozenset(
+    {ast.Constant, ast.UnaryOp, ast.List, ast.Tuple, ast.ListComp, ast.Set, ast.Dict}
+)
 
 
 class Expressions:
-    """An evaluator of expressions; `find` returns the value of a name that no comprehension binds."""
+    """An evaluator of expressions; `find` returns the value of a name that no comprehension
+    binds.
+    """
 
     def __init__(self, find: Callable[[str], Value], budget: Budget) -> None:
         self._find = find
@@ -69,7 +76,9 @@ class Expressions:
 
     def _name(self, node: ast.Name, scope: Scope) -> Value:
         if node.id.startswith("__"):
-            raise EvaluationFails(f"names that begin with two underscores are not allowed: {node.id}")
+            raise EvaluationFails(
+                f"names that begin with two underscores are not allowed: {node.id}"
+            )
         try:
             return scope.find(node.id)
         except KeyError:
@@ -113,7 +122,10 @@ class Expressions:
         return tuple(self.elements(node.elts, scope))
 
     def _listcomp(self, node: ast.ListComp, scope: Scope) -> Value:
-        return [self.evaluate(node.elt, inner) for inner in self.rounds(node.generators, Scope({}, scope))]
+        return [
+            self.evaluate(node.elt, inner)
+            for inner in self.rounds(node.generators, Scope({}, scope))
+        ]
 
     def _compare(self, node: ast.Compare, scope: Scope) -> Value:
         left = self.evaluate(node.left, scope)
@@ -142,7 +154,10 @@ class Expressions:
         """Return the value of a subscript's key, which may be a slice."""
         if not isinstance(key, ast.Slice):
             return self.evaluate(key, scope)
-        bounds = [None if bound is None else self.evaluate(bound, scope) for bound in (key.lower, key.upper, key.step)]
+        bounds = [
+            None if bound is None else self.evaluate(bound, scope)
+            for bound in (key.lower, key.upper, key.step)
+        ]
         self.budget.measure(bounds)
         return slice(*bounds)
 
@@ -163,14 +178,27 @@ class Expressions:
         """Add the arguments that ** unpacks."""
         raise Undetermined("arguments with ** are not supported")
 
-    def called(self, function: Value, args: list[Value], kwargs: dict[str, Value], node: ast.expr) -> Value:
+    def called(
+        self, function: Value, args: list[Value], kwargs: dict[str, Value], node: ast.expr
+    ) -> Value:
         """Return the value of a call of a value."""
-        return call(function, args, kwargs, self.budget, lambda inner, items: self.called(inner, items, {}, node))
+        return call(
+            function,
+            args,
+            kwargs,
+            self.budget,
+            lambda inner, items: self.called(inner, items, {}, node),
+        )
 
     def rounds(
-        self, loops: Sequence[ast.comprehension], scope: Scope, first: Iterator[Value] | None = None, depth: int = 0
+        self,
+        loops: Sequence[ast.comprehension],
+        scope: Scope,
+        first: Iterator[Value] | None = None,
+        depth: int = 0,
     ) -> Iterator[Scope]:
-        """Yield the scope once for each round of nested loops, charged by depth: each loop around passes them on.
+        """Yield the scope once for each round of nested loops, charged by depth: each loop around
+        passes them on.
 
         `first` are the items of the first loop, if they are evaluated already.
         """

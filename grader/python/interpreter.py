@@ -1,6 +1,8 @@
-"""Evaluate a whole Python file without running it: its functions, branches, loops, assignments and imports.
+"""Evaluate a whole Python file without running it: its functions, branches, loops, assignments and
+imports.
 
-A statement of any other kind, such as `try` or `while`, ends the evaluation: what follows is not known.
+A statement of any other kind, such as `try` or `while`, ends the evaluation: what follows is not
+known.
 """
 
 import ast
@@ -19,7 +21,14 @@ from grader.python import values as py
 from grader.python.budget import Budget
 from grader.python.builtins import truth
 from grader.python.evaluation import FAILED, MISSING_COMMA, NOT_EVALUATED, Evaluation
-from grader.python.library import CONSTANTS, UNCERTAIN, USUAL_NAMES, attribute_error, import_error, imported_names
+from grader.python.library import (
+    CONSTANTS,
+    UNCERTAIN,
+    USUAL_NAMES,
+    attribute_error,
+    import_error,
+    imported_names,
+)
 from grader.python.operators import has_attribute, operate
 from grader.python.parse import Code, Position, bound_in, own_nodes, position_of
 from grader.python.values import call_plain, iterate, known, refuse, str_of
@@ -27,11 +36,23 @@ from grader.python.values import call_plain, iterate, known, refuse, str_of
 _PARTS = ("name", "stem", "suffix", "parent", "parents", "parts")  # of a path
 _STEPS = 100_000  # what the evaluation of one file may use
 _IN_ANNOTATIONS = (
-    ast.Attribute, ast.Subscript, ast.Constant, ast.BinOp, ast.BitOr, ast.Tuple, ast.List, ast.expr_context, ast.Index,
-)  # fmt: skip
+    ast.Attribute,
+    ast.Subscript,
+    ast.Constant,
+    ast.BinOp,
+    ast.BitOr,
+    ast.Tuple,
+    ast.List,
+    ast.expr_context,
+    ast.Index,
+)
 
 
-_OF_IMPORTS = ("ImportError", "ModuleNotFoundError", "Exception")  # what catches an import that fails
+_OF_IMPORTS = (
+    "ImportError",
+    "ModuleNotFoundError",
+    "Exception",
+)  # what catches an import that fails
 
 
 class _ReturnFlow(py.EvaluationSignal):
@@ -55,10 +76,12 @@ class Interpreter(Evaluation):
         exports: Mapping[str, Collection[str]] | None = None,
         local_modules: Collection[str] = (),
     ) -> None:
-        """`functions` may be called, by full name; `names` are bound from the beginning, such as __file__.
+        """`functions` may be called, by full name; `names` are bound from the beginning, such as
+        __file__.
 
-        `stand_ins` are texts that stand for folders that are not known; `exports` has the names of modules, besides
-        those of Python itself; `local_modules` are beside the file, and imported before any other.
+        `stand_ins` are texts that stand for folders that are not known; `exports` has the names of
+        modules, besides those of Python itself; `local_modules` are beside the file, and imported
+        before any other.
         """
         super().__init__(functions, names, budget or Budget(_STEPS))
         self.budget.stand_ins = stand_ins
@@ -73,24 +96,31 @@ class Interpreter(Evaluation):
             self._stop(error)
         return self.module
 
-    def call_from_outside(self, function: py.Function, at: Position, args: Sequence[py.Value] | None = ()) -> py.Value:
+    def call_from_outside(
+        self, function: py.Function, at: Position, args: Sequence[py.Value] | None = ()
+    ) -> py.Value:
         """Return the value of a call of one of the file's functions. Never raises.
 
-        With `args` None, the arguments are unknown, and no error or doubt in the call counts: it may never happen.
+        With `args` None, the arguments are unknown, and no error or doubt in the call counts: it
+        may never happen.
         """
         given = function.parameters
         count = len([*given.posonlyargs, *given.args]) - len(given.defaults)
         event: list[py.Value] = [py.Unknown("an event is known only at run time", at)] * count
         recorded, doubt = list(self.errors), self.doubt
         try:
-            return self.call_function(function, py.Call("", event if args is None else list(args), {}, at))
+            return self.call_function(
+                function, py.Call("", event if args is None else list(args), {}, at)
+            )
         except (py.EvaluationSignal, RecursionError) as error:
             return self._stop(error, at)
         finally:
             if args is None:
                 self.errors, self.doubt = recorded, doubt
 
-    def _stop(self, error: py.EvaluationSignal | RecursionError, at: Position | None = None) -> py.Unknown:
+    def _stop(
+        self, error: py.EvaluationSignal | RecursionError, at: Position | None = None
+    ) -> py.Unknown:
         if isinstance(error, RecursionError):
             error = py.Undetermined("the file is too deeply nested, which is not evaluated")
         return self.doubted(py.Unknown(str(error), error.at or at or self.at))
@@ -102,7 +132,9 @@ class Interpreter(Evaluation):
             kind = self._STATEMENTS.get(type(node))
             if kind is None:
                 raise py.Undetermined(
-                    f"a statement of the kind {type(node).__name__} is not evaluated", self.at, is_final=True
+                    f"a statement of the kind {type(node).__name__} is not evaluated",
+                    self.at,
+                    is_final=True,
                 )
             try:
                 kind(self, node, scope)
@@ -112,22 +144,39 @@ class Interpreter(Evaluation):
                 if error.is_final:
                     raise
                 reason = f"this statement is not evaluated: {error}"
-                raise py.Undetermined(reason, error.at or position_of(node), is_final=True) from None
+                raise py.Undetermined(
+                    reason, error.at or position_of(node), is_final=True
+                ) from None
 
     def _functiondef(self, node: ast.FunctionDef, scope: py.Scope) -> None:
         at = position_of(node)
         if node.decorator_list or getattr(node, "type_params", []):
-            raise py.Undetermined("a function with a decorator or type parameters is not evaluated", at, is_final=True)
+            raise py.Undetermined(
+                "a function with a decorator or type parameters is not evaluated", at, is_final=True
+            )
         parameters = node.args
-        every = (*parameters.posonlyargs, *parameters.args, *parameters.kwonlyargs, parameters.vararg, parameters.kwarg)
-        function: py.Value = self.function(parameters, scope, at, partial(self._function_body, node), bound_in(node))
-        for annotation in (*(parameter.annotation for parameter in every if parameter), node.returns):
+        every = (
+            *parameters.posonlyargs,
+            *parameters.args,
+            *parameters.kwonlyargs,
+            parameters.vararg,
+            parameters.kwarg,
+        )
+        function: py.Value = self.function(
+            parameters, scope, at, partial(self._function_body, node), bound_in(node)
+        )
+        for annotation in (
+            *(parameter.annotation for parameter in every if parameter),
+            node.returns,
+        ):
             self._annotation(annotation, scope)
         scope.names[node.name] = function
 
     def _function_body(self, node: ast.FunctionDef, scope: py.Scope) -> py.Value:
         if any(isinstance(inner, ast.Yield | ast.YieldFrom) for inner in own_nodes(node)):
-            raise py.Undetermined("a generator function is not evaluated", position_of(node), is_final=True)
+            raise py.Undetermined(
+                "a generator function is not evaluated", position_of(node), is_final=True
+            )
         try:
             self._block(node.body, scope)
         except _ReturnFlow as flow:
@@ -163,8 +212,13 @@ class Interpreter(Evaluation):
         self._block(node.orelse, scope)
 
     def _with(self, node: ast.With, scope: py.Scope) -> None:
-        value, target = self.evaluate(node.items[0].context_expr, scope), node.items[0].optional_vars
-        has_failed = isinstance(value, py.Unknown) and value.reason == FAILED  # of a file that does not exist
+        value, target = (
+            self.evaluate(node.items[0].context_expr, scope),
+            node.items[0].optional_vars,
+        )
+        has_failed = (
+            isinstance(value, py.Unknown) and value.reason == FAILED
+        )  # of a file that does not exist
         if isinstance(value, py.Call):
             self.call_value(py.BoundMethod(value, "__enter__"), py.Call("", [], {}, self.at))
         if len(node.items) > 1 or not (isinstance(value, py.Call | StringIO) or has_failed):
@@ -198,18 +252,26 @@ class Interpreter(Evaluation):
         for alias in node.names:
             if (module or alias.name).split(".")[0] in self.local_modules:
                 raise py.Undetermined(
-                    f"the file's own module {module or alias.name} is not evaluated", self.at, is_final=True
+                    f"the file's own module {module or alias.name} is not evaluated",
+                    self.at,
+                    is_final=True,
                 )
             error = import_error(module, alias.name, self.exports)
             bound = imported_names(module, alias, self.exports)
             if error == UNCERTAIN:
-                reason = f"whether {module or alias.name} is installed is not known; it is not evaluated"
+                reason = (
+                    f"whether {module or alias.name} is installed is not known; it is not evaluated"
+                )
                 self.doubted(py.Unknown(reason, self.at))
             elif error is not None:
                 self.error(error, self.at)
-                bound = dict.fromkeys(bound, py.QualifiedName(USUAL_NAMES.get(alias.name, f"?.{alias.name}")))
+                bound = dict.fromkeys(
+                    bound, py.QualifiedName(USUAL_NAMES.get(alias.name, f"?.{alias.name}"))
+                )
             if bound.pop("*", None) is not None:
-                raise py.Undetermined(f"the names of {module} are not evaluated", self.at, is_final=True)
+                raise py.Undetermined(
+                    f"the names of {module} are not evaluated", self.at, is_final=True
+                )
             scope.names.update(bound)
 
     def _try(self, node: ast.Try, scope: py.Scope) -> None:
@@ -235,15 +297,23 @@ class Interpreter(Evaluation):
         self.doubt = doubt
         self._block(after, scope)
 
-    def _handle(self, statement: ast.stmt, handlers: Sequence[ast.ExceptHandler], scope: py.Scope) -> None:
+    def _handle(
+        self, statement: ast.stmt, handlers: Sequence[ast.ExceptHandler], scope: py.Scope
+    ) -> None:
         """Run the handler of an import that fails; stop at what another statement raises."""
         for handler in handlers if isinstance(statement, ast.Import | ast.ImportFrom) else ():
-            if handler.type is None or (isinstance(handler.type, ast.Name) and handler.type.id in _OF_IMPORTS):
+            if handler.type is None or (
+                isinstance(handler.type, ast.Name) and handler.type.id in _OF_IMPORTS
+            ):
                 if handler.name:
-                    scope.names[handler.name] = py.Unknown("an error is not evaluated", position_of(handler))
+                    scope.names[handler.name] = py.Unknown(
+                        "an error is not evaluated", position_of(handler)
+                    )
                 self._block(handler.body, scope)
                 return
-        raise py.Undetermined("which error is raised in this try is not evaluated", self.at, is_final=True)
+        raise py.Undetermined(
+            "which error is raised in this try is not evaluated", self.at, is_final=True
+        )
 
     def _assert(self, node: ast.Assert, scope: py.Scope) -> None:
         if not truth(self.evaluate(node.test, scope)):
@@ -259,7 +329,9 @@ class Interpreter(Evaluation):
     def _attribute(self, node: ast.Attribute, scope: py.Scope) -> py.Value:
         owner, name = self.evaluate(node.value, scope), node.attr
         match owner:
-            case py.QualifiedName(name="?glob"):  # used without an import: an attribute shows that the module is meant
+            case py.QualifiedName(
+                name="?glob"
+            ):  # used without an import: an attribute shows that the module is meant
                 return py.QualifiedName(f"glob.{name}")
             case py.QualifiedName(name="glob.glob") if name in ("glob", "iglob"):
                 message = f"glob is a function here, so glob.{name} is not defined: write glob(...)"
@@ -269,7 +341,9 @@ class Interpreter(Evaluation):
                 full = f"{module}.{name}"
                 error = attribute_error(module, name) if full not in self.functions else None
                 if error is not None:
-                    meant = closest(full, (it for it in self.functions if it.rpartition(".")[0] == module))
+                    meant = closest(
+                        full, (it for it in self.functions if it.rpartition(".")[0] == module)
+                    )
                     if meant is None:
                         raise py.EvaluationFails(error)
                     self.error(error, position_of(node))
@@ -290,8 +364,15 @@ class Interpreter(Evaluation):
             return super().item(owner, key, node)
         made = py.Call(f"{owner.name}.__getitem__", [key], {}, position_of(node))
         function = self.functions.get(made.name)
-        if function is None and isinstance(owner, py.QualifiedName) and owner.name in self.functions:
-            self.error(f"{owner.name} is a function: write ( ) around its arguments, not [ ]", position_of(node))
+        if (
+            function is None
+            and isinstance(owner, py.QualifiedName)
+            and owner.name in self.functions
+        ):
+            self.error(
+                f"{owner.name} is a function: write ( ) around its arguments, not [ ]",
+                position_of(node),
+            )
             return self.call_value(owner, py.Call("", [key], {}, position_of(node)))
         if function is None or isinstance(function, py.PlainFunction):
             raise py.Undetermined(f"{owner.name}[...] {NOT_EVALUATED}")
@@ -307,13 +388,21 @@ class Interpreter(Evaluation):
             try:
                 values += iterate(self.evaluate(node.value, scope))
             except py.Undetermined as error:
-                raise py.Undetermined(str(error), error.at or position_of(node), is_final=True) from None
+                raise py.Undetermined(
+                    str(error), error.at or position_of(node), is_final=True
+                ) from None
         return values
 
     def _separated(self, node: ast.expr) -> list[ast.expr]:
-        """Return an element; the two elements that a call of a tuple or list means, where a comma is missing."""
+        """Return an element; the two elements that a call of a tuple or list means, where a comma
+        is missing.
+        """
         match node:
-            case ast.Call(func=ast.Tuple() | ast.List() | ast.Call() as first, args=[start, *_] as args, keywords=[]):
+            case ast.Call(
+                func=ast.Tuple() | ast.List() | ast.Call() as first,
+                args=[start, *_] as args,
+                keywords=[],
+            ):
                 before = self._separated(first)
                 if isinstance(before[-1], ast.Tuple | ast.List):
                     kind = type(before[-1]).__name__.lower()
@@ -346,7 +435,9 @@ class Interpreter(Evaluation):
         return str_of(value)
 
     def _generatorexp(self, node: ast.GeneratorExp, scope: py.Scope) -> py.Value:
-        """Return a generator: the items of its first loop are evaluated now, the rest when it is iterated."""
+        """Return a generator: the items of its first loop are evaluated now, the rest when it is
+        iterated.
+        """
         first = iterate(self.evaluate(node.generators[0].iter, scope))
         rounds = self.rounds(node.generators, py.Scope({}, scope), first)
         return py.Items(self.evaluate(node.elt, inner) for inner in rounds)
@@ -358,17 +449,26 @@ class Interpreter(Evaluation):
         }
 
     def _lambda(self, node: ast.Lambda, scope: py.Scope) -> py.Value:
-        return self.function(node.args, scope, position_of(node), lambda inner: self.evaluate(node.body, inner))
+        return self.function(
+            node.args, scope, position_of(node), lambda inner: self.evaluate(node.body, inner)
+        )
 
     def bind(self, target: ast.expr, value: py.Value, scope: py.Scope) -> None:
         """Bind the names of a target to a value, or change an item."""
         match target:
             case ast.Subscript(value=owner, slice=key):
-                self._store(self.evaluate(owner, scope), known(self.key(key, scope)), value, position_of(target))
+                self._store(
+                    self.evaluate(owner, scope),
+                    known(self.key(key, scope)),
+                    value,
+                    position_of(target),
+                )
             case ast.Attribute(value=owner, attr=name):
                 changed = self.evaluate(owner, scope)
                 if isinstance(changed, py.PLAIN):
-                    raise py.EvaluationFails(f"{type(changed).__name__!r} has no attribute {name!r}")
+                    raise py.EvaluationFails(
+                        f"{type(changed).__name__!r} has no attribute {name!r}"
+                    )
                 reason = f"a change of the attribute {name} is not evaluated"
                 raise py.Undetermined(reason, position_of(target), is_final=True)
             case _:

@@ -1,4 +1,5 @@
-"""Python's library and ROS 2's modules: what an import binds, when it fails, and the functions that are evaluated.
+"""Python's library and ROS 2's modules: what an import binds, when it fails, and the functions that
+are evaluated.
 
 None of the functions reads a file.
 """
@@ -17,47 +18,160 @@ from grader.python import values as py
 from grader.python.values import iterate
 
 MAX_PATH = 4_096  # characters
-PACKAGE_FOLDER = "<package>"  # stands for the name of the package's folder, which the submission does not determine
+# stands for the name of the package's folder, which the submission does not determine
+PACKAGE_FOLDER = "<package>"
 _OWN = ("dirname", "basename", "normpath", "split", "splitext", "isabs")
-_SETUPTOOLS_PUBLIC = ("setup", "find_packages", "find_namespace_packages", "Command", "Distribution", "Extension")
+_SETUPTOOLS_PUBLIC = (
+    "setup",
+    "find_packages",
+    "find_namespace_packages",
+    "Command",
+    "Distribution",
+    "Extension",
+)
 _SETUPTOOLS = frozenset(
-    {"setup", "find_packages", "find_namespace_packages", "Command", "Distribution", "Extension", "Require", "depends",
-     "dist", "command", "errors", "extension", "PackageFinder", "PEP420PackageFinder", "sic",
-     "SetuptoolsDeprecationWarning", "build_meta", "glob", "msvc", "monkey", "namespaces", "sandbox", "unicode_utils",
-     "wheel", "windows_support", "version", "archive_util", "dep_util", "discovery", "config", "installer", "launch",
-     "logging", "package_index", "convert_path", "findall", "distutils", "warnings", "modified"}
-)  # fmt: skip
-# Modules of the standard library that students' setup files import; their names are read from the modules themselves.
+    {
+        "setup",
+        "find_packages",
+        "find_namespace_packages",
+        "Command",
+        "Distribution",
+        "Extension",
+        "Require",
+        "depends",
+        "dist",
+        "command",
+        "errors",
+        "extension",
+        "PackageFinder",
+        "PEP420PackageFinder",
+        "sic",
+        "SetuptoolsDeprecationWarning",
+        "build_meta",
+        "glob",
+        "msvc",
+        "monkey",
+        "namespaces",
+        "sandbox",
+        "unicode_utils",
+        "wheel",
+        "windows_support",
+        "version",
+        "archive_util",
+        "dep_util",
+        "discovery",
+        "config",
+        "installer",
+        "launch",
+        "logging",
+        "package_index",
+        "convert_path",
+        "findall",
+        "distutils",
+        "warnings",
+        "modified",
+    }
+)
+# Modules of the standard library that students' setup files import; their names are read from the
+# modules themselves.
 _INSPECTED = frozenset(
-    {"os", "os.path", "glob", "pathlib", "sys", "shutil", "itertools", "re", "io", "typing", "datetime", "collections",
-     "functools", "json", "math", "platform", "subprocess", "time", "random", "tempfile", "textwrap", "warnings",
-     "contextlib", "fnmatch", "string", "operator", "configparser", "codecs", "logging", "errno", "stat"}
-)  # fmt: skip
-_INSTALLED_WITH_ROS = ("pkg_resources", "wheel", "launch", "launch_ros", "xacro", "yaml", "ament_index_python")
+    {
+        "os",
+        "os.path",
+        "glob",
+        "pathlib",
+        "sys",
+        "shutil",
+        "itertools",
+        "re",
+        "io",
+        "typing",
+        "datetime",
+        "collections",
+        "functools",
+        "json",
+        "math",
+        "platform",
+        "subprocess",
+        "time",
+        "random",
+        "tempfile",
+        "textwrap",
+        "warnings",
+        "contextlib",
+        "fnmatch",
+        "string",
+        "operator",
+        "configparser",
+        "codecs",
+        "logging",
+        "errno",
+        "stat",
+    }
+)
+_INSTALLED_WITH_ROS = (
+    "pkg_resources",
+    "wheel",
+    "launch",
+    "launch_ros",
+    "xacro",
+    "yaml",
+    "ament_index_python",
+)
 # What Python 3.12 has no more, or an older one that runs the grader has not yet.
 _REMOVED = ("asynchat", "asyncore", "imp", "smtpd")
-_ADDED = {"batched", "override", "TypeAliasType", "isjunction", "splitroot", "sumprod", "monitoring"}
+_ADDED = {
+    "batched",
+    "override",
+    "TypeAliasType",
+    "isjunction",
+    "splitroot",
+    "sumprod",
+    "monitoring",
+}
 PYTHON_3_12 = ("PythonFinalizationError",)  # built-in names that only a newer Python has
 UNCERTAIN = "?"  # in place of a message: whether an import fails is not known
-# The names of ROS 2's launch that files use most (ros2/launch and ros2/launch_ros, Jazzy), by their modules.
+# The names of ROS 2's launch that files use most (ros2/launch and ros2/launch_ros, Jazzy), by their
+# modules.
 _LAUNCH_NAMES: dict[str, tuple[str, ...]] = {
     "launch": ("LaunchDescription",),
     "launch.actions": (
-        "DeclareLaunchArgument", "ExecuteProcess", "GroupAction", "IncludeLaunchDescription", "LogInfo",
-        "OpaqueFunction", "RegisterEventHandler", "SetEnvironmentVariable", "SetLaunchConfiguration", "TimerAction",
+        "DeclareLaunchArgument",
+        "ExecuteProcess",
+        "GroupAction",
+        "IncludeLaunchDescription",
+        "LogInfo",
+        "OpaqueFunction",
+        "RegisterEventHandler",
+        "SetEnvironmentVariable",
+        "SetLaunchConfiguration",
+        "TimerAction",
     ),
     "launch.conditions": ("IfCondition", "UnlessCondition"),
     "launch.event_handlers": ("OnProcessExit", "OnProcessStart"),
-    "launch.launch_description_sources": ("PythonLaunchDescriptionSource", "AnyLaunchDescriptionSource"),
+    "launch.launch_description_sources": (
+        "PythonLaunchDescriptionSource",
+        "AnyLaunchDescriptionSource",
+    ),
     "launch.substitutions": (
-        "Command", "EnvironmentVariable", "FindExecutable", "LaunchConfiguration", "PathJoinSubstitution",
-        "PythonExpression", "TextSubstitution", "ThisLaunchFileDir",
+        "Command",
+        "EnvironmentVariable",
+        "FindExecutable",
+        "LaunchConfiguration",
+        "PathJoinSubstitution",
+        "PythonExpression",
+        "TextSubstitution",
+        "ThisLaunchFileDir",
     ),
     "launch_ros.actions": ("Node", "PushRosNamespace", "SetParameter"),
     "launch_ros.parameter_descriptions": ("ParameterValue", "ParameterFile"),
     "launch_ros.substitutions": ("FindPackageShare",),
-    "ament_index_python.packages": ("get_package_share_directory", "get_package_share_path", "get_package_prefix"),
-}  # fmt: skip
+    "ament_index_python.packages": (
+        "get_package_share_directory",
+        "get_package_share_path",
+        "get_package_prefix",
+    ),
+}
 # The usual meaning of a name that is used without its import.
 USUAL_NAMES = {
     "os": "os",
@@ -85,9 +199,14 @@ CONSTANTS = {
 
 
 def import_error(module: str, name: str, exports: Mapping[str, Collection[str]]) -> str | None:
-    """Return what is wrong with `import name` or `from module import name`: None where it works, UNCERTAIN, or why."""
+    """Return what is wrong with `import name` or `from module import name`: None where it works,
+    UNCERTAIN, or why.
+    """
     if module.startswith("."):
-        return f"the file is in no package, so it cannot import {module}{'' if module.strip('.') else name}"
+        return (
+            "the file is in no package, so it cannot import "
+            f"{module}{'' if module.strip('.') else name}"
+        )
     if module in exports:
         if name in exports[module] or name == "*":
             return None
@@ -111,8 +230,18 @@ def _import_error(module: str, name: str) -> str | None:
         or (module, name) == ("distutils.core", "setup")
         or (top in sys.stdlib_module_names and full == top and not module)
     )
-    guess = closest(top, ("os", "glob", "pathlib", "setuptools", "sys", "shutil")) if top != "psutil" else None
-    if is_there or not guess or top.startswith(guess) or top in sys.stdlib_module_names or top == "setuptools":
+    guess = (
+        closest(top, ("os", "glob", "pathlib", "setuptools", "sys", "shutil"))
+        if top != "psutil"
+        else None
+    )
+    if (
+        is_there
+        or not guess
+        or top.startswith(guess)
+        or top in sys.stdlib_module_names
+        or top == "setuptools"
+    ):
         return None if is_there else UNCERTAIN
     return f"there is no module {top!r}; did you mean {guess!r}?"
 
@@ -139,18 +268,28 @@ def attribute_error(module: str, name: str) -> str | None:
 def imported_names(
     module: str, alias: ast.alias, exports: Mapping[str, Collection[str]]
 ) -> dict[str, py.QualifiedName]:
-    """Return what `import name` or `from module import name` binds; the name * represents unknown names."""
+    """Return what `import name` or `from module import name` binds; the name * represents unknown
+    names.
+    """
     if alias.name == "*":
-        return {name or "*": py.QualifiedName(f"{module}.{name}") for name in exports.get(module, [""])}
+        return {
+            name or "*": py.QualifiedName(f"{module}.{name}") for name in exports.get(module, [""])
+        }
     if module:
         return {alias.asname or alias.name: py.QualifiedName(f"{module}.{alias.name}")}
     top = alias.name.split(".")[0]
-    return {alias.asname: py.QualifiedName(alias.name)} if alias.asname else {top: py.QualifiedName(top)}
+    return (
+        {alias.asname: py.QualifiedName(alias.name)}
+        if alias.asname
+        else {top: py.QualifiedName(top)}
+    )
 
 
 @cache
 def standard_functions(working_folder: str) -> py.FunctionTable:
-    """Return the functions by full name; `working_folder` is where Python runs, as an absolute path."""
+    """Return the functions by full name; `working_folder` is where Python runs, as an absolute
+    path.
+    """
 
     def absolute(path: py.Value) -> str:
         return posixpath.normpath(posixpath.join(working_folder, path))
@@ -159,28 +298,41 @@ def standard_functions(working_folder: str) -> py.FunctionTable:
         return posixpath.relpath(absolute(path) if path else path, absolute(start))
 
     own: dict[str, Callable[..., py.Value]] = {
-        "abspath": absolute, "realpath": absolute, "relpath": relative, "join": _join,
+        "abspath": absolute,
+        "realpath": absolute,
+        "relpath": relative,
+        "join": _join,
         **{name: getattr(posixpath, name) for name in _OWN},
-    }  # fmt: skip
+    }
     of_paths: dict[str, Callable[..., py.Value]] = {
         **{f"os.path.{name}": function for name, function in own.items()},
         **{f"pathlib.{name}": _path for name in ("Path", "PurePath", "PosixPath", "PurePosixPath")},
-        **{f"pathlib.Path.{name}": lambda path: PurePosixPath(absolute(path)) for name in ("resolve", "absolute")},
+        **{
+            f"pathlib.Path.{name}": lambda path: PurePosixPath(absolute(path))
+            for name in ("resolve", "absolute")
+        },
         "os.getcwd": lambda: working_folder,
         "pathlib.Path.cwd": lambda: PurePosixPath(working_folder),
     }
-    return {**_FUNCTIONS, **{name: py.PlainFunction(name, run, "path") for name, run in of_paths.items()}}
+    return {
+        **_FUNCTIONS,
+        **{name: py.PlainFunction(name, run, "path") for name, run in of_paths.items()},
+    }
 
 
 def _of_path(value: py.Value) -> py.Value:
     if not isinstance(value, str | PurePosixPath):
-        raise py.EvaluationFails(f"a path is a string, and this is of the type {type(value).__name__}")
+        raise py.EvaluationFails(
+            f"a path is a string, and this is of the type {type(value).__name__}"
+        )
     return value
 
 
 def _join(first: py.Value, *parts: py.Value) -> str:
     if not all(isinstance(value, str | PurePosixPath) for value in (first, *parts)):
-        message = "os.path.join takes strings, and one argument is not a string: is a bracket misplaced?"
+        message = (
+            "os.path.join takes strings, and one argument is not a string: is a bracket misplaced?"
+        )
         raise py.EvaluationFails(message)
     return _bounded(posixpath.join(first, *parts))
 
@@ -195,15 +347,21 @@ def _bounded(path: str) -> str:
     return path
 
 
-def _no_print(*_: py.Value, sep: str = "", end: str = "", file: py.Value = None, flush: bool = False) -> None:
+def _no_print(
+    *_: py.Value, sep: str = "", end: str = "", file: py.Value = None, flush: bool = False
+) -> None:
     """Print nothing."""
     del sep, end, file, flush
 
 
 _FUNCTIONS: py.FunctionTable = {
     "builtins.print": py.PlainFunction("print", _no_print, "holds"),
-    "itertools.chain": py.PlainFunction("chain", lambda *lists: py.Items(chain(*map(iterate, lists))), "holds"),
+    "itertools.chain": py.PlainFunction(
+        "chain", lambda *lists: py.Items(chain(*map(iterate, lists))), "holds"
+    ),
     "itertools.chain.from_iterable": py.PlainFunction(
-        "chain.from_iterable", lambda lists: py.Items(chain.from_iterable(map(iterate, iterate(lists)))), "holds"
+        "chain.from_iterable",
+        lambda lists: py.Items(chain.from_iterable(map(iterate, iterate(lists)))),
+        "holds",
     ),
 }

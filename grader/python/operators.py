@@ -1,4 +1,6 @@
-"""Operators, subscripts, attributes and methods: Python's own, from an allow-list, on values of bounded size."""
+"""Operators, subscripts, attributes and methods: Python's own, from an allow-list, on values of
+bounded size.
+"""
 
 import ast
 import operator
@@ -18,7 +20,9 @@ _NUMBERS = (float, int)
 
 
 def attribute(owner: py.Value, name: str, budget: Budget) -> py.Value:
-    """Return the value of an attribute: of a namespace, of a dict from YAML, or a method of a plain value."""
+    """Return the value of an attribute: of a namespace, of a dict from YAML, or a method of a plain
+    value.
+    """
     if name.startswith("__"):
         raise py.EvaluationFails(f"names that begin with two underscores are not allowed: {name}")
     if isinstance(owner, py.Namespace):
@@ -45,15 +49,21 @@ def has_attribute(owner: py.Value, name: str) -> bool:
 
 
 def method(owner: py.Value, name: str, budget: Budget) -> py.PlainFunction | None:
-    """Return a method of a plain value that changes nothing, whose work is charged; None for any other."""
-    run = next((table.get(name) for kind, table in _METHODS.items() if isinstance(owner, kind)), None)
+    """Return a method of a plain value that changes nothing, whose work is charged; None for any
+    other.
+    """
+    run = next(
+        (table.get(name) for kind, table in _METHODS.items() if isinstance(owner, kind)), None
+    )
     if run is None:
         return None
     kind = "holds" if isinstance(owner, list | tuple | dict) else _KINDS.get(name, "plain")
 
     def charged(*args: py.Value, **kwargs: py.Value) -> py.Value:
         if run is not _get:
-            budget.charge(budget.measure(owner, kind), sum(_search_cost(owner, value) for value in args))
+            budget.charge(
+                budget.measure(owner, kind), sum(_search_cost(owner, value) for value in args)
+            )
         return call_plain(run, owner, *args, **kwargs)
 
     return py.PlainFunction(name, charged, kind, getattr(owner, name))
@@ -103,20 +113,53 @@ def _named(kind: type, *names: str) -> dict[str, Callable[..., py.Value]]:
     return {name: getattr(kind, name) for name in names}
 
 
-_OF_PATHS = ("joinpath", "as_posix", "with_name", "with_suffix", "with_stem", "relative_to", "read", "close", "replace")
+_OF_PATHS = (
+    "joinpath",
+    "as_posix",
+    "with_name",
+    "with_suffix",
+    "with_stem",
+    "relative_to",
+    "read",
+    "close",
+    "replace",
+)
 _KINDS = {**dict.fromkeys(_OF_PATHS, "path"), "format": "text", "join": "text"}
 _METHODS: Mapping[type, Mapping[str, Callable[..., py.Value]]] = {
     str: {
-        "replace": _replace, "join": _join, "format": _format,
-        **_named(str, "capitalize", "count", "endswith", "find", "index", "isdigit", "lower", "lstrip", "partition",
-                 "removeprefix", "removesuffix", "rfind", "rpartition", "rsplit", "rstrip", "split", "splitlines",
-                 "startswith", "strip", "title", "upper"),
+        "replace": _replace,
+        "join": _join,
+        "format": _format,
+        **_named(
+            str,
+            "capitalize",
+            "count",
+            "endswith",
+            "find",
+            "index",
+            "isdigit",
+            "lower",
+            "lstrip",
+            "partition",
+            "removeprefix",
+            "removesuffix",
+            "rfind",
+            "rpartition",
+            "rsplit",
+            "rstrip",
+            "split",
+            "splitlines",
+            "startswith",
+            "strip",
+            "title",
+            "upper",
+        ),
     },
     dict: {"get": _get, **_named(dict, "keys", "values", "items", "copy")},
     list: _named(list, "copy"),
     PurePosixPath: _named(PurePosixPath, *_OF_PATHS[:6]),
     StringIO: _named(StringIO, "read", "readline", "readlines", "close"),
-}  # fmt: skip
+}
 
 
 def operate(op: ast.operator, left: py.Value, right: py.Value, budget: Budget) -> py.Value:
@@ -124,22 +167,36 @@ def operate(op: ast.operator, left: py.Value, right: py.Value, budget: Budget) -
     operation = _OPERATORS.get(type(op))
     _refuse_object(op, left, right)
     if type(left) in _NUMBERS and type(right) in _NUMBERS:
-        if isinstance(op, ast.Pow) and type(left) is type(right) is int and left.bit_length() * right > py.MAX_BITS:
+        if (
+            isinstance(op, ast.Pow)
+            and type(left) is type(right) is int
+            and left.bit_length() * right > py.MAX_BITS
+        ):
             too_large("number")
         kind = "plain"
     else:
         kind = _kind(op, left, right)
         for value in (left, right):
-            if not isinstance(value, (*py.PLAIN, py.Items)):  # an iterator has no operators, as Python says itself
+            if not isinstance(
+                value, (*py.PLAIN, py.Items)
+            ):  # an iterator has no operators, as Python says itself
                 refuse(value, "this operation is not supported")
         size = budget.measure(left, kind) + budget.measure(right, kind)
         made = 0
         match op, left, right:
             case ast.Mod(), str(), _:
                 operation, made = _percent_format, size * left.count("%")
-            case (ast.Mult(), str() as text, int() as times) | (ast.Mult(), int() as times, str() as text):
+            case (ast.Mult(), str() as text, int() as times) | (
+                ast.Mult(),
+                int() as times,
+                str() as text,
+            ):
                 made = len(text) * times // CHARACTERS
-            case (ast.Mult(), list() | tuple(), int() as times) | (ast.Mult(), int() as times, list() | tuple()):
+            case (ast.Mult(), list() | tuple(), int() as times) | (
+                ast.Mult(),
+                int() as times,
+                list() | tuple(),
+            ):
                 made = size * times
         if made > py.MAX_PARTS:
             too_large("value")
@@ -157,22 +214,31 @@ def _refuse_object(op: ast.operator, left: py.Value, right: py.Value) -> None:
         return
     if isinstance(other, py.PLAIN) or py.is_object(other):
         raise py.EvaluationFails(
-            f"TypeError: {found.short}(...) is an object, not a text: use PathJoinSubstitution([...])"
+            f"TypeError: {found.short}(...) is an object, not a text: use "
+            "PathJoinSubstitution([...])"
         )
 
 
 def _kind(op: ast.operator, left: py.Value, right: py.Value) -> str:
     """Return what the operands may contain: an operator of two lists passes their items on."""
-    if isinstance(left, _CONTAINERS) or (isinstance(right, _CONTAINERS) and not isinstance(left, str)):
+    if isinstance(left, _CONTAINERS) or (
+        isinstance(right, _CONTAINERS) and not isinstance(left, str)
+    ):
         return "holds"
     return "text" if isinstance(op, ast.Add | ast.Div | ast.Mod) else "plain"
 
 
-def _run(operation: Callable[[py.Value, py.Value], py.Value], left: py.Value, right: py.Value) -> py.Value:
+def _run(
+    operation: Callable[[py.Value, py.Value], py.Value], left: py.Value, right: py.Value
+) -> py.Value:
     try:
         return call_plain(operation, left, right)
     except py.Undetermined:
-        if isinstance(left, py.PLAIN) and isinstance(right, py.PLAIN) and type(left) is not type(right):
+        if (
+            isinstance(left, py.PLAIN)
+            and isinstance(right, py.PLAIN)
+            and type(left) is not type(right)
+        ):
             kinds = f"{type(left).__name__} and {type(right).__name__}"
             raise py.EvaluationFails(f"TypeError: no such operator for {kinds}") from None
         raise
@@ -188,7 +254,9 @@ def compare(op: ast.cmpop, left: py.Value, right: py.Value, budget: Budget) -> b
     ):
         raise py.Undetermined("which values are one object is not defined")
     for value in (left, right):
-        if not isinstance(value, py.PLAIN) and not (isinstance(value, py.Items) and isinstance(op, ast.Eq | ast.NotEq)):
+        if not isinstance(value, py.PLAIN) and not (
+            isinstance(value, py.Items) and isinstance(op, ast.Eq | ast.NotEq)
+        ):
             refuse(value, "this comparison is not supported")
     if type(left) not in _NUMBERS or type(right) not in _NUMBERS:
         budget.charge(budget.measure(left) + budget.measure(right), _search_cost(right, left))
@@ -223,12 +291,25 @@ def _exclusive_or(left: py.Value, right: py.Value) -> py.Value:
 _CONTAINERS = (list, tuple, dict)
 _OF_IDENTITY = (ast.Eq, ast.NotEq, ast.Is, ast.IsNot)
 _OPERATORS: dict[type[ast.operator], Callable[[py.Value, py.Value], py.Value]] = {
-    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
-    ast.FloorDiv: operator.floordiv, ast.Mod: operator.mod, ast.Pow: operator.pow, ast.BitOr: operator.or_,
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.FloorDiv: operator.floordiv,
+    ast.Mod: operator.mod,
+    ast.Pow: operator.pow,
+    ast.BitOr: operator.or_,
     ast.BitXor: _exclusive_or,
-}  # fmt: skip
+}
 _COMPARISONS: dict[type[ast.cmpop], Callable[[py.Value, py.Value], py.Value]] = {
-    ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Is: operator.is_, ast.IsNot: operator.is_not,
-    ast.In: lambda left, right: left in right, ast.NotIn: lambda left, right: left not in right,
-    ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge,
-}  # fmt: skip
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+    ast.Is: operator.is_,
+    ast.IsNot: operator.is_not,
+    ast.In: lambda left, right: left in right,
+    ast.NotIn: lambda left, right: left not in right,
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+}

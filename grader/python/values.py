@@ -1,6 +1,8 @@
-"""The values of Python expressions: Python's own, and stand-ins for functions, iterators and what is not evaluated.
+"""The values of Python expressions: Python's own, and stand-ins for functions, iterators and what
+is not evaluated.
 
-What is not known raises Undetermined where it is needed: `known`, `iterate` and `str_of` are the ways to a value.
+What is not known raises Undetermined where it is needed: `known`, `iterate` and `str_of` are the
+ways to a value.
 """
 
 import ast
@@ -13,7 +15,8 @@ if TYPE_CHECKING:
     from grader.python.parse import Position
 
 
-# A plain value is a str, number, bool, None, list, tuple, dict, range, StringIO (a file) or PurePosixPath.
+# A plain value is a str, number, bool, None, list, tuple, dict, range, StringIO (a file) or
+# PurePosixPath.
 Value = Any
 
 MAX_TEXT = 100_000  # characters
@@ -24,7 +27,17 @@ _MAX_KEY = 2**31  # keys that are larger could all have one hash
 _EMPTY: dict[str, str] = {}
 VIEWS: tuple[Any, ...] = (type(_EMPTY.keys()), type(_EMPTY.values()), type(_EMPTY.items()))
 SCALARS = (str, int, float)
-PLAIN: tuple[Any, ...] = (*SCALARS, type(None), range, list, tuple, dict, PurePosixPath, StringIO, *VIEWS)
+PLAIN: tuple[Any, ...] = (
+    *SCALARS,
+    type(None),
+    range,
+    list,
+    tuple,
+    dict,
+    PurePosixPath,
+    StringIO,
+    *VIEWS,
+)
 
 
 OBJECT = " object>"  # ends the text of an object that has no text of its own
@@ -42,16 +55,21 @@ class EvaluationSignal(Exception):
 
 
 class EvaluationFails(EvaluationSignal):
-    """Python, xacro or launch certainly raises an error here; the text is a sentence without its end."""
+    """Python, xacro or launch certainly raises an error here; the text is a sentence without its
+    end.
+    """
 
 
 class Undetermined(EvaluationSignal):
     """A value, or whether there is an error, cannot be determined statically; the text says why.
 
-    With `is_final`, nothing that follows in the file can be determined either: what is not evaluated may do anything.
+    With `is_final`, nothing that follows in the file can be determined either: what is not
+    evaluated may do anything.
     """
 
-    def __init__(self, message: str, at: "Position | None" = None, *, is_final: bool = False) -> None:
+    def __init__(
+        self, message: str, at: "Position | None" = None, *, is_final: bool = False
+    ) -> None:
         super().__init__(message, at)
         self.is_final = is_final
 
@@ -80,7 +98,9 @@ class QualifiedName:
 
 
 class BoundMethod:
-    """A method of a value, which is not called yet; `node` is the expression in the file that gives it."""
+    """A method of a value, which is not called yet; `node` is the expression in the file that
+    gives it.
+    """
 
     def __init__(self, owner: Value, name: str, node: ast.expr | None = None) -> None:
         self.owner, self.name, self.node = owner, name, node
@@ -90,7 +110,12 @@ class Call:
     """A call that is recorded, by the full name of what is called; it is its own result."""
 
     def __init__(
-        self, name: str, args: list[Value], kwargs: dict[str, Value], at: "Position", owner: "Call | None" = None
+        self,
+        name: str,
+        args: list[Value],
+        kwargs: dict[str, Value],
+        at: "Position",
+        owner: "Call | None" = None,
     ) -> None:
         """`owner` is the call whose result it is a method of."""
         self.name, self.args, self.kwargs, self.at, self.owner = name, args, kwargs, at, owner
@@ -111,7 +136,9 @@ class Call:
 
 
 class Function:
-    """A function or lambda of the file. `body` evaluates it in a scope; `local` are the names that its body binds."""
+    """A function or lambda of the file. `body` evaluates it in a scope; `local` are the names
+    that its body binds.
+    """
 
     def __init__(
         self,
@@ -133,12 +160,17 @@ class Scope:
     """
 
     def __init__(
-        self, names: dict[str, Value], outer: "Scope | None" = None, local: frozenset[str] = frozenset()
+        self,
+        names: dict[str, Value],
+        outer: "Scope | None" = None,
+        local: frozenset[str] = frozenset(),
     ) -> None:
         self.names, self.outer, self.local = names, outer, local
 
     def find(self, name: str) -> Value:
-        """Return the value of a name; raise KeyError, or EvaluationFails for one that is bound later."""
+        """Return the value of a name; raise KeyError, or EvaluationFails for one that is bound
+        later.
+        """
         scope: Scope | None = self
         while scope is not None:
             if name in scope.names:
@@ -150,23 +182,29 @@ class Scope:
 
 
 class PlainFunction:
-    """A function that an expression may call. It is Python's own, or takes and returns what Python's own does.
+    """A function that an expression may call. It is Python's own, or takes and returns what
+    Python's own does.
 
-    `kind` is "plain" for one whose arguments are wholly known; "holds" for one that only passes on what a list
-    contains, known or not; "applies" for such a one that calls functions, by the one that it is given first; "path" for
-    one whose result may begin with the stand-in of a folder, "text" for one that may contain it. `own` is Python's own
-    function, where `run` stands for one.
+    `kind` is "plain" for one whose arguments are wholly known; "holds" for one that only passes on
+    what a list contains, known or not; "applies" for such a one that calls functions, by the one
+    that it is given first; "path" for one whose result may begin with the stand-in of a folder,
+    "text" for one that may contain it. `own` is Python's own function, where `run` stands for one.
     """
 
     __slots__ = ("kind", "name", "own", "run")
 
     def __init__(
-        self, name: str, run: Callable[..., Value], kind: str = "plain", own: Callable[..., Value] | None = None
+        self,
+        name: str,
+        run: Callable[..., Value],
+        kind: str = "plain",
+        own: Callable[..., Value] | None = None,
     ) -> None:
         self.name, self.run, self.kind, self.own = name, run, kind, own
 
 
-# The functions that are evaluated, by their full names; each of the second kind takes the evaluation and its call.
+# The functions that are evaluated, by their full names; each of the second kind takes the
+# evaluation and its call.
 FunctionTable = Mapping[str, "PlainFunction | Callable[[Any, Call], Value]"]
 
 
@@ -180,7 +218,9 @@ class Namespace:
 
 
 class Items:
-    """An iterator, such as zip(), map() and a generator: Python's own, so it yields each item once."""
+    """An iterator, such as zip(), map() and a generator: Python's own, so it yields each item
+    once.
+    """
 
     __slots__ = ("iterator",)
 
@@ -220,7 +260,9 @@ def call_plain(function: Callable[..., Value], *args: Value, **kwargs: Value) ->
         raise
     except Exception as error:  # noqa: BLE001  whatever Python raises here, it raises for the student's expression
         if not _has_text([*args, *kwargs.values()]):
-            raise Undetermined("this use of a function, a namespace or an iterator is not supported") from None
+            raise Undetermined(
+                "this use of a function, a namespace or an iterator is not supported"
+            ) from None
         message = error.args[0] if isinstance(error, KeyError) and error.args else error
         raise EvaluationFails(f"{type(error).__name__}: {message}") from None
 
@@ -285,23 +327,33 @@ def unknown_in(value: Value) -> Unknown | None:
 
 
 def checked_key(key: Value) -> Value:
-    """Return a key of a dict: a text or a number whose hash no other one has. Raises Undetermined for other keys."""
+    """Return a key of a dict: a text or a number whose hash no other one has. Raises Undetermined
+    for other keys.
+    """
     if not isinstance(key, str) and not (isinstance(key, int) and abs(key) < _MAX_KEY):
-        raise Undetermined("a key of a dict that is neither a text nor a small whole number is not supported")
+        raise Undetermined(
+            "a key of a dict that is neither a text nor a small whole number is not supported"
+        )
     return key
 
 
 def str_of(value: Value) -> str:
-    """Return str() of a value that is charged; raise Undetermined where it differs between runs, such as an address."""
+    """Return str() of a value that is charged; raise Undetermined where it differs between runs,
+    such as an address.
+    """
     if is_object(value):
         return f"<{value.short}{OBJECT}"
-    if not isinstance(value, (*SCALARS, PurePosixPath)) and not (isinstance(value, PLAIN) and _has_text(value)):
+    if not isinstance(value, (*SCALARS, PurePosixPath)) and not (
+        isinstance(value, PLAIN) and _has_text(value)
+    ):
         raise Undetermined("the text of this value differs between runs")
     return str(value)
 
 
 def is_object(value: Value) -> bool:
-    """Return whether a value is an object that is true, equal to itself alone, and has no operators."""
+    """Return whether a value is an object that is true, equal to itself alone, and has no
+    operators.
+    """
     return isinstance(value, Call) and value.is_object
 
 
@@ -311,7 +363,9 @@ def _has_text(value: Value) -> bool:
         value = (*value.keys(), *value.values())
     if isinstance(value, list | tuple):
         return all(map(_has_text, value))
-    return isinstance(value, Items) or not isinstance(value, (*OPAQUE, StringIO, PurePosixPath, *VIEWS))
+    return isinstance(value, Items) or not isinstance(
+        value, (*OPAQUE, StringIO, PurePosixPath, *VIEWS)
+    )
 
 
 def path_text(value: Value) -> str | None:

@@ -1,7 +1,8 @@
-"""A report as annotations of its files for GitHub: failed criteria, most points first, then unreported problems.
+"""A report as annotations of its files for GitHub: failed criteria, most points first, then
+unreported problems.
 
-GitHub shows ten annotations of each type in a step and drops the others silently, so the last of a type counts the
-rest.
+GitHub shows ten annotations of each type in a step and drops the others silently, so the last of a
+type counts the rest.
 https://docs.github.com/actions/reference/workflow-commands-for-github-actions
 """
 
@@ -26,21 +27,33 @@ _COMMANDS: dict[Severity, str] = {"error": "error", "warning": "warning", "note"
 class _Finding(NamedTuple):
     """One thing to fix."""
 
-    title: str  # what a mistake costs and its criteria, the id of a criterion, or the code of a problem
+    # what a mistake costs and its criteria, the id of a criterion, or the code of a problem
+    title: str
     level: Severity
     text: str  # printable, of several lines
     place: Mapping[str, str] = {}  # without any the whole submission is meant
 
 
 def render_github(report: Report, base: Base) -> str:
-    """Return the annotations of a report: the score as a notice, then the findings, most points first."""
+    """Return the annotations of a report: the score as a notice, then the findings, most points
+    first.
+    """
     found = [*_findings(report, base)]
-    lines = [command("notice", {}, f"{score_text(report)}: {printable(report.rubric.title)}", _overview(report))]
+    lines = [
+        command(
+            "notice",
+            {},
+            f"{score_text(report)}: {printable(report.rubric.title)}",
+            _overview(report),
+        )
+    ]
     return "".join([*lines, *_limited(found, 1)])
 
 
 def inspection_github(inspection: Inspection) -> str:
-    """Return the annotations of an inspection: what ROS 2 does as a notice, then its problems, errors first."""
+    """Return the annotations of an inspection: what ROS 2 does as a notice, then its problems,
+    errors first.
+    """
     found = [
         _Finding(
             problem.code,
@@ -64,11 +77,19 @@ def _limited(found: Sequence[_Finding], notices: int) -> Iterator[str]:
 
 
 def _findings(report: Report, base: Base) -> Iterator[_Finding]:
-    """Yield what to fix or grade manually, and remarks; `base` is where the submission is in its repository."""
-    found, source_of = report_sections(report), cache(report.submission.source)  # reads each file once
+    """Yield what to fix or grade manually, and remarks; `base` is where the submission is in its
+    repository.
+    """
+    found, source_of = (
+        report_sections(report),
+        cache(report.submission.source),
+    )  # reads each file once
     for entry in (*found.mistakes, *(one for one in found.pending if not is_manual(one.result))):
         yield _entry_finding(entry, source_of, base)
-    for title, lines in ((found.unbuilt_title, [*found.unbuilt_lines]), ("Not found", [*found.missing])):
+    for title, lines in (
+        (found.unbuilt_title, [*found.unbuilt_lines]),
+        ("Not found", [*found.missing]),
+    ):
         if lines:
             yield _Finding(title, "note", "\n".join(line.text for line in lines))
     for result in report.results:
@@ -78,12 +99,16 @@ def _findings(report: Report, base: Base) -> Iterator[_Finding]:
     for problem in other_problems(report):
         where = problem.location
         text = _annotation_text([printable(problem.message)], where, base)
-        yield _Finding(problem.code, problem.severity, text, _annotation_place(where, source_of, base))
+        yield _Finding(
+            problem.code, problem.severity, text, _annotation_place(where, source_of, base)
+        )
 
 
 def _entry_finding(entry: Entry, source_of: SourceOf, base: Base) -> _Finding:
     is_mistake, where = bool(entry.lost) or is_failure(entry.result), entry.location
-    lines = entry.texts("finding", "comment", "hint", "feedback", "expected", "alike", "also", "skipped")
+    lines = entry.texts(
+        "finding", "comment", "hint", "feedback", "expected", "alike", "also", "skipped"
+    )
     level: Severity = "error" if is_mistake else "warning"
     if entry.result.criterion.bonus:
         lines.append(f"Extra credit: {earned_text(entry.result)}.")
@@ -93,7 +118,9 @@ def _entry_finding(entry: Entry, source_of: SourceOf, base: Base) -> _Finding:
 
 
 def _annotation_place(where: Location | None, source_of: SourceOf, base: Base) -> Mapping[str, str]:
-    """Return the properties of an annotation at a location, as seen from the root of the repository; empty without."""
+    """Return the properties of an annotation at a location, as seen from the root of the
+    repository; empty without.
+    """
     if where is None or base.is_outside:  # a file of the repository may have the same path
         return {}
     if archive := base.archive or archive_around(where.path):
@@ -105,8 +132,12 @@ def _annotation_place(where: Location | None, source_of: SourceOf, base: Base) -
 
 
 def _annotation_text(lines: list[str], where: Location | None, base: Base) -> str:
-    """Return the lines, and the location where that is in a macro, or not in a file of the repository."""
-    if where is not None and (base.archive or base.is_outside or archive_around(where.path) or where.calls):
+    """Return the lines, and the location where that is in a macro, or not in a file of the
+    repository.
+    """
+    if where is not None and (
+        base.archive or base.is_outside or archive_around(where.path) or where.calls
+    ):
         lines = [*lines, f"In {location_text(where)}."]
     return "\n".join(lines)
 
@@ -127,9 +158,13 @@ def _overview(report: Report) -> str:
 
 
 def command(name: str, place: Mapping[str, str], title: str, text: str) -> str:
-    """Return one annotation: `error`, `warning` or `notice` of printable text, with a line break at its end."""
+    """Return one annotation: `error`, `warning` or `notice` of printable text, with a line break at
+    its end.
+    """
     properties = [*place.items(), ("title", title)]
-    listed = ",".join(f"{key}={_data(value).replace(':', '%3A').replace(',', '%2C')}" for key, value in properties)
+    listed = ",".join(
+        f"{key}={_data(value).replace(':', '%3A').replace(',', '%2C')}" for key, value in properties
+    )
     message = text if len(text) <= _MAX_MESSAGE else f"{text[:_MAX_MESSAGE]}..."
     return without_tag_commands(f"::{name} {listed}::{_data(message)}\n")
 

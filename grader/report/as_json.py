@@ -1,4 +1,6 @@
-"""A report as JSON, schema grader/report/v1: its objects, from which `grader schema report` follows."""
+"""A report as JSON, schema grader/report/v1: its objects, from which `grader schema report`
+follows.
+"""
 
 from typing import Any, get_args
 
@@ -32,7 +34,9 @@ from grader.report.json_data import (
 )
 from grader.source import Certainty
 
-_CALL = JsonObject({"macro": (TEXT, lambda call: call[0]), "location": (JsonObject(PLACE), lambda call: call[1])})
+_CALL = JsonObject(
+    {"macro": (TEXT, lambda call: call[0]), "location": (JsonObject(PLACE), lambda call: call[1])}
+)
 _LOCATION = JsonObject({**PLACE, "calls": Many(_CALL)}, ("calls",))
 PROBLEM = JsonObject(
     {
@@ -54,8 +58,12 @@ _HINT = JsonObject(
     },
     ("after",),
 )
-_KINDS: dict[str, KeyType] = {"bonus": {"const": True}, "adjustment": ADJUSTMENT}  # absent of most criteria
-ADDITIONS = JsonObject(  # the keys that few criteria have: those of the rubric, a manual mark, a comment without points
+_KINDS: dict[str, KeyType] = {
+    "bonus": {"const": True},
+    "adjustment": ADJUSTMENT,
+}  # absent of most criteria
+# the keys that few criteria have: those of the rubric, a manual mark, a comment without points
+ADDITIONS = JsonObject(
     {
         **inner("criterion", _KINDS),
         "mark": (JsonObject({"points": POINTS, **each(TEXT, "by comment")}), "manual_mark"),
@@ -81,7 +89,10 @@ def _hints(result: Result) -> list[Hint]:
 _RESULT = JsonObject(
     {
         **inner("criterion", each(TEXT, "id part title")),
-        "status": ({"enum": ["passed", "failed", "skipped", "pending", "errored"]}, "outcome.status"),
+        "status": (
+            {"enum": ["passed", "failed", "skipped", "pending", "errored"]},
+            "outcome.status",
+        ),
         "points": POINTS,
         "max_points": (POINTS, "criterion.points"),
         **inner("outcome", {"message": TEXT, "measured": VALUE}),
@@ -118,7 +129,9 @@ SCORE = each(POINTS, "score max_score pending")
 _GRADE = JsonObject({"points": nullable(POINTS), "late": NUMBER, "final": (FLAG, "is_final")})
 # Of a student in a class, if a person or lateness changes the score.
 _OF_CLASS = JsonObject({"grade": _GRADE}, ("grade",))
-_EVIDENCE = JsonObject({**inner("evidence", each(TEXT, "id part title")), **each(Many(_EXHIBIT), "files possible")})
+_EVIDENCE = JsonObject(
+    {**inner("evidence", each(TEXT, "id part title")), **each(Many(_EXHIBIT), "files possible")}
+)
 REPORT = JsonObject(
     {
         **schema_key("grader/report/v1"),
@@ -139,5 +152,7 @@ REPORT = JsonObject(
 
 
 def render_json(report: Report) -> str:
-    """Return the report. It has no clock, absolute path or random order: the same input gives the same bytes."""
+    """Return the report. It has no clock, absolute path or random order: the same input gives the
+    same bytes.
+    """
     return to_json(REPORT.data(report))

@@ -1,4 +1,6 @@
-"""A class as JSON, schema grader/class/v1, and the changes between two runs, schema grader/diff/v1."""
+"""A class as JSON, schema grader/class/v1, and the changes between two runs, schema
+grader/diff/v1.
+"""
 
 from collections.abc import Sequence
 from decimal import Decimal
@@ -41,14 +43,19 @@ _NO_GRADES = {**dict.fromkeys(_SUMMARY.keys), "students": 0}
 _MISTAKE = JsonObject({**each(TEXT, "criterion message"), "students": array(TEXT)})
 _EQUAL = JsonObject({"students": array(TEXT), "equal": TEXT})
 _CONCERN = JsonObject({"id": (TEXT, itemgetter(0)), "detail": (TEXT, itemgetter(1))})
-_ATTENTION = JsonObject({"reason": (TEXT, itemgetter(0)), "students": (Many(_CONCERN), itemgetter(1))})
+_ATTENTION = JsonObject(
+    {"reason": (TEXT, itemgetter(0)), "students": (Many(_CONCERN), itemgetter(1))}
+)
 _RUN = JsonObject(
     {
         "run": COUNT,
         "time": TEXT,
         "grader": (GRADER, lambda run: {"version": run.version}),
         "rubric": (object_schema({"sha256": HASH}), lambda run: {"sha256": run.rubric}),
-        "max_score": (nullable(POINTS), lambda run: exact(Decimal(run.maximum)) if run.maximum else None),
+        "max_score": (
+            nullable(POINTS),
+            lambda run: exact(Decimal(run.maximum)) if run.maximum else None,
+        ),
     }
 )
 _SPAN = each(nullable(POINTS), "before after")
@@ -70,7 +77,10 @@ _CRITERION = JsonObject(
 _STATISTICS = JsonObject(
     {
         "counts": (object_schema(dict.fromkeys(_STATUSES, COUNT), optional=_STATUSES), "statuses"),
-        "grades": (_SUMMARY.schema, lambda found: _SUMMARY.data(found.all) if found.all else _NO_GRADES),
+        "grades": (
+            _SUMMARY.schema,
+            lambda found: _SUMMARY.data(found.all) if found.all else _NO_GRADES,
+        ),
         **each(TOTAL, "open late"),
         "tenths": (array(TOTAL), lambda found: [len(keys) for keys in found.tenths]),
         "criteria": Many(_CRITERION),
@@ -85,7 +95,9 @@ _STATISTICS = JsonObject(
 
 def _report_points(name: str) -> Key:
     """Return the key of points that only a student with a graded submission has."""
-    return nullable(POINTS), lambda one: exact(getattr(one.report, name)) if one.stored is not None else None
+    return nullable(
+        POINTS
+    ), lambda one: exact(getattr(one.report, name)) if one.stored is not None else None
 
 
 _STUDENT = JsonObject(
@@ -97,15 +109,26 @@ _STUDENT = JsonObject(
         "score": _report_points("score"),
         "max_score": _report_points("max_score"),
         "pending": (POINTS, "pending"),
-        "late": JsonObject({"days": TOTAL, "points": {"type": "number", "maximum": 0}, "reason": TEXT}),
+        "late": JsonObject(
+            {"days": TOTAL, "points": {"type": "number", "maximum": 0}, "reason": TEXT}
+        ),
         "total": (nullable(POINTS), "shown_total"),
         "final_mark": (nullable(POINTS), "final_points"),
         "is_excused": FLAG,
         "not_final_because": (TEXT, "why_open"),
-        "carried": (array(TEXT), lambda one: [row.criterion.id for row in one.results if row.carried]),
-        "manual_marks": (TOTAL, lambda one: sum(row.manual_mark is not None for row in one.results)),
+        "carried": (
+            array(TEXT),
+            lambda one: [row.criterion.id for row in one.results if row.carried],
+        ),
+        "manual_marks": (
+            TOTAL,
+            lambda one: sum(row.manual_mark is not None for row in one.results),
+        ),
         "marked_before": (array(TEXT), "older"),
-        "paths": (array(TEXT), lambda one: list(one.stored.paths) if one.stored is not None else []),
+        "paths": (
+            array(TEXT),
+            lambda one: list(one.stored.paths) if one.stored is not None else [],
+        ),
         "submission": (TEXT, lambda one: one.stored.digest if one.stored is not None else ""),
     }
 )
@@ -131,12 +154,20 @@ CLASS = JsonObject(
 def render_class_json(book: Gradebook, done: Progress | None = None) -> str:
     """Return the statistics and all current grades."""
     students = list(book)
-    report = SimpleNamespace(book=book, statistics=statistics(book, students), students=students, run=done)
+    report = SimpleNamespace(
+        book=book, statistics=statistics(book, students), students=students, run=done
+    )
     return to_json(CLASS.data(report))
 
 
 _CHANGE = JsonObject(
-    {"id": (TEXT, "key"), "name": TEXT, **_SPAN, "reasons": (array(TEXT), "why"), "criteria": Many(_STEP)}
+    {
+        "id": (TEXT, "key"),
+        "name": TEXT,
+        **_SPAN,
+        "reasons": (array(TEXT), "why"),
+        "criteria": Many(_STEP),
+    }
 )
 DIFF = JsonObject(  # of the two runs, and the changes
     {

@@ -1,4 +1,5 @@
-"""A class on a terminal: the table that `batch` prints, the statistics, what changed between two runs.
+"""A class on a terminal: the table that `batch` prints, the statistics, what changed between two
+runs.
 
 The class's page has the same words.
 
@@ -34,7 +35,9 @@ from grader.text import (
     signed_points,
 )
 
-_LETTERS = str.maketrans({"ł": "l", "ø": "o", "đ": "d", "æ": "ae", "œ": "oe", "ı": "i"})  # have no accents
+_LETTERS = str.maketrans(
+    {"ł": "l", "ø": "o", "đ": "d", "æ": "ae", "œ": "oe", "ı": "i"}
+)  # have no accents
 _LOST, _OTHER_COLUMNS = 3, 42  # the column of lost points, and the characters of the others
 _MAX_ROWS = 40
 _MAX_COSTS = 3  # criteria named in a row
@@ -43,22 +46,28 @@ _MAX_MISTAKES, _MAX_GROUPS = 10, 20
 _MAX_NAMED = 12
 _MAX_STEPS = 5  # criteria of a student that changed
 EQUAL_NOTE = (
-    "The same robot may differ in names, order, comments and the spelling of numbers. This is no verdict: students who"
+    "The same robot may differ in names, order, comments and the spelling of numbers. This "
+    "is no verdict: students who"
     " follow the handout and make the same mistake have the same robot."
 )
 SHARE_NOTE = "Share: the mean share of the points that students earned."
 
 
 class ClassTable:
-    """One row a student, first of those who need attention, then by family name; the mean, and what needs attention.
+    """One row a student, first of those who need attention, then by family name; the mean, and what
+    needs attention.
 
     `add` takes the grades one by one, so that a large class is never held whole.
     """
 
     def __init__(self, rubric: Rubric, *, verbose: bool = False) -> None:
         self.rubric, self.verbose = rubric, verbose
-        self.rows: list[tuple[bool, tuple[str, ...], Sequence[str]]] = []  # in the order of the first two
-        self.count = self.attention = self.open = 0  # students; of them those who need attention, or manual grading
+        self.rows: list[
+            tuple[bool, tuple[str, ...], Sequence[str]]
+        ] = []  # in the order of the first two
+        self.count = self.attention = self.open = (
+            0  # students; of them those who need attention, or manual grading
+        )
         self.ending = ""  # the last line
         self._totals = Counter[Decimal]()
         self._concerns: defaultdict[Reason, list[tuple[str, str]]] = defaultdict(list)
@@ -95,7 +104,9 @@ class ClassTable:
         for at in filled:
             table.add_column(titles[at], overflow="fold", justify="right" if at == 1 else "left")
         for row in rows:
-            table.add_row(*(Text(printable(cut(row[at], width) if at == _LOST else row[at])) for at in filled))
+            table.add_row(
+                *(Text(printable(cut(row[at], width) if at == _LOST else row[at])) for at in filled)
+            )
         return table
 
     def print(self, console: Console) -> None:
@@ -112,15 +123,21 @@ class ClassTable:
             words = _means(found.mean, found.median).capitalize()
             page.inset(f"{words} ({counted(found.students, 'student')})", indent=0)
         for reason in filter(self._concerns.get, Reason):
-            page.inset(printable(_attention_line(reason, self._concerns[reason], verbose=self.verbose)))
+            page.inset(
+                printable(_attention_line(reason, self._concerns[reason], verbose=self.verbose))
+            )
         if self.ending:
             page.leave_row()
-            page.rows.append(Text(printable(self.ending)))  # not wrapped: its path and command are copied
+            page.rows.append(
+                Text(printable(self.ending))
+            )  # not wrapped: its path and command are copied
         page.print()
 
 
 def family_name_order(name: str, key: str) -> tuple[str, str, str]:
-    """Return the family name, which is before a comma or the last word, then the name and the key."""
+    """Return the family name, which is before a comma or the last word, then the name and the
+    key.
+    """
     family = name.partition(",")[0] if "," in name else (name.split() or [""])[-1]
     return _letters(family), _letters(name), key
 
@@ -134,7 +151,11 @@ def _letters(name: str) -> str:
 def late_text(grade: StudentGrade) -> str:
     """Return the days late and the penalty; empty where they do not count."""
     penalty = f", {format_points(grade.late.points)}" if grade.late.points else ""
-    return f"{counted(grade.late.days, 'day')}{penalty}" if grade.late.days and not grade.has_final else ""
+    return (
+        f"{counted(grade.late.days, 'day')}{penalty}"
+        if grade.late.days and not grade.has_final
+        else ""
+    )
 
 
 def _costs(grade: StudentGrade) -> str:
@@ -161,8 +182,14 @@ def render_class(found: ClassStatistics, console: Console, *, verbose: bool = Fa
     def name(key: str) -> str:
         return named(key, found.names[key])
 
-    mistakes = [f"{len(one.students):>4}  {one.criterion}: {one.message}" for one in found.mistakes[:_MAX_MISTAKES]]
-    equal = [f"{people_text([*map(name, one.students)], _MAX_NAMED)}: {one.equal}" for one in found.equal[:_MAX_GROUPS]]
+    mistakes = [
+        f"{len(one.students):>4}  {one.criterion}: {one.message}"
+        for one in found.mistakes[:_MAX_MISTAKES]
+    ]
+    equal = [
+        f"{people_text([*map(name, one.students)], _MAX_NAMED)}: {one.equal}"
+        for one in found.equal[:_MAX_GROUPS]
+    ]
     attention = [
         _attention_line(reason, [(name(key), detail) for key, detail in those], verbose=verbose)
         for reason, those in found.attention.items()
@@ -183,19 +210,38 @@ def render_class(found: ClassStatistics, console: Console, *, verbose: bool = Fa
 
 
 def head_lines(found: ClassStatistics) -> Iterator[str]:
-    """Yield how many students were graded and how many not, the grades in one line, what is open, and the sections."""
-    words = {"graded": "graded", "unreadable": "could not be graded", "errored": "errored", "excused": "excused"}
+    """Yield how many students were graded and how many not, the grades in one line, what is open,
+    and the sections.
+    """
+    words = {
+        "graded": "graded",
+        "unreadable": "could not be graded",
+        "errored": "errored",
+        "excused": "excused",
+    }
     words["missing"] = "without a submission"
-    counts = [f"{found.statuses[status]} {text}" for status, text in words.items() if status in found.statuses]
+    counts = [
+        f"{found.statuses[status]} {text}"
+        for status, text in words.items()
+        if status in found.statuses
+    ]
     if found.late:
         counts.append(f"{found.late} late")
     yield ", ".join(counts) or "no students"
     if found.all is not None:
-        yield f"Grades of {format_points(found.maximum)}: {_means(found.all.mean, found.all.median)}"
+        yield (
+            f"Grades of {format_points(found.maximum)}: {_means(found.all.mean, found.all.median)}"
+        )
     if found.open:
-        yield f"{counted(found.open, 'grade')} still {'needs' if found.open == 1 else 'need'} manual grading"
+        yield (
+            f"{counted(found.open, 'grade')} still {'needs' if found.open == 1 else 'need'} "
+            "manual grading"
+        )
     for name, one in found.sections.items():
-        yield f"Section {name or '(none)'}: {_means(one.mean, one.median)} ({counted(one.students, 'student')})"
+        yield (
+            f"Section {name or '(none)'}: {_means(one.mean, one.median)} "
+            f"({counted(one.students, 'student')})"
+        )
 
 
 def _means(mean: Decimal | float, median: Decimal | float) -> str:
@@ -214,14 +260,23 @@ def percent(share: float) -> str:
     return f"{share:.0%}" if share in (0, 1) else f"{min(99, max(1, round(100 * share)))}%"
 
 
-def _attention_line(reason: Reason, who: Sequence[tuple[str, str]], *, verbose: bool = False) -> str:
+def _attention_line(
+    reason: Reason, who: Sequence[tuple[str, str]], *, verbose: bool = False
+) -> str:
     """Return the students who need attention for one reason, each with a detail."""
     names = [f"{name} ({detail})" if detail else name for name, detail in who]
-    return f"{reason[:1].upper()}{reason[1:]} ({len(who)}): {people_text(names, len(who) if verbose else _MAX_NAMED)}"
+    return (
+        f"{reason[:1].upper()}{reason[1:]} ({len(who)}): "
+        f"{people_text(names, len(who) if verbose else _MAX_NAMED)}"
+    )
 
 
 def _show_criteria(rows: Sequence[CriterionFigures], page: Page) -> None:
-    optional = [name for name in ("carried", "marked", "pending", "errored") if any(row.counts[name] for row in rows)]
+    optional = [
+        name
+        for name in ("carried", "marked", "pending", "errored")
+        if any(row.counts[name] for row in rows)
+    ]
     columns = ["passed", "failed", *optional]
     table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0), header_style="bold")
     table.add_column("criterion", no_wrap=True)
@@ -244,22 +299,32 @@ def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Co
     page = Page(console, [])
     page.inset(printable(f"From {before} to {after}"), "dim", 0)
     if runs[0].maximum != runs[1].maximum != "" != runs[0].maximum:
-        page.inset(f"the maximum changed from {runs[0].maximum} to {runs[1].maximum} points", indent=0)
+        page.inset(
+            f"the maximum changed from {runs[0].maximum} to {runs[1].maximum} points", indent=0
+        )
     if not changes:
         page.inset("nothing changed", indent=0)
-    for why, found in sorted(alike(changes, lambda change: change.why), key=lambda group: -len(group[1])):
+    for why, found in sorted(
+        alike(changes, lambda change: change.why), key=lambda group: -len(group[1])
+    ):
         page.leave_row()
         page.inset(printable(f"{'; '.join(why)} ({counted(len(found), 'student')})"), "bold", 0)
         for one in found:
             steps = [f"{step.id} {_before_and_after(step, 'none')}" for step in one.criteria]
             total = f"{named(one.key, one.name)}: {_before_and_after(one, 'not final')}"
-            page.inset(printable("; ".join([total, *first_lines(steps, _MAX_STEPS)])), indent=4, head=Text("  "))
+            page.inset(
+                printable("; ".join([total, *first_lines(steps, _MAX_STEPS)])),
+                indent=4,
+                head=Text("  "),
+            )
     page.print()
 
 
 def _before_and_after(change: Change | PointsChange, nothing: str) -> str:
     """Return points before and after: "50 to 60 (+10)"."""
     before, after = change.before, change.after
-    first, last = (nothing if points is None else format_points(points) for points in (before, after))
+    first, last = (
+        nothing if points is None else format_points(points) for points in (before, after)
+    )
     more = f" ({signed_points(after - before)})" if before is not None and after is not None else ""
     return f"{first}, as before" if first == last else f"{first} to {last}{more}"

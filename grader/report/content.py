@@ -1,6 +1,8 @@
-"""The content of a report, for every format to lay out: the order of its criteria, and what it says of the submission.
+"""The content of a report, for every format to lay out: the order of its criteria, and what it says
+of the submission.
 
-People read a report from the top: what to fix comes first, what is fine last. All of it is printable text.
+People read a report from the top: what to fix comes first, what is fine last. All of it is
+printable text.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -55,14 +57,20 @@ _MAX_LISTED = 12
 
 
 class ReportSections(NamedTuple):
-    """A report, except for the criteria that passed and have no remark, in the order in which a student needs it."""
+    """A report, except for the criteria that passed and have no remark, in the order in which a
+    student needs it.
+    """
 
-    mistakes: tuple[Entry, ...]  # in what exists: first what keeps ROS 2 from loading the file, then the costliest
+    mistakes: tuple[
+        Entry, ...
+    ]  # in what exists: first what keeps ROS 2 from loading the file, then the costliest
     unbuilt: tuple[Entry, ...]  # what is not there at all
     carried: tuple[Line, ...]  # failures that cost nothing
     missing: tuple[Line, ...]  # what was searched in vain: answers and pictures
     pending: tuple[Entry, ...]  # what needs manual grading
-    remarks: tuple[Section, ...]  # what did not fail and has a mark, an adjustment or a comment; some in two of them
+    remarks: tuple[
+        Section, ...
+    ]  # what did not fail and has a mark, an adjustment or a comment; some in two of them
 
     @property
     def sections(self) -> Iterator[Section]:
@@ -81,7 +89,9 @@ class ReportSections(NamedTuple):
     def unbuilt_title(self) -> str:
         """The title of what is not built yet, with the points that it costs."""
         points = lost_points(result for entry in self.unbuilt for result in entry.results)
-        names = dict.fromkeys(name for entry in self.unbuilt for name in entry.result.outcome.absent)
+        names = dict.fromkeys(
+            name for entry in self.unbuilt for name in entry.result.outcome.absent
+        )
         return printable(f"Not built yet: {', '.join(names)} ({counted_points(points)})")
 
     @property
@@ -91,13 +101,19 @@ class ReportSections(NamedTuple):
         for entry in self.unbuilt:
             outcome, hint = entry.result.outcome, entry.result.hint
             if not listed.issuperset(outcome.absent):
-                what = hint_text(entry, hint) if hint is not None else sentence(outcome.mistake or outcome.message)
+                what = (
+                    hint_text(entry, hint)
+                    if hint is not None
+                    else sentence(outcome.mistake or outcome.message)
+                )
                 yield Line("unbuilt", f"{printable(', '.join(outcome.absent))}: {what}")
             listed.update(outcome.absent)
 
 
 def report_sections(report: Report, *, everything: bool = False) -> ReportSections:
-    """Return the description of a report; with `everything` the rubric's feedback where there is a hint, too."""
+    """Return the description of a report; with `everything` the rubric's feedback where there is
+    a hint, too.
+    """
     if report.is_bare:
         return ReportSections((), (), (), (), (), ())
     known = entries(report, everything=everything)
@@ -106,43 +122,73 @@ def report_sections(report: Report, *, everything: bool = False) -> ReportSectio
     failed = [known[failure.id] for failure in failures(report)]
     costing = [entry for entry in failed if not (entry.first or entry.result.why_given)]
     skipped = alike(by_status.get("skipped", ()), lambda one: one.result.because or "")
-    alone = [_skipped_alone(cause, some) for cause, some in skipped if cause not in known or not known[cause].skipped]
+    alone = [
+        _skipped_alone(cause, some)
+        for cause, some in skipped
+        if cause not in known or not known[cause].skipped
+    ]
     open_entries = by_status.get("pending", ())
-    commented = [one for one in others if one.result.comment and one.status not in ("pending", "adjusted")]
+    commented = [
+        one for one in others if one.result.comment and one.status not in ("pending", "adjusted")
+    ]
     marked = [one for one in others if one.result.manual_mark]
     remarks = zip(_REMARKS, (marked, by_status.get("adjusted", ()), commented), strict=True)
-    carried = alike((entry.result for entry in failed if entry.result.carried), lambda one: one.carried)
+    carried = alike(
+        (entry.result for entry in failed if entry.result.carried), lambda one: one.carried
+    )
     return ReportSections(
         mistakes=(*_join_equal(one for one in costing if not is_absent(one.result)), *alone),
-        unbuilt=tuple(sorted((one for one in costing if is_absent(one.result)), key=_building_order)),
+        unbuilt=tuple(
+            sorted((one for one in costing if is_absent(one.result)), key=_building_order)
+        ),
         carried=tuple(Line("carried", carried_text(cause, some)) for cause, some in carried),
-        missing=tuple(_missing_lines(report, [one.result for one in open_entries if is_not_found(one.result)])),
+        missing=tuple(
+            _missing_lines(report, [one.result for one in open_entries if is_not_found(one.result)])
+        ),
         pending=tuple(_join_equal(one for one in open_entries if not is_not_found(one.result))),
         remarks=tuple(Section(title, tuple(some)) for title, some in remarks if some),
     )
 
 
 def _skipped_alone(cause: str, some: Sequence[Entry]) -> Entry:
-    """Return the entry of criteria that are skipped although no mistake says so: a mark may override their cause."""
-    why = f"Skipped because {cause} failed." if cause else "Not graded, because nothing was submitted."
+    """Return the entry of criteria that are skipped although no mistake says so: a mark may
+    override their cause.
+    """
+    why = (
+        f"Skipped because {cause} failed."
+        if cause
+        else "Not graded, because nothing was submitted."
+    )
     first, *others = some
     return first._replace(also=tuple(others), blocks=(Line("finding", printable(why)),))
 
 
 def _building_order(entry: Entry) -> tuple[int, bool, int]:
-    """Return the rank of what is not built yet: criteria about one thing first, those with a hint, as in the rubric."""
-    return len(entry.result.outcome.absent), entry.result.hint is None, entry.result.criterion.position
+    """Return the rank of what is not built yet: criteria about one thing first, those with a
+    hint, as in the rubric.
+    """
+    return (
+        len(entry.result.outcome.absent),
+        entry.result.hint is None,
+        entry.result.criterion.position,
+    )
 
 
 def _missing_lines(report: Report, results: Sequence[Result]) -> Iterator[Line]:
     """Yield what was searched in vain for criteria and as evidence, and what is there instead."""
     yield from (Line("missing", text) for text in looked_for(results))
     wanted = {result.outcome.expected for result in results}
-    evidence = [found.evidence.names for found in report.evidence if not (found.files or found.possible)]
-    others = [f"`{picture_name(names)}`" for names in evidence if picture_named(names) not in wanted]
+    evidence = [
+        found.evidence.names for found in report.evidence if not (found.files or found.possible)
+    ]
+    others = [
+        f"`{picture_name(names)}`" for names in evidence if picture_named(names) not in wanted
+    ]
     if others:
         pictures = "a picture" if len(others) == 1 else "pictures"
-        yield Line("missing", printable(f"evidence: {pictures} named {enumerated(others, _MAX_LISTED)}"))
+        yield Line(
+            "missing", printable(f"evidence: {pictures} named {enumerated(others, _MAX_LISTED)}")
+        )
     unmatched = _unmatched(report) if results else []
     if unmatched:
         yield Line("there", printable(f"Matches nothing: {enumerated(unmatched, _MAX_LISTED)}"))
@@ -150,51 +196,81 @@ def _missing_lines(report: Report, results: Sequence[Result]) -> Iterator[Line]:
 
 def _unmatched(report: Report) -> list[str]:
     """Return the documents that were read and the pictures in which nothing was found."""
-    used = {result.outcome.location.path for result in report.results if result.is_open and result.outcome.location}
+    used = {
+        result.outcome.location.path
+        for result in report.results
+        if result.is_open and result.outcome.location
+    }
     documents = report.submission.readable_documents
     read = documents.read if documents is not None else ()
-    return [path for path in dict.fromkeys((*read, *(file.path for file in report.other_pictures))) if path not in used]
+    return [
+        path
+        for path in dict.fromkeys((*read, *(file.path for file in report.other_pictures)))
+        if path not in used
+    ]
 
 
 def entries(report: Report, *, everything: bool = False) -> Mapping[str, Entry]:
     """Return the entry of every criterion by its id, in the rubric's order."""
     failed = {failure.id: failure for failure in failures(report)}
     found = (failed.get(result.criterion.id, Entry(result)) for result in report.results)
-    filled = {one.id: one._replace(blocks=tuple(blocks_of(one, report, everything=everything))) for one in found}
-    return {name: one._replace(also=tuple(filled[it.id] for it in one.also)) for name, one in filled.items()}
+    filled = {
+        one.id: one._replace(blocks=tuple(blocks_of(one, report, everything=everything)))
+        for one in found
+    }
+    return {
+        name: one._replace(also=tuple(filled[it.id] for it in one.also))
+        for name, one in filled.items()
+    }
 
 
 def failures(report: Report) -> tuple[Entry, ...]:
-    """Return the criteria that failed or lost points, without blocks; those that one edit fixes follow each other.
+    """Return the criteria that failed or lost points, without blocks; those that one edit fixes
+    follow each other.
 
-    What keeps ROS 2 from loading the file comes first, then the costliest mistake; what is carried forward comes last.
-    Equals are in the rubric's order.
+    What keeps ROS 2 from loading the file comes first, then the costliest mistake; what is carried
+    forward comes last. Equals are in the rubric's order.
     """
-    skipped = dict(alike((one for one in report.results if status_of(one) == "skipped"), lambda one: one.because or ""))
-    found = [Entry(one, skipped.get(one.criterion.id, ())) for one in report.results if is_failure(one)]
+    skipped = dict(
+        alike(
+            (one for one in report.results if status_of(one) == "skipped"),
+            lambda one: one.because or "",
+        )
+    )
+    found = [
+        Entry(one, skipped.get(one.criterion.id, ())) for one in report.results if is_failure(one)
+    ]
     mistakes = [_fixed_together(some) for _, some in alike(found, _shared_edit)]
     is_rejected = report.submission.verdict == "rejected"
 
     def rank(mistake: tuple[Entry, ...]) -> tuple[bool, bool, Decimal]:
         first = mistake[0].result
-        is_urgent = is_rejected and any(entry.result.criterion.check.subject == "urdf" for entry in mistake)
+        is_urgent = is_rejected and any(
+            entry.result.criterion.check.subject == "urdf" for entry in mistake
+        )
         return bool(first.why_given), not is_urgent, -mistake[0].lost
 
     return tuple(failure for mistake in sorted(mistakes, key=rank) for failure in mistake)
 
 
 def _shared_edit(failure: Entry) -> str:
-    """Return what failures have in common that one edit fixes, or else what is said of them; a mark stands alone."""
+    """Return what failures have in common that one edit fixes, or else what is said of them; a
+    mark stands alone.
+    """
     result, outcome = failure.result, failure.result.outcome
     if result.why_given or result.manual_mark is not None:
         return f"only {failure.id}"
     return (
-        result.hint.shown_by if result.hint is not None else f"{outcome.mistake or outcome.message} {outcome.location}"
+        result.hint.shown_by
+        if result.hint is not None
+        else f"{outcome.mistake or outcome.message} {outcome.location}"
     )
 
 
 def _fixed_together(some: tuple[Entry, ...]) -> tuple[Entry, ...]:
-    """Return failures that one edit fixes: the one that shows the hint first, then those of the file, the costliest."""
+    """Return failures that one edit fixes: the one that shows the hint first, then those of the
+    file, the costliest.
+    """
 
     def rank(failure: Entry) -> tuple[bool, bool, Decimal]:
         is_shown = failure.result.hint is not None and failure.result.hint.shown_by == failure.id
@@ -208,19 +284,27 @@ def _join_equal(entries: Iterable[Entry]) -> Iterator[Entry]:
     """Yield one entry for all that could not be graded for the same reason."""
     for _, (first, *others) in alike(entries, _reason_to_join):
         names = enumerated([entry.id for entry in others])
-        line = Line("alike", f"The same holds for {names} ({points_of(entry.result for entry in others)}).")
+        line = Line(
+            "alike", f"The same holds for {names} ({points_of(entry.result for entry in others)})."
+        )
         yield first._replace(also=tuple(others), blocks=(*first.blocks, line)) if others else first
 
 
 def _reason_to_join(entry: Entry) -> str:
-    """Return why a criterion could not be graded; of others, and of those with an answer or a comment, the id."""
-    outcome, has_own = entry.result.outcome, any(isinstance(block, Answer) for block in entry.blocks)
+    """Return why a criterion could not be graded; of others, and of those with an answer or a
+    comment, the id.
+    """
+    outcome, has_own = (
+        entry.result.outcome,
+        any(isinstance(block, Answer) for block in entry.blocks),
+    )
     is_ungraded = entry.status in ("pending", "errored") and not (has_own or entry.result.comment)
     return outcome.mistake or outcome.message if is_ungraded else entry.id
 
 
 def result_line(report: Report) -> str:
-    """Return the result in a line: the points of what is decided, what they were lost by, and what is open.
+    """Return the result in a line: the points of what is decided, what they were lost by, and what
+    is open.
 
     Of a student in a class it is the grade, and how it came about.
     """
@@ -235,16 +319,25 @@ def result_line(report: Report) -> str:
     if decided == 0 and not found.mistakes:
         return sentence(_pending_points(report)) if report.pending else "Nothing to grade."
     points = f"{format_points(report.score)} of {counted_points(decided)}"
-    open_points = f"; {format_points(report.pending)} more {'needs' if report.pending == 1 else 'need'} manual grading"
+    open_points = (
+        f"; {format_points(report.pending)} more {'needs' if report.pending == 1 else 'need'} "
+        "manual grading"
+    )
     faulty = [entry for entry in found.mistakes if entry.status == "errored"]
     mistakes = [entry for entry in found.mistakes if entry.status != "errored"]
     reasons = []
     if mistakes:
-        reasons.append(f"{counted(len(mistakes), 'mistake costs', 'mistakes cost')} {_lost_by(mistakes)}")
+        reasons.append(
+            f"{counted(len(mistakes), 'mistake costs', 'mistakes cost')} {_lost_by(mistakes)}"
+        )
     if found.unbuilt:
-        reasons.append(f"what is not built yet{'' if reasons else ' costs'} {_lost_by(found.unbuilt)}")
+        reasons.append(
+            f"what is not built yet{'' if reasons else ' costs'} {_lost_by(found.unbuilt)}"
+        )
     if faulty:  # no mistake of the student
-        reasons.append(f"{counted(len(faulty), 'faulty check costs', 'faulty checks cost')} {_lost_by(faulty)}")
+        reasons.append(
+            f"{counted(len(faulty), 'faulty check costs', 'faulty checks cost')} {_lost_by(faulty)}"
+        )
     passed = "No mistakes found" if report.pending_automatic else "All automatic checks passed"
     text = f"{points}: {', '.join(reasons)}" if reasons else f"{passed}: {points}"
     return f"{text}{open_points if report.pending else ''}."
@@ -255,20 +348,30 @@ def _lost_by(entries: Iterable[Entry]) -> str:
 
 
 def score_text(report: Report) -> str:
-    """Return the points that count and the maximum, 58.5 / 70 points, or that the student is excused."""
+    """Return the points that count and the maximum, 58.5 / 70 points, or that the student is
+    excused.
+    """
     points = counting_text(report)
-    return f"{points} / {format_points(report.max_score)} points" if report.counting is not None else points
+    return (
+        f"{points} / {format_points(report.max_score)} points"
+        if report.counting is not None
+        else points
+    )
 
 
 def counting_text(report: Report) -> str:
-    """Return the points that count for the student: 58.5, excused, or a dash if nothing is decided."""
+    """Return the points that count for the student: 58.5, excused, or a dash if nothing is
+    decided.
+    """
     if report.grade is None:
         return sum_text(report.results)
     return format_points(report.grade.points) if report.grade.points is not None else "Excused"
 
 
 def grade_line(report: Report) -> str:
-    """Return how the grade of a student in a class came about; empty if it is the score of automatic criteria."""
+    """Return how the grade of a student in a class came about; empty if it is the score of
+    automatic criteria.
+    """
     if report.grade is None:
         return ""
     marked = [result.points for result in report.results if result.manual_mark is not None]
@@ -282,7 +385,9 @@ def grade_line(report: Report) -> str:
 
 
 def graded_line(report: Report) -> str:
-    """Return the rubric and what is graded with it: the URDF, else the submission; in a class whose it is."""
+    """Return the rubric and what is graded with it: the URDF, else the submission; in a class whose
+    it is.
+    """
     graded = f"{report.rubric.id}: {report.submission.path or report.submission.id}"
     return printable(f"{graded} ({report.student})" if report.student else graded)
 
@@ -301,33 +406,49 @@ def bonus_line(report: Report) -> str:
     bonus = worth(result.criterion for result in report.results).bonus
     if not bonus:
         return ""
-    return f"Extra credit: {format_points(report.bonus)} of {counted_points(bonus)}, in addition to the maximum."
+    return (
+        f"Extra credit: {format_points(report.bonus)} of {counted_points(bonus)}, in addition "
+        "to the maximum."
+    )
 
 
 def package_line(report: Report) -> str:
     """Return the packages that are graded and their folders; empty if none is."""
     packages = report.submission.lab_packages.values()
-    if not packages or not any(report.rubric.part(part).needs == "package" for part in report.parts):
+    if not packages or not any(
+        report.rubric.part(part).needs == "package" for part in report.parts
+    ):
         return ""
-    named = [f"{package.name} in {package.folder}" if package.folder else package.name for package in packages]
+    named = [
+        f"{package.name} in {package.folder}" if package.folder else package.name
+        for package in packages
+    ]
     return printable(f"package{'s' * (len(named) > 1)} {', '.join(named)}")
 
 
 def head(report: Report) -> Iterator[Line]:
-    """Yield what a report says first: what is graded, the result, whether ROS 2 loads the URDF, the package, notes."""
+    """Yield what a report says first: what is graded, the result, whether ROS 2 loads the URDF, the
+    package, notes.
+    """
     yield Line("graded", graded_line(report))
     yield Line("result", result_line(report))
     for text in (verdict_line(report), bonus_line(report), package_line(report)):
         if text:
             yield Line("summary", text)
     sha256 = report.rubric.sha256
-    yield Line("provenance", f"grader {report.version}, rubric {printable(report.rubric.id)}, sha256 {sha256}")
+    yield Line(
+        "provenance",
+        f"grader {report.version}, rubric {printable(report.rubric.id)}, sha256 {sha256}",
+    )
     yield from (Line("note", text) for text in notes(report))
 
 
 def _pending_points(report: Report) -> str:
     """Return how many points need manual grading."""
-    return f"{counted_points(report.pending)} {'needs' if report.pending == 1 else 'need'} manual grading"
+    return (
+        f"{counted_points(report.pending)} {'needs' if report.pending == 1 else 'need'} manual "
+        "grading"
+    )
 
 
 def notes(report: Report) -> list[str]:
@@ -336,8 +457,13 @@ def notes(report: Report) -> list[str]:
 
 
 def closing(report: Report) -> Iterator[Section]:
-    """Yield the evidence, the problems that no criterion has reported, and other candidates with ignored files."""
-    files = [f"Other candidate {file.path}: {file.reason}" for file in report.submission.unused_candidates]
+    """Yield the evidence, the problems that no criterion has reported, and other candidates with
+    ignored files.
+    """
+    files = [
+        f"Other candidate {file.path}: {file.reason}"
+        for file in report.submission.unused_candidates
+    ]
     files += [f"Ignored: {file}" for file in report.submission.ignored]
     problems = other_problems(report)
     sections = (
@@ -346,21 +472,30 @@ def closing(report: Report) -> Iterator[Section]:
             f"Other problems in the {'file' if report.submission.is_single else 'files'}",
             lines=tuple(Line(problem.severity, problem_line(problem)) for problem in problems),
         ),
-        Section("Ignored files", lines=tuple(Line("ignored", printable(it)) for it in first_lines(files, _MAX_LISTED))),
+        Section(
+            "Ignored files",
+            lines=tuple(Line("ignored", printable(it)) for it in first_lines(files, _MAX_LISTED)),
+        ),
     )
     yield from (section for section in sections if section.lines)
 
 
 def closing_lines(report: Report) -> list[str]:
     """Return the evidence, other problems and files as plain text."""
-    return [text for part in closing(report) for text in (f"{part.title}:", *(line.text for line in part.lines))]
+    return [
+        text
+        for part in closing(report)
+        for text in (f"{part.title}:", *(line.text for line in part.lines))
+    ]
 
 
 def _evidence(report: Report) -> Iterator[Line]:
     """Yield the title of each part, then its evidence; last the other pictures."""
     for part, of_part in groupby(report.evidence, key=lambda found: found.evidence.part):
         yield Line("part", printable(report.rubric.part(part).title))
-        yield from (Line("found" if found.files else "missing", _evidence_text(found)) for found in of_part)
+        yield from (
+            Line("found" if found.files else "missing", _evidence_text(found)) for found in of_part
+        )
     if report.other_pictures:
         yield Line("part", "Other pictures and documents")
         yield from (Line("found", printable(file.words)) for file in report.other_pictures)
@@ -370,12 +505,17 @@ def _evidence_text(found: EvidenceResult) -> str:
     """Return a piece of evidence with its files, or with those that are perhaps meant."""
     files = ", ".join(file.words for file in found.files)
     perhaps = enumerated([file.words for file in found.possible], _MAX_LISTED, "or")
-    return printable(f"{found.evidence.title}: {files or (f'perhaps {perhaps}' if perhaps else 'missing')}")
+    return printable(
+        f"{found.evidence.title}: {files or (f'perhaps {perhaps}' if perhaps else 'missing')}"
+    )
 
 
 def problem_line(problem: Problem) -> str:
     """Return a problem with its code, severity and location."""
-    return f"{problem.code} {problem.severity} {location_text(problem.location)}: {printable(problem.message)}"
+    return (
+        f"{problem.code} {problem.severity} {location_text(problem.location)}: "
+        f"{printable(problem.message)}"
+    )
 
 
 def other_problems(report: Report) -> list[Problem]:
@@ -388,11 +528,17 @@ def other_problems(report: Report) -> list[Problem]:
 
 
 def next_command(report: Report) -> str:
-    """Return the command that explains the costliest failure, or else what is undecided; empty without either."""
+    """Return the command that explains the costliest failure, or else what is undecided; empty
+    without either.
+    """
     if report.student and not report.rubric.is_copy_of_shipped:  # which the student does not have
         return ""
     found = report_sections(report)
-    failed = [entry.result for entry in (*found.mistakes, *found.unbuilt) if entry.result.manual_mark is None]
+    failed = [
+        entry.result
+        for entry in (*found.mistakes, *found.unbuilt)
+        if entry.result.manual_mark is None
+    ]
     first = next(iter((*failed, *report.pending_automatic)), None)
     return _explain_command(first.criterion.id, report) if first is not None else ""
 

@@ -1,6 +1,8 @@
-"""Criteria in a report: their status and points, alone and in groups, and what is said about each, block by block.
+"""Criteria in a report: their status and points, alone and in groups, and what is said about each,
+block by block.
 
-A writer decides how a block looks in its medium and which roles it leaves out, but neither words nor order.
+A writer decides how a block looks in its medium and which roles it leaves out, but neither words
+nor order.
 """
 
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
@@ -18,7 +20,8 @@ from grader.text import by_name, capitalised, enumerated, format_points, printab
 
 _T = TypeVar("_T")
 _K = TypeVar("_K", bound=Hashable)
-# The symbol of each status, that for a terminal in another encoding, the style on a terminal, and the word.
+# The symbol of each status, that for a terminal in another encoding, the style on a terminal, and
+# the word.
 _STATUSES = (
     ("passed", "\u2713", "+", "green", "Passed"),
     ("failed", "\u2717", "X", "bold red", "Failed"),
@@ -28,20 +31,41 @@ _STATUSES = (
     ("adjusted", "=", "=", "blue", "Corrected after grading"),
     ("partial", "~", "~", "bold yellow", "Some points"),
 )
-SYMBOLS, ASCII_SYMBOLS, STYLES, STATUS_WORDS = ({row[0]: row[column] for row in _STATUSES} for column in range(1, 5))
+SYMBOLS, ASCII_SYMBOLS, STYLES, STATUS_WORDS = (
+    {row[0]: row[column] for row in _STATUSES} for column in range(1, 5)
+)
 _MAX_FILES, _MAX_CRITERIA = 2, 3
 
 # Of a submission, of a criterion, and of the list of evidence, problems and files.
 Role = Literal[
-    "graded", "result", "summary", "provenance",
-    "finding", "comment", "hint", "feedback", "expected", "alike", "also", "skipped",
-    "carried", "unbuilt", "there",
-    "part", "found", "missing", "error", "warning", "note", "ignored",
-]  # fmt: skip
+    "graded",
+    "result",
+    "summary",
+    "provenance",
+    "finding",
+    "comment",
+    "hint",
+    "feedback",
+    "expected",
+    "alike",
+    "also",
+    "skipped",
+    "carried",
+    "unbuilt",
+    "there",
+    "part",
+    "found",
+    "missing",
+    "error",
+    "warning",
+    "note",
+    "ignored",
+]
 
 
 def status_of(result: Result) -> str:
-    """Return the status of a criterion: `adjusted` by the rubric, else that of the manual mark or the check.
+    """Return the status of a criterion: `adjusted` by the rubric, else that of the manual mark or
+    the check.
 
     A manual mark is `passed` if it gives all points, and `partial` if it gives a part of them.
     """
@@ -55,7 +79,9 @@ def status_of(result: Result) -> str:
 
 
 def is_failure(result: Result) -> bool:
-    """Return whether a criterion failed or lost points; a manual mark or an adjustment overrides the check."""
+    """Return whether a criterion failed or lost points; a manual mark or an adjustment overrides
+    the check.
+    """
     return status_of(result) in ("failed", "partial", "errored")
 
 
@@ -65,20 +91,33 @@ def has_passed(result: Result) -> bool:
 
 
 def lost_points(results: Iterable[Result]) -> Decimal:
-    """Return the points that criteria lost: no extra credit, and nothing that needs manual grading."""
+    """Return the points that criteria lost: no extra credit, and nothing that needs manual
+    grading.
+    """
     decided = (result for result in results if not (result.criterion.bonus or result.is_open))
     return sum((result.criterion.maximum - result.points for result in decided), Decimal(0))
 
 
 def is_absent(result: Result) -> bool:
-    """Return whether a criterion failed only because what it is about is not built yet: no hint makes it pass."""
+    """Return whether a criterion failed only because what it is about is not built yet: no hint
+    makes it pass.
+    """
     is_found = result.hint is not None and bool(result.hint.gains)
-    return status_of(result) == "failed" and bool(result.outcome.absent) and not (result.carried or is_found)
+    return (
+        status_of(result) == "failed"
+        and bool(result.outcome.absent)
+        and not (result.carried or is_found)
+    )
 
 
 def is_not_found(result: Result) -> bool:
     """Return whether an answer or a picture was searched in vain."""
-    return is_manual(result) and result.is_open and result.outcome.expected is not None and result.comment is None
+    return (
+        is_manual(result)
+        and result.is_open
+        and result.outcome.expected is not None
+        and result.comment is None
+    )
 
 
 def is_manual(result: Result) -> bool:
@@ -87,19 +126,26 @@ def is_manual(result: Result) -> bool:
 
 
 def sum_text(results: tuple[Result, ...]) -> str:
-    """Return the points of some criteria together: 58.5, or a dash if all of them need manual grading."""
+    """Return the points of some criteria together: 58.5, or a dash if all of them need manual
+    grading.
+    """
     is_open = bool(results) and all(result.is_open for result in results)
     return "–" if is_open else format_points(sum((result.points for result in results), Decimal(0)))
 
 
 def earned_text(*results: Result) -> str:
-    """Return the points and the maximum of criteria together: 8/14, above it with extra credit; –/14; 5/5 bonus."""
+    """Return the points and the maximum of criteria together: 8/14, above it with extra credit;
+    –/14; 5/5 bonus.
+    """
     most = worth(result.criterion for result in results)
-    return f"{sum_text(results)}/{format_points(most.points) if most.points or not most.bonus else most.short}"
+    maximum = format_points(most.points) if most.points or not most.bonus else most.short
+    return f"{sum_text(results)}/{maximum}"
 
 
 def points_of(results: Iterable[Result]) -> str:
-    """Return the maximum of some criteria together: 14 points, 14 points and 5 bonus points, 5 bonus points."""
+    """Return the maximum of some criteria together: 14 points, 14 points and 5 bonus points, 5
+    bonus points.
+    """
     return worth(result.criterion for result in results).text
 
 
@@ -131,7 +177,9 @@ class Entry(NamedTuple):
 
     result: Result
     skipped: tuple[Result, ...] = ()  # the criteria that are skipped because it failed
-    also: tuple["Entry", ...] = ()  # the criteria that the same edit fixes, or about which the same is said
+    also: tuple[
+        "Entry", ...
+    ] = ()  # the criteria that the same edit fixes, or about which the same is said
     first: str = ""  # the criterion whose entry has this one in `also`, and shows the edit
     blocks: tuple[Block, ...] = ()  # what is said about it
 
@@ -147,7 +195,9 @@ class Entry(NamedTuple):
 
     @property
     def results(self) -> tuple[Result, ...]:
-        """All criteria of the mistake: this one, those that its edit fixes, and those that are skipped because."""
+        """All criteria of the mistake: this one, those that its edit fixes, and those that are
+        skipped because.
+        """
         own = (self.result, *self.skipped)
         return (*own, *(result for other in self.also for result in other.results))
 
@@ -158,18 +208,27 @@ class Entry(NamedTuple):
 
     @property
     def cost(self) -> str:
-        """The points that the mistake costs in all, as in `-8 points`; of extra credit what was earned."""
+        """The points that the mistake costs in all, as in `-8 points`; of extra credit what was
+        earned.
+        """
         if self.result.criterion.bonus and not self.lost:
             return f"{earned_text(self.result)} points"
-        return f"{signed_points(-self.lost) if self.lost else '0'} {'point' if self.lost == 1 else 'points'}"
+        return (
+            f"{signed_points(-self.lost) if self.lost else '0'} "
+            f"{'point' if self.lost == 1 else 'points'}"
+        )
 
     @property
     def names(self) -> str:
-        """The criteria that lose points by the mistake: the only one, or each with its points, this one first."""
+        """The criteria that lose points by the mistake: the only one, or each with its points, this
+        one first.
+        """
         costly = [result for result in self.results if lost_points((result,))]
         if [result.criterion.id for result in costly] in ([], [self.id]):
             return printable(self.id)
-        named = [f"{result.criterion.id} {format_points(lost_points((result,)))}" for result in costly]
+        named = [
+            f"{result.criterion.id} {format_points(lost_points((result,)))}" for result in costly
+        ]
         rest = f" and {len(named) - _MAX_CRITERIA} more" if len(named) > _MAX_CRITERIA else ""
         return printable(", ".join(named[:_MAX_CRITERIA]) + rest)
 
@@ -180,7 +239,9 @@ class Entry(NamedTuple):
 
     def texts(self, *roles: Role) -> list[str]:
         """Return the sentences with these roles."""
-        return [block.text for block in self.blocks if isinstance(block, Line) and block.role in roles]
+        return [
+            block.text for block in self.blocks if isinstance(block, Line) and block.role in roles
+        ]
 
 
 class Section(NamedTuple):
@@ -205,9 +266,13 @@ class CriteriaGroup(NamedTuple):
 
     @property
     def status(self) -> str:
-        """The status of its worst criterion, without extra credit; one with all its points counts as passed."""
+        """The status of its worst criterion, without extra credit; one with all its points counts
+        as passed.
+        """
         counting = [result for result in self.results if not result.criterion.bonus] or self.results
-        statuses = [status_of(result) for result in counting if result.points < result.criterion.points]
+        statuses = [
+            status_of(result) for result in counting if result.points < result.criterion.points
+        ]
         lost = {"failed", "partial", "errored"}.intersection(statuses)
         if lost:
             return "partial" if lost == {"partial"} else "failed"
@@ -215,8 +280,12 @@ class CriteriaGroup(NamedTuple):
 
 
 def groups(report: Report) -> Iterator[CriteriaGroup]:
-    """Yield the criteria in the rubric's order, those about one thing together, else under the title of their part."""
-    for (part, about), results in groupby(report.results, lambda one: (one.criterion.part, one.criterion.about)):
+    """Yield the criteria in the rubric's order, those about one thing together, else under the
+    title of their part.
+    """
+    for (part, about), results in groupby(
+        report.results, lambda one: (one.criterion.part, one.criterion.about)
+    ):
         yield CriteriaGroup(part, about or report.rubric.part(part).title, tuple(results))
 
 
@@ -229,7 +298,8 @@ def alike(items: Iterable[_T], key: Callable[[_T], _K]) -> list[tuple[_K, tuple[
 
 
 def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iterator[Block]:
-    """Yield what is said about a criterion: what is wrong and where, the answer, what to do, what was expected.
+    """Yield what is said about a criterion: what is wrong and where, the answer, what to do, what
+    was expected.
 
     A hint is in place of the rubric's feedback; with `everything` there are both.
     """
@@ -237,7 +307,9 @@ def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iter
     hint = result.hint
     is_asked = outcome.status == "pending" and not result.is_adjusted
     has_failed = entry.status == "failed" and result.manual_mark is None
-    is_mistake = has_failed and not result.carried  # else the advice would be to change what is as it should be
+    is_mistake = (
+        has_failed and not result.carried
+    )  # else the advice would be to change what is as it should be
     has_subject = report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot")
     yield from _findings(result)
     at = _place_to_change(result) if is_mistake else outcome.location
@@ -254,7 +326,9 @@ def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iter
     if is_failure(result) and not is_asked:
         # The title of a criterion is never stated alone, because it would read as a fact.
         yield Line("expected", f"Passes when: {sentence(criterion.title)}")
-    for said, others in alike(entry.also, lambda other: " ".join(line.text for line in _findings(other.result))):
+    for said, others in alike(
+        entry.also, lambda other: " ".join(line.text for line in _findings(other.result))
+    ):
         names = printable(enumerated([other.id for other in others]))
         is_same = said == " ".join(line.text for line in _findings(result))
         yield Line("also", f"The same holds for {names}." if is_same else f"{names}: {said}")
@@ -266,7 +340,11 @@ def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iter
 def _place_to_change(result: Result) -> Location | None:
     """Return the place of a failure, or of its hint where that is in another line."""
     at, hint = result.outcome.location, result.hint
-    if hint is None or not hint.at.path or (at is not None and (at.path, at.line) == (hint.at.path, hint.at.line)):
+    if (
+        hint is None
+        or not hint.at.path
+        or (at is not None and (at.path, at.line) == (hint.at.path, hint.at.line))
+    ):
         return at
     return hint.at
 
@@ -297,7 +375,9 @@ def remarks_on(result: Result) -> list[str]:
 
 
 def _answers(result: Result) -> Iterator[Answer]:
-    """Yield the student's answer to a question, and the model answer if the rubric was loaded with its answers."""
+    """Yield the student's answer to a question, and the model answer if the rubric was loaded with
+    its answers.
+    """
     found = tuple(printable(line) for line in answer_lines(result.outcome) if line.strip())
     model = tuple(printable(line) for line in model_lines(result.criterion) if line.strip())
     if found:
@@ -317,12 +397,16 @@ def answer_lines(outcome: Outcome) -> list[str]:
 
 
 def model_lines(criterion: Criterion) -> list[str]:
-    """Return the lines of the model answer; none if the criterion has no answer or is loaded without."""
+    """Return the lines of the model answer; none if the criterion has no answer or is loaded
+    without.
+    """
     return criterion.answer.strip("\n").splitlines()
 
 
 def counts_lines(location: Location) -> bool:
-    """Return whether editors count the lines of a file; of a PDF or Word file, a message names the page or heading."""
+    """Return whether editors count the lines of a file; of a PDF or Word file, a message names the
+    page or heading.
+    """
     return not location.path.lower().endswith((".pdf", ".docx"))
 
 
@@ -333,10 +417,14 @@ def sentence(message: str) -> str:
 
 
 def hint_text(entry: Entry, hint: Hint) -> str:
-    """Return the message of the hint of a failure, and which criteria have to be looked at after that edit."""
+    """Return the message of the hint of a failure, and which criteria have to be looked at after
+    that edit.
+    """
     if entry.first:
         return f"Fixed by the same edit as {entry.first}."
-    left = [result.criterion.id for result in entry.results if result.criterion.id not in hint.gains]
+    left = [
+        result.criterion.id for result in entry.results if result.criterion.id not in hint.gains
+    ]
     texts = [hint.message.removesuffix(".")]
     if hint.certainty == "one of several" and hint.gains:
         texts.append("Other edits are as good")
@@ -360,10 +448,14 @@ def plain_lines(entry: Entry, source_of: SourceOf) -> list[str]:
 
 
 def pending_reason(result: Result) -> str:
-    """Return where the answer or the pictures are that need manual grading, or why a check cannot decide."""
+    """Return where the answer or the pictures are that need manual grading, or why a check cannot
+    decide.
+    """
     outcome = result.outcome
     if not is_manual(result):
-        return sentence(outcome.message.removesuffix("; needs manual grading"))  # which the heading says
+        return sentence(
+            outcome.message.removesuffix("; needs manual grading")
+        )  # which the heading says
     where = ""
     if isinstance(outcome.measured, tuple):
         where = enumerated(list(map(str, outcome.measured)), _MAX_FILES)
@@ -375,8 +467,13 @@ def pending_reason(result: Result) -> str:
 
 
 def carried_text(cause: str, results: Sequence[Result]) -> str:
-    """Return which criteria fail only because of a mistake that is counted elsewhere, and have their points."""
-    names, verb = enumerated([one.criterion.id for one in results]), "it fails" if len(results) == 1 else "they fail"
+    """Return which criteria fail only because of a mistake that is counted elsewhere, and have
+    their points.
+    """
+    names, verb = (
+        enumerated([one.criterion.id for one in results]),
+        "it fails" if len(results) == 1 else "they fail",
+    )
     return printable(f"No points lost for {names}: {verb} only because of {cause}.")
 
 

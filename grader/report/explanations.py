@@ -1,4 +1,6 @@
-"""Rubrics, checks and problem codes in plain text, with what docs/examples/ has for a code or a check."""
+"""Rubrics, checks and problem codes in plain text, with what docs/examples/ has for a code or a
+check.
+"""
 
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping
@@ -37,7 +39,10 @@ EFFECTS = {
 
 def rubric_overview(rubric: Rubric) -> str:
     """Return the parts and criteria of a rubric, with the model answers that it was loaded with."""
-    lines = [f"{rubric.id}: {rubric.title} ({worth(rubric.criteria).text})", f"sha256 {rubric.sha256}"]
+    lines = [
+        f"{rubric.id}: {rubric.title} ({worth(rubric.criteria).text})",
+        f"sha256 {rubric.sha256}",
+    ]
     for part in rubric.parts:
         criteria = [criterion for criterion in rubric.criteria if criterion.part == part.id]
         lines += ["", f"{part.id}: {part.title}"]
@@ -45,7 +50,9 @@ def rubric_overview(rubric: Rubric) -> str:
         for criterion in criteria:
             points = format_points(criterion.points)
             bonus = " (bonus)" if criterion.bonus else ""
-            lines.append(f"  {criterion.id:<{width}}  {points:>4}  {printable(criterion.title)}{bonus}")
+            lines.append(
+                f"  {criterion.id:<{width}}  {points:>4}  {printable(criterion.title)}{bonus}"
+            )
             if criterion.adjustment is not None:
                 lines.append(textwrap.indent(_fill(sentence(criterion.adjustment.message)), "    "))
             if criterion.answer:
@@ -55,7 +62,9 @@ def rubric_overview(rubric: Rubric) -> str:
 
 
 def checks_text() -> str:
-    """Return every check with the package that it comes from, the fact that it tests, and its arguments."""
+    """Return every check with the package that it comes from, the fact that it tests, and its
+    arguments.
+    """
     listed = []
     for name in check_names():
         try:
@@ -67,7 +76,8 @@ def checks_text() -> str:
             fact = textwrap.indent(_fill(check.documentation.fact), "  ")
             listed.append(f"{name} ({check.distribution or 'grader'})\n{fact}\n{_arguments(check)}")
     listed += [
-        f"{name} ({package})\n  Not used: the grader has a check of this name.\n" for name, package in unused_checks()
+        f"{name} ({package})\n  Not used: the grader has a check of this name.\n"
+        for name, package in unused_checks()
     ]
     return "\n".join(listed)
 
@@ -78,10 +88,16 @@ def _kind_of(code: str) -> Kind | None:
 
 
 def explanation(name: str, rubric: Rubric) -> str:
-    """Return the explanation of a code, a criterion or a check. Raises InputError for another name."""
+    """Return the explanation of a code, a criterion or a check. Raises InputError for another
+    name.
+    """
     kind = _kind_of(name.upper())
     if kind is not None:
-        texts = [f"{kind.code} ({kind.severity}): {kind.title}", _fill(explanation_of(kind)), EFFECTS[kind.effect]]
+        texts = [
+            f"{kind.code} ({kind.severity}): {kind.title}",
+            _fill(explanation_of(kind)),
+            EFFECTS[kind.effect],
+        ]
         return _paragraphs([*texts, *_examples(kind.code)])
     for criterion in rubric.criteria:
         if criterion.id == name:
@@ -89,14 +105,26 @@ def explanation(name: str, rubric: Rubric) -> str:
     check = find_check(name)
     if check is not None:
         source = f", from the package {check.distribution}" if check.distribution else ""
-        texts = [f"{check.name}: a check for rubrics{source}", *map(_fill, check.documentation.paragraphs)]
+        texts = [
+            f"{check.name}: a check for rubrics{source}",
+            *map(_fill, check.documentation.paragraphs),
+        ]
         return _paragraphs([*texts, _arguments(check).rstrip("\n"), *_examples(check.name)])
-    known = [kind.code for kind in EVERY_KIND] + [criterion.id for criterion in rubric.criteria] + check_names()
+    known = (
+        [kind.code for kind in EVERY_KIND]
+        + [criterion.id for criterion in rubric.criteria]
+        + check_names()
+    )
     lists = (
-        f"`{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, and reports show the codes"
+        f"`{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, and "
+        "reports show the codes"
     )
     begun = [criterion.id for criterion in rubric.criteria if criterion.id.startswith(name)]
-    similar = f"; there are {enumerated(begun, _MAX_SIMILAR)}: `grader explain {begun[0]}`" if begun else ""
+    similar = (
+        f"; there are {enumerated(begun, _MAX_SIMILAR)}: `grader explain {begun[0]}`"
+        if begun
+        else ""
+    )
     guess = similar or did_you_mean(name, known) or f"; {lists}"
     raise InputError(f"there is no problem code, criterion or check {name!r}{guess}")
 
@@ -114,17 +142,25 @@ def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
     if criterion.requires:
         yield _fill(f"Skipped unless these passed: {', '.join(criterion.requires)}.")
     positions = ", ".join(f"{name} = {value:g}" for name, value in criterion.at.items())
-    pose = f"The robot is posed: {positions} (degrees or metres); its other joints are at 0." if positions else ""
+    pose = (
+        f"The robot is posed: {positions} (degrees or metres); its other joints are at 0."
+        if positions
+        else ""
+    )
     given = " ".join(f"{name}:={value}" for name, value in criterion.args.items())
     launched = f"Launch files and the robot are read under the arguments {given}." if given else ""
     yield _check_text("Check", criterion.check, criterion.arguments, pose, launched)
     for causes, check, arguments in criterion.carried:
         failures = f"If it fails and {enumerated(causes, word='or')} failed before it"
-        yield _check_text(f"{failures}, the points are given if this check passes", check, arguments)
+        yield _check_text(
+            f"{failures}, the points are given if this check passes", check, arguments
+        )
 
 
 def _check_text(title: str, check: Check, arguments: Mapping[str, object], *more: str) -> str:
-    given = ", ".join(assignment(key, value) for key, value in arguments.items() if value is not None)
+    given = ", ".join(
+        assignment(key, value) for key, value in arguments.items() if value is not None
+    )
     texts = [f"{title}: {check.name}. {check.documentation.fact}"]
     if given:
         texts.append(f"With {given}.")
@@ -137,22 +173,31 @@ def _arguments(check: Check) -> str:
     for parameter in check.parameters.values():
         default = "" if parameter.required else f", default: {default_text(parameter.default)}"
         meaning = _fill(check.documentation.arguments.get(parameter.name, ""), _WIDTH - 6)
-        lines += [f"    {parameter.name}: {parameter.type.name}{default}\n", textwrap.indent(f"{meaning}\n", " " * 6)]
+        lines += [
+            f"    {parameter.name}: {parameter.type.name}{default}\n",
+            textwrap.indent(f"{meaning}\n", " " * 6),
+        ]
     return "".join(line for line in lines if line.strip())
 
 
 def _fill(text: str, width: int = _WIDTH) -> str:
-    return textwrap.fill(" ".join(text.split()), width, break_long_words=False, break_on_hyphens=False)
+    return textwrap.fill(
+        " ".join(text.split()), width, break_long_words=False, break_on_hyphens=False
+    )
 
 
 def explanation_of(kind: Kind) -> str:
-    """Return what ROS 2 does about a problem and how to fix the file, in one line; the title if that is unknown."""
+    """Return what ROS 2 does about a problem and how to fix the file, in one line; the title if
+    that is unknown.
+    """
     entry = _family(_family_of(kind.code)).get(kind.code, {})
     return " ".join(entry.get("explanation", kind.title).split())
 
 
 def example_blocks(name: str) -> Iterator[tuple[str, str, str]]:
-    """Yield title, file name and text of a check's row in a rubric, of what is wrong and of what is right, if known."""
+    """Yield title, file name and text of a check's row in a rubric, of what is wrong and of what is
+    right, if known.
+    """
     family = _family_of(name)
     entries = _family(family)
     example = entries.get(name, {})
@@ -167,7 +212,9 @@ def example_blocks(name: str) -> Iterator[tuple[str, str, str]]:
 
 def _examples(name: str) -> Iterator[str]:
     """Yield these blocks as paragraphs."""
-    return (f"{title}:\n\n{textwrap.indent(text, '    ')}" for title, _, text in example_blocks(name))
+    return (
+        f"{title}:\n\n{textwrap.indent(text, '    ')}" for title, _, text in example_blocks(name)
+    )
 
 
 def _family_of(name: str) -> str:

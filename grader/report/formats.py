@@ -1,4 +1,6 @@
-"""The formats of a report: the one registry from which options, completion, files and documentation take them."""
+"""The formats of a report: the one registry from which options, completion, files and documentation
+take them.
+"""
 
 import os
 from enum import StrEnum
@@ -18,10 +20,12 @@ _Need = Literal["", "console", "base", "identity"]
 
 
 class _FormatRow(StrEnum):
-    """A format: its name, `module:function` in this package, what that function needs, and the ending of its files.
+    """A format: its name, `module:function` in this package, what that function needs, and the
+    ending of its files.
 
-    The function takes the report and returns text. With the need `console` it prints on a rich console instead; `base`
-    is where the submission is in its repository; `identity` is whose result it is, from Classroom 50's environment.
+    The function takes the report and returns text. With the need `console` it prints on a rich
+    console instead; `base` is where the submission is in its repository; `identity` is whose result
+    it is, from Classroom 50's environment.
     """
 
     function: str
@@ -37,7 +41,9 @@ class _FormatRow(StrEnum):
 
 
 class Format(_FormatRow):
-    """The formats of a report. Their endings differ, so that one folder can contain a report in all of them."""
+    """The formats of a report. Their endings differ, so that one folder can contain a report in all
+    of them.
+    """
 
     TERMINAL = "terminal", "terminal:render_terminal", "console", "txt"
     MARKDOWN = "markdown", "markdown:render_markdown", "", "md"
@@ -98,8 +104,8 @@ def render(
 ) -> str:
     """Return a report in a format, for a screen or a file; only that format's module is imported.
 
-    `base` is where the submission is in its repository; without it its paths are the repository's. The format
-    `terminal` shows everything only if `verbose`.
+    `base` is where the submission is in its repository; without it its paths are the repository's.
+    The format `terminal` shows everything only if `verbose`.
     Raises InputError if the environment does not say whose result it is (Classroom 50).
     """
     if kind.needs == "console":
@@ -114,7 +120,9 @@ def render_inspection(inspection: "Inspection", kind: InspectFormat, screen: Scr
     if kind.needs == "console":
         return draw(function, screen)
     text: str = function()
-    return text if kind is InspectFormat.GITHUB else without_commands(text)  # whose lines are commands
+    return (
+        text if kind is InspectFormat.GITHUB else without_commands(text)
+    )  # whose lines are commands
 
 
 def _load(place: str) -> Any:
@@ -123,7 +131,9 @@ def _load(place: str) -> Any:
 
 
 def inputs_of(kind: Format, base: "Base | None" = None) -> tuple[object, ...]:
-    """Return what the function of a format takes after the report. Raises InputError if it cannot be had."""
+    """Return what the function of a format takes after the report. Raises InputError if it cannot
+    be had.
+    """
     match kind.needs:
         case "base":
             from grader.source import Base

@@ -1,4 +1,6 @@
-"""A URDF as `grader inspect` shows it: problems, tree, joints, poses; and the names in packages that do not agree."""
+"""A URDF as `grader inspect` shows it: problems, tree, joints, poses; and the names in packages
+that do not agree.
+"""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -38,7 +40,10 @@ from grader.text import counted, printable
 
 MAX_LISTED, _MAX_PROBLEMS = 500, 30  # links, or problems on a page; problems on a terminal
 _MAX_INDENT = 60
-_EFFECTS = {**{verdict: text.replace("the file", "it") for verdict, text in VERDICTS.items()}, "undecided": UNDECIDED}
+_EFFECTS = {
+    **{verdict: text.replace("the file", "it") for verdict, text in VERDICTS.items()},
+    "undecided": UNDECIDED,
+}
 _STYLES = dict(zip(_EFFECTS, ("green", "yellow", "bold red", "bold red"), strict=True))
 
 
@@ -66,7 +71,9 @@ class Inspection:
 
     @property
     def verdict(self) -> str | None:
-        """ROS 2's verdict; `undecided` where it cannot be determined statically; None without a URDF."""
+        """ROS 2's verdict; `undecided` where it cannot be determined statically; None without a
+        URDF.
+        """
         if self.reading is None:
             return None
         return self.reading.verdict if self.reading.is_certain else "undecided"
@@ -74,7 +81,9 @@ class Inspection:
     @property
     def is_passed(self) -> bool:
         """Return whether ROS 2 loads the URDF, and no name is certainly wrong."""
-        return self.verdict not in ("rejected", "undecided") and all(it.severity != "error" for it in self.names)
+        return self.verdict not in ("rejected", "undecided") and all(
+            it.severity != "error" for it in self.names
+        )
 
     @property
     def problems(self) -> tuple[Problem, ...]:
@@ -87,7 +96,9 @@ class Inspection:
         return own if own is not None and own.path == path else self.source_of(path)
 
     def poses(self) -> Iterator[tuple[str, Transform | str]]:
-        """Yield the pose of every link in the frame `relative_to`, in file order, or the reason why it has none."""
+        """Yield the pose of every link in the frame `relative_to`, in file order, or the reason why
+        it has none.
+        """
         if self.robot is None or self.relative_to is None:
             return
         for link in self.robot.robot.links:
@@ -103,9 +114,13 @@ def main_root(robot: Configuration) -> str | None:
 
 
 def _poses(inspection: Inspection) -> dict[str, list[list[float]] | None]:
-    """Return the poses of links as rows of numbers, rounded to 1e-12, because machines differ beyond that."""
+    """Return the poses of links as rows of numbers, rounded to 1e-12, because machines differ
+    beyond that.
+    """
     poses = inspection.poses()
-    return {name: _matrix_rows(pose) if isinstance(pose, Transform) else None for name, pose in poses}
+    return {
+        name: _matrix_rows(pose) if isinstance(pose, Transform) else None for name, pose in poses
+    }
 
 
 def _matrix_rows(pose: Transform) -> list[list[float]]:
@@ -149,7 +164,10 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
     robot = inspection.robot
     name = f"robot {robot.robot.name!r}" if robot is not None else "no robot"
     verdict = (effect(inspection), _STYLES[inspection.verdict or "clean"])
-    page.inset(Text.assemble((printable(inspection.path), "bold"), ": ", verdict, f", {printable(name)}"), indent=0)
+    page.inset(
+        Text.assemble((printable(inspection.path), "bold"), ": ", verdict, f", {printable(name)}"),
+        indent=0,
+    )
     if inspection.problems:
         page.title("Problems")
         page.rows.extend(_problem_rows(console, inspection))
@@ -165,26 +183,47 @@ def _problem_rows(console: Console, inspection: Inspection) -> Iterator[Text]:
     own = inspection.reading.source.path if inspection.reading is not None else ""
     for problem in inspection.problems[:_MAX_PROBLEMS]:
         where = problem.location
-        head = Text.assemble("  ", (f"{problem.code} {problem.severity:<7} ", LOOKS[problem.severity]))
+        head = Text.assemble(
+            "  ", (f"{problem.code} {problem.severity:<7} ", LOOKS[problem.severity])
+        )
         named = "" if where.path == own else f"{printable(where.path)}:"
         message = Text.assemble(
-            (f"{named or 'line '}{where.line}{calls_text(where)}: ", "dim"), printable(problem.message)
+            (f"{named or 'line '}{where.line}{calls_text(where)}: ", "dim"),
+            printable(problem.message),
         )
         yield block(console, message, len(head), head)
         source = inspection.source(where.path) if problem.severity == "error" else None
         if source is not None:
             yield excerpt_block(console, source, where, min(len(head), console.width // 5))
     if len(inspection.problems) > _MAX_PROBLEMS:
-        yield block(console, Text(f"... and {len(inspection.problems) - _MAX_PROBLEMS} more"), INDENT)
+        yield block(
+            console, Text(f"... and {len(inspection.problems) - _MAX_PROBLEMS} more"), INDENT
+        )
 
 
 def lists(inspection: Inspection) -> Iterator[tuple[str, list[tuple[str, str]]]]:
-    """Yield the links as a tree with their joints, and their poses: a title, and names with words about each."""
-    if inspection.robot is not None and inspection.relative_to is not None:  # else there is neither a tree nor a frame
+    """Yield the links as a tree with their joints, and their poses: a title, and names with words
+    about each.
+    """
+    if (
+        inspection.robot is not None and inspection.relative_to is not None
+    ):  # else there is neither a tree nor a frame
         links = _tree(inspection.robot)
-        yield "Tree", _first_rows((indent + printable(link), _joint_text(joint)) for indent, link, joint in links)
-        title = f"Poses in {printable(inspection.relative_to)!r} (x y z in m, roll pitch yaw in rad)"
-        yield title, _first_rows((printable(link), f"  {_pose_text(pose)}") for link, pose in inspection.poses())
+        yield (
+            "Tree",
+            _first_rows(
+                (indent + printable(link), _joint_text(joint)) for indent, link, joint in links
+            ),
+        )
+        title = (
+            f"Poses in {printable(inspection.relative_to)!r} (x y z in m, roll pitch yaw in rad)"
+        )
+        yield (
+            title,
+            _first_rows(
+                (printable(link), f"  {_pose_text(pose)}") for link, pose in inspection.poses()
+            ),
+        )
 
 
 def _first_rows(rows: Iterator[tuple[str, str]]) -> list[tuple[str, str]]:
@@ -196,13 +235,19 @@ def effect(inspection: Inspection) -> str:
     """Return what ROS 2 does with a URDF; without one, how many names are wrong."""
     if inspection.verdict is not None:
         return _EFFECTS[inspection.verdict]
-    return f"{counted(len(inspection.names), 'problem')} of names" if inspection.names else "the names agree"
+    return (
+        f"{counted(len(inspection.names), 'problem')} of names"
+        if inspection.names
+        else "the names agree"
+    )
 
 
 def _tree(robot: Configuration) -> Iterator[tuple[str, str, Joint | None]]:
     """Yield every link after its parent: its indentation, its name, and its parent joint."""
     children = dict(alike(robot.parent_joints.values(), lambda joint: joint.parent))
-    stack: list[tuple[str, str, Joint | None]] = [("", root, None) for root in reversed(robot.roots)]
+    stack: list[tuple[str, str, Joint | None]] = [
+        ("", root, None) for root in reversed(robot.roots)
+    ]
     while stack:
         yield (link := stack.pop())
         indent = f"{link[0]}  " if len(link[0]) < _MAX_INDENT else link[0]
@@ -215,7 +260,11 @@ def _joint_text(joint: Joint | None) -> str:
         return ""
     words = f"  {printable(joint.name)}: {printable(joint.type) or 'no type'}"
     if joint.type not in ("fixed", "floating"):
-        words += f" about {_numbers(joint.axis)}" if joint.axis is not None else " about an unreadable axis"
+        words += (
+            f" about {_numbers(joint.axis)}"
+            if joint.axis is not None
+            else " about an unreadable axis"
+        )
     if joint.limit is not None and isfinite(joint.limit.upper - joint.limit.lower):
         words += f", {joint.limit.lower:g}..{joint.limit.upper:g}"
     if joint.mimic is not None:
@@ -224,7 +273,11 @@ def _joint_text(joint: Joint | None) -> str:
 
 
 def _pose_text(pose: Transform | str) -> str:
-    return printable(pose) if isinstance(pose, str) else f"{_numbers(pose.translation)}  rpy {_numbers(pose.rpy)}"
+    return (
+        printable(pose)
+        if isinstance(pose, str)
+        else f"{_numbers(pose.translation)}  rpy {_numbers(pose.rpy)}"
+    )
 
 
 def _numbers(values: tuple[float, ...]) -> str:

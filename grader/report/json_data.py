@@ -1,4 +1,6 @@
-"""JSON text that is the same bytes everywhere, and descriptions of its objects, from which data and schemas follow."""
+"""JSON text that is the same bytes everywhere, and descriptions of its objects, from which data and
+schemas follow.
+"""
 
 import json
 import re
@@ -18,21 +20,32 @@ _UNPRINTABLE = re.compile(r"[^\n -~]")  # or any other character that is not ASC
 def to_json(data: Mapping[str, Any]) -> str:
     """Return data as JSON text: a line for each key, and for the objects of a list.
 
-    `indent` of the standard library takes three times as long, because it does not use the C encoder.
+    `indent` of the standard library takes three times as long, because it does not use the C
+    encoder.
     """
-    lines = ",\n".join(f" {_ENCODER.encode(key)}: {_laid_out(value)}" for key, value in data.items())
+    lines = ",\n".join(
+        f" {_ENCODER.encode(key)}: {_laid_out(value)}" for key, value in data.items()
+    )
     return _harmless(f"{{\n{lines}\n}}\n")
 
 
 def _harmless(text: str) -> str:
-    """Return JSON with escapes for unprintable characters, and for what a CI system takes for a command."""
+    """Return JSON with escapes for unprintable characters, and for what a CI system takes for a
+    command.
+    """
     if not text.isascii() or "\x7f" in text:
-        text = _UNPRINTABLE.sub(lambda found: found[0] if found[0].isprintable() else json.dumps(found[0])[1:-1], text)
+        text = _UNPRINTABLE.sub(
+            lambda found: found[0] if found[0].isprintable() else json.dumps(found[0])[1:-1], text
+        )
     return without_tag_commands(text, "\\u005b")
 
 
 def _laid_out(value: Any) -> str:
-    return f"[\n  {_objects(value, next(iter(value[0])))}\n ]" if _is_of_objects(value) else _ENCODER.encode(value)
+    return (
+        f"[\n  {_objects(value, next(iter(value[0])))}\n ]"
+        if _is_of_objects(value)
+        else _ENCODER.encode(value)
+    )
 
 
 def _is_of_objects(value: Any) -> bool:
@@ -40,7 +53,9 @@ def _is_of_objects(value: Any) -> bool:
 
 
 def _objects(values: Sequence[Mapping[str, Any]], first: str) -> str:
-    """Return objects between commas; each that begins with the key `first` starts a line, also in an inner list."""
+    """Return objects between commas; each that begins with the key `first` starts a line, also in
+    an inner list.
+    """
     text = ""
     for value in values:
         if text:
@@ -50,7 +65,9 @@ def _objects(values: Sequence[Mapping[str, Any]], first: str) -> str:
 
 
 def _object(value: Mapping[str, Any], first: str) -> str:
-    inner = {key for key, item in value.items() if _is_of_objects(item) and next(iter(item[0])) == first}
+    inner = {
+        key for key, item in value.items() if _is_of_objects(item) and next(iter(item[0])) == first
+    }
     if not inner:
         return _ENCODER.encode(value)
     members = []
@@ -68,7 +85,9 @@ def exact(points: Decimal | None) -> int | float | None:
 
 
 def rounded(value: Any) -> Any:
-    """Return plain data: points exact, floats to 1e-6, because machines differ beyond; no -0, NaN or infinity."""
+    """Return plain data: points exact, floats to 1e-6, because machines differ beyond; no -0, NaN
+    or infinity.
+    """
     if value is None or isinstance(value, str | int):
         return value
     if isinstance(value, float):
@@ -95,7 +114,12 @@ VALUE: Schema = {"type": ["null", "boolean", "number", "string", "array", "objec
 def object_schema(properties: Mapping[str, Schema], optional: Sequence[str] = ()) -> Schema:
     """Return the schema of an object with exactly these properties."""
     required = [name for name in properties if name not in optional]
-    return {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
+    return {
+        "type": "object",
+        "properties": properties,
+        "required": required,
+        "additionalProperties": False,
+    }
 
 
 def array(items: Schema) -> Schema:
@@ -122,9 +146,10 @@ def each(kind: _K, names: str) -> dict[str, _K]:
 class JsonObject:
     """A JSON object that describes a value.
 
-    Each key has its type, and the attribute of the value or the function of it; without either it has the attribute of
-    its name. Attributes become plain data; a function returns plain data, or what an object describes. mypy does not
-    check the names of attributes. Every document has all keys, so any test of it finds a wrong one.
+    Each key has its type, and the attribute of the value or the function of it; without either it
+    has the attribute of its name. Attributes become plain data; a function returns plain data, or
+    what an object describes. mypy does not check the names of attributes. Every document has all
+    keys, so any test of it finds a wrong one.
     """
 
     keys: Mapping[str, "KeyType | Key"]
@@ -132,7 +157,9 @@ class JsonObject:
 
     @cached_property
     def _pairs(self) -> dict[str, "Key"]:
-        return {name: key if isinstance(key, tuple) else (key, name) for name, key in self.keys.items()}
+        return {
+            name: key if isinstance(key, tuple) else (key, name) for name, key in self.keys.items()
+        }
 
     @cached_property
     def _readers(self) -> dict[str, Callable[[Any], Any]]:
@@ -141,7 +168,9 @@ class JsonObject:
     @property
     def schema(self) -> Schema:
         """The schema of the object."""
-        return object_schema({name: _schema(kind) for name, (kind, _) in self._pairs.items()}, self.optional)
+        return object_schema(
+            {name: _schema(kind) for name, (kind, _) in self._pairs.items()}, self.optional
+        )
 
     def data(self, value: Any) -> dict[str, Any]:
         """Return the object that describes a value."""

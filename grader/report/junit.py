@@ -1,7 +1,8 @@
-"""A report as JUnit XML: a suite for each part, a test case for each criterion. Jenkins, GitLab and others show it.
+"""A report as JUnit XML: a suite for each part, a test case for each criterion. Jenkins, GitLab and
+others show it.
 
-A failure is the student's, an error the grader's. What needs manual grading and extra credit that was not earned are
-skipped. There are no times: the same submission gives the same report.
+A failure is the student's, an error the grader's. What needs manual grading and extra credit that
+was not earned are skipped. There are no times: the same submission gives the same report.
 """
 
 from itertools import groupby
@@ -17,12 +18,20 @@ from grader.source import Base
 from grader.text import format_points, printable
 
 # The element for each status of a criterion that is not passed.
-_KINDS = {"failed": "failure", "partial": "failure", "errored": "error", "skipped": "skipped", "pending": "skipped"}
+_KINDS = {
+    "failed": "failure",
+    "partial": "failure",
+    "errored": "error",
+    "skipped": "skipped",
+    "pending": "skipped",
+}
 _COUNTS = {"failures": "failure", "errors": "error", "skipped": "skipped"}
 
 
 def render_junit(report: Report, base: Base) -> str:
-    """Return the report; its paths are those in the repository, where the submission is at `base`."""
+    """Return the report; its paths are those in the repository, where the submission is at
+    `base`.
+    """
     top = etree.Element("testsuites", {"name": graded_line(report), **_counts(report.results)})
     said = [*(line.text for line in head(report)), *closing_lines(report)]
     parts = groupby(entries(report).values(), key=lambda entry: entry.result.criterion.part)
@@ -42,14 +51,21 @@ def render_junit(report: Report, base: Base) -> str:
 
 def _counts(results: tuple[Result, ...]) -> dict[str, str]:
     kinds = [_kind(result) for result in results]
-    return {"tests": str(len(kinds)), **{key: str(kinds.count(kind)) for key, kind in _COUNTS.items()}}
+    return {
+        "tests": str(len(kinds)),
+        **{key: str(kinds.count(kind)) for key, kind in _COUNTS.items()},
+    }
 
 
 def _kind(result: Result) -> str:
     """Return the element for the status of a criterion; empty if it has all points."""
     if result.carried:
         return ""
-    return "skipped" if is_failure(result) and result.criterion.bonus else _KINDS.get(status_of(result), "")
+    return (
+        "skipped"
+        if is_failure(result) and result.criterion.bonus
+        else _KINDS.get(status_of(result), "")
+    )
 
 
 def _facts(report: Report) -> dict[str, str]:
@@ -70,7 +86,10 @@ def _facts(report: Report) -> dict[str, str]:
 def _case(suite: Any, entry: Entry, report: Report, base: Base) -> None:
     result, criterion, where = entry.result, entry.result.criterion, entry.location
     kind, lines = _kind(result), plain_lines(entry, report.submission.source)
-    name, group = printable(f"{criterion.title} ({criterion.id})"), f"{report.rubric.id}.{criterion.part}"
+    name, group = (
+        printable(f"{criterion.title} ({criterion.id})"),
+        f"{report.rubric.id}.{criterion.part}",
+    )
     case = etree.SubElement(suite, "testcase", name=name, classname=group)
     if where is not None and where.path != "-" and not (base.archive or archive_around(where.path)):
         case.set("file", printable(base.folder + where.path))
@@ -78,7 +97,10 @@ def _case(suite: Any, entry: Entry, report: Report, base: Base) -> None:
     _properties(case, {"points": earned_text(result)})
     why = {}
     if kind:
-        why = {"type": "manual mark" if result.manual_mark else result.outcome.status, "message": lines[0]}
+        why = {
+            "type": "manual mark" if result.manual_mark else result.outcome.status,
+            "message": lines[0],
+        }
     _put(case, kind or "system-out", lines, why)
 
 

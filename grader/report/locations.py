@@ -1,4 +1,6 @@
-"""Locations in a submission: in words, with their source line or an edit of it, and their path in the repository."""
+"""Locations in a submission: in words, with their source line or an edit of it, and their path
+in the repository.
+"""
 
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -8,10 +10,12 @@ from itertools import groupby
 from grader.source import Edit, Location, Source
 from grader.text import first_lines, printable
 
-_MEANT = r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+"""  # attribute, tag, word
+# attribute, tag, word
+_MEANT = r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+"""
 _ARCHIVE = r"(?is)(.*?\.(?:zip|tar|tgz|tar\.gz))/"
 SourceOf = Callable[[str], Source | None]
-# A line of a file: its number, its text up to the marked part, that part if it has one, and the rest.
+# A line of a file: its number, its text up to the marked part, that part if it has one, and the
+# rest.
 SourceLine = tuple[int, str, str | None, str]
 _EXCERPT_WIDTH = 120
 _AROUND = 2  # lines of the source before and after the marked one
@@ -28,10 +32,14 @@ def width_of(line: str, column: int) -> int:
     return len(found[0].rstrip()) if found else 1
 
 
-def excerpt(source: Source, where: Location, room: int, indent: int | None = None) -> tuple[str, str, str]:
-    """Return the source line of a location: the text before the marked part, that part, and the rest.
+def excerpt(
+    source: Source, where: Location, room: int, indent: int | None = None
+) -> tuple[str, str, str]:
+    """Return the source line of a location: the text before the marked part, that part, and the
+    rest.
 
-    Together they have a number of characters around the marked part; without `indent` the line is not indented.
+    Together they have a number of characters around the marked part; without `indent` the line is
+    not indented.
     """
     line, start = source.line(where.line), where.column - 1
     end = start + width_of(line, where.column)
@@ -44,18 +52,27 @@ def excerpt(source: Source, where: Location, room: int, indent: int | None = Non
 
 
 def calls_text(where: Location) -> str:
-    """Return the macro calls of xacro that led to a location, innermost first; empty if there are none."""
-    calls = [f"in macro {printable(macro)}, called at {printable(at.path)}:{at.line}" for macro, at in where.calls]
+    """Return the macro calls of xacro that led to a location, innermost first; empty if there
+    are none.
+    """
+    calls = [
+        f"in macro {printable(macro)}, called at {printable(at.path)}:{at.line}"
+        for macro, at in where.calls
+    ]
     return "".join(f", {call}" for call in reversed(calls[-_MAX_CALLS:]))
 
 
 def location_text(where: Location) -> str:
-    """Return a location as editors take it, path:line:column, and the macro calls that led to it."""
+    """Return a location as editors take it, path:line:column, and the macro calls that led to
+    it.
+    """
     return f"{printable(where.path)}:{where.line}:{where.column}{calls_text(where)}"
 
 
 def excerpt_lines(where: Location, source_of: SourceOf) -> Iterator[str]:
-    """Yield the source line of a location, and a line that underlines the marked part; nothing without the file."""
+    """Yield the source line of a location, and a line that underlines the marked part; nothing
+    without the file.
+    """
     source = source_of(where.path)
     if source is not None:
         before, meant, after = excerpt(source, where, _EXCERPT_WIDTH)
@@ -65,7 +82,8 @@ def excerpt_lines(where: Location, source_of: SourceOf) -> Iterator[str]:
 
 
 def source_lines(where: Location, source_of: SourceOf, many: int = _AROUND) -> list[SourceLine]:
-    """Return the lines around a location, as `many` before as after it, without their common indentation.
+    """Return the lines around a location, as `many` before as after it, without their common
+    indentation.
 
     Of a very long line it is the part around the marked text; there are none if the line is empty.
     """
@@ -75,10 +93,15 @@ def source_lines(where: Location, source_of: SourceOf, many: int = _AROUND) -> l
         return []
     if len(line) > _MAX_WIDTH:
         return [(where.line, *excerpt(source, where, _MAX_WIDTH))]
-    around = {number: source.line(number) for number in range(max(1, where.line - many), where.line + many + 1)}
+    around = {
+        number: source.line(number)
+        for number in range(max(1, where.line - many), where.line + many + 1)
+    }
     last = max(number for number, text in around.items() if text.strip())
     indent = min(len(text) - len(text.lstrip()) for text in around.values() if text.strip())
-    lines = [(number, printable(text[indent:][:_MAX_WIDTH]), None, "") for number, text in around.items()]
+    lines = [
+        (number, printable(text[indent:][:_MAX_WIDTH]), None, "") for number, text in around.items()
+    ]
     marked = (where.line, *excerpt(source, where, _MAX_WIDTH, indent))
     return [marked if one[0] == where.line else one for one in lines if one[0] <= last]
 
@@ -90,7 +113,9 @@ def archive_around(path: str) -> str:
 
 
 def diff_lines(edits: Sequence[Edit], source_of: SourceOf) -> list[str]:
-    """Return the printable lines of a diff: each file, and each changed line before and after; of many the first."""
+    """Return the printable lines of a diff: each file, and each changed line before and after; of
+    many the first.
+    """
     lines: list[str] = []
     for path, of_file in groupby(sorted(edits), key=lambda edit: edit.path):
         changes, source = list(of_file), source_of(path)
@@ -104,10 +129,16 @@ def diff_lines(edits: Sequence[Edit], source_of: SourceOf) -> list[str]:
 
 
 def _texts_around(edits: list[Edit], source: Source | None) -> tuple[str, str]:
-    """Return the whole lines of edits that begin in one line, before and after; of long lines only what changes."""
+    """Return the whole lines of edits that begin in one line, before and after; of long lines only
+    what changes.
+    """
     height = 1 + max(edit.old.count("\n") for edit in edits)
     start = edits[0].line
-    before = "\n".join(source.line(start + number) for number in range(height)) if source is not None else ""
+    before = (
+        "\n".join(source.line(start + number) for number in range(height))
+        if source is not None
+        else ""
+    )
     after = before
     for edit in reversed(edits):
         column, old = edit.column - 1, edit.old.replace("\r\n", "\n")
@@ -120,7 +151,9 @@ def _texts_around(edits: list[Edit], source: Source | None) -> tuple[str, str]:
 
 def _diff(before: str, after: str) -> Iterator[str]:
     old, new = ([line.removesuffix("\r") for line in text.split("\n")] for text in (before, after))
-    for kind, old_start, old_end, new_start, new_end in SequenceMatcher(None, old, new, autojunk=False).get_opcodes():
+    for kind, old_start, old_end, new_start, new_end in SequenceMatcher(
+        None, old, new, autojunk=False
+    ).get_opcodes():
         if kind != "equal":
             yield from (f"-{line}" for line in old[old_start:old_end])
             yield from (f"+{line}" for line in new[new_start:new_end])

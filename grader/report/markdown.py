@@ -1,4 +1,5 @@
-"""A report as Markdown (CommonMark, and HTML only to fold what passed): for job summaries, comments and LMS pages.
+"""A report as Markdown (CommonMark, and HTML only to fold what passed): for job summaries, comments
+and LMS pages.
 
 Text of a submission is escaped: it never becomes markup, HTML, a link or a mention.
 """
@@ -32,16 +33,22 @@ from grader.text import printable
 _HTML = {"<": "&lt;", ">": "&gt;", "&": "&amp;"}
 _ACTIVE = re.compile(
     r"[\\`*\[\]<>&|~$#]|(?<![^\W_])_|_(?![^\W_])"  # an underscore inside a word is plain text
-    r"|(?<=http):(?=//)|(?<=https):(?=//)|(?<=ftp):(?=//)|(?<=www)\.",  # GitHub makes links of bare addresses
+    # GitHub makes links of bare addresses
+    r"|(?<=http):(?=//)|(?<=https):(?=//)|(?<=ftp):(?=//)|(?<=www)\.",
     re.IGNORECASE,
 )
 _OPENING = re.compile(r"^([-+=]|\d+[.)](?= |$))")  # a list, rule or heading at the start of a line
-# GitHub looks for mentions and issue numbers after it has rendered Markdown, so escapes do not prevent them.
+# GitHub looks for mentions and issue numbers after it has rendered Markdown, so escapes do not
+# prevent them.
 _MENTION = re.compile(r"@|#(?=\d)")
 _FENCE = re.compile(r"`{3,}")
 _LOOKS = {"graded": "# {}", "result": "**{}**", "hint": "**{}**", "feedback": "*{}*", "part": "{}:"}
-_MAX_FENCE = 80  # backticks: GitHub's parser takes no more to start code, and counts those of a block to 255
-_CUT = "**The report is cut off here, because it is too long.** A report that is saved to a file is complete.\n"
+# backticks: GitHub's parser takes no more to start code, and counts those of a block to 255
+_MAX_FENCE = 80
+_CUT = (
+    "**The report is cut off here, because it is too long.** A report that is saved to a file "
+    "is complete.\n"
+)
 
 
 def render_markdown(report: Report) -> str:
@@ -50,7 +57,8 @@ def render_markdown(report: Report) -> str:
 
 
 def cut_markdown(report: Report, most: int) -> str:
-    """Return the first blocks of a report that fit into a number of bytes of UTF-8, and a notice if some are missing.
+    """Return the first blocks of a report that fit into a number of bytes of UTF-8, and a notice if
+    some are missing.
 
     It is for job summaries, which students read, so it has no model answers.
     """
@@ -65,7 +73,11 @@ def cut_markdown(report: Report, most: int) -> str:
 
 def overview_markdown(report: Report) -> str:
     """Return the report without its criteria."""
-    sections = (part for section in content.closing(report) for part in _section(section, report, answers=False))
+    sections = (
+        part
+        for section in content.closing(report)
+        for part in _section(section, report, answers=False)
+    )
     return "\n\n".join((*_head(report), *sections))
 
 
@@ -90,7 +102,9 @@ def _blocks(report: Report, *, answers: bool) -> Iterator[str]:
 
 
 def _head(report: Report) -> Iterator[str]:
-    yield from (_LOOKS.get(line.role, "{}").format(escape(line.text)) for line in content.head(report))
+    yield from (
+        _LOOKS.get(line.role, "{}").format(escape(line.text)) for line in content.head(report)
+    )
 
 
 def _section(section: Section, report: Report, *, answers: bool) -> Iterator[str]:
@@ -98,7 +112,9 @@ def _section(section: Section, report: Report, *, answers: bool) -> Iterator[str
     for entry in section.entries:
         details = (indent(block, "  ") for block in _details(entry, report, answers=answers))
         yield "\n\n".join((f"- {SYMBOLS[entry.status]} {_entry_head(entry)}", *details))
-    for is_item, lines in groupby(section.lines, lambda line: line.role not in ("part", "carried", "there")):
+    for is_item, lines in groupby(
+        section.lines, lambda line: line.role not in ("part", "carried", "there")
+    ):
         texts = [_LOOKS.get(line.role, "{}").format(_escape_words(line.text)) for line in lines]
         if is_item:
             yield "\n".join(f"- {text}" for text in texts)
@@ -107,7 +123,9 @@ def _section(section: Section, report: Report, *, answers: bool) -> Iterator[str
 
 
 def _entry_head(entry: Entry) -> str:
-    """Return what a mistake costs and its criteria; of another criterion the points, and the title where it holds."""
+    """Return what a mistake costs and its criteria; of another criterion the points, and the title
+    where it holds.
+    """
     result, name = entry.result, code(entry.id)
     if entry.lost or is_failure(result):
         return f"**{entry.cost}**: {code(entry.names)}"
@@ -155,7 +173,9 @@ def _escape_words(text: str) -> str:
     parts = text.strip().split("`")
     if len(parts) % 2 == 0 or "``" in text:
         return escape(text)
-    return "".join(code(part) if number % 2 else _keep_spaces(part) for number, part in enumerate(parts))
+    return "".join(
+        code(part) if number % 2 else _keep_spaces(part) for number, part in enumerate(parts)
+    )
 
 
 def _keep_spaces(text: str) -> str:
@@ -176,7 +196,9 @@ def code(text: str) -> str:
 
 def fence(lines: Sequence[str], language: str = "text") -> str:
     """Return printable lines, none of them blank, as a code block that nothing in them can end."""
-    fence = "`" * max((len(found[0]) + 1 for line in lines for found in _FENCE.finditer(line)), default=3)
+    fence = "`" * max(
+        (len(found[0]) + 1 for line in lines for found in _FENCE.finditer(line)), default=3
+    )
     if len(fence) > _MAX_FENCE:
         return "\n".join(f"    {line}" for line in lines)
     return "\n".join((f"{fence}{language}", *lines, fence))

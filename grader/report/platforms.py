@@ -1,15 +1,16 @@
-"""A report as the result file of a platform: Gradescope's results.json or Classroom 50's result.json.
+"""A report as the result file of a platform: Gradescope's results.json or Classroom 50's
+result.json.
 
-In Gradescope's, what needs manual grading has no points, because they would be shown as lost: give them in Gradescope.
-Extra credit has points, but no maximum (`max_score` is optional). The maxima add up to the autograder points of the
-assignment; the score, which is given as a whole, may exceed them.
-https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format
+In Gradescope's, what needs manual grading has no points, because they would be shown as lost: give
+them in Gradescope. Extra credit has points, but no maximum (`max_score` is optional). The maxima
+add up to the autograder points of the assignment; the score, which is given as a whole, may exceed
+them. https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format
 
-The scores of Classroom 50's are whole numbers: if points are fractions, all are multiplied by 10, 100 and so on, so
-that none is rounded. Classroom 50 refuses scores above their maximum (schemas/result-v1.schema.json, validate_result of
-its runner.py). So the score is at most the maximum, even with extra credit. The test of a bonus shows its points, and
-is not part of the maximum.
-https://github.com/foundation50/classroom50
+The scores of Classroom 50's are whole numbers: if points are fractions, all are multiplied by 10,
+100 and so on, so that none is rounded. Classroom 50 refuses scores above their maximum
+(schemas/result-v1.schema.json, validate_result of its runner.py). So the score is at most the
+maximum, even with extra credit. The test of a bonus shows its points, and is not part of the
+maximum. https://github.com/foundation50/classroom50
 """
 
 import re
@@ -82,25 +83,33 @@ def _gradescope_points(result: Result) -> dict[str, Any]:
 
 _REQUIRED = ("CLASSROOM", "ASSIGNMENT", "SUBMISSION_TAG", "USERNAME", "COMMIT_URL", "RELEASE_URL")
 _KINDS = ("individual", "group", "team")
-_TAG = re.compile(r"submit/([0-9]{4}-[01][0-9]-[0-3][0-9])T([01][0-9]|2[0-3])-([0-5][0-9])-([0-5][0-9])Z-[!-~]+")
+_TAG = re.compile(
+    r"submit/([0-9]{4}-[01][0-9]-[0-3][0-9])T([01][0-9]|2[0-3])-([0-5][0-9])-([0-5][0-9])Z-[!-~]+"
+)
 
 
 def identity_from(environment: Mapping[str, str]) -> dict[str, str]:
-    """Return whose result it is, from the runner's environment variables. Raises InputError if some are missing."""
+    """Return whose result it is, from the runner's environment variables. Raises InputError if some
+    are missing.
+    """
     missing = [name for name in _REQUIRED if not environment.get(name)]
     if missing:
         raise InputError(
-            f"classroom50 requires {', '.join(missing)} in the environment: Classroom 50's runner sets them"
+            f"classroom50 requires {', '.join(missing)} in the environment: Classroom 50's "
+            "runner sets them"
         )
     given = {name: printable(environment[name]) for name in _REQUIRED}
     time = _TAG.fullmatch(environment["SUBMISSION_TAG"])
     if time is None:
         raise InputError(
-            f"SUBMISSION_TAG must look like submit/2026-09-01T10-00-00Z-ab12cd3, not {given['SUBMISSION_TAG']!r}"
+            "SUBMISSION_TAG must look like submit/2026-09-01T10-00-00Z-ab12cd3, not "
+            f"{given['SUBMISSION_TAG']!r}"
         )
     kind = environment.get("ASSIGNMENT_TYPE") or _KINDS[0]
     if kind not in _KINDS:
-        raise InputError(f"ASSIGNMENT_TYPE must be one of {', '.join(_KINDS)}, not {printable(kind)!r}")
+        raise InputError(
+            f"ASSIGNMENT_TYPE must be one of {', '.join(_KINDS)}, not {printable(kind)!r}"
+        )
     return {
         "classroom": given["CLASSROOM"],
         "assignment": given["ASSIGNMENT"],
@@ -110,7 +119,8 @@ def identity_from(environment: Mapping[str, str]) -> dict[str, str]:
         "commit": given["COMMIT_URL"],
         "release": given["RELEASE_URL"],
         "review": printable(environment.get("REVIEW_URL") or environment["COMMIT_URL"]),
-        "datetime": f"{time[1]}T{time[2]}:{time[3]}:{time[4]}Z",  # the runner replaces it by the commit's time
+        # the runner replaces it by the commit's time
+        "datetime": f"{time[1]}T{time[2]}:{time[3]}:{time[4]}Z",
     }
 
 
@@ -123,14 +133,18 @@ def render_classroom50(report: Report, identity: Mapping[str, str]) -> str:
             **identity,
             "score": int(min(report.score, report.max_score) * scale),
             "max-score": int(report.max_score * scale),
-            "tests": [_classroom50_test(entry, report, scale) for entry in entries(report).values()],
+            "tests": [
+                _classroom50_test(entry, report, scale) for entry in entries(report).values()
+            ],
         }
     )
 
 
 def _scale(report: Report) -> int:
     """Return the factor that makes all points whole: 1, 10, 100 and so on."""
-    points = [number for result in report.results for number in (result.points, result.criterion.points)]
+    points = [
+        number for result in report.results for number in (result.points, result.criterion.points)
+    ]
     digits = max((-int(number.normalize().as_tuple().exponent) for number in points), default=0)
     return int(10 ** max(0, digits))
 

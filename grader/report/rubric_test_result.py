@@ -38,9 +38,15 @@ _NUMBER_OF_ID = re.compile(r" \(\d+\)$")  # of equal ones
 
 
 def render_rubric_test(test: RubricTest, width: int) -> str:
-    """Return the result in lines of at most this width: what was graded, what is wrong, the score last."""
+    """Return the result in lines of at most this width: what was graded, what is wrong, the score
+    last.
+    """
     results = test.reference.results
-    lost = [f"  {it.criterion.id}: {it.outcome.message}" for it in results if it.criterion.id in test.lost]
+    lost = [
+        f"  {it.criterion.id}: {it.outcome.message}"
+        for it in results
+        if it.criterion.id in test.lost
+    ]
     lines = [f"{test.reference.rubric.id}: {test.reference.rubric.title}", "", *_count_lines(test)]
     if lost:
         lines += ["", "The reference does not get full marks:", *lost]
@@ -66,7 +72,10 @@ def render_rubric_test(test: RubricTest, width: int) -> str:
 
 def unexamined_line(paths: Sequence[str], count: int) -> str:
     """Return which of the files of a reference no criterion looks at."""
-    return f"No criterion looks at {enumerated(paths, _MAX_LISTED)}: {len(paths)} of {counted(count, 'file')}"
+    return (
+        f"No criterion looks at {enumerated(paths, _MAX_LISTED)}: {len(paths)} of "
+        f"{counted(count, 'file')}"
+    )
 
 
 def _fold(line: str, width: int) -> list[str]:
@@ -76,15 +85,22 @@ def _fold(line: str, width: int) -> list[str]:
     indent = line[: len(line) - len(line.lstrip())]
     if line.lstrip()[:1] in "+-@" or len(indent) > _DEEPEST:
         return [f"{line[: width - 3]}..."]
-    return textwrap.wrap(line, width, subsequent_indent=indent + "  ", break_long_words=False, break_on_hyphens=False)
+    return textwrap.wrap(
+        line, width, subsequent_indent=indent + "  ", break_long_words=False, break_on_hyphens=False
+    )
 
 
 def _count_lines(test: RubricTest) -> Iterator[str]:
     report, samples = test.reference, test.samples
-    decided = worth(it.criterion for it in report.results if not it.is_open or it.criterion.id in test.lost)
+    decided = worth(
+        it.criterion for it in report.results if not it.is_open or it.criterion.id in test.lost
+    )
     yield f"Reference    {format_points(report.score)} of {decided.text}"
     if test.equivalents:
-        yield f"Equivalents  {len(test.equivalents)} graded, {_count_or_none(len(test.losses), 'loses', 'lose')} points"
+        yield (
+            f"Equivalents  {len(test.equivalents)} graded, "
+            f"{_count_or_none(len(test.losses), 'loses', 'lose')} points"
+        )
     else:
         yield "Equivalents  none graded: ROS 2 does not load the reference without problems"
     if samples is not None:
@@ -95,7 +111,10 @@ def _count_lines(test: RubricTest) -> Iterator[str]:
     same = f", {test.same} {'is' if test.same == 1 else 'are'} the same robot" if test.same else ""
     ignored = f", {len(test.ignored)} ignored by the rubric" if test.ignored else ""
     survive = _count_or_none(len(test.survivors), "survives", "survive")
-    yield f"Mutants      {test.tried}{sample} graded, {test.caught} lose points{same}{ignored}, {survive}"
+    yield (
+        f"Mutants      {test.tried}{sample} graded, {test.caught} lose points{same}{ignored}, "
+        f"{survive}"
+    )
 
 
 def _count_or_none(count: int, one: str, several: str) -> str:
@@ -103,7 +122,9 @@ def _count_or_none(count: int, one: str, several: str) -> str:
 
 
 def _by_element(test: RubricTest) -> list[Loss]:
-    """Return the mutants that survive: those of one element, or of one line of another file, with the first diff."""
+    """Return the mutants that survive: those of one element, or of one line of another file, with
+    the first diff.
+    """
     groups: dict[str, list[str]] = {}
     diffs: dict[str, str] = {}
     for mutant, diff, _ in test.survivors:
@@ -111,11 +132,17 @@ def _by_element(test: RubricTest) -> list[Loss]:
         of_attribute = " " in label and mutant.family not in _OF_ELEMENT
         element = label.rpartition(" ")[0] if of_attribute else label
         is_of_robot = mutant.path.endswith(ROBOT_ENDINGS)
-        place = f"{element} in {mutant.path}" if is_of_robot else f"{mutant.path}, line {mutant.line}"
+        place = (
+            f"{element} in {mutant.path}" if is_of_robot else f"{mutant.path}, line {mutant.line}"
+        )
         groups.setdefault(place, []).append(mutant.id)
         diffs.setdefault(place, diff)
     return [
-        Loss("\n    ".join([f"{place}: {len(ids)} mutants", *first_lines(ids, _MAX_LISTED)]), {}, diffs[place])
+        Loss(
+            "\n    ".join([f"{place}: {len(ids)} mutants", *first_lines(ids, _MAX_LISTED)]),
+            {},
+            diffs[place],
+        )
         if len(ids) > 1
         else Loss(ids[0], {}, diffs[place])
         for place, ids in groups.items()
@@ -139,7 +166,10 @@ def _cut(lines: Sequence[str], room: int) -> list[str]:
     changed = [it for it in lines if it[:1] in ("-", "+") and it[:4] not in ("--- ", "+++ ")]
     shared = commonprefix([it[1:] for it in changed]) if len(changed) > 1 else ""  # noqa: RUF071  of texts, not of paths
     start = max(len(shared) - room // 3, 0)
-    return [f"{it[0]}...{it[1 + start :]}" if it in changed and start and len(it) > room else it for it in lines]
+    return [
+        f"{it[0]}...{it[1 + start :]}" if it in changed and start and len(it) > room else it
+        for it in lines
+    ]
 
 
 _LOSSES = Many(JsonObject({"name": TEXT, "criteria": mapping(TEXT), "diff": TEXT}))
@@ -164,8 +194,14 @@ RUBRIC_TEST = JsonObject(
         **schema_key("grader/rubric-test/v1"),
         "grader": (GRADER, lambda _: {"version": __version__}),
         "rubric": (RUBRIC, "reference.rubric"),
-        "score": ({"type": "number", "minimum": 0, "maximum": 100}, lambda test: rounded(float(test.score))),
-        "reference": (JsonObject({**inner("reference", SCORE), "lost": array(TEXT)}), lambda test: test),
+        "score": (
+            {"type": "number", "minimum": 0, "maximum": 100},
+            lambda test: rounded(float(test.score)),
+        ),
+        "reference": (
+            JsonObject({**inner("reference", SCORE), "lost": array(TEXT)}),
+            lambda test: test,
+        ),
         "equivalents": (_EQUIVALENTS, lambda test: test),
         "samples": Maybe(JsonObject({**each(TOTAL, "tried skipped"), "different": _LOSSES})),
         "mutants": (_MUTANTS, lambda test: test),

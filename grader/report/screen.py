@@ -22,7 +22,9 @@ def columns(terminal: int = _DEFAULT_WIDTH) -> int:
 
 
 class Screen(NamedTuple):
-    """The terminal or file of a report: its width in columns, its encoding, and whether it shows colours."""
+    """The terminal or file of a report: its width in columns, its encoding, and whether it shows
+    colours.
+    """
 
     width: int
     encoding: str = "utf-8"

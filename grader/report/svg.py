@@ -1,7 +1,9 @@
-"""The drawing of a robot as SVG: three views at one scale, a key of the signs, and the failed criteria.
+"""The drawing of a robot as SVG: three views at one scale, a key of the signs, and the failed
+criteria.
 
-It needs no script or other file. A page that contains it adds `STYLE` to its own rules. The signs are shapes, ground,
-frames, driving directions, outlines of the reference, and numbers. Every text is escaped here.
+It needs no script or other file. A page that contains it adds `STYLE` to its own rules. The signs
+are shapes, ground, frames, driving directions, outlines of the reference, and numbers. Every text
+is escaped here.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -14,7 +16,16 @@ from grader.grading.report import Report
 from grader.report.content import bonus_line, grade_line, notes, score_text, verdict_line
 from grader.report.criteria import points_of, remarks_on
 from grader.report.drawing.picture import Body, Picture, Wheel, picture_of, plain_picture
-from grader.report.drawing.views import PANEL, WIDTH, FreePlaces, Panel, Place, frames_of, from_back_to_front, panels_of
+from grader.report.drawing.views import (
+    PANEL,
+    WIDTH,
+    FreePlaces,
+    Panel,
+    Place,
+    frames_of,
+    from_back_to_front,
+    panels_of,
+)
 from grader.report.inspection import Inspection, effect
 from grader.robot.transforms import AXES, Z_AXIS, Transform
 from grader.text import enumerated, printable
@@ -44,7 +55,9 @@ _LOOKS = {
     "text": "fill:#1c1f23",
     "title": "fill:#1c1f23;font-size:17px;font-weight:700",
     "faint": "fill:#4b5563",
-    "letter": "fill:#1c1f23;stroke:#fff;stroke-width:2.5;paint-order:stroke;font-size:11px;text-anchor:middle",
+    "letter": (
+        "fill:#1c1f23;stroke:#fff;stroke-width:2.5;paint-order:stroke;font-size:11px;text-anchor:middle"
+    ),
 }
 STYLE = (
     f".drawing{{font:{_FONT}}}.drawing path{{fill:none;stroke-linecap:round;stroke-linejoin:round}}"
@@ -55,13 +68,18 @@ _AXIS, _LONG_AXIS, _ARROW = 20.0, 32.0, 30.0  # pixels
 _END_ON = 0.2  # of its length: an axis or arrow that appears shorter is not drawn as one
 _BADGE = 2.0 * _RADIUS + 2.0, 2.0 * _RADIUS + 2.0  # the room of one
 _RINGS = (22.0, 30.0, 40.0, 52.0, 66.0, 84.0, 106.0, 132.0)  # pixels from what a number labels
-_AROUND = [(ring * cos(tau * n / 16), -ring * sin(tau * n / 16)) for ring in _RINGS for n in range(2, 18)]
+_AROUND = [
+    (ring * cos(tau * n / 16), -ring * sin(tau * n / 16)) for ring in _RINGS for n in range(2, 18)
+]
 _MAX_NAME, _ROW = 60, 18.0
 _MAX_OUTLINES = 1024  # that are kept
 
 
-def drawing_element(picture: Picture, title: str = "", *, legend: bool = True, above: Sequence[str] = ()) -> str:
-    """Return the drawing of a robot as an SVG element; `above` are lines above it, `legend` lists the callouts below.
+def drawing_element(
+    picture: Picture, title: str = "", *, legend: bool = True, above: Sequence[str] = ()
+) -> str:
+    """Return the drawing of a robot as an SVG element; `above` are lines above it, `legend` lists
+    the callouts below.
 
     Screen readers read the title and the same list.
     """
@@ -71,7 +89,10 @@ def drawing_element(picture: Picture, title: str = "", *, legend: bool = True, a
     parts += _key(picture, panels[0].top)
     height, words = panels[-1].top + panels[-1].height, callout_lines(picture)
     lines = [line for part in words if legend for line in _wrapped(part, _WIDTH)]
-    parts += [_text("text", (_LEFT, height + _LINE * number), line) for number, line in enumerate(lines, 1)]
+    parts += [
+        _text("text", (_LEFT, height + _LINE * number), line)
+        for number, line in enumerate(lines, 1)
+    ]
     below = _LINE * len(lines) + 6.0 if lines else 0.0
     return _svg(title or "Three views of the robot", " ".join(words), height + below, parts)
 
@@ -79,7 +100,10 @@ def drawing_element(picture: Picture, title: str = "", *, legend: bool = True, a
 def _svg(title: str, words: str, height: float, parts: Iterable[str]) -> str:
     size = f'width="{WIDTH:g}" height="{height:.0f}"'
     said = f"<title>{_escaped(title[:_MAX_TITLE])}</title><desc>{_escaped(words)}</desc>"
-    start = f'<svg xmlns="http://www.w3.org/2000/svg" class="drawing" role="img" viewBox="0 0 {WIDTH:g} {height:.0f}"'
+    start = (
+        '<svg xmlns="http://www.w3.org/2000/svg" class="drawing" role="img" viewBox="0 0 '
+        f'{WIDTH:g} {height:.0f}"'
+    )
     return f'{start} {size}>{said}<rect class="paper" {size}/>{"".join(parts)}</svg>'
 
 
@@ -103,23 +127,31 @@ def _wrapped(words: str, width: float) -> list[str]:
 
 
 def render_svg(report: Report) -> str:
-    """Return the drawing of the graded robot as a file; without a robot, a sentence with the reason."""
+    """Return the drawing of the graded robot as a file; without a robot, a sentence with the
+    reason.
+    """
     words = [grade_line(report), verdict_line(report), bonus_line(report)]
     if report.another_robot:
         words += notes(report)[:1]
     for result in report.results:
         words += [f"{printable(result.criterion.id)}: {remark}" for remark in remarks_on(result)]
-    return _file(picture_of(report), f"{report.rubric.title}: {score_text(report)}", words, NO_PICTURE)
+    return _file(
+        picture_of(report), f"{report.rubric.title}: {score_text(report)}", words, NO_PICTURE
+    )
 
 
 def inspection_svg(inspection: Inspection) -> str:
-    """Return the drawing of an inspected robot as a file, with its joints at the given positions."""
+    """Return the drawing of an inspected robot as a file, with its joints at the given
+    positions.
+    """
     robot = inspection.robot
     picture = plain_picture(robot, inspection.relative_to)
     name = robot.robot.name if robot is not None else inspection.path
     words = f"{inspection.path}: {effect(inspection)}"
     if robot is not None and robot.positions:
-        words += f"; {', '.join(f'{joint} = {position}' for joint, position in robot.positions.items())}"
+        words += (
+            f"; {', '.join(f'{joint} = {position}' for joint, position in robot.positions.items())}"
+        )
     return _file(picture, name or inspection.path, (words,), NO_PICTURE)
 
 
@@ -130,12 +162,20 @@ def _file(picture: Picture | None, title: str, words: Iterable[str], reason: str
     else:
         above += ["", *_wrapped(reason, _WIDTH)]
         drawn = _svg(title, reason, _height(above), _headline(title, above))
-    return drawn.replace("<title>", f"<style>svg{{max-width:100%;height:auto}}{STYLE}</style><title>", 1) + "\n"
+    return (
+        drawn.replace(
+            "<title>", f"<style>svg{{max-width:100%;height:auto}}{STYLE}</style><title>", 1
+        )
+        + "\n"
+    )
 
 
 def _headline(title: str, above: Sequence[str]) -> list[str]:
     shown = [_text("title", (_LEFT, 26.0), line) for line in _wrapped(title, _WIDTH / 1.5)[:1]]
-    return shown + [_text("faint", (_LEFT, 2.0 * _LEFT + _LINE * number), line) for number, line in enumerate(above, 1)]
+    return shown + [
+        _text("faint", (_LEFT, 2.0 * _LEFT + _LINE * number), line)
+        for number, line in enumerate(above, 1)
+    ]
 
 
 def _height(above: Sequence[str]) -> float:
@@ -147,7 +187,9 @@ def _view(panel: Panel, picture: Picture) -> Iterator[str]:
     places = FreePlaces(panel)
     yield _text("faint", (panel.left + 14.0, panel.top + 14.0), panel.title)
     yield from _ground(panel, picture, places)
-    outlines = [(body, _outline(panel, body)) for body in from_back_to_front(picture.scene.bodies, panel)]
+    outlines = [
+        (body, _outline(panel, body)) for body in from_back_to_front(picture.scene.bodies, panel)
+    ]
     yield from (_shape(body, outline) for body, outline in outlines)
     if len(outlines) > 1:  # what a shape hides shows through
         yield _path("hidden", "".join(_polygon(outline) for _, outline in outlines))
@@ -157,7 +199,9 @@ def _view(panel: Panel, picture: Picture) -> Iterator[str]:
     frames = [("", _AXIS, pose) for pose in frames_of(picture)]
     frames += [(" dashed", _LONG_AXIS, pose) for pose in picture.frames]
     lines |= {axis: None for frame in frames for axis in _axes(panel, *frame)}
-    lines |= {("arrow", data): None for wheel in picture.scene.wheels for data in _travel(panel, wheel)}
+    lines |= {
+        ("arrow", data): None for wheel in picture.scene.wheels for data in _travel(panel, wheel)
+    }
     yield _path("halo", "".join(data for _, data in lines))
     yield from (_path(*line) for line in lines)
     yield from _numbers(panel, picture, places)
@@ -182,22 +226,32 @@ def _outline(panel: Panel, body: Body) -> tuple[str, ...]:
 
 
 def _shape(body: Body, outline: Sequence[str]) -> str:
-    fill, name = "".join(f"{round(255.0 * value):02x}" for value in body.rgba[:3]), _escaped(body.link[:_MAX_NAME])
+    fill, name = (
+        "".join(f"{round(255.0 * value):02x}" for value in body.rgba[:3]),
+        _escaped(body.link[:_MAX_NAME]),
+    )
     looks = f'class="edge" fill="#{fill}" fill-opacity="{body.rgba[3]:.2g}"'
     return f'<polygon {looks} points="{" ".join(outline)}"><title>{name}</title></polygon>'
 
 
 def _axes(panel: Panel, look: str, length: float, pose: Transform) -> Iterator[tuple[str, str]]:
-    """Yield the axes of a frame that do not point to the viewer or away: the look and the path of each."""
+    """Yield the axes of a frame that do not point to the viewer or away: the look and the path of
+    each.
+    """
     start = panel.place(pose.translation)
     for name, axis in zip("xyz", AXES, strict=True):
         across, down, _ = panel.direction(pose.rotate(axis))
         if hypot(across, down) > _END_ON:
-            yield f"axis-{name}{look}", _segment(start, (start[0] + length * across, start[1] + length * down))
+            yield (
+                f"axis-{name}{look}",
+                _segment(start, (start[0] + length * across, start[1] + length * down)),
+            )
 
 
 def _travel(panel: Panel, wheel: Wheel) -> Iterator[str]:
-    """Yield the path of the driving direction; it keeps to the right of the wheel's centre, so that two are visible."""
+    """Yield the path of the driving direction; it keeps to the right of the wheel's centre, so that
+    two are visible.
+    """
     across, down, _ = panel.direction(wheel.travel)
     if hypot(across, down) > _END_ON:
         x, y = panel.place(wheel.centre)
@@ -207,7 +261,10 @@ def _travel(panel: Panel, wheel: Wheel) -> Iterator[str]:
 def _arrow(start: Place, across: float, down: float) -> str:
     """Return the path data of an arrow in a direction on the sheet."""
     tip = start[0] + _ARROW * across, start[1] + _ARROW * down
-    barbs = ((tip[0] - 6.0 * across - side * down, tip[1] - 6.0 * down + side * across) for side in (4.2, -4.2))
+    barbs = (
+        (tip[0] - 6.0 * across - side * down, tip[1] - 6.0 * down + side * across)
+        for side in (4.2, -4.2)
+    )
     return _segment(start, tip) + "".join(_segment(tip, barb) for barb in barbs)
 
 
@@ -216,7 +273,10 @@ def _numbers(panel: Panel, picture: Picture, places: FreePlaces) -> Iterator[str
     for callout in picture.callouts:
         if callout.point is not None:
             x, y = panel.place(callout.point)
-            centre = places.take([(x + across, y + down) for across, down in _AROUND], _BADGE) or (x, y)
+            centre = places.take([(x + across, y + down) for across, down in _AROUND], _BADGE) or (
+                x,
+                y,
+            )
             yield _path("leader", _segment((x, y), centre)) + _badge(centre, callout.number)
 
 
@@ -248,7 +308,10 @@ def _escaped(words: str) -> str:
 
 def _text(look: str, place: Place, words: str) -> str:
     """Return a label; its place is on its base line."""
-    return f'<text class="{look}" x="{_number(place[0])}" y="{_number(place[1])}">{_escaped(words)}</text>'
+    return (
+        f'<text class="{look}" x="{_number(place[0])}" '
+        f'y="{_number(place[1])}">{_escaped(words)}</text>'
+    )
 
 
 def _number(value: float) -> str:
@@ -267,7 +330,10 @@ def _polygon(corners: Sequence[str]) -> str:
 
 def _badge(centre: Place, count: int) -> str:
     """Return a number in a disc."""
-    disc = f'<circle class="badge" cx="{_number(centre[0])}" cy="{_number(centre[1])}" r="{_RADIUS:g}"/>'
+    disc = (
+        f'<circle class="badge" cx="{_number(centre[0])}" cy="{_number(centre[1])}" '
+        f'r="{_RADIUS:g}"/>'
+    )
     return disc + _text("number", (centre[0], centre[1] + 4.2), str(count))
 
 

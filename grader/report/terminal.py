@@ -1,7 +1,8 @@
-"""A report for a person at a terminal: what to fix first; the score last, where the eye is when the command ends.
+"""A report for a person at a terminal: what to fix first; the score last, where the eye is when the
+command ends.
 
-It has the first mistakes in full, and a line for each further one; `--verbose` has everything. Text of a submission is
-never interpreted as markup or control codes.
+It has the first mistakes in full, and a line for each further one; `--verbose` has everything. Text
+of a submission is never interpreted as markup or control codes.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -78,9 +79,13 @@ class Page(NamedTuple):
         """Add a line, with an indent where it wraps."""
         self.inset(text, style, head=Text())
 
-    def inset(self, text: str | Text, style: str = "", indent: int = INDENT, head: Text | None = None) -> None:
+    def inset(
+        self, text: str | Text, style: str = "", indent: int = INDENT, head: Text | None = None
+    ) -> None:
         """Add a text below a title or an item."""
-        self.rows.append(block(self.console, Text(text, style) if isinstance(text, str) else text, indent, head))
+        self.rows.append(
+            block(self.console, Text(text, style) if isinstance(text, str) else text, indent, head)
+        )
 
     def item(self, status: str, *parts: str | tuple[str, str]) -> None:
         """Add texts, with their styles, behind the symbol of a status."""
@@ -134,19 +139,29 @@ def _show_brief(report: Report, found: ReportSections, page: Page) -> None:
         page.leave_row()
         for entry in section.entries:
             words = " ".join(remarks_on(entry.result)) or entry.texts("finding")[0]
-            page.item(entry.status, (printable(entry.id), "bold"), f"  {earned_text(entry.result)}: {words}")
+            page.item(
+                entry.status,
+                (printable(entry.id), "bold"),
+                f"  {earned_text(entry.result)}: {words}",
+            )
     _show_groups(report, page)
     _show_files(report, page)
     page.leave_row()
 
 
 def _show_start(report: Report, page: Page) -> None:
-    """Add what was graded, the result, and notes; the package only if the path of the URDF does not show it."""
+    """Add what was graded, the result, and notes; the package only if the path of the URDF does not
+    show it.
+    """
     submission = report.submission
     rejected = ", which ROS 2 rejects" if submission.verdict == "rejected" else ""
     page.line(content.graded_line(report) + rejected, LOOKS["graded"])
     page.line(content.result_line(report), LOOKS["result"])
-    folder = f"{submission.package.folder}/" if submission.package is not None and submission.package.folder else ""
+    folder = (
+        f"{submission.package.folder}/"
+        if submission.package is not None and submission.package.folder
+        else ""
+    )
     package = content.package_line(report)
     if package and not (submission.path or "").startswith(folder or "urdf/"):
         page.line(package, "dim")
@@ -168,7 +183,9 @@ def _show_mistakes(mistakes: Sequence[Entry], report: Report, page: Page) -> Non
 
 
 def _brief_blocks(entry: Entry) -> Iterator[Block]:
-    """Yield the blocks of a short report: what is expected only if needed, and nothing that head and hint say."""
+    """Yield the blocks of a short report: what is expected only if needed, and nothing that head
+    and hint say.
+    """
     is_clear = entry.result.outcome.expected is not None or bool(entry.texts("hint", "feedback"))
     for part in entry.blocks:
         match part:
@@ -182,10 +199,14 @@ def _brief_blocks(entry: Entry) -> Iterator[Block]:
                 yield part
 
 
-def _show_entry(entry: Entry, report: Report, page: Page, blocks: Iterable[Block], *, is_whole: bool = False) -> None:
+def _show_entry(
+    entry: Entry, report: Report, page: Page, blocks: Iterable[Block], *, is_whole: bool = False
+) -> None:
     """Add a criterion or a mistake with these blocks; `is_whole` never shortens its place."""
     is_mistake = bool(entry.lost) or is_failure(entry.result)
-    page.line(_mistake_head(entry, page, is_whole=is_whole) if is_mistake else _entry_head(entry, page))
+    page.line(
+        _mistake_head(entry, page, is_whole=is_whole) if is_mistake else _entry_head(entry, page)
+    )
     page.inset(" ".join(entry.texts("finding")))
     source_of = report.submission.source
     for part in blocks:
@@ -206,13 +227,19 @@ def _show_entry(entry: Entry, report: Report, page: Page, blocks: Iterable[Block
 
 
 def _mistake_head(entry: Entry, page: Page, *, is_whole: bool = False) -> Text:
-    """Return what a mistake costs, its criteria, and its place, without the folder where there is no room for it."""
+    """Return what a mistake costs, its criteria, and its place, without the folder where there is
+    no room for it.
+    """
     cost = (entry.cost, STYLES[entry.status]), ": ", (entry.names, "bold")
     text = Text.assemble(page.mark(entry.status), " ", *cost)
     where = entry.location
     if where is None:
         return text
-    places = (where,) if is_whole else (where, where._replace(path=where.path.rpartition("/")[2], calls=()))
+    places = (
+        (where,)
+        if is_whole
+        else (where, where._replace(path=where.path.rpartition("/")[2], calls=()))
+    )
     room = page.console.width - INDENT - text.cell_len
     fitting = (it for it in places if len(location_text(it)) + 2 <= room)
     return text.append(f"  {location_text(next(fitting, where))}", "dim")
@@ -222,11 +249,15 @@ def _entry_head(entry: Entry, page: Page) -> Text:
     """Return the title, name and points of a criterion that did not fail."""
     title, name = printable(entry.result.criterion.title), printable(entry.id)
     points = earned_text(entry.result)
-    return Text.assemble(page.mark(entry.status), " ", (title, "bold"), (f"  {name}", "dim"), f"  {points}")
+    return Text.assemble(
+        page.mark(entry.status), " ", (title, "bold"), (f"  {name}", "dim"), f"  {points}"
+    )
 
 
 def block(console: Console, text: Text, indent: int, head: Text | None = None) -> Text:
-    """Return text that keeps its indent when it wraps; `head` is in place of the indent of the first line."""
+    """Return text that keeps its indent when it wraps; `head` is in place of the indent of the
+    first line.
+    """
     lines = text.wrap(console, max(8, console.width - indent))
     for line in lines:
         line.rstrip()
@@ -238,7 +269,9 @@ def excerpt_block(console: Console, source: Source, where: Location, indent: int
     number = str(where.line)
     before, meant, after = excerpt(source, where, max(8, console.width - indent - len(number) - 3))
     mark, bar = _symbol(console, "\u2500", "-"), _symbol(console, "\u2502", "|")
-    text = Text.assemble((f"{' ' * indent}{number} {bar} ", "dim"), (before + meant + after).rstrip())
+    text = Text.assemble(
+        (f"{' ' * indent}{number} {bar} ", "dim"), (before + meant + after).rstrip()
+    )
     under = " " * len(before) + mark * max(1, len(meant))
     return text.append(f"\n{' ' * (indent + len(number))} {bar} ", "dim").append(under, "red")
 
@@ -249,7 +282,9 @@ def _symbol(console: Console, fancy: str, plain: str) -> str:
 
 
 def _show_pending(report: Report, pending: Sequence[Entry], page: Page) -> None:
-    """Add what needs manual grading: where each answer and picture was found, or why a check cannot decide."""
+    """Add what needs manual grading: where each answer and picture was found, or why a check cannot
+    decide.
+    """
     if pending:
         points = points_of(result for entry in pending for result in entry.results)
         page.title(f"Needs manual grading ({points})" if report.open_points else "Not graded")
@@ -270,7 +305,9 @@ def _show_groups(report: Report, page: Page) -> None:
 
     Groups of which nothing is known yet are listed elsewhere.
     """
-    known = [group for group in groups(report) if not all(result.is_open for result in group.results)]
+    known = [
+        group for group in groups(report) if not all(result.is_open for result in group.results)
+    ]
     kinds = alike(known, lambda group: group.status)
     if kinds:
         page.leave_row()
@@ -279,22 +316,31 @@ def _show_groups(report: Report, page: Page) -> None:
 
 
 def _show_files(report: Report, page: Page) -> None:
-    """Add the first problems that no criterion has reported, and the first of the files that were not graded."""
+    """Add the first problems that no criterion has reported, and the first of the files that were
+    not graded.
+    """
     problems = content.other_problems(report)
     listed = [found for found in problems if found.severity != "note"]
     if listed:
         page.leave_row()
     for found in listed[:_MAX_PROBLEMS]:
         where = f"{printable(found.location.path.rpartition('/')[2])}:{found.location.line}"
-        text = Text.assemble((f"{found.code} {found.severity} ", LOOKS[found.severity]), (where, "dim"))
+        text = Text.assemble(
+            (f"{found.code} {found.severity} ", LOOKS[found.severity]), (where, "dim")
+        )
         page.line(text.append(f": {printable(found.message)}"))
     rest = len(problems) - len(listed[:_MAX_PROBLEMS])
     if rest:
         words = counted(rest, "more problem" if listed else "note")
         page.line(f"{words}: --verbose shows {'it' if rest == 1 else 'them'}", "dim")
-    others, ignored = [file.path for file in report.submission.unused_candidates], report.submission.ignored
+    others, ignored = (
+        [file.path for file in report.submission.unused_candidates],
+        report.submission.ignored,
+    )
     if others:
-        page.line(printable(f"Not graded: {enumerated(others, _MAX_FILES)} (--verbose says why)"), "dim")
+        page.line(
+            printable(f"Not graded: {enumerated(others, _MAX_FILES)} (--verbose says why)"), "dim"
+        )
     if ignored:
         more = f" (and {len(ignored) - 1} more: --verbose lists them)" if len(ignored) > 1 else ""
         page.line(printable(f"Ignored: {ignored[0]}{more}"), "dim")
@@ -309,7 +355,11 @@ def _show_end(report: Report, page: Page) -> None:
     counting = report.counting
     is_full = counting is not None and counting + report.open_points >= report.max_score
     score = content.score_text(report).replace(" / ", "/").removesuffix(" points")
-    parts = (score, "bold green" if is_full else "bold"), "  ", (printable(report.rubric.title), "bold")
+    parts = (
+        (score, "bold green" if is_full else "bold"),
+        "  ",
+        (printable(report.rubric.title), "bold"),
+    )
     page.inset(Text.assemble(*parts), indent=0)
 
 
@@ -334,7 +384,9 @@ def _show_section(section: Section, report: Report, page: Page) -> None:
             page.leave_row()
         _show_entry(entry, report, page, entry.blocks, is_whole=True)
     for line in section.lines:
-        page.inset(line.text, LOOKS[line.role], 2 * INDENT if line.role in ("found", "missing") else INDENT)
+        page.inset(
+            line.text, LOOKS[line.role], 2 * INDENT if line.role in ("found", "missing") else INDENT
+        )
 
 
 def _show_parts(report: Report, page: Page) -> None:
@@ -346,14 +398,20 @@ def _show_parts(report: Report, page: Page) -> None:
             page.title(f"{printable(title)}  {points}", "bold underline")
         for group in found:
             if len(found) > 1 or group.title != title:
-                page.title(Text.assemble((printable(group.title), "bold"), (f"  {group.points}", "dim")))
+                page.title(
+                    Text.assemble((printable(group.title), "bold"), (f"  {group.points}", "dim"))
+                )
             for result in group.results:
-                start = Text.assemble("  ", page.mark(status_of(result)), f" {earned_text(result):<5} ")
+                start = Text.assemble(
+                    "  ", page.mark(status_of(result)), f" {earned_text(result):<5} "
+                )
                 page.inset(_criterion_row(result), indent=len(start), head=start)
 
 
 def _criterion_row(result: Result) -> Text:
-    """Return a criterion in a line: its title if it passed, else its name, because a title would read as a fact."""
+    """Return a criterion in a line: its title if it passed, else its name, because a title would
+    read as a fact.
+    """
     status = status_of(result)
     if status == "passed":
         return Text(printable(result.criterion.title))

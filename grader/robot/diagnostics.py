@@ -1,4 +1,6 @@
-"""The problems that are found in a URDF while its elements and their values are read, each with its location."""
+"""The problems that are found in a URDF while its elements and their values are read, each with its
+location.
+"""
 
 import re
 from collections.abc import Callable, Iterable
@@ -20,7 +22,9 @@ from grader.xml.xml_problems import RECOVERED
 _FORMAT_DIRECTIVE = re.compile(r"%[-+ #0-9.$*'hlLqjzt]*n")  # %n, %1$n, %hhn
 _MAX_PROBLEMS = 1000
 _MAX_GUESSES = 50  # in one file, because they take long
-_PRINTED = frozenset({"origin", "box", "cylinder", "sphere", "mass"})  # whose values urdfdom uses as printf's format
+_PRINTED = frozenset(
+    {"origin", "box", "cylinder", "sphere", "mass"}
+)  # whose values urdfdom uses as printf's format
 FULL_TURN = 6.2832  # radians
 _OF_MISSING = (
     urdf_problems.UNKNOWN_LINK,
@@ -55,7 +59,9 @@ class Problems:
         return LazyLocation(self.source, self._indices[element])
 
     def parts(self, element: Element) -> UnresolvedParts:
-        """Return what xacro left unresolved of a link, joint or material, by child tag; "@name" for an attribute."""
+        """Return what xacro left unresolved of a link, joint or material, by child tag; "@name" for
+        an attribute.
+        """
         if not self.unresolved:
             return _NOTHING
         parts: dict[str, UnresolvedPart] = {}
@@ -64,11 +70,17 @@ class Problems:
             if found is None:
                 continue
             above = inner
-            while above is not element and (parent := above.getparent()) is not element and parent is not None:
+            while (
+                above is not element
+                and (parent := above.getparent()) is not element
+                and parent is not None
+            ):
                 above = parent
             for name, reason in found.attributes.items():
                 key = f"@{name}" if inner is element else str(above.tag)
-                parts.setdefault(key, UnresolvedPart(reason, self.location(inner)._replace(attribute=name)))
+                parts.setdefault(
+                    key, UnresolvedPart(reason, self.location(inner)._replace(attribute=name))
+                )
             if found.content is not None:
                 key = "" if inner is element else str(above.tag)
                 parts.setdefault(key, UnresolvedPart(found.content, self.location(inner)))
@@ -84,7 +96,9 @@ class Problems:
         if kind in _OF_MISSING and of_root is not None and of_root.content is not None:
             return True
         return found is not None and (
-            attribute in found.attributes if attribute and element.get(attribute) else found.content is not None
+            attribute in found.attributes
+            if attribute and element.get(attribute)
+            else found.content is not None
         )
 
     def line(self, element: Element) -> int:
@@ -96,8 +110,17 @@ class Problems:
         """Return the element that a joint was read from."""
         return self._elements[joint.location.tag] if joint.location is not None else self.root
 
-    def add(self, kind: Kind, message: str, element: Element, attribute: str | None = None, subject: str = "") -> None:
-        """Add a problem at an element, or at one of its attributes if it has it, unless xacro left that unresolved."""
+    def add(
+        self,
+        kind: Kind,
+        message: str,
+        element: Element,
+        attribute: str | None = None,
+        subject: str = "",
+    ) -> None:
+        """Add a problem at an element, or at one of its attributes if it has it, unless xacro left
+        that unresolved.
+        """
         if self.unresolved and self._explains(kind, element, attribute):
             return
         self.effects.add(kind.effect)
@@ -114,7 +137,10 @@ class Problems:
     def duplicate(self, kind: Kind, element: Element, first: Element) -> None:
         """Add that an element has the name of an earlier one of its kind."""
         name = quoted(element.get("name") or "")
-        message = f"the {element.tag} {name} is already defined in line {self.line(first)}; ROS 2 rejects the file"
+        message = (
+            f"the {element.tag} {name} is already defined in line {self.line(first)}; ROS 2 "
+            "rejects the file"
+        )
         self.add(kind, message, element, "name")
 
     def closest(self, name: str, known: Iterable[str]) -> str | None:
@@ -123,29 +149,44 @@ class Problems:
         return closest(name, known) if self._guesses >= 0 else None
 
     def did_you_mean(self, name: str, known: Iterable[str]) -> str:
-        """Return `; did you mean 'x'?` for the end of a message, or nothing if no known name is close."""
+        """Return `; did you mean 'x'?` for the end of a message, or nothing if no known name is
+        close.
+        """
         self._guesses -= 1
         return did_you_mean(name, known) if self._guesses >= 0 else ""
 
     def check_printed(self, text: str, element: Element, attribute: str | None = None) -> None:
-        """Add a problem if ROS 2 passes this text to printf and it contains a directive that can crash it."""
+        """Add a problem if ROS 2 passes this text to printf and it contains a directive that can
+        crash it.
+        """
         if "%" in text and _FORMAT_DIRECTIVE.search(text):
-            message = "ROS 2 passes this value to printf as a format, where %n writes to memory: it can crash"
+            message = (
+                "ROS 2 passes this value to printf as a format, where %n writes to memory: it "
+                "can crash"
+            )
             self.add(urdf_problems.FORMAT_DIRECTIVE, message, element, attribute)
 
 
 class ElementReader:
-    """Reads one element that ROS 2 keeps or loses as a whole: every defect in it is a problem of one kind.
+    """Reads one element that ROS 2 keeps or loses as a whole: every defect in it is a problem of
+    one kind.
 
-    A value that cannot be read is a problem and sets `failed`. A number is NaN then, any other value its default.
+    A value that cannot be read is a problem and sets `failed`. A number is NaN then, any other
+    value its default.
     """
 
     __slots__ = ("_consequence", "_kind", "_link", "_problems", "failed")
 
     def __init__(
-        self, problems: Problems, kind: Kind, consequence: str = "ROS 2 rejects the file", link: str = ""
+        self,
+        problems: Problems,
+        kind: Kind,
+        consequence: str = "ROS 2 rejects the file",
+        link: str = "",
     ) -> None:
-        """`consequence` says what ROS 2 does about a defect; the name of the `link` is put where it has {}."""
+        """`consequence` says what ROS 2 does about a defect; the name of the `link` is put where it
+        has {}.
+        """
         self._problems = problems
         self._kind = kind
         self._consequence = consequence
@@ -159,7 +200,9 @@ class ElementReader:
         self._problems.add(self._kind, f"{reason}; {consequence}", element, attribute, self._link)
 
     def number(self, element: Element, attribute: str) -> float:
-        """Return an attribute's number, or its default if it is not given; it is a problem if it has none."""
+        """Return an attribute's number, or its default if it is not given; it is a problem if it
+        has none.
+        """
         if attribute in element.attrib:
             return self._value(element, attribute, number, nan)
         default = TAGS[element.tag].attributes[attribute].default
@@ -175,22 +218,35 @@ class ElementReader:
         """Return an <origin>: the identity if there is none."""
         if element is None:
             return Origin()
-        xyz, rpy = self._value(element, "xyz", vector, _ZERO), self._value(element, "rpy", vector, _ZERO)
+        xyz, rpy = (
+            self._value(element, "xyz", vector, _ZERO),
+            self._value(element, "rpy", vector, _ZERO),
+        )
         if rpy != _ZERO and max(map(abs, rpy)) > FULL_TURN and not self.failed:
-            angle = next((angle for angle in rpy if abs(angle) > FULL_TURN and angle % 15 == 0), None)
+            angle = next(
+                (angle for angle in rpy if abs(angle) > FULL_TURN and angle % 15 == 0), None
+            )
             if angle is not None:
-                message = f"rpy is in radians, and {angle:g} is more than a full turn: is it in degrees?"
+                message = (
+                    f"rpy is in radians, and {angle:g} is more than a full turn: is it in degrees?"
+                )
                 self._problems.add(urdf_problems.DEGREES, message, element, "rpy")
         return Origin(xyz, rpy, self._problems.location(element))
 
-    def _value(self, element: Element, attribute: str, parse: Callable[[str], _Value], default: _Value) -> _Value:
+    def _value(
+        self, element: Element, attribute: str, parse: Callable[[str], _Value], default: _Value
+    ) -> _Value:
         text = element.get(attribute)
         if text is None:
             return default
         try:
             return parse(text)
         except NumberError as error:
-            self.fail(f"cannot read {attribute}={quote_value(text)} of <{element.tag}>: {error}", element, attribute)
+            self.fail(
+                f"cannot read {attribute}={quote_value(text)} of <{element.tag}>: {error}",
+                element,
+                attribute,
+            )
             if element.tag in _PRINTED:
                 self._problems.check_printed(text, element, attribute)
             return default

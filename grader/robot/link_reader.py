@@ -1,4 +1,5 @@
-"""Links as urdfdom reads them: what is lost with a bad element (`link.cpp`), and the material that each visual gets.
+"""Links as urdfdom reads them: what is lost with a bad element (`link.cpp`), and the material that
+each visual gets.
 
 Its colour is that of `parseMaterial` in `link.cpp` and of `assignMaterial` in `model.cpp`.
 """
@@ -33,11 +34,14 @@ _COLLISION_LOST = "ROS 2 drops this collision of link {} and the collisions afte
 
 
 class Materials:
-    """The materials that are defined so far: first those under <robot>, then those in links, in file order."""
+    """The materials that are defined so far: first those under <robot>, then those in links, in
+    file order.
+    """
 
     def __init__(self, problems: Problems) -> None:
         self._problems = problems
-        self._defined: dict[str, Element] | None = None  # all definitions of the file, once one is missing
+        # all definitions of the file, once one is missing
+        self._defined: dict[str, Element] | None = None
         self.known: dict[str, Material] = {}
 
     def define(self, element: Element) -> None:
@@ -46,14 +50,20 @@ class Materials:
         name = element.get("name") or ""
         material, is_reported = self._read_material(element, name, "ROS 2 shows black")
         if element.get("name") is None:
-            problems.add(urdf_problems.UNNAMED_MATERIAL, "this material has no name; no link can use it", element)
+            problems.add(
+                urdf_problems.UNNAMED_MATERIAL,
+                "this material has no name; no link can use it",
+                element,
+            )
         elif material is None:
             if not is_reported:
                 message = f"material {quoted(name)} has no valid colour; ROS 2 makes it black"
                 problems.add(urdf_problems.COLOURLESS_MATERIAL, message, element)
             problems.check_printed(name, element, "name")
         if name in self.known:
-            message = f"material {quoted(name)} is defined twice under <robot>; ROS 2 rejects the file"
+            message = (
+                f"material {quoted(name)} is defined twice under <robot>; ROS 2 rejects the file"
+            )
             problems.add(urdf_problems.DUPLICATE_MATERIAL, message, element, "name")
         else:
             self.known[name] = material or Material(name, location=problems.location(element))
@@ -66,7 +76,11 @@ class Materials:
         name = element.get("name") or ""
         if not len(element) and name in self.known and name:
             return self.known[name], name, False
-        fallback = "the definition above applies" if name in self.known else f"material {quoted(name)} stays undefined"
+        fallback = (
+            "the definition above applies"
+            if name in self.known
+            else f"material {quoted(name)} stays undefined"
+        )
         own, reported = self._read_material(element, name, f"ROS 2 logs an error: {fallback}")
         found = self.known.get(name) if name else own
         if own is None:
@@ -76,12 +90,19 @@ class Materials:
         elif found is None:
             found = self.known[name] = own
         elif (own.rgba, own.texture) != (found.rgba, found.texture):
-            message = f"material {quoted(name)} is already defined differently; ROS 2 ignores this definition"
+            message = (
+                f"material {quoted(name)} is already defined differently; ROS 2 ignores this "
+                "definition"
+            )
             self._problems.add(urdf_problems.REDEFINED_MATERIAL, message, element, "name")
         return found, name, found is None and reported
 
-    def _read_material(self, element: Element, name: str, consequence: str) -> tuple[Material | None, bool]:
-        """Return the material that an element defines, if it does, and whether its colour is reported as a problem."""
+    def _read_material(
+        self, element: Element, name: str, consequence: str
+    ) -> tuple[Material | None, bool]:
+        """Return the material that an element defines, if it does, and whether its colour is
+        reported as a problem.
+        """
         inside = first_children(element)
         colour = inside.get("color")
         filename = inside["texture"].get("filename") if "texture" in inside else None
@@ -90,7 +111,10 @@ class Materials:
             try:
                 channels = rgba(text)
                 if channels is None:
-                    message = f"rgba={quote_value(text)} needs exactly four numbers; ROS 2 silently shows black"
+                    message = (
+                        f"rgba={quote_value(text)} needs exactly four numbers; ROS 2 silently "
+                        "shows black"
+                    )
                     self._problems.add(urdf_problems.COLOUR_COUNT, message, colour, "rgba")
                     channels = _BLACK
             except NumberError as error:
@@ -110,7 +134,9 @@ class Materials:
         found = self._problems.unresolved.get(root)
         if found is None or not found.content:
             return None
-        return Material(name, unresolved={"": UnresolvedPart(found.content, self._problems.location(root))})
+        return Material(
+            name, unresolved={"": UnresolvedPart(found.content, self._problems.location(root))}
+        )
 
     def _note_undefined(self, name: str, element: Element, link: str) -> None:
         problems = self._problems
@@ -123,24 +149,35 @@ class Materials:
             hint = f" before its definition in line {line}; define it directly under <robot>"
         else:
             hint = f", which is not defined{problems.did_you_mean(name, self._defined)}"
-        message = f"link {quoted(link)} uses material {quoted(name)}{hint}; ROS 2 shows it without the colour"
+        message = (
+            f"link {quoted(link)} uses material {quoted(name)}{hint}; ROS 2 shows it without "
+            "the colour"
+        )
         problems.add(urdf_problems.UNDEFINED_MATERIAL, message, element, "name")
 
 
 def read_link(element: Element, problems: Problems, materials: Materials) -> Link:
-    """Read one link with what ROS 2 keeps of it: a bad inertial loses all shapes, a bad shape those after it."""
+    """Read one link with what ROS 2 keeps of it: a bad inertial loses all shapes, a bad shape
+    those after it.
+    """
     name = element.get("name")
     location = problems.location(element)
     if name is None:
         problems.add(
-            urdf_problems.LINK_WITHOUT_NAME, "this link has no name; ROS 2 keeps it as an empty link ''", element
+            urdf_problems.LINK_WITHOUT_NAME,
+            "this link has no name; ROS 2 keeps it as an empty link ''",
+            element,
         )
         return Link("", location=location)
     parts: dict[str, list[Element]] = {"inertial": [], "visual": [], "collision": []}
     for child in element:
         parts.get(child.tag, []).append(child)
     inertial = _read_inertial(parts["inertial"][0], problems, name) if parts["inertial"] else None
-    dropping = inertial is None and parts["inertial"] != [] and not problems.is_unresolved(parts["inertial"][0])
+    dropping = (
+        inertial is None
+        and parts["inertial"] != []
+        and not problems.is_unresolved(parts["inertial"][0])
+    )
     shapes: list[Visual | Collision] = []
     for child in parts["visual"] + parts["collision"]:
         shape = _read_shape(child, problems, name, None if dropping else materials)
@@ -171,7 +208,9 @@ def _read_inertial(element: Element, problems: Problems, link: str) -> Inertial 
 def _read_shape(
     element: Element, problems: Problems, link: str, materials: Materials | None
 ) -> Visual | Collision | None:
-    """Read a visual or collision; `materials` is None where it is dropped anyway, and defines none."""
+    """Read a visual or collision; `materials` is None where it is dropped anyway, and defines
+    none.
+    """
     is_visual = element.tag == "visual"
     if is_visual:
         reader = ElementReader(problems, urdf_problems.BAD_VISUAL, _VISUAL_LOST, link)
@@ -212,7 +251,9 @@ def _read_geometry(
     geometry = _geometry_from(shape, reader, problems.location(shape))
     for attribute, value in _sizes_by_attribute(geometry):
         if value < 0:
-            message = f"{attribute} of <{shape.tag}> is negative ({value:g}), which ROS 2 does not check"
+            message = (
+                f"{attribute} of <{shape.tag}> is negative ({value:g}), which ROS 2 does not check"
+            )
             problems.add(urdf_problems.NEGATIVE_SIZE, message, shape, attribute)
             break
     return geometry
@@ -223,10 +264,14 @@ def _geometry_from(shape: Element, reader: ElementReader, location: LazyLocation
         case "box":
             return Box(reader.vector(shape, "size"), location)
         case "cylinder":
-            return Cylinder(reader.number(shape, "radius"), reader.number(shape, "length"), location)
+            return Cylinder(
+                reader.number(shape, "radius"), reader.number(shape, "length"), location
+            )
         case "sphere":
             return Sphere(reader.number(shape, "radius"), location)
-    return Mesh(shape.get("filename") or "", reader.vector(shape, "scale", (1.0, 1.0, 1.0)), location)
+    return Mesh(
+        shape.get("filename") or "", reader.vector(shape, "scale", (1.0, 1.0, 1.0)), location
+    )
 
 
 def _sizes_by_attribute(geometry: Geometry) -> list[tuple[str, float]]:

@@ -1,7 +1,9 @@
-"""The tree of links: their parent joints, what keeps them from being one tree, and links that are named by their place.
+"""The tree of links: their parent joints, what keeps them from being one tree, and links that are
+named by their place.
 
-ROS 2 makes the tree in `model.h` (initTree, initRoot) and kdl_parser (addChildrenToTree). A rubric can name a link by
-its place in the tree: "@root", "@tip", "@moved:2"; and a joint by the link that it holds: "@joint:left_wheel".
+ROS 2 makes the tree in `model.h` (initTree, initRoot) and kdl_parser (addChildrenToTree). A rubric
+can name a link by its place in the tree: "@root", "@tip", "@moved:2"; and a joint by the link that
+it holds: "@joint:left_wheel".
 """
 
 import re
@@ -33,9 +35,10 @@ _Edges = dict[str, list[Joint]]  # the joints by their parent link
 def parent_joints(robot: Robot) -> dict[str, Joint]:
     """Return the parent joint of each link, by the link's name; a root has none.
 
-    Of two joints with one child the last in name order counts, as in ROS 2. ROS 2 shows nothing of a rejected file, so
-    there the most plausible reading counts: no joint that would close a loop, rather one whose name contains its
-    child's than one whose name contains only its parent's (these two may be swapped), and then the first in the file.
+    Of two joints with one child the last in name order counts, as in ROS 2. ROS 2 shows nothing of
+    a rejected file, so there the most plausible reading counts: no joint that would close a loop,
+    rather one whose name contains its child's than one whose name contains only its parent's (these
+    two may be swapped), and then the first in the file.
     """
     complete = _complete_joints(robot)
     if robot.rejected:
@@ -52,7 +55,10 @@ def _complete_joints(robot: Robot) -> list[Joint]:
     return [
         joint
         for joint in robot.joints
-        if joint.parent and joint.child and robot.has_link(joint.parent) and robot.has_link(joint.child)
+        if joint.parent
+        and joint.child
+        and robot.has_link(joint.parent)
+        and robot.has_link(joint.child)
     ]
 
 
@@ -76,14 +82,18 @@ def _most_plausible(joints: list[Joint]) -> dict[str, Joint]:
 
 
 def _implausibility(joint: Joint) -> int:
-    """Return how implausible the ends of a joint are by its name: 0, 1, or 2 if they look swapped."""
+    """Return how implausible the ends of a joint are by its name: 0, 1, or 2 if they look
+    swapped.
+    """
     if joint.child in joint.name:
         return 0
     return 2 if joint.parent in joint.name else 1
 
 
 def check_tree(robot: Robot, links: dict[str, Element], problems: Problems) -> None:
-    """Report everything that keeps the links from being one tree. `links` gives their elements by name."""
+    """Report everything that keeps the links from being one tree. `links` gives their elements by
+    name.
+    """
     parents = parent_joints(robot)
     roots = [link.name for link in robot.links if link.name not in parents]
     edges: _Edges = {}
@@ -135,7 +145,9 @@ def _predecessors(edges: _Edges, links: Iterable[str]) -> dict[str, list[str]]:
 
 
 def _cycles(edges: _Edges, links: list[str]) -> list[list[Joint]]:
-    """Return up to `_MAX_CYCLES` loops of joints; the links of each are removed before the next is looked for."""
+    """Return up to `_MAX_CYCLES` loops of joints; the links of each are removed before the next is
+    looked for.
+    """
     cycles: list[list[Joint]] = []
     rank = {link: number for number, link in enumerate(links)}
     while len(cycles) < _MAX_CYCLES:
@@ -148,35 +160,56 @@ def _cycles(edges: _Edges, links: list[str]) -> list[list[Joint]]:
         first = names.index(min(names, key=rank.__getitem__))
         ring = [*names[first:], *names[:first], names[first]]
         in_ring, steps = set(ring), pairwise(ring)
-        cycles.append([next(joint for joint in edges[parent] if joint.child == child) for parent, child in steps])
+        cycles.append(
+            [
+                next(joint for joint in edges[parent] if joint.child == child)
+                for parent, child in steps
+            ]
+        )
         links = [link for link in links if link not in in_ring]
     return cycles
 
 
-def _report_cycle(cycle: list[Joint], reachable: set[str], problems: Problems, *, has_root: bool) -> None:
+def _report_cycle(
+    cycle: list[Joint], reachable: set[str], problems: Problems, *, has_root: bool
+) -> None:
     shown = [*cycle[:_MAX_NAMED], *cycle[-1:]] if len(cycle) > _MAX_NAMED else cycle
     steps = " -> ".join(quoted(joint.parent) for joint in shown) + f" -> {quoted(cycle[0].parent)}"
     names = ", ".join(quoted(joint.name) for joint in shown)
     loop = f"joint {names} forms a loop" if len(cycle) == 1 else f"joints {names} form a loop"
     element = problems.element(cycle[0])
     if cycle[0].parent in reachable:
-        problems.add(urdf_problems.CYCLE, f"{loop}: {steps}; ROS 2 follows it without end and crashes", element)
+        problems.add(
+            urdf_problems.CYCLE,
+            f"{loop}: {steps}; ROS 2 follows it without end and crashes",
+            element,
+        )
     elif has_root:
         message = f"{loop} that is detached from the robot: {steps}; ROS 2 ignores these links"
         problems.add(urdf_problems.DETACHED_CYCLE, message, element)
     else:
-        problems.add(urdf_problems.NO_ROOT, f"there is no root link: {loop}: {steps}; ROS 2 rejects the file", element)
+        problems.add(
+            urdf_problems.NO_ROOT,
+            f"there is no root link: {loop}: {steps}; ROS 2 rejects the file",
+            element,
+        )
 
 
-def _check_roots(robot: Robot, roots: list[str], edges: _Edges, links: dict[str, Element], problems: Problems) -> None:
+def _check_roots(
+    robot: Robot, roots: list[str], edges: _Edges, links: dict[str, Element], problems: Problems
+) -> None:
     explained = {joint.child for joint in robot.joints if not robot.has_link(joint.parent)}
     unknown = [joint.child for joint in robot.joints if not robot.has_link(joint.child)]
     explained |= {problems.closest(child, links) or "" for child in unknown}
-    explained |= {link.name for link in robot.links if "@name" in link.unresolved}  # any joint may have it as its child
+    explained |= {
+        link.name for link in robot.links if "@name" in link.unresolved
+    }  # any joint may have it as its child
     is_child_open = any("child" in joint.unresolved for joint in robot.joints)
     if is_child_open or len([name for name in roots if name not in explained]) < 2:
         return
-    sizes = {name: len(_reachable([name], edges)) for name in roots} if len(roots) <= _MAX_ROOTS else {}
+    sizes = (
+        {name: len(_reachable([name], edges)) for name in roots} if len(roots) <= _MAX_ROOTS else {}
+    )
     main = max(roots, key=lambda name: sizes.get(name, 0))
     others = [name for name in roots if name != main and name not in explained]
     named = enumerated([*map(quoted, others)], _MAX_ROOTS)
@@ -187,13 +220,18 @@ def _check_roots(robot: Robot, roots: list[str], edges: _Edges, links: dict[str,
     problems.add(urdf_problems.TWO_ROOTS, message, links[others[0]], "name")
 
 
-def _check_paths(roots: list[str], edges: _Edges, links: dict[str, Element], problems: Problems) -> None:
+def _check_paths(
+    roots: list[str], edges: _Edges, links: dict[str, Element], problems: Problems
+) -> None:
     paths = dict.fromkeys(links, 0) | dict.fromkeys(roots, 1)
     for name in TopologicalSorter(_predecessors(edges, links)).static_order():
         for joint in edges.get(name, ()):
             paths[joint.child] += paths[name]
     if sum(paths.values()) > _MAX_PATHS:
-        message = "links with two parents multiply the paths through the tree: ROS 2 does not finish loading it"
+        message = (
+            "links with two parents multiply the paths through the tree: ROS 2 does not finish "
+            "loading it"
+        )
         problems.add(urdf_problems.TOO_MANY_PATHS, message, links[roots[0]])
 
 
@@ -223,11 +261,13 @@ def texts_in(value: Any) -> Iterator[str]:
 
 
 def selected_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
-    """Return the name that a selector means, and any other text as it is; `parents` are the parent joints of links.
+    """Return the name that a selector means, and any other text as it is; `parents` are the parent
+    joints of links.
 
-    Of several trees the one with the most links counts. "@root" is its root. The chain with the most moving joints,
-    which are neither fixed nor mimic joints, leads to "@tip", its last link, and "@moved:2" is the child of its second
-    moving joint. "@joint:left_wheel" is the parent joint of a link.
+    Of several trees the one with the most links counts. "@root" is its root. The chain with the
+    most moving joints, which are neither fixed nor mimic joints, leads to "@tip", its last link,
+    and "@moved:2" is the child of its second moving joint. "@joint:left_wheel" is the parent joint
+    of a link.
 
     Raises MissingElement where there is no such link, NotDecided where several could be meant.
     """
@@ -254,7 +294,9 @@ def selected_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
 
 
 def selected_or_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
-    """Return the link that a selector means; a name, or a selector that means no single link, as it is."""
+    """Return the link that a selector means; a name, or a selector that means no single link, as it
+    is.
+    """
     try:
         return selected_name(robot, parents, name)
     except (MissingElement, NotDecided):
@@ -264,7 +306,9 @@ def selected_or_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> s
 def _links_moved_by(
     places: dict[str, _LinkPlace], parents: Mapping[str, Joint], number: int, most: int, name: str
 ) -> set[str]:
-    """Return the links that the joint of this number moves, of those on the chains with the most moving joints."""
+    """Return the links that the joint of this number moves, of those on the chains with the most
+    moving joints.
+    """
     if number > most:
         longest = f"the longest chain has {counted(most, 'moving joint')}"
         raise MissingElement("link", name, message=f"there is no {name}: {longest}")
@@ -280,13 +324,19 @@ def _find_places(robot: Robot, parents: Mapping[str, Joint]) -> dict[str, _LinkP
     below: dict[str, list[str]] = {}
     for link, joint in parents.items():
         below.setdefault(joint.parent, []).append(link)
-    places = {link.name: _LinkPlace(link.name, 0, is_moved=False) for link in robot.links if link.name not in parents}
+    places = {
+        link.name: _LinkPlace(link.name, 0, is_moved=False)
+        for link in robot.links
+        if link.name not in parents
+    }
     waiting = list(places)
     while waiting:
         above = waiting.pop()
         for link in below.get(above, ()):
             is_moving = parents[link].type != "fixed" and parents[link].mimic is None
-            places[link] = _LinkPlace(places[above].root, places[above].depth + is_moving, is_moving)
+            places[link] = _LinkPlace(
+                places[above].root, places[above].depth + is_moving, is_moving
+            )
             waiting.append(link)
     return places
 
@@ -296,7 +346,11 @@ def _main_root(places: Mapping[str, _LinkPlace], name: str) -> str:
     largest = [root for root, size in sizes if size == sizes[0][1]]
     if len(largest) == 1:
         return largest[0]
-    message = "no link is the root of the robot" if not largest else "several links are roots of trees of the same size"
+    message = (
+        "no link is the root of the robot"
+        if not largest
+        else "several links are roots of trees of the same size"
+    )
     detail = f": {enumerated([*map(quoted, largest)], _MAX_CHOICES)}" if largest else ""
     raise MissingElement("link", name, message=f"there is no {name}: {message}", detail=detail)
 

@@ -1,7 +1,9 @@
-"""Mass, centre of mass and inertia of uniform solids, alone or together, and principal moments of an inertia tensor.
+"""Mass, centre of mass and inertia of uniform solids, alone or together, and principal moments of
+an inertia tensor.
 
-The formulas for box, cylinder and sphere, the parallel axis theorem and the rotation of a tensor are those of textbooks
-of dynamics (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 2.13).
+The formulas for box, cylinder and sphere, the parallel axis theorem and the rotation of a tensor
+are those of textbooks of dynamics (Featherstone, Rigid Body Dynamics Algorithms, 2008, section
+2.13).
 """
 
 from collections.abc import Iterable
@@ -12,11 +14,15 @@ from grader.robot.model import Box, Collision, Geometry, Mesh, Origin, Sphere, V
 from grader.robot.shapes import Shape, is_empty, volume
 from grader.robot.transforms import Rotation, Transform, Vector, dot, minus
 
-Tensor = tuple[float, float, float, float, float, float]  # ixx, ixy, ixz, iyy, iyz, izz as in a URDF, kg m^2
+Tensor = tuple[
+    float, float, float, float, float, float
+]  # ixx, ixy, ixz, iyy, iyz, izz as in a URDF, kg m^2
 
 
 class MassProperties(NamedTuple):
-    """The mass of a body in kg, its centre of mass in m, and its inertia about that, along the axes of one frame."""
+    """The mass of a body in kg, its centre of mass in m, and its inertia about that, along the axes
+    of one frame.
+    """
 
     mass: float
     centre: Vector
@@ -37,10 +43,11 @@ def solid_inertia(shape: Shape, mass: float) -> Tensor:
 
 
 def uniform_solid(shapes: Iterable[tuple[Shape, Transform]], mass: float) -> MassProperties:
-    """Return the mass properties of shapes of one density and of this mass together; each comes with its T_frame_shape.
+    """Return the mass properties of shapes of one density and of this mass together; each comes
+    with its T_frame_shape.
 
-    What two shapes share counts twice. Raises ValueError for shapes without a volume, and for numbers that are too
-    large.
+    What two shapes share counts twice. Raises ValueError for shapes without a volume, and for
+    numbers that are too large.
     """
     placed = [(shape, pose, volume(shape)) for shape, pose in shapes]
     total = sum(volume for _, _, volume in placed)
@@ -54,9 +61,13 @@ def uniform_solid(shapes: Iterable[tuple[Shape, Transform]], mass: float) -> Mas
 
 
 def with_volume(elements: Iterable[Visual | Collision]) -> list[tuple[Geometry, Origin]]:
-    """Return the shapes that have a volume, or may have one because they are meshes, each once with its origin."""
+    """Return the shapes that have a volume, or may have one because they are meshes, each once with
+    its origin.
+    """
     placed = dict.fromkeys((element.geometry, element.origin) for element in elements)
-    return [(shape, origin) for shape, origin in placed if not is_empty(shape) and _has_volume(shape)]
+    return [
+        (shape, origin) for shape, origin in placed if not is_empty(shape) and _has_volume(shape)
+    ]
 
 
 def _has_volume(shape: Geometry) -> bool:
@@ -64,7 +75,9 @@ def _has_volume(shape: Geometry) -> bool:
 
 
 def together(bodies: Iterable[MassProperties]) -> MassProperties:
-    """Return the mass properties of bodies that are fixed to each other; the sum of their masses must not be 0."""
+    """Return the mass properties of bodies that are fixed to each other; the sum of their masses
+    must not be 0.
+    """
     every = list(bodies)
     mass = sum(body.mass for body in every)
     x, y, z = (sum(body.mass * body.centre[axis] for body in every) / mass for axis in range(3))
@@ -77,23 +90,32 @@ def turned(inertia: Tensor, T_a_b: Rotation) -> Tensor:
     xx, xy, xz, yy, yz, zz = inertia
     rows = (T_a_b[:3], T_a_b[3:6], T_a_b[6:])
     first, second, third = (
-        (a * xx + b * xy + c * xz, a * xy + b * yy + c * yz, a * xz + b * yz + c * zz) for a, b, c in rows
+        (a * xx + b * xy + c * xz, a * xy + b * yy + c * yz, a * xz + b * yz + c * zz)
+        for a, b, c in rows
     )
     return (
-        dot(first, rows[0]), dot(first, rows[1]), dot(first, rows[2]),
-        dot(second, rows[1]), dot(second, rows[2]), dot(third, rows[2]),
-    )  # fmt: skip
+        dot(first, rows[0]),
+        dot(first, rows[1]),
+        dot(first, rows[2]),
+        dot(second, rows[1]),
+        dot(second, rows[2]),
+        dot(third, rows[2]),
+    )
 
 
 def shifted(inertia: Tensor, mass: float, offset: Vector) -> Tensor:
-    """Return the inertia of a body about a point at `offset` (m) from its centre of mass: parallel axis theorem."""
+    """Return the inertia of a body about a point at `offset` (m) from its centre of mass: parallel
+    axis theorem.
+    """
     x, y, z = offset
     away = (y * y + z * z, -x * y, -x * z, x * x + z * z, -y * z, x * x + y * y)
     return _tensor(about + mass * square for about, square in zip(inertia, away, strict=True))
 
 
 def largest_difference(a: Tensor, b: Tensor) -> float:
-    """Return the largest moment, in size, of the difference of two inertias, about any axis; NaN where it overflows."""
+    """Return the largest moment, in size, of the difference of two inertias, about any axis; NaN
+    where it overflows.
+    """
     moments = principal_moments(_tensor(one - other for one, other in zip(a, b, strict=True)))
     return max(abs(moments[0]), abs(moments[2]))
 
@@ -105,7 +127,9 @@ def principal_moments(inertia: Tensor) -> Vector:
     if not (isfinite(sum(inertia)) and all(map(isfinite, inertia))):
         return (nan, nan, nan)
     xx, xy, xz, yy, yz, zz = inertia
-    smallest, middle, largest = np.linalg.eigvalsh(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))).tolist()
+    smallest, middle, largest = np.linalg.eigvalsh(
+        ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
+    ).tolist()
     return (smallest, middle, largest)
 
 

@@ -1,4 +1,6 @@
-"""The words for which ROS 2 rejects a file and that surely stand for others: what the robot is if they are undone."""
+"""The words for which ROS 2 rejects a file and that surely stand for others: what the robot is if
+they are undone.
+"""
 
 import re
 from collections import Counter
@@ -15,15 +17,26 @@ from grader.text import quoted
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import ATTRIBUTES, JOINT_TYPES, PARTS, REQUIRED, TAGS
 
-_MAX_ROUNDS = 5  # one undone word can reveal the next: that of a tag, then its attribute, then its value
+# one undone word can reveal the next: that of a tag, then its attribute, then its value
+_MAX_ROUNDS = 5
 _MAX_WORDS = 20  # in one file
 _MAX_ATTRIBUTES = 50  # of one element, because lxml searches each name from the first
-_ROOT = re.compile(r"(?i)base|world|map|odom|root")  # how the first link of a robot is usually called
-_OF_JOINT = ("parent", "child", "limit", "mimic", "safety_controller")  # a defect of these rejects the file
+_ROOT = re.compile(
+    r"(?i)base|world|map|odom|root"
+)  # how the first link of a robot is usually called
+_OF_JOINT = (
+    "parent",
+    "child",
+    "limit",
+    "mimic",
+    "safety_controller",
+)  # a defect of these rejects the file
 
 
 class Word(NamedTuple):
-    """A word of an element that is read as another one, in a sentence; `tag` and `attributes` are those as read."""
+    """A word of an element that is read as another one, in a sentence; `tag` and `attributes` are
+    those as read.
+    """
 
     element: Element
     attribute: str | None  # where the word is; None: the tag
@@ -40,8 +53,11 @@ class _AsMeant(NamedTuple):
     words: list[Word]
 
 
-def read_as_meant(root: Element, robot: Robot, read: Callable[[], tuple[Robot, Problems]]) -> _AsMeant | None:
-    """Return what a rejected file means; None if a word can stand for several, or ROS 2 would still reject the file.
+def read_as_meant(
+    root: Element, robot: Robot, read: Callable[[], tuple[Robot, Problems]]
+) -> _AsMeant | None:
+    """Return what a rejected file means; None if a word can stand for several, or ROS 2 would still
+    reject the file.
 
     `robot` was read from `root`, and `read` reads it again. The elements are as before at the end.
     """
@@ -66,7 +82,9 @@ def read_as_meant(root: Element, robot: Robot, read: Callable[[], tuple[Robot, P
             undone += words
             robot, problems = read()
             if "rejects" not in problems.effects:
-                assumed = [problems.assumed(word.element, word.attribute, word.sentence) for word in undone]
+                assumed = [
+                    problems.assumed(word.element, word.attribute, word.sentence) for word in undone
+                ]
                 return _AsMeant(robot, [*problems.listed, *assumed], undone)
         return None
     finally:
@@ -88,7 +106,9 @@ def _word_with_value(element: Element, attribute: str, value: str, what: str) ->
 
 
 def _misspelt_references(root: Element, robot: Robot) -> Iterator[Word]:
-    """Yield links that joints name and that do not exist, and joint types, each near one that can be meant."""
+    """Yield links that joints name and that do not exist, and joint types, each near one that can
+    be meant.
+    """
     links = [link.name for link in robot.links]
     uses = Counter(name for joint in robot.joints for name in (joint.parent, joint.child))
     unknown = [name for name in uses if name and not robot.has_link(name)]
@@ -103,7 +123,11 @@ def _misspelt_references(root: Element, robot: Robot) -> Iterator[Word]:
     if sum(uses[name] for name in misspelt) > _MAX_ROUNDS * _MAX_WORDS:
         misspelt = set()
     for joint in root.iterchildren("joint"):
-        kind = near(joint.get("type") or "", JOINT_TYPES) if joint.get("type") not in JOINT_TYPES else None
+        kind = (
+            near(joint.get("type") or "", JOINT_TYPES)
+            if joint.get("type") not in JOINT_TYPES
+            else None
+        )
         if kind is not None:
             yield _word_with_value(joint, "type", kind, "the joint type")
         yield from _misspelt_ends(joint, misspelt, links, children)
@@ -112,12 +136,17 @@ def _misspelt_references(root: Element, robot: Robot) -> Iterator[Word]:
 def _misspelt_definitions(
     robot: Robot, links: Collection[str], uses: Mapping[str, int], unknown: Collection[str]
 ) -> dict[str, str]:
-    """Return the links whose definitions have the wrong word, each with the unknown name that is meant.
+    """Return the links whose definitions have the wrong word, each with the unknown name that is
+    meant.
 
     No joint names the link, and several joints name the other one, or a joint is named after it.
     """
     names = "".join(f"_{joint.name}_" for joint in robot.joints)
-    nearest = {near(name, links, "link"): name for name in unknown if uses[name] > 1 or f"_{name}_" in names}
+    nearest = {
+        near(name, links, "link"): name
+        for name in unknown
+        if uses[name] > 1 or f"_{name}_" in names
+    }
     return {
         link: name
         for link, name in nearest.items()
@@ -129,7 +158,9 @@ def _misspelt_definitions(
 def _misspelt_ends(
     joint: Element, misspelt: Collection[str], links: Sequence[str], children: set[str]
 ) -> Iterator[Word]:
-    """Yield the misspelt parent and child of a joint; `children` grows by what is meant, which no other joint can."""
+    """Yield the misspelt parent and child of a joint; `children` grows by what is meant, which no
+    other joint can.
+    """
     ends = {role: end for role in ("parent", "child") if (end := joint.find(role)) is not None}
     for role, end in ends.items():
         name = end.get("link") or ""
@@ -151,7 +182,11 @@ def _readable_vectors(root: Element) -> Iterator[Word]:
         given = {str(name): str(value) for name, value in element.attrib.items()}
         for name, text in given.items():
             count = len(PARTS.get(name, ()))
-            meant = readable_numbers(text, count) if count > 1 and name in ATTRIBUTES[str(element.tag)] else None
+            meant = (
+                readable_numbers(text, count)
+                if count > 1 and name in ATTRIBUTES[str(element.tag)]
+                else None
+            )
             if meant is None:
                 continue
             changed = {**given, name: " ".join(meant[:count])}
@@ -162,7 +197,9 @@ def _readable_vectors(root: Element) -> Iterator[Word]:
 
 
 def _exchanged_ends(root: Element, robot: Robot) -> Iterator[Word]:
-    """Yield the parent and child of the one joint that are exchanged, so that one link has two parents."""
+    """Yield the parent and child of the one joint that are exchanged, so that one link has two
+    parents.
+    """
     parents = [(joint.parent, joint.child) for joint in robot.joints]
     counts = Counter(child for _, child in parents)
     doubled = [child for child, count in counts.items() if count > 1]
@@ -188,7 +225,9 @@ def _exchanged_ends(root: Element, robot: Robot) -> Iterator[Word]:
 
 
 def _pasted_children(root: Element, robot: Robot) -> Iterator[Word]:
-    """Yield the child that a second joint has by mistake: the one link that no joint names should be there."""
+    """Yield the child that a second joint has by mistake: the one link that no joint names should
+    be there.
+    """
     named = {name for joint in robot.joints for name in (joint.parent, joint.child)}
     lonely = [link.name for link in robot.links if link.name not in named]
     counts = Counter(joint.child for joint in robot.joints)
@@ -203,9 +242,13 @@ def _pasted_children(root: Element, robot: Robot) -> Iterator[Word]:
 
 
 def _repeated_names(root: Element) -> Iterator[Word]:
-    """Yield a name that is given twice, where one other name is used and not given: the later one should have it."""
+    """Yield a name that is given twice, where one other name is used and not given: the later one
+    should have it.
+    """
     used = {
-        "link": [end.get("link") for end in root.iterfind("joint/*") if end.tag in ("parent", "child")],
+        "link": [
+            end.get("link") for end in root.iterfind("joint/*") if end.tag in ("parent", "child")
+        ],
         "joint": [mimic.get("joint") for mimic in root.iterfind("joint/mimic")],
     }
     for tag, names in used.items():
@@ -213,12 +256,16 @@ def _repeated_names(root: Element) -> Iterator[Word]:
         repeated = [name for name, count in given.items() if name is not None and count > 1]
         missing = [name for name in dict.fromkeys(names) if name and name not in given]
         if len(repeated) == len(missing) == 1 and given[repeated[0]] == 2:
-            *_, later = (element for element in root.iterchildren(tag) if element.get("name") == repeated[0])
+            *_, later = (
+                element for element in root.iterchildren(tag) if element.get("name") == repeated[0]
+            )
             yield _word_with_value(later, "name", missing[0], f"the second {tag}")
 
 
 def _misspelt_format(root: Element) -> Iterator[Word]:
-    """Yield tags and attributes that the format does not have there, each near one that it needs and that is absent."""
+    """Yield tags and attributes that the format does not have there, each near one that it needs
+    and that is absent.
+    """
     yield from _misspelt_tags(root, ("link", "joint"))
     yield from _misspelt_attributes(root)
     for element in (it for tag in ("link", "joint") for it in root.iterchildren(tag)):
@@ -251,4 +298,6 @@ def _misspelt_attributes(element: Element) -> Iterator[Word]:
         meant = near(name, absent) if name not in ATTRIBUTES[tag] else None
         if meant is not None:
             renamed = {meant if key == name else key: value for key, value in given.items()}
-            yield Word(element, name, tag, renamed, f"the attribute {name} of <{tag}> is read as {meant}")
+            yield Word(
+                element, name, tag, renamed, f"the attribute {name} of <{tag}> is read as {meant}"
+            )

@@ -1,7 +1,8 @@
-"""A robot as plain values: the content of a URDF as ROS 2 keeps it, and what xacro leaves open of it.
+"""A robot as plain values: the content of a URDF as ROS 2 keeps it, and what xacro leaves open of
+it.
 
-Lengths are metres, angles radians about fixed axes x, y, z (REP 103). `None` is a value that the file gives but that
-cannot be read; a value that the file does not give has ROS 2's default.
+Lengths are metres, angles radians about fixed axes x, y, z (REP 103). `None` is a value that the
+file gives but that cannot be read; a value that the file does not give has ROS 2's default.
 """
 
 from collections.abc import Iterable, Mapping
@@ -14,12 +15,21 @@ from grader.robot.transforms import Vector
 from grader.source import LazyLocation
 from grader.text import quoted
 
-INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")  # the components, in the order of Inertial.inertia
+INERTIA = (
+    "ixx",
+    "ixy",
+    "ixz",
+    "iyy",
+    "iyz",
+    "izz",
+)  # the components, in the order of Inertial.inertia
 
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """The pose of a child frame in its parent: `xyz` in metres, `rpy` in radians about fixed axes."""
+    """The pose of a child frame in its parent: `xyz` in metres, `rpy` in radians about fixed
+    axes.
+    """
 
     xyz: Vector = (0.0, 0.0, 0.0)
     rpy: Vector = (0.0, 0.0, 0.0)
@@ -67,7 +77,9 @@ Geometry = Box | Cylinder | Sphere | Mesh
 
 
 class UnresolvedPart(NamedTuple):
-    """A part of a link, joint or material that xacro leaves open: the reason, which is empty where xacro refuses it."""
+    """A part of a link, joint or material that xacro leaves open: the reason, which is empty where
+    xacro refuses it.
+    """
 
     reason: str
     location: LazyLocation
@@ -78,14 +90,16 @@ class UnresolvedPart(NamedTuple):
             raise NotDecided(self.reason)
 
 
-# The parts of an element that are unresolved: "@name" for its attribute, "visual" for something in a <visual>, "" for
-# more children than are known. Empty for a plain URDF.
+# The parts of an element that are unresolved: "@name" for its attribute, "visual" for something in
+# a <visual>, "" for more children than are known. Empty for a plain URDF.
 UnresolvedParts = Mapping[str, UnresolvedPart]
 
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """A colour with channels in 0..1, red, green, blue, alpha; `texture` is a file name, never opened."""
+    """A colour with channels in 0..1, red, green, blue, alpha; `texture` is a file name, never
+    opened.
+    """
 
     name: str
     rgba: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
@@ -96,7 +110,9 @@ class Material:
 
 @dataclass(frozen=True, slots=True)
 class Visual:
-    """One shape that a link shows. `material` is resolved; None if ROS 2 has no colour for it, or cannot read it."""
+    """One shape that a link shows. `material` is resolved; None if ROS 2 has no colour for it, or
+    cannot read it.
+    """
 
     geometry: Geometry
     origin: Origin = _SAME_FRAME
@@ -129,7 +145,8 @@ class Inertial:
 class Link:
     """A rigid body, whose frame all of its shapes and its centre of mass are placed in.
 
-    >>> Link("lidar", visuals=(Visual(Cylinder(0.1, 0.05), Origin((0.0, 0.0, 0.025))),)).visuals[0].geometry
+    >>> visual = Visual(Cylinder(0.1, 0.05), Origin((0.0, 0.0, 0.025)))
+    >>> Link("lidar", visuals=(visual,)).visuals[0].geometry
     Cylinder(radius=0.1, length=0.05)
     """
 
@@ -181,7 +198,9 @@ class Dynamics:
 
 @dataclass(frozen=True, slots=True)
 class SafetyController:
-    """The range (rad or m) in which a safety controller keeps a joint, and its gains for position and velocity."""
+    """The range (rad or m) in which a safety controller keeps a joint, and its gains for position
+    and velocity.
+    """
 
     k_velocity: float
     soft_lower_limit: float = 0.0
@@ -192,7 +211,9 @@ class SafetyController:
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """The positions (rad or m) at which a joint's reference switch has a rising or falling edge; None if not given."""
+    """The positions (rad or m) at which a joint's reference switch has a rising or falling edge;
+    None if not given.
+    """
 
     rising: float | None = None
     falling: float | None = None
@@ -203,11 +224,14 @@ class Calibration:
 class Joint:
     """A joint between two links; its frame is the child link's frame.
 
-    `origin` places that frame in the parent's, with the joint at 0; `axis` is a direction in the child's frame.
-    `type` is the file's text, so a misspelt one can be quoted. `origin` and `axis` are None if they are given but
-    cannot be read. `parent` and `child` are empty if the file does not name them.
+    `origin` places that frame in the parent's, with the joint at 0; `axis` is a direction in the
+    child's frame. `type` is the file's text, so a misspelt one can be quoted. `origin` and `axis`
+    are None if they are given but cannot be read. `parent` and `child` are empty if the file does
+    not name them.
 
-    >>> wheel = Joint("wheel_joint", "continuous", "base_link", "wheel", Origin((0.0, 0.2, 0.0)), axis=(0.0, 1.0, 0.0))
+    >>> origin = Origin((0.0, 0.2, 0.0))
+    >>> axis = (0.0, 1.0, 0.0)
+    >>> wheel = Joint("wheel_joint", "continuous", "base_link", "wheel", origin, axis=axis)
     >>> wheel.origin.xyz, wheel.axis
     ((0.0, 0.2, 0.0), (0.0, 1.0, 0.0))
     """
@@ -237,11 +261,13 @@ class Joint:
 class Robot:
     """The links and joints of a URDF, as plain values that know nothing of poses.
 
-    The reader makes it; `Configuration` puts its joints at positions and computes poses. Checks read it through that,
-    where a value that xacro leaves open raises NotDecided (see `open_values`). Two robots are equal if their values
-    are; where these are in a file does not count.
+    The reader makes it; `Configuration` puts its joints at positions and computes poses. Checks
+    read it through that, where a value that xacro leaves open raises NotDecided (see
+    `open_values`). Two robots are equal if their values are; where these are in a file does not
+    count.
 
-    >>> robot = Robot("r", (Link("base"), Link("arm")), (Joint("shoulder", "fixed", "base", "arm"),))
+    >>> shoulder = Joint("shoulder", "fixed", "base", "arm")
+    >>> robot = Robot("r", (Link("base"), Link("arm")), (shoulder,))
     >>> robot.joint("shoulder").child
     'arm'
     >>> robot.link("amr")
@@ -253,14 +279,20 @@ class Robot:
     links: tuple[Link, ...] = ()  # in file order; of two with the same name the first is looked up
     joints: tuple[Joint, ...] = ()  # likewise
     materials: tuple[Material, ...] = ()  # those under <robot> and those that visuals define
-    rejected: bool = field(default=False, compare=False)  # ROS 2 rejects the file: this is what could be read of it
-    incomplete: str = field(default="", compare=False)  # why there may be more links and joints; empty if there are not
+    rejected: bool = field(
+        default=False, compare=False
+    )  # ROS 2 rejects the file: this is what could be read of it
+    incomplete: str = field(
+        default="", compare=False
+    )  # why there may be more links and joints; empty if there are not
     _links: dict[str, Link] = field(init=False, compare=False, repr=False, hash=False)
     _joints: dict[str, Joint] = field(init=False, compare=False, repr=False, hash=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "_links", {link.known.name: link for link in reversed(self.links)})
-        object.__setattr__(self, "_joints", {joint.known.name: joint for joint in reversed(self.joints)})
+        object.__setattr__(
+            self, "_joints", {joint.known.name: joint for joint in reversed(self.joints)}
+        )
 
     def link(self, name: str) -> Link:
         """Return the link of this name; raises MissingElement, which lists the existing names."""
@@ -286,5 +318,10 @@ class Robot:
     def _raise_missing(self, kind: str, name: str, existing: Iterable[Link | Joint]) -> NoReturn:
         self.check_complete()
         known = tuple(element.known.name for element in existing)
-        guess = did_you_mean(name, known) or f"; the file has: {', '.join(map(quoted, known[:20])) or 'none'}"
-        raise MissingElement(kind, name, known, message=f"there is no {kind} {quoted(name)}", detail=guess)
+        guess = (
+            did_you_mean(name, known)
+            or f"; the file has: {', '.join(map(quoted, known[:20])) or 'none'}"
+        )
+        raise MissingElement(
+            kind, name, known, message=f"there is no {kind} {quoted(name)}", detail=guess
+        )

@@ -1,7 +1,8 @@
 """Numbers as urdfdom reads them, which is not what Python's `float()` accepts.
 
-A vector is split at spaces only; each piece is read by a C++ stream in the classic locale (`urdf_model/utils.h`):
-white space is allowed before a number and rejected after it; nan, inf, hex and overflow are rejected.
+A vector is split at spaces only; each piece is read by a C++ stream in the classic locale
+(`urdf_model/utils.h`): white space is allowed before a number and rejected after it; nan, inf, hex
+and overflow are rejected.
 """
 
 import re
@@ -30,7 +31,9 @@ class NumberError(ValueError):
 
 
 def _cached_reader(read: Callable[[str], _Value]) -> Callable[[str], _Value]:
-    """Return a reader that keeps values: the files of a class contain the same few texts thousands of times."""
+    """Return a reader that keeps values: the files of a class contain the same few texts thousands
+    of times.
+    """
     cached = lru_cache(maxsize=4096)(read)
     return wraps(read)(lambda text: cached(text) if len(text) <= _MAX_CACHED_LENGTH else read(text))
 
@@ -47,7 +50,9 @@ def number(text: str) -> float:
 
 
 def numbers(text: str) -> list[float]:
-    """Return the numbers of a list with spaces between; raises NumberError for the first piece that is not a number."""
+    """Return the numbers of a list with spaces between; raises NumberError for the first piece that
+    is not a number.
+    """
     return [number(piece) for piece in text.split(" ") if piece]
 
 
@@ -61,10 +66,11 @@ def vector(text: str) -> Vector:
 
 
 def readable_numbers(text: str, count: int) -> list[str] | None:
-    """Return the numbers that a list surely means, as texts, for one that ROS 2 cannot read; None if it can be read.
+    """Return the numbers that a list surely means, as texts, for one that ROS 2 cannot read; None
+    if it can be read.
 
-    There may be twice as many, as in a pose. They are separated by any white space or by commas, with decimal commas,
-    or are computed, as in pi/2.
+    There may be twice as many, as in a pose. They are separated by any white space or by commas,
+    with decimal commas, or are computed, as in pi/2.
     """
     with suppress(NumberError):
         if len(numbers(text)) == count:
@@ -83,7 +89,9 @@ def readable_numbers(text: str, count: int) -> list[str] | None:
 
 
 def _computed(piece: str) -> str | None:
-    """Return a number, or the value of an arithmetic expression with pi, as a text that ROS 2 reads; else None."""
+    """Return a number, or the value of an arithmetic expression with pi, as a text that ROS 2
+    reads; else None.
+    """
     if _NUMBER.fullmatch(piece):
         return piece
     if not _ARITHMETIC.fullmatch(piece):
@@ -100,7 +108,9 @@ def _computed(piece: str) -> str | None:
 
 
 def rgba(text: str) -> tuple[float, float, float, float] | None:
-    """Return four channels in 0..1; None for another count, which ROS 2 silently shows as black; raises NumberError."""
+    """Return four channels in 0..1; None for another count, which ROS 2 silently shows as black;
+    raises NumberError.
+    """
     values = numbers(text)
     for value in values:
         if not 0.0 <= value <= 1.0:
@@ -111,10 +121,16 @@ def rgba(text: str) -> tuple[float, float, float, float] | None:
 
 
 def is_version_one(text: str) -> bool:
-    """Return whether urdfdom's URDFVersion, which uses C's strtol, reads a robot's `version` as 1.0."""
+    """Return whether urdfdom's URDFVersion, which uses C's strtol, reads a robot's `version` as
+    1.0.
+    """
     parsed = [re.fullmatch(_VERSION, piece) for piece in text.removesuffix(".").split(".")]
     values = [_strtol(match[1]) for match in parsed if match]
-    return len(values) == len(parsed) and min(values) >= 0 and [value % 2**32 for value in values] == [1, 0]
+    return (
+        len(values) == len(parsed)
+        and min(values) >= 0
+        and [value % 2**32 for value in values] == [1, 0]
+    )
 
 
 def _strtol(digits: str) -> int:
@@ -127,13 +143,23 @@ def _why_no_number(text: str) -> str:
     if not text.strip():
         return "it is empty"
     reasons = {
-        "contains a comma: write a decimal point, or a space between two numbers": re.fullmatch(_COMMA, text),
+        "contains a comma: write a decimal point, or a space between two numbers": re.fullmatch(
+            _COMMA, text
+        ),
         "contains a comma: separate numbers by spaces": "," in text,
         "is xacro, which ROS 2 does not evaluate in a .urdf file": "$" in text,
-        "contains a tab or a line break: separate numbers by plain spaces": not set("\t\n\v\f\r").isdisjoint(text),
-        "has a space after the number, which ROS 2 does not accept": _NUMBER.fullmatch(text.rstrip(" ")),
-        "contains a typographic quote, as word processors write": not set("\u201c\u201d\u2018\u2019").isdisjoint(text),
-        "contains a character that is not ASCII, such as a typographic minus or space": not text.isascii(),
+        "contains a tab or a line break: separate numbers by plain spaces": not set(
+            "\t\n\v\f\r"
+        ).isdisjoint(text),
+        "has a space after the number, which ROS 2 does not accept": _NUMBER.fullmatch(
+            text.rstrip(" ")
+        ),
+        "contains a typographic quote, as word processors write": not set(
+            "\u201c\u201d\u2018\u2019"
+        ).isdisjoint(text),
+        (
+            "contains a character that is not ASCII, such as a typographic minus or space"
+        ): not text.isascii(),
         "is not a number": True,
     }
     return f"{quoted(text)} {next(reason for reason, applies in reasons.items() if applies)}"

@@ -1,7 +1,7 @@
 """A robot for checks: reading a value of it that xacro leaves open needs manual grading.
 
-A plug-in cannot read such a value by accident: each field of a view that can be open is a property, which raises
-NotDecided, or MissingElement where xacro refuses the text of the field.
+A plug-in cannot read such a value by accident: each field of a view that can be open is a property,
+which raises NotDecided, or MissingElement where xacro refuses the text of the field.
 """
 
 from collections.abc import Mapping
@@ -12,8 +12,20 @@ from grader.errors import MissingElement, NotDecided
 from grader.robot.model import Joint, Link, Material, Robot, Visual
 from grader.text import quoted
 
-_KEYS = {"name": "@name", "type": "@type", "visuals": "visual", "collisions": "collision"}  # in UnresolvedParts
-_OF_PLACE = ("name", "parent", "child", "type", "origin", "axis")  # what xacro refuses of these is wrong, not missing
+_KEYS = {
+    "name": "@name",
+    "type": "@type",
+    "visuals": "visual",
+    "collisions": "collision",
+}  # in UnresolvedParts
+_OF_PLACE = (
+    "name",
+    "parent",
+    "child",
+    "type",
+    "origin",
+    "axis",
+)  # what xacro refuses of these is wrong, not missing
 
 _Value = TypeVar("_Value")
 
@@ -21,14 +33,21 @@ _Value = TypeVar("_Value")
 def guarded(robot: Robot, parents: Mapping[str, Joint]) -> tuple[Robot, dict[str, Joint]]:
     """Return views of a robot and of its parent joints, in which reading what is open raises.
 
-    So does reading the links and joints as a whole, and asking for one that is not there, where it is open which ones
-    there are.
+    So does reading the links and joints as a whole, and asking for one that is not there, where it
+    is open which ones there are.
     """
     joints = tuple(_JointView(joint) if joint.unresolved else joint for joint in robot.joints)
-    links, materials = tuple(map(_view_of_link, robot.links)), tuple(map(_view_of_material, robot.materials))
+    links, materials = (
+        tuple(map(_view_of_link, robot.links)),
+        tuple(map(_view_of_material, robot.materials)),
+    )
     found = replace(robot, links=links, joints=joints, materials=materials)
-    views = {view.known.child: view for view in joints if parents.get(view.known.child) is view.known}
-    return _IncompleteRobot(found) if robot.incomplete else found, {child: views[child] for child in parents}
+    views = {
+        view.known.child: view for view in joints if parents.get(view.known.child) is view.known
+    }
+    return _IncompleteRobot(found) if robot.incomplete else found, {
+        child: views[child] for child in parents
+    }
 
 
 def _view_of_link(link: Link) -> Link:
@@ -38,18 +57,29 @@ def _view_of_link(link: Link) -> Link:
 
 
 def _view_of_visual(visual: Visual) -> Visual:
-    return replace(visual, material=_view_of_material(visual.material)) if visual.material is not None else visual
+    return (
+        replace(visual, material=_view_of_material(visual.material))
+        if visual.material is not None
+        else visual
+    )
 
 
 def _view_of_material(material: Material) -> Material:
-    return _MaterialView(material) if any(part.reason for part in material.unresolved.values()) else material
+    return (
+        _MaterialView(material)
+        if any(part.reason for part in material.unresolved.values())
+        else material
+    )
 
 
 def _value_if_known(part: Link | Joint, field: str, value: _Value) -> _Value:
-    """Return the value of a field of a link or joint; raise NotDecided or MissingElement if it is open."""
+    """Return the value of a field of a link or joint; raise NotDecided or MissingElement if it is
+    open.
+    """
     key = _KEYS.get(field, field)
     found = part.unresolved.get(key)
-    # What the file does not give may be among unknown children. A visual that is known counts, even if there are more.
+    # What the file does not give may be among unknown children. A visual that is known counts, even
+    # if there are more.
     if found is None and (field == "collisions" or not value):
         found = part.unresolved.get("")
     if found is None:
@@ -74,7 +104,9 @@ def _copy_fields(view: object, known: object, *names: str) -> None:
 
 
 class _MaterialView(Material):
-    """A material of which something is open, so that neither its colour nor its texture can be read."""
+    """A material of which something is open, so that neither its colour nor its texture can be
+    read.
+    """
 
     __slots__ = ()
 
@@ -141,12 +173,16 @@ class _JointView(Joint):
 
 
 class _IncompleteRobot(Robot):
-    """A robot that may have more links and joints than are known: those that are known can be read one by one."""
+    """A robot that may have more links and joints than are known: those that are known can be read
+    one by one.
+    """
 
     __slots__ = ()
 
     def __init__(self, known: Robot) -> None:
-        _copy_fields(self, known, "name", "materials", "rejected", "incomplete", "_links", "_joints")
+        _copy_fields(
+            self, known, "name", "materials", "rejected", "incomplete", "_links", "_joints"
+        )
 
     @property
     def links(self) -> tuple[Link, ...]:

@@ -1,9 +1,10 @@
 """The depth to which two shapes overlap.
 
-Boxes, cylinders and spheres are convex and symmetric about their centres. Along a unit direction u two of them overlap
-by `half_width(a, u) + half_width(b, u) - |u . c|`, c being the vector between their centres. If no overlap is negative
-the shapes intersect, and the smallest one is the distance that b must move to separate them: the separating axis test
-(Ericson, Real-Time Collision Detection, 2004, section 5.2.1). Everything is computed in a's frame.
+Boxes, cylinders and spheres are convex and symmetric about their centres. Along a unit direction u
+two of them overlap by `half_width(a, u) + half_width(b, u) - |u . c|`, c being the vector between
+their centres. If no overlap is negative the shapes intersect, and the smallest one is the distance
+that b must move to separate them: the separating axis test (Ericson, Real-Time Collision Detection,
+2004, section 5.2.1). Everything is computed in a's frame.
 """
 
 from collections.abc import Iterator
@@ -14,16 +15,21 @@ from grader.robot.model import Box, Cylinder, Sphere
 from grader.robot.shapes import Shape, bounding_radius, half_width, shrunk, straight_edges
 from grader.robot.transforms import Transform, Vector, cross, dot, minus, unit
 
-_ROUNDING = 1e-9  # metres that sums of coordinates may lose, so that shapes set side by side count as touching
+# metres that sums of coordinates may lose, so that shapes set side by side count as touching
+_ROUNDING = 1e-9
 _LEAN = 1e-5  # metres; cylinders that lean by less along their length count as parallel
-_MAX_LENGTH = 1e6  # metres; longer lengths are scaled down, for products of four of them could overflow
+# metres; longer lengths are scaled down, for products of four of them could overflow
+_MAX_LENGTH = 1e6
 
 
-def penetration(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, allowed: float = 0.0) -> float:
-    """Return the penetration depth of two shapes in metres if it is more than `allowed`; otherwise 0.0.
+def penetration(
+    a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, allowed: float = 0.0
+) -> float:
+    """Return the penetration depth of two shapes in metres if it is more than `allowed`; otherwise
+    0.0.
 
-    Shapes that touch are separate. Off by less than 0.1 mm, or 1e-4 of the largest length where that is more than 10 m.
-    Raises UnknownShape for a mesh.
+    Shapes that touch are separate. Off by less than 0.1 mm, or 1e-4 of the largest length where
+    that is more than 10 m. Raises UnknownShape for a mesh.
     """
     limit = allowed + _ROUNDING
     reach = bounding_radius(a) + bounding_radius(b)
@@ -32,14 +38,20 @@ def penetration(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, allowed:
     scale = 1.0
     if reach > _MAX_LENGTH:
         scale = min(reach / _MAX_LENGTH, 1e308)
-        a, b, T_w_a, T_w_b = shrunk(a, scale), shrunk(b, scale), _scale_pose(T_w_a, scale), _scale_pose(T_w_b, scale)
+        a, b, T_w_a, T_w_b = (
+            shrunk(a, scale),
+            shrunk(b, scale),
+            _scale_pose(T_w_a, scale),
+            _scale_pose(T_w_b, scale),
+        )
     T_a_b = T_w_a.inverse() @ T_w_b
     depth = _overlap(a, b, T_a_b, least_overlap(a, b, T_a_b, limit / scale)) * scale
     return depth if depth > limit else 0.0
 
 
 def least_overlap(a: Shape, b: Shape, T_a_b: Transform, limit: float = _ROUNDING) -> Vector:
-    """Return the unit direction along which two shapes overlap least, or one of an overlap up to the limit.
+    """Return the unit direction along which two shapes overlap least, or one of an overlap up to
+    the limit.
 
     A few directions are enough for parts that are side by side, and most are.
     """
@@ -101,15 +113,22 @@ def _likely_directions(a: Shape, b: Shape, T_a_b: Transform) -> Iterator[Vector]
 
 
 def _vector_from_nearest(shape: Shape, point: Vector) -> Vector:
-    """Return the vector to a point from the nearest point of a box, or from the centre of a round shape."""
+    """Return the vector to a point from the nearest point of a box, or from the centre of a round
+    shape.
+    """
     if not isinstance(shape, Box):
         return point
-    x, y, z = (copysign(max(abs(p) - abs(size) / 2.0, 0.0), p) for p, size in zip(point, shape.size, strict=True))
+    x, y, z = (
+        copysign(max(abs(p) - abs(size) / 2.0, 0.0), p)
+        for p, size in zip(point, shape.size, strict=True)
+    )
     return (x, y, z)
 
 
 def _outside(shape: Shape, point: Vector) -> Vector:
-    """Return the vector to a point from the nearest point of a shape; zero for a point in a box or cylinder."""
+    """Return the vector to a point from the nearest point of a shape; zero for a point in a box or
+    cylinder.
+    """
     if not isinstance(shape, Cylinder):
         return _vector_from_nearest(shape, point)
     x, y, z = point
@@ -120,7 +139,8 @@ def _outside(shape: Shape, point: Vector) -> Vector:
 def _rims_matter(a: Shape, b: Shape, T_a_b: Transform) -> bool:
     """Return whether a cylinder leans against all edges of the other shape by more than `_LEAN`.
 
-    The overlap with a cylinder parallel to an edge, as most are, is a problem in the plane, without rims.
+    The overlap with a cylinder parallel to an edge, as most are, is a problem in the plane, without
+    rims.
     """
     if isinstance(a, Box) and isinstance(b, Box):
         return False

@@ -1,4 +1,6 @@
-"""Read a URDF as ROS 2 (Jazzy) does, and report everything that is wrong with it, also names that look misspelt."""
+"""Read a URDF as ROS 2 (Jazzy) does, and report everything that is wrong with it, also names
+that look misspelt.
+"""
 
 import os
 import re
@@ -31,7 +33,8 @@ if TYPE_CHECKING:
 
 Verdict = Literal["clean", "degraded", "rejected"]
 
-_MAX_CAUSES = 300  # for which ROS 2 rejects a file: with more of them, no word is read as another one
+# for which ROS 2 rejects a file: with more of them, no word is read as another one
+_MAX_CAUSES = 300
 _FATAL: frozenset[Effect] = frozenset({"rejects", "undetermined"})
 _XACRO = re.compile(r"<xacro:|\$\{|\$\(")
 # Correct names that urdfdom does not read: they are not misspellings.
@@ -42,12 +45,15 @@ _EXTENSIONS = frozenset(
 
 
 class Reading(NamedTuple):
-    """A URDF as ROS 2 (Jazzy) reads it: the verdict, the robot, and everything that is wrong with the file.
+    """A URDF as ROS 2 (Jazzy) reads it: the verdict, the robot, and everything that is wrong with
+    the file.
 
-    `read_urdf` makes it of any text, and never raises; xacro is expanded before, in `grader.xacro`. A submission holds
-    the reading of its URDF; checks get it as `urdf`, reports list its problems, and hints edit what it was read from.
+    `read_urdf` makes it of any text, and never raises; xacro is expanded before, in `grader.xacro`.
+    A submission holds the reading of its URDF; checks get it as `urdf`, reports list its problems,
+    and hints edit what it was read from.
 
-    >>> reading = read_urdf('<robot name="r"><link name="base"/><joint name="j" type="fixed"/></robot>')
+    >>> text = '<robot name="r"><link name="base"/><joint name="j" type="fixed"/></robot>'
+    >>> reading = read_urdf(text)
     >>> reading.verdict
     'rejected'
     >>> [link.name for link in reading.robot.links]
@@ -63,8 +69,10 @@ class Reading(NamedTuple):
     root: Element | None = None  # the <robot> that was read; None where the text is not XML
     unresolved: Mapping[Element, Unresolved] = {}  # what xacro leaves open
     recovered: Element | None = None  # the <robot> that was read where the text is not XML
-    is_meant: bool = False  # whether ROS 2 would load the robot, which is read with the words in `undone` undone
-    undone: "tuple[Word, ...]" = ()  # the tags and words for which ROS 2 rejects the file, and that surely are others
+    # whether ROS 2 would load the robot, which is read with the words in `undone` undone
+    is_meant: bool = False
+    # the tags and words for which ROS 2 rejects the file, and that surely are others
+    undone: "tuple[Word, ...]" = ()
 
     @property
     def elements(self) -> Element | None:
@@ -74,23 +82,28 @@ class Reading(NamedTuple):
     @property
     def is_certain(self) -> bool:
         """Return whether the verdict is certain, although a part of the file may be unknown."""
-        return not self.undetermined or any(problem.kind.effect == "rejects" for problem in self.problems)
+        return not self.undetermined or any(
+            problem.kind.effect == "rejects" for problem in self.problems
+        )
 
     @property
     def undetermined(self) -> str:
         """Why the robot is not known completely; empty if it is."""
-        return next((problem.message for problem in self.problems if problem.kind.effect == "undetermined"), "")
+        return next(
+            (problem.message for problem in self.problems if problem.kind.effect == "undetermined"),
+            "",
+        )
 
 
 def read_urdf(source: bytes | str | os.PathLike[str], path: str = "robot.urdf") -> Reading:
     """Read a URDF as ROS 2 Jazzy does (urdfdom on TinyXML2).
 
-    The verdict is `clean`; `degraded`, if content is dropped or links are omitted of the tree; or `rejected`. Every
-    problem is reported, sorted by location.
+    The verdict is `clean`; `degraded`, if content is dropped or links are omitted of the tree; or
+    `rejected`. Every problem is reported, sorted by location.
 
     Args:
-        source: The path of a file, or the text or bytes of one. A str that ends in `.urdf`, `.xacro` or `.xml` is a
-            path. Xacro is not expanded.
+        source: The path of a file, or the text or bytes of one. A str that ends in `.urdf`,
+            `.xacro` or `.xml` is a path. Xacro is not expanded.
         path: The name of the file in locations; default: that of `source`.
 
     Raises:
@@ -101,7 +114,9 @@ def read_urdf(source: bytes | str | os.PathLike[str], path: str = "robot.urdf") 
     >>> read_urdf("<robot").verdict
     'rejected'
     """
-    if isinstance(source, os.PathLike) or (isinstance(source, str) and source.endswith((*ROBOT_ENDINGS, ".xml"))):
+    if isinstance(source, os.PathLike) or (
+        isinstance(source, str) and source.endswith((*ROBOT_ENDINGS, ".xml"))
+    ):
         path = os.fspath(source)
         source = read_capped(path)
     given = source.encode("utf-8", "surrogatepass") if isinstance(source, str) else source
@@ -117,20 +132,31 @@ def read_robot(document: XmlDocument) -> Reading:
     effects = {problem.kind.effect for problem in listed}
     if effects.isdisjoint(_FATAL):
         effects.add("rejects")
-        message, at = "the file has no <robot> at its top level; ROS 2 rejects it", source.at(document.first_tag)
+        message, at = (
+            "the file has no <robot> at its top level; ROS 2 rejects it",
+            source.at(document.first_tag),
+        )
         if root is not None:
-            message = f"the root of the file is <{root.tag.rpartition('}')[2]}>, expected <robot>; ROS 2 rejects it"
+            message = (
+                "the root of the file is "
+                f"<{root.tag.rpartition('}')[2]}>, expected <robot>; ROS 2 rejects it"
+            )
             at = source.tag(0)
         listed.append(Problem(urdf_problems.NO_ROBOT, message, at))
     return Reading(_verdict(effects), None, in_order(listed), source, root, document.unresolved)
 
 
 def _read_content(document: XmlDocument, root: Element) -> Reading:
-    """Return what is read of a robot: if ROS 2 rejects it for words that surely stand for others, with these undone."""
+    """Return what is read of a robot: if ROS 2 rejects it for words that surely stand for
+    others, with these undone.
+    """
     listed = document.problems
     robot, problems = _read_robot(document, root)
     effects = {problem.kind.effect for problem in listed} | problems.effects
-    found, incomplete = problems.listed, _why_incomplete(document, robot) if effects.intersection(_FATAL) else ""
+    found, incomplete = (
+        problems.listed,
+        _why_incomplete(document, robot) if effects.intersection(_FATAL) else "",
+    )
     is_meant = document.is_meant and "rejects" not in problems.effects
     undone: tuple[Word, ...] = ()
     if document.is_meant and not is_meant and not incomplete and len(causes(found)) <= _MAX_CAUSES:
@@ -142,28 +168,40 @@ def _read_content(document: XmlDocument, root: Element) -> Reading:
             found = [*causes(found), *meant.problems]
     if document.root is None:
         broken = {problem.location.line for problem in listed}
-        found = [it for it in found if not it.kind.is_consequence and it.location.line not in broken]
+        found = [
+            it for it in found if not it.kind.is_consequence and it.location.line not in broken
+        ]
     listed += found
     if problems.unlisted:
         message = f"{problems.unlisted} more problems of this file are not listed"
-        listed.append(Problem(urdf_problems.UNLISTED, message, document.source.at(len(document.source.text))))
+        listed.append(
+            Problem(urdf_problems.UNLISTED, message, document.source.at(len(document.source.text)))
+        )
     verdict = _verdict(effects)
     if verdict != "rejected" and not document.is_expanded:
         listed += _problems_for_python(document, robot)
     if verdict == "rejected":
-        robot = replace(robot, rejected=not is_meant or "undetermined" in effects, incomplete=incomplete)
+        robot = replace(
+            robot, rejected=not is_meant or "undetermined" in effects, incomplete=incomplete
+        )
     places = (document.source, document.root, document.unresolved, document.recovered)
     return Reading(verdict, robot, in_order(listed), *places, is_meant, undone)
 
 
 def _problems_for_python(document: XmlDocument, robot: Robot) -> Iterator[Problem]:
-    """Yield that joint_state_publisher cannot read the file, if it has joints for which it publishes positions."""
+    """Yield that joint_state_publisher cannot read the file, if it has joints for which it
+    publishes positions.
+    """
     is_moving = any(joint.type in SINGLE for joint in robot.joints)
     error = python_xml_error(document.source.text) if is_moving else None
     if error is None:
         return
     at = document.source.at(error.offset)
-    same_line = (it.subject for it in document.problems if it.location.line == at.line and it.kind is NOT_WELL_FORMED)
+    same_line = (
+        it.subject
+        for it in document.problems
+        if it.location.line == at.line and it.kind is NOT_WELL_FORMED
+    )
     message = f"joint_state_publisher cannot read this file ({next(same_line, error.message)})"
     message += ": in RViz no moving link has a transform"
     yield Problem(urdf_problems.NOT_FOR_PYTHON, message, at)
@@ -178,7 +216,9 @@ def _verdict(effects: Collection[Effect]) -> Verdict:
 def _read_robot(document: XmlDocument, root: Element) -> tuple[Robot, Problems]:
     problems = Problems(document, root)
     if root.get("name") is None:
-        problems.add(urdf_problems.ROBOT_WITHOUT_NAME, "<robot> has no name; ROS 2 rejects the file", root)
+        problems.add(
+            urdf_problems.ROBOT_WITHOUT_NAME, "<robot> has no name; ROS 2 rejects the file", root
+        )
     version = root.get("version")
     if version is not None and not is_version_one(version):
         message = f'version="{version[:40]}" is not supported, expected 1.0; ROS 2 rejects the file'
@@ -195,9 +235,14 @@ def _read_robot(document: XmlDocument, root: Element) -> tuple[Robot, Problems]:
         else:
             links[link.name], elements[link.name] = link, element
     if not links:
-        problems.add(urdf_problems.NO_LINKS, "the robot has no <link>; ROS 2 rejects the file", root)
+        problems.add(
+            urdf_problems.NO_LINKS, "the robot has no <link>; ROS 2 rejects the file", root
+        )
     robot = Robot(
-        root.get("name") or "", tuple(links.values()), _read_joints(root, problems), tuple(materials.known.values())
+        root.get("name") or "",
+        tuple(links.values()),
+        _read_joints(root, problems),
+        tuple(materials.known.values()),
     )
     check_references(robot, problems)
     check_tree(robot, elements, problems)
@@ -209,13 +254,20 @@ def _read_robot(document: XmlDocument, root: Element) -> tuple[Robot, Problems]:
 
 
 def _why_incomplete(document: XmlDocument, robot: Robot) -> str:
-    """Return why there may be more links and joints than are known: unknown content, or the name of one is unknown."""
+    """Return why there may be more links and joints than are known: unknown content, or the name
+    of one is unknown.
+    """
     root = document.root if document.root is not None else document.recovered
     of_root = document.unresolved.get(root) if root is not None else None
     if of_root is not None and of_root.content:
         return of_root.content
-    parts = [*(link.unresolved for link in robot.links), *(joint.unresolved for joint in robot.joints)]
-    named = (found[key].reason for found in parts for key in ("@name", "parent", "child") if key in found)
+    parts = [
+        *(link.unresolved for link in robot.links),
+        *(joint.unresolved for joint in robot.joints),
+    ]
+    named = (
+        found[key].reason for found in parts for key in ("@name", "parent", "child") if key in found
+    )
     return next(filter(None, named), "")
 
 
@@ -225,7 +277,10 @@ def _read_joints(root: Element, problems: Problems) -> tuple[Joint, ...]:
     for element in root.iterchildren("joint"):
         joint = read_joint(element, problems)
         joints.append(joint)
-        if element.get("name") is not None and elements.setdefault(joint.name, element) is not element:
+        if (
+            element.get("name") is not None
+            and elements.setdefault(joint.name, element) is not element
+        ):
             problems.duplicate(urdf_problems.DUPLICATE_JOINT, element, elements[joint.name])
     return tuple(joints)
 
@@ -234,16 +289,27 @@ def _check_root_inertia(robot: Robot, links: dict[str, Element], problems: Probl
     children = {joint.child for joint in robot.joints}
     for link in robot.links:
         if link.inertial is not None and link.name not in children:
-            message = f"the root link {quoted(link.name)} has an inertia: KDL ignores it, robot_state_publisher warns"
-            problems.add(urdf_problems.ROOT_INERTIA, message, next(links[link.name].iterchildren("inertial")))
+            message = (
+                f"the root link {quoted(link.name)} has an inertia: KDL ignores it, "
+                "robot_state_publisher warns"
+            )
+            problems.add(
+                urdf_problems.ROOT_INERTIA, message, next(links[link.name].iterchildren("inertial"))
+            )
 
 
 def find_xacro(text: str) -> int | None:
-    """Return the offset of the first xacro in a text outside of comments: a tag, ${...} or $(...)."""
+    """Return the offset of the first xacro in a text outside of comments: a tag, ${...} or
+    $(...).
+    """
     if "$" not in text and "xacro:" not in text:
         return None
     comments = list(_comment_spans(text))
-    outside = zip([0, *(end for _, end in comments)], [*(start for start, _ in comments), len(text)], strict=True)
+    outside = zip(
+        [0, *(end for _, end in comments)],
+        [*(start for start, _ in comments), len(text)],
+        strict=True,
+    )
     found = next(filter(None, (_XACRO.search(text, *span) for span in outside)), None)
     return found.start() if found is not None else None
 
@@ -255,13 +321,18 @@ def _check_text(problems: Problems, *, is_expanded: bool) -> None:
         from shlex import quote  # late: most files are no xacro
 
         name = problems.source.path.rpartition("/")[2]
-        message = f"this is xacro, which ROS 2 does not evaluate in a .urdf: run `ros2 run xacro xacro {quote(name)}`"
+        message = (
+            "this is xacro, which ROS 2 does not evaluate in a .urdf: run `ros2 run xacro "
+            f"xacro {quote(name)}`"
+        )
         problems.listed.append(Problem(urdf_problems.RAW_XACRO, message, problems.source.at(xacro)))
     for start, end in _comment_spans(text):
         if text.find(": ", start, end) >= 0 or text.find("\t", start, end) >= 0:
             message = "this comment contains a colon and a space, or a tab"
             message += ": it can stop a launch file that passes the URDF as YAML"
-            problems.listed.append(Problem(urdf_problems.COMMENT_TRAP, message, problems.source.at(start)))
+            problems.listed.append(
+                Problem(urdf_problems.COMMENT_TRAP, message, problems.source.at(start))
+            )
             break
 
 
@@ -274,7 +345,9 @@ def _comment_spans(text: str) -> Iterator[tuple[int, int]]:
 
 
 def _check_spelling(root: Element, problems: Problems) -> None:
-    """Report misspelt names and repeated elements in what urdfdom reads; extensions of other tools are skipped."""
+    """Report misspelt names and repeated elements in what urdfdom reads; extensions of other tools
+    are skipped.
+    """
     if not ATTRIBUTES["robot"].issuperset(root.keys()):
         _check_attributes(root, problems)
     waiting = [root]
@@ -292,7 +365,11 @@ def _check_spelling(root: Element, problems: Problems) -> None:
                     waiting.append(child)
             else:
                 _check_unread(child, element, allowed, problems)
-        if element is not root and len(tags) > 1 and (len(set(tags)) < len(tags) or element.tag == "geometry"):
+        if (
+            element is not root
+            and len(tags) > 1
+            and (len(set(tags)) < len(tags) or element.tag == "geometry")
+        ):
             _check_repeated(element, tags, problems)
 
 
@@ -307,12 +384,22 @@ def _check_attributes(element: Element, problems: Problems) -> None:
         if meant:
             message += f"; did you mean {quoted(meant)}?"
             problems.add(urdf_problems.MISSPELT, message, element, name, str(element.tag))
-        elif PARTS.get(name) and any(numbers_in(element.get(name) or "")):  # a place that the student gives something
+        elif PARTS.get(name) and any(
+            numbers_in(element.get(name) or "")
+        ):  # a place that the student gives something
             owners = enumerated([f"<{tag}>" for tag in OWNERS[name]])
-            problems.add(urdf_problems.MISSPELT, f"{message}: it belongs to {owners}", element, name, str(element.tag))
+            problems.add(
+                urdf_problems.MISSPELT,
+                f"{message}: it belongs to {owners}",
+                element,
+                name,
+                str(element.tag),
+            )
 
 
-def _check_unread(child: Element, parent: Element, allowed: tuple[str, ...], problems: Problems) -> None:
+def _check_unread(
+    child: Element, parent: Element, allowed: tuple[str, ...], problems: Problems
+) -> None:
     """Report an element that urdfdom does not read, unless it is in the place of an extension."""
     if child.tag not in _EXTENSIONS or (child.tag in ELSEWHERE and parent is not problems.root):
         _check_tag(child, parent.tag, allowed, problems)
@@ -342,9 +429,15 @@ def _check_repeated(element: Element, tags: list[str], problems: Problems) -> No
     for child, tag in zip(element, tags, strict=True):
         if element.tag == "geometry" and seen:
             problems.add(
-                urdf_problems.REPEATED_ELEMENT, "a <geometry> has one shape: ROS 2 reads only the first", child
+                urdf_problems.REPEATED_ELEMENT,
+                "a <geometry> has one shape: ROS 2 reads only the first",
+                child,
             )
-        elif tag in seen and tag in TAGS[element.tag].children and tag not in TAGS[element.tag].repeated:
+        elif (
+            tag in seen
+            and tag in TAGS[element.tag].children
+            and tag not in TAGS[element.tag].repeated
+        ):
             message = f"<{tag}> is repeated in this <{element.tag}>: ROS 2 reads only the first"
             problems.add(urdf_problems.REPEATED_ELEMENT, message, child)
         seen.add(tag)

@@ -1,8 +1,9 @@
-"""The size of a robot's shapes: support points, extents, volumes; how far a placed shape differs from another one.
+"""The size of a robot's shapes: support points, extents, volumes; how far a placed shape differs
+from another one.
 
-Lengths are metres. A negative size counts as its absolute value: urdfdom accepts it, and a shape that is
-symmetric about its centre does not change when it is mirrored. Shapes are compared as solids: symmetries, such as the
-turn of a sphere, do not count.
+Lengths are metres. A negative size counts as its absolute value: urdfdom accepts it, and a shape
+that is symmetric about its centre does not change when it is mirrored. Shapes are compared as
+solids: symmetries, such as the turn of a sphere, do not count.
 """
 
 from collections.abc import Iterator
@@ -16,23 +17,30 @@ from grader.text import quoted
 
 Shape = Box | Cylinder | Sphere
 
-_TIE = 1e-9  # relative to its length; a direction that leans less from a face's normal means the whole face
-_CORNERS = tuple(product((1.0,), (1.0, -1.0), (1.0, -1.0)))  # the signs of four; the others are opposite to these
+# relative to its length; a direction that leans less from a face's normal means the whole face
+_TIE = 1e-9
+_CORNERS = tuple(
+    product((1.0,), (1.0, -1.0), (1.0, -1.0))
+)  # the signs of four; the others are opposite to these
 
 
 class UnknownShape(ValueError):
     """The size of a shape is needed, but not known; `geometry` is that shape."""
 
     def __init__(self, geometry: Mesh) -> None:
-        super().__init__(f"the size of mesh {quoted(geometry.filename)} is unknown: mesh files are not opened")
+        super().__init__(
+            f"the size of mesh {quoted(geometry.filename)} is unknown: mesh files are not opened"
+        )
         self.geometry = geometry
 
 
 def half_width(geometry: Geometry, direction: Vector) -> float:
-    """Return the extent (m) of a shape from its centre along a unit direction of its frame; UnknownShape for a mesh.
+    """Return the extent (m) of a shape from its centre along a unit direction of its frame;
+    UnknownShape for a mesh.
 
-    This is the shape's support function (Ericson, Real-Time Collision Detection, 2004, section 4.3). The cylinder's
-    `hypot` has no cancellation near its axis, which `sqrt(1 - z * z)` would have.
+    This is the shape's support function (Ericson, Real-Time Collision Detection, 2004, section
+    4.3). The cylinder's `hypot` has no cancellation near its axis, which `sqrt(1 - z * z)` would
+    have.
     """
     x, y, z = direction
     if isinstance(geometry, Box):
@@ -46,10 +54,11 @@ def half_width(geometry: Geometry, direction: Vector) -> float:
 
 
 def support(geometry: Geometry, direction: Vector) -> Vector:
-    """Return the farthest point of a shape along a direction of its frame; the middle of them if several tie.
+    """Return the farthest point of a shape along a direction of its frame; the middle of them if
+    several tie.
 
-    Metres, in the shape's frame; the direction need not be unit, and a zero one gives the centre. Raises UnknownShape
-    for a mesh.
+    Metres, in the shape's frame; the direction need not be unit, and a zero one gives the centre.
+    Raises UnknownShape for a mesh.
     """
     x, y, z = direction
     tie = _TIE * max(abs(x), abs(y), abs(z))
@@ -69,7 +78,8 @@ def support(geometry: Geometry, direction: Vector) -> Vector:
 
 
 def extent(geometry: Geometry, T_frame_shape: Transform, direction: Vector) -> tuple[float, float]:
-    """Return the smallest and the largest coordinate of a shape along a unit direction of the frame, metres.
+    """Return the smallest and the largest coordinate of a shape along a unit direction of the
+    frame, metres.
 
     Raises UnknownShape for a mesh.
     """
@@ -79,7 +89,8 @@ def extent(geometry: Geometry, T_frame_shape: Transform, direction: Vector) -> t
 
 
 def farthest(geometry: Geometry, T_frame_shape: Transform, direction: Vector) -> Vector:
-    """Return the farthest point of a shape along a direction of the frame; the middle of them if several tie.
+    """Return the farthest point of a shape along a direction of the frame; the middle of them if
+    several tie.
 
     Metres, in the frame. Raises UnknownShape for a mesh.
     """
@@ -101,8 +112,9 @@ def volume(geometry: Geometry) -> float:
 def is_empty(geometry: Geometry) -> bool:
     """Return whether a shape is invisible, because it has neither a volume nor an area.
 
-    That is a box with two or three zero edges (with one it is a plate, which RViz shows), a cylinder or sphere of zero
-    radius (a cylinder of zero length is a disc), and a mesh scaled by zero along all three axes.
+    That is a box with two or three zero edges (with one it is a plate, which RViz shows), a
+    cylinder or sphere of zero radius (a cylinder of zero length is a disc), and a mesh scaled by
+    zero along all three axes.
     """
     if isinstance(geometry, Box):
         return geometry.size.count(0.0) >= 2
@@ -112,7 +124,9 @@ def is_empty(geometry: Geometry) -> bool:
 
 
 def straight_edges(geometry: Geometry) -> list[Vector]:
-    """Return the directions of the straight edges of a shape, which are the normals of its flat faces too."""
+    """Return the directions of the straight edges of a shape, which are the normals of its flat
+    faces too.
+    """
     if isinstance(geometry, Box):
         return [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
     return [(0.0, 0.0, 1.0)] if isinstance(geometry, Cylinder) else []
@@ -145,8 +159,9 @@ def _signed_half(size: float, component: float, tie: float) -> float:
 
 
 class Mismatch(NamedTuple):
-    """The differences of two shapes in metres: how far the centres are apart, the largest difference of a size, and how
-    far the turn of one against the other moves a point of the surface. `angle` is that turn in degrees.
+    """The differences of two shapes in metres: how far the centres are apart, the largest
+    difference of a size, and how far the turn of one against the other moves a point of the
+    surface. `angle` is that turn in degrees.
     """
 
     apart: float
@@ -164,27 +179,37 @@ class Mismatch(NamedTuple):
 def mismatch(
     a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, tolerance: float, *, turned: bool = True
 ) -> Mismatch | None:
-    """Return how two shapes differ, with as few differences beyond a tolerance as their symmetries allow.
+    """Return how two shapes differ, with as few differences beyond a tolerance as their symmetries
+    allow.
 
     None for shapes of different kinds. Without `turned`, their orientations do not count.
     """
     apart = hypot(*minus(T_w_a.translation, T_w_b.translation))
     found = [
-        Mismatch(apart, *(way if turned else (way[0], 0.0, 0.0))) for way in _differences_by_pose(a, T_w_a, b, T_w_b)
+        Mismatch(apart, *(way if turned else (way[0], 0.0, 0.0)))
+        for way in _differences_by_pose(a, T_w_a, b, T_w_b)
     ]
-    return min(found, key=lambda way: (not way.size <= tolerance) + (not way.turn <= tolerance), default=None)
+    return min(
+        found,
+        key=lambda way: (not way.size <= tolerance) + (not way.turn <= tolerance),
+        default=None,
+    )
 
 
 def turn_between(one: Rotation, other: Rotation) -> float:
     """Return the angle in degrees of the rotation from one to the other."""
-    trace = sum(a * b for a, b in zip(one, other, strict=True))  # of that rotation: 1 + 2 cos(angle)
+    trace = sum(
+        a * b for a, b in zip(one, other, strict=True)
+    )  # of that rotation: 1 + 2 cos(angle)
     return degrees(acos(max(-1.0, min(1.0, (trace - 1.0) / 2.0))))
 
 
 def _differences_by_pose(
     a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform
 ) -> Iterator[tuple[float, float, float]]:
-    """Yield the size, turn and angle of the difference for each way to lay a shape over another, aligned axes first."""
+    """Yield the size, turn and angle of the difference for each way to lay a shape over another,
+    aligned axes first.
+    """
     match a, b:
         case Sphere(), Sphere():
             yield _size_difference(a.radius, b.radius), 0.0, 0.0
@@ -195,8 +220,14 @@ def _differences_by_pose(
         case Box(), Box():
             ours, theirs = ([T.rotate(axis) for axis in AXES] for T in (T_w_a, T_w_b))
             for order in permutations(range(3)):
-                size = max(_size_difference(edge, b.size[other]) for edge, other in zip(a.size, order, strict=True))
-                leans = [_nearest_chord(axis, theirs[other]) for axis, other in zip(ours, order, strict=True)]
+                size = max(
+                    _size_difference(edge, b.size[other])
+                    for edge, other in zip(a.size, order, strict=True)
+                )
+                leans = [
+                    _nearest_chord(axis, theirs[other])
+                    for axis, other in zip(ours, order, strict=True)
+                ]
                 yield size, _corner_motion(a.size, leans), max(map(_chord_angle, leans))
 
 
@@ -216,10 +247,18 @@ def _chord_angle(chord: Vector) -> float:
 
 
 def _corner_motion(size: Vector, leans: list[Vector]) -> float:
-    """Return how far the farthest corner of a box moves if the directions of its edges change by these vectors."""
+    """Return how far the farthest corner of a box moves if the directions of its edges change by
+    these vectors.
+    """
     return max(
         hypot(
-            *(sum(s * edge / 2.0 * lean[k] for s, edge, lean in zip(signs, size, leans, strict=True)) for k in range(3))
+            *(
+                sum(
+                    s * edge / 2.0 * lean[k]
+                    for s, edge, lean in zip(signs, size, leans, strict=True)
+                )
+                for k in range(3)
+            )
         )
         for signs in _CORNERS
     )

@@ -1,7 +1,7 @@
 """Rigid motions as plain floats.
 
-At 4 x 4 a product of Python floats costs no more than a numpy call, and saves the import; `numpy.asarray(transform)`
-gives the homogeneous matrix.
+At 4 x 4 a product of Python floats costs no more than a numpy call, and saves the import;
+`numpy.asarray(transform)` gives the homogeneous matrix.
 """
 
 from collections.abc import Iterable
@@ -15,7 +15,9 @@ if TYPE_CHECKING:
 Vector = tuple[float, float, float]
 AXES: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 X_AXIS, _, Z_AXIS = AXES
-Rotation = tuple[float, float, float, float, float, float, float, float, float]  # a 3 x 3 matrix, row by row
+Rotation = tuple[
+    float, float, float, float, float, float, float, float, float
+]  # a 3 x 3 matrix, row by row
 
 IDENTITY_ROTATION: Rotation = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
@@ -24,8 +26,8 @@ IDENTITY_ROTATION: Rotation = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 class Transform:
     """The pose T_a_b of a frame b in a frame a: it maps points given in b to a.
 
-    `translation` is b's origin in a, in metres; `rotation` has b's axes as columns, row by row. With a numpy array on
-    either side, `@` is the product with the 4 x 4 matrix.
+    `translation` is b's origin in a, in metres; `rotation` has b's axes as columns, row by row.
+    With a numpy array on either side, `@` is the product with the 4 x 4 matrix.
 
     >>> T_base_lidar = Transform(translation=(0.15, 0.0, 0.225))
     >>> T_base_lidar.apply((1, 0, 0))
@@ -103,9 +105,12 @@ class Transform:
 
     @property
     def quaternion(self) -> tuple[float, float, float, float]:
-        """The rotation as a unit quaternion x, y, z, w, as in ROS 2's messages; w is not negative."""
+        """The rotation as a unit quaternion x, y, z, w, as in ROS 2's messages; w is not
+        negative.
+        """
         a, b, c, d, e, f, g, h, i = self.rotation
-        products = (  # four times the product of each two components: the row of the largest one is most exact
+        # four times the product of each two components: the row of the largest one is most exact
+        products = (
             (1.0 + a - e - i, b + d, c + g, h - f),
             (b + d, 1.0 - a + e - i, f + h, c - g),
             (c + g, f + h, 1.0 - a - e + i, d - b),
@@ -126,7 +131,9 @@ IDENTITY = Transform()
 
 
 def rotation_from_rpy(rpy: Vector) -> Rotation:
-    """Return Rz(yaw) Ry(pitch) Rx(roll): roll about x, then pitch about y, then yaw about z, all fixed (REP 103)."""
+    """Return Rz(yaw) Ry(pitch) Rx(roll): roll about x, then pitch about y, then yaw about z, all
+    fixed (REP 103).
+    """
     if rpy == (0.0, 0.0, 0.0):
         return IDENTITY_ROTATION
     roll, pitch, yaw = rpy
@@ -163,7 +170,9 @@ def rotation_about(axis: Vector, angle: float) -> Rotation:
 
 
 def unit(vector: Vector) -> Vector | None:
-    """Return the unit vector of a direction, or None for length zero. Safe from overflow and underflow."""
+    """Return the unit vector of a direction, or None for length zero. Safe from overflow and
+    underflow.
+    """
     if vector in AXES:  # the most frequent case
         return vector
     largest = max(abs(vector[0]), abs(vector[1]), abs(vector[2]))
@@ -190,6 +199,8 @@ def minus(a: Vector, b: Vector) -> Vector:
 
 
 def degrees_between(a: Vector, b: Vector) -> float:
-    """Return the angle between two directions in degrees, as exact near 0 as elsewhere; NaN for a zero vector."""
+    """Return the angle between two directions in degrees, as exact near 0 as elsewhere; NaN for a
+    zero vector.
+    """
     sine, cosine = hypot(*cross(a, b)), dot(a, b)
     return degrees(atan2(sine, cosine)) if sine or cosine else nan

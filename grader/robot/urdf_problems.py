@@ -18,7 +18,9 @@ BAD_VISUAL = drops("URDF041", "An invalid <visual>")
 BAD_COLLISION = drops("URDF042", "An invalid <collision>")
 FORMAT_DIRECTIVE = rejects("URDF043", "A %n in an invalid value")
 UNNAMED_MATERIAL = drops("URDF050", "A material without a name")
-UNDEFINED_MATERIAL = drops("URDF051", "A material that is not defined, or used before its definition")
+UNDEFINED_MATERIAL = drops(
+    "URDF051", "A material that is not defined, or used before its definition"
+)
 BAD_COLOUR = drops("URDF052", "An invalid colour")
 COLOUR_COUNT = warns("URDF053", "A colour without exactly four numbers")
 COLOURLESS_MATERIAL = drops("URDF054", "A material under <robot> without a colour")

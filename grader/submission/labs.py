@@ -16,19 +16,72 @@ _NUMBER_BORDER = re.compile(r"(?<=\d) (?=\d)")
 _NUMBER_WORDS = {
     word: str(number)
     for number, word in enumerate(
-        ["one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"], start=1
+        [
+            "one",
+            "two",
+            "three",
+            "four",
+            "five",
+            "six",
+            "seven",
+            "eight",
+            "nine",
+            "ten",
+            "eleven",
+            "twelve",
+        ],
+        start=1,
     )
 }
 # Words in the names of folders that are a part or version of a submission.
 _PARTS = frozenset(
     {
-        "src", "launch", "config", "resource", "resources", "test", "build", "install", "log", "docs", "images",
-        "pictures", "screenshots", "evidence", "answers", "meshes", "worlds", "models", "code", "package", "ws",
-        "part", "task", "step", "lab", "prelab", "description", "base", "template", "old", "new", "copy", "backup",
-        "v", "version", "final", "solution", "second", "submission", "submissions", "project", "my", "team",
+        "src",
+        "launch",
+        "config",
+        "resource",
+        "resources",
+        "test",
+        "build",
+        "install",
+        "log",
+        "docs",
+        "images",
+        "pictures",
+        "screenshots",
+        "evidence",
+        "answers",
+        "meshes",
+        "worlds",
+        "models",
+        "code",
+        "package",
+        "ws",
+        "part",
+        "task",
+        "step",
+        "lab",
+        "prelab",
+        "description",
+        "base",
+        "template",
+        "old",
+        "new",
+        "copy",
+        "backup",
+        "v",
+        "version",
+        "final",
+        "solution",
+        "second",
+        "submission",
+        "submissions",
+        "project",
+        "my",
+        "team",
         "students",
     }
-)  # fmt: skip
+)
 _ROBOTICS = re.compile("robot|urdf|xacro|gazebo|rviz|webots|turtle|workspace")
 _FINAL = re.compile(r"(?:final|course|term|semester|capstone)projects?|capstone")
 
@@ -44,9 +97,10 @@ class Belonging(IntEnum):
 class LabFolders:
     """Tells the folders of a lab, by the names that a rubric gives, from those of other labs.
 
-    Case, spaces, hyphens, underscores and leading zeros do not matter. Another lab has the same name with another
-    number, or is a final project. A name that contains more, such as Lab6_Ash, counts if no folder of this lab has
-    exactly its name, and if it has a number; the folder of a package never counts by such a name.
+    Case, spaces, hyphens, underscores and leading zeros do not matter. Another lab has the same
+    name with another number, or is a final project. A name that contains more, such as Lab6_Ash,
+    counts if no folder of this lab has exactly its name, and if it has a number; the folder of a
+    package never counts by such a name.
     """
 
     def __init__(self, names: Sequence[str], paths: Iterable[str] = ()) -> None:
@@ -90,18 +144,30 @@ class LabFolders:
         return found
 
     def is_beside_archive(self, path: str) -> bool:
-        """Return whether a file of no lab, or a folder around it, is beside an archive of this lab and no other lab."""
+        """Return whether a file of no lab, or a folder around it, is beside an archive of this lab
+        and no other lab.
+        """
         if self.belonging(path) is not Belonging.NO_LAB:
             return False
-        labs = next((self._labs_by_folder[it] for it in (*parents(path), "") if it in self._labs_by_folder), ())
-        own = (self._own_belonging(it) is Belonging.THIS_LAB and it.endswith(ARCHIVES) for it in map(str.lower, labs))
+        labs = next(
+            (self._labs_by_folder[it] for it in (*parents(path), "") if it in self._labs_by_folder),
+            (),
+        )
+        own = (
+            self._own_belonging(it) is Belonging.THIS_LAB and it.endswith(ARCHIVES)
+            for it in map(str.lower, labs)
+        )
         return bool(labs) and all(own)
 
     def around(self, path: str) -> str:
         """Return the outermost folder around a file that names a lab; empty if there is none."""
         if not self._own:
             return ""
-        named = (folder for folder in parents(path) if self._own_belonging(folder) is not Belonging.NO_LAB)
+        named = (
+            folder
+            for folder in parents(path)
+            if self._own_belonging(folder) is not Belonging.NO_LAB
+        )
         return next(reversed(list(named)), "")
 
     def _of_folder(self, folder: str) -> Belonging:
@@ -109,7 +175,9 @@ class LabFolders:
             return Belonging.NO_LAB
         if folder not in self._known:
             own = self._own_belonging(folder)
-            self._known[folder] = own if own is not Belonging.NO_LAB else self._of_folder(folder.rpartition("/")[0])
+            self._known[folder] = (
+                own if own is not Belonging.NO_LAB else self._of_folder(folder.rpartition("/")[0])
+            )
         return self._known[folder]
 
     def _own_belonging(self, folder: str) -> Belonging:
@@ -121,27 +189,41 @@ class LabFolders:
             return Belonging.OTHER_LAB
         if folder in self._packages:
             return Belonging.NO_LAB
-        spans = {_join_words(words[i:j]) for i in range(len(words)) for j in range(i + 1, len(words) + 1)}
+        spans = {
+            _join_words(words[i:j]) for i in range(len(words)) for j in range(i + 1, len(words) + 1)
+        }
         if any(_NUMBER.search(own) for own in spans & self._own):
             return Belonging.NO_LAB if self._has_exact else Belonging.THIS_LAB
-        is_other = any(_NUMBER.sub("#", span) in self._shapes or _FINAL.fullmatch(span) for span in spans)
+        is_other = any(
+            _NUMBER.sub("#", span) in self._shapes or _FINAL.fullmatch(span) for span in spans
+        )
         return Belonging.OTHER_LAB if is_other else Belonging.NO_LAB
 
 
 def lab_words(name: str) -> tuple[str, ...]:
     """Return the words and numbers of a name: lab and 6 of Lab_06 or Lab Six."""
     words = _WORD.findall(name[:100].casefold())
-    return tuple(str(int(word)) if word.isdecimal() else _NUMBER_WORDS.get(word, word) for word in words)
+    return tuple(
+        str(int(word)) if word.isdecimal() else _NUMBER_WORDS.get(word, word) for word in words
+    )
 
 
 def is_part(name: str, lab: Collection[str] = ()) -> bool:
-    """Return whether a folder's name is that of a part or version of a submission. `lab` are words to ignore."""
+    """Return whether a folder's name is that of a part or version of a submission. `lab` are words
+    to ignore.
+    """
     words = [word for word in lab_words(name) if word not in lab]
-    return not _PARTS.isdisjoint(words) or all(map(str.isdecimal, words)) or any(map(_ROBOTICS.search, words))
+    return (
+        not _PARTS.isdisjoint(words)
+        or all(map(str.isdecimal, words))
+        or any(map(_ROBOTICS.search, words))
+    )
 
 
 def _join_words(words: Sequence[str]) -> str:
-    """Return words without spaces, but a point between numbers: lab6, and lab6.2 of Lab6 (2), which is not lab 62."""
+    """Return words without spaces, but a point between numbers: lab6, and lab6.2 of Lab6 (2), which
+    is not lab 62.
+    """
     return _NUMBER_BORDER.sub(".", " ".join(words)).replace(" ", "")
 
 

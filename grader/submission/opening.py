@@ -19,29 +19,52 @@ from grader.text import enumerated, printable, printable_path
 STANDARD_INPUT = "-"
 # Other files of a lab, which are never meant as a URDF.
 _NO_URDFS = frozenset(
-    {".py", ".md", ".rviz", ".yaml", ".yml", ".toml", ".cfg", ".json", ".png", ".jpg", ".jpeg", ".gif", ".pdf", ".docx"}
+    {
+        ".py",
+        ".md",
+        ".rviz",
+        ".yaml",
+        ".yml",
+        ".toml",
+        ".cfg",
+        ".json",
+        ".png",
+        ".jpg",
+        ".jpeg",
+        ".gif",
+        ".pdf",
+        ".docx",
+    }
 )
 _TABLES = frozenset({".csv", ".tsv", ".xlsx", ".xls", ".ods"})
 _MAX_NAMED = 6  # files in a note
 _EXPECTED = "give a .urdf file, or the folder or archive that was submitted"
 
 
-def read_submission(data: bytes, *, identity: str, path: str, opening: Opening = DEFAULTS) -> Submission:
+def read_submission(
+    data: bytes, *, identity: str, path: str, opening: Opening = DEFAULTS
+) -> Submission:
     """Return the submission that consists of the bytes of one URDF."""
     if not opening.arguments and b"xacro" not in data:
         return Submission(identity, read_as_ros(data, path))
     surroundings = Surroundings(Budget(), arguments=opening.arguments)
-    return Submission(identity, read_as_ros(data, path, surroundings), opening=opening, budget=surroundings.budget)
+    return Submission(
+        identity, read_as_ros(data, path, surroundings), opening=opening, budget=surroundings.budget
+    )
 
 
-def open_submission(path: str, lab: Lab, opening: Opening = DEFAULTS, *, with_neighbours: bool = False) -> Submission:
+def open_submission(
+    path: str, lab: Lab, opening: Opening = DEFAULTS, *, with_neighbours: bool = False
+) -> Submission:
     """Read the submission at a path: a URDF, a folder, an archive, or standard input for `-`.
 
-    `with_neighbours` reads the files that a single xacro file includes from the package around it. Raises InputError,
-    with one sentence, if the path cannot be read.
+    `with_neighbours` reads the files that a single xacro file includes from the package around it.
+    Raises InputError, with one sentence, if the path cannot be read.
     """
     if path == STANDARD_INPUT:
-        return read_submission(read_standard_input(opening.max_size), identity="stdin", path="-", opening=opening)
+        return read_submission(
+            read_standard_input(opening.max_size), identity="stdin", path="-", opening=opening
+        )
     if not path:
         raise InputError(f"the path is empty: {_EXPECTED}")
     place = Path(path)
@@ -63,13 +86,17 @@ def open_submission(path: str, lab: Lab, opening: Opening = DEFAULTS, *, with_ne
     identity = printable_path(place.stem)
     if with_neighbours and b"xacro" in data:
         return _read_with_neighbours(place, data, identity, opening)
-    return read_submission(data, identity=identity, path=printable_path(place.name), opening=opening)
+    return read_submission(
+        data, identity=identity, path=printable_path(place.name), opening=opening
+    )
 
 
 def _read_with_neighbours(place: Path, data: bytes, identity: str, opening: Opening) -> Submission:
-    """Return the submission that is one file of xacro, and what it reads from the package around it.
+    """Return the submission that is one file of xacro, and what it reads from the package around
+    it.
 
-    If it reads anything, its path is relative to the nearest folder above with a package.xml, else to its own folder.
+    If it reads anything, its path is relative to the nearest folder above with a package.xml, else
+    to its own folder.
     """
     # Late: most URDFs are no xacro.
     from grader.files.folder import read_folder
@@ -77,14 +104,23 @@ def _read_with_neighbours(place: Path, data: bytes, identity: str, opening: Open
     asked: list[str] = []
     alone = Surroundings(Budget(), arguments=opening.arguments, ask=asked.append)
     submission = Submission(
-        identity, read_as_ros(data, printable_path(place.name), alone), opening=opening, budget=alone.budget
+        identity,
+        read_as_ros(data, printable_path(place.name), alone),
+        opening=opening,
+        budget=alone.budget,
     )
     if not asked:
         return submission
     try:
         folder = place.parent.resolve()
-        root = next((above for above in (folder, *folder.parents) if (above / MANIFEST).is_file()), folder)
-        if any((root.parent / name / MANIFEST).is_file() for name in _packages_in(asked) if name != root.name):
+        root = next(
+            (above for above in (folder, *folder.parents) if (above / MANIFEST).is_file()), folder
+        )
+        if any(
+            (root.parent / name / MANIFEST).is_file()
+            for name in _packages_in(asked)
+            if name != root.name
+        ):
             root = root.parent  # of a workspace, in which another package is beside this one
         path = printable((folder / place.name).relative_to(root).as_posix())
         found = read_folder(root)
@@ -102,8 +138,12 @@ def _packages_in(asked: Iterable[str]) -> set[str]:
     return {text.split("/")[2] for text in asked if text.startswith(f"{INSTALLED}/")}
 
 
-def _with_files_around(submission: Submission, tree: Tree, path: str, alone: Surroundings) -> Submission:
-    """Return a single file with what is read for it of a tree; `alone`: its surroundings without a tree."""
+def _with_files_around(
+    submission: Submission, tree: Tree, path: str, alone: Surroundings
+) -> Submission:
+    """Return a single file with what is read for it of a tree; `alone`: its surroundings without a
+    tree.
+    """
     from grader.submission.packages import read_packages
 
     known: dict[str, bytes] = {}
@@ -112,13 +152,19 @@ def _with_files_around(submission: Submission, tree: Tree, path: str, alone: Sur
         data = file.read(limit, first=first)
         return data if first else known.setdefault(file.path, data)
 
-    recorded = replace(tree, files={name: file._replace(read=partial(read, file)) for name, file in tree.files.items()})
+    recorded = replace(
+        tree,
+        files={name: file._replace(read=partial(read, file)) for name, file in tree.files.items()},
+    )
     packages = read_packages(recorded, Lab(""))
     data = tree.files[path].read(tree.files[path].size)
     surroundings = alone._replace(tree=recorded, packages=packages, is_single=True, budget=Budget())
     urdf = read_as_ros(data, path, surroundings)
     besides = tuple(sorted(known.keys() - {path}))
-    note = f"{enumerated(besides, _MAX_NAMED)} {'were' if len(besides) > 1 else 'was'} read besides {path}"
+    note = (
+        f"{enumerated(besides, _MAX_NAMED)} {'were' if len(besides) > 1 else 'was'} read "
+        f"besides {path}"
+    )
     return replace(
         submission,
         urdf=urdf,
@@ -137,10 +183,18 @@ def _is_lab(lab: Lab, name: str) -> bool:
     return LabFolders(lab.folders).is_lab(name)
 
 
-def submission_of(tree: Tree, identity: str, lab: Lab, opening: Opening = DEFAULTS, *, shown: str = "") -> Submission:
-    """Return the submission that a file tree makes; raises InputError, which names it `shown`, if it has no files."""
+def submission_of(
+    tree: Tree, identity: str, lab: Lab, opening: Opening = DEFAULTS, *, shown: str = ""
+) -> Submission:
+    """Return the submission that a file tree makes; raises InputError, which names it `shown`, if
+    it has no files.
+    """
     if not tree.files and not tree.generated:
-        reason = f": {tree.ignored[0]}" if tree.ignored else " (hidden files and build folders are ignored)"
+        reason = (
+            f": {tree.ignored[0]}"
+            if tree.ignored
+            else " (hidden files and build folders are ignored)"
+        )
         raise InputError(f"{shown or identity} is empty{reason}")
     # Late: a URDF on its own needs no search.
     from grader.submission.selection import select

@@ -1,4 +1,6 @@
-"""The graded package of a submission, and the reasons against the others and against files kept of earlier work."""
+"""The graded package of a submission, and the reasons against the others and against files kept of
+earlier work.
+"""
 
 import posixpath
 import re
@@ -28,34 +30,63 @@ _CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
 _WORD = re.compile(r"[^\W\d_]+")
 _WORDS = frozenset(
     {
-        "old", "older", "oldest", "backup", "backups", "bak", "copy", "copies", "kopie", "archive", "archived",
-        "previous", "prev", "deprecated", "legacy", "unused", "trash", "draft", "drafts", "broken", "wrong",
+        "old",
+        "older",
+        "oldest",
+        "backup",
+        "backups",
+        "bak",
+        "copy",
+        "copies",
+        "kopie",
+        "archive",
+        "archived",
+        "previous",
+        "prev",
+        "deprecated",
+        "legacy",
+        "unused",
+        "trash",
+        "draft",
+        "drafts",
+        "broken",
+        "wrong",
     }
-)  # fmt: skip
+)
 
 
 def is_backup(path: str) -> bool:
-    """Return whether a file or folder is named like a backup: old_ws, my_robot - Copy, my_robot.urdf.bak."""
+    """Return whether a file or folder is named like a backup: old_ws, my_robot - Copy,
+    my_robot.urdf.bak.
+    """
     return not _WORDS.isdisjoint(_WORD.findall(_CAMEL.sub(" ", path).casefold()))
 
 
 def find_packages(tree: Tree, names: Sequence[str]) -> list[str]:
-    """Return the folders of packages: those with a package.xml, and those of these names with only a setup.py."""
+    """Return the folders of packages: those with a package.xml, and those of these names with only
+    a setup.py.
+    """
     with_manifest, with_setup = (
         [path.rpartition("/")[0] for path in tree.files if path.rpartition("/")[2] == file]
         for file in (MANIFEST, SETUP)
     )
-    named = [folder for folder in with_setup if folder not in with_manifest and folder.rpartition("/")[2] in names]
+    named = [
+        folder
+        for folder in with_setup
+        if folder not in with_manifest and folder.rpartition("/")[2] in names
+    ]
     if not with_manifest and not named:
         named = with_setup
     return sorted([*with_manifest, *named], key=_depth)[:_MAX_PACKAGES]
 
 
 def read_packages(tree: Tree, lab: Lab) -> tuple[Package, ...]:
-    """Return the packages of a submission, the one that matches best first: that of the name that the lab gives.
+    """Return the packages of a submission, the one that matches best first: that of the name that
+    the lab gives.
 
-    Among packages of one name it is one that is no backup, then the one with most of the files that a lab asks for,
-    above all the URDF at its path; then the least deep, then the first in alphabetical order.
+    Among packages of one name it is one that is no backup, then the one with most of the files that
+    a lab asks for, above all the URDF at its path; then the least deep, then the first in
+    alphabetical order.
     """
     known: dict[str, Package] = {}
     folders = find_packages(tree, lab.package_names)
@@ -74,17 +105,25 @@ def read_packages(tree: Tree, lab: Lab) -> tuple[Package, ...]:
 
 
 def best_named(packages: tuple[Package, ...], name: str) -> Package | None:
-    """Return the package that has this name, or is in a folder of this name; any if the name is empty."""
+    """Return the package that has this name, or is in a folder of this name; any if the name is
+    empty.
+    """
     for package in packages[:1]:
         return package if not name or _name_distance(package, name) <= _IN_NAMED_FOLDER else None
     return None
 
 
 def packages_of_lab(packages: Sequence[Package], names: Sequence[str]) -> dict[str, Package]:
-    """Return the package that each name means: that of the name, else in a folder of it, else of a similar name."""
+    """Return the package that each name means: that of the name, else in a folder of it, else of a
+    similar name.
+    """
     found: dict[str, Package] = {}
     for distance, name in product((_NAMED, _IN_NAMED_FOLDER, _SIMILAR), names):
-        spare = (it for it in packages if it not in found.values() and _name_distance(it, name) <= distance)
+        spare = (
+            it
+            for it in packages
+            if it not in found.values() and _name_distance(it, name) <= distance
+        )
         if name not in found and (package := next(spare, None)) is not None:
             found[name] = package
     return found
@@ -96,14 +135,27 @@ def package_around(packages: tuple[Package, ...], path: str | None) -> Package |
     return max(around, key=lambda package: len(package.folder), default=None)
 
 
-def why_none(packages: tuple[Package, ...], elsewhere: tuple[Package, ...], name: str) -> tuple[str, str]:
-    """Return why none of these packages has this name, nor one `elsewhere`, outside of the lab; and which there are."""
-    names = [f"{quoted(package.name)} in {package.folder or 'the submission'}" for package in packages or elsewhere]
+def why_none(
+    packages: tuple[Package, ...], elsewhere: tuple[Package, ...], name: str
+) -> tuple[str, str]:
+    """Return why none of these packages has this name, nor one `elsewhere`, outside of the lab; and
+    which there are.
+    """
+    names = [
+        f"{quoted(package.name)} in {package.folder or 'the submission'}"
+        for package in packages or elsewhere
+    ]
     there = f"; there {'are' if len(names) > 1 else 'is'} {enumerated(names, _MAX_NAMED)}"
     if packages:
-        broken = (it.manifest.refusals for it in packages if it.manifest is not None and it.manifest.refusals)
+        broken = (
+            it.manifest.refusals
+            for it in packages
+            if it.manifest is not None and it.manifest.refusals
+        )
         for problem, *_ in broken:
-            there += f"; {problem.message} (line {problem.location.line} of {problem.location.path})"
+            there += (
+                f"; {problem.message} (line {problem.location.line} of {problem.location.path})"
+            )
             break
         return f"no package is named {name!r}, and none contains the graded URDF", there
     return ("no package was submitted for this lab", there) if names else (NO_PACKAGE, "")
@@ -127,7 +179,9 @@ def _depth(folder: str) -> tuple[int, str]:
 
 
 def _missing_files(package: Package, urdf: str) -> tuple[int, bool]:
-    """Return how many of its usual files a package lacks, and whether it lacks the URDF at its path."""
+    """Return how many of its usual files a package lacks, and whether it lacks the URDF at its
+    path.
+    """
     files = package.tree.files
     has_urdf = urdf in files and files[urdf].size > 0
     usual = (has_urdf, MANIFEST in files, SETUP in files, package.launch_files, package.rviz_files)
@@ -138,16 +192,24 @@ def _name_distance(package: Package, name: str) -> int:
     if package.manifest is not None and package.manifest.name == name:
         return _NAMED
     own = package.manifest.name if package.manifest is not None else package.name
-    if package.folder.rpartition("/")[2] == name or (own is not None and folded(own) == folded(name)):
+    if package.folder.rpartition("/")[2] == name or (
+        own is not None and folded(own) == folded(name)
+    ):
         return _IN_NAMED_FOLDER
     return _SIMILAR if package.manifest is not None and closest(package.name, [name]) else _OTHER
 
 
-def _read_package(tree: Tree, folder: str, folders: Sequence[str], known: dict[str, Package], lab: Lab) -> Package:
+def _read_package(
+    tree: Tree, folder: str, folders: Sequence[str], known: dict[str, Package], lab: Lab
+) -> Package:
     own = tree.below(folder)
     prefix = f"{folder}/" if folder else ""
     nested = (it.removeprefix(prefix) for it in folders if it.startswith(prefix) and it != folder)
-    inner = tuple(f"{it}/" for it in nested if not own.files.keys().isdisjoint((f"{it}/{SETUP}", f"{it}/{CMAKE}")))
+    inner = tuple(
+        f"{it}/"
+        for it in nested
+        if not own.files.keys().isdisjoint((f"{it}/{SETUP}", f"{it}/{CMAKE}"))
+    )
     if inner:  # what is in a package in this one is that package's; a stray package.xml makes none
         own = own.only(lambda path: not path.startswith(inner))
     path = f"{folder}/{MANIFEST}" if folder else MANIFEST
@@ -159,6 +221,10 @@ def _read_package(tree: Tree, folder: str, folders: Sequence[str], known: dict[s
     except InputError as error:
         manifest = Manifest(Source(path, ""), None, "", (), start, start, unread=str(error))
     above = [folder, *map(str, PurePosixPath(folder).parents)] if folder else [""]
-    markers = (posixpath.normpath(f"{path}/{name}").lstrip("/") for path in above for name in _IGNORING)
+    markers = (
+        posixpath.normpath(f"{path}/{name}").lstrip("/") for path in above for name in _IGNORING
+    )
     ignored_by = next((path for path in markers if path in tree.files), "")
-    return Package(folder, own, manifest, known, tree.generated, lab.package, lab.packages, ignored_by)
+    return Package(
+        folder, own, manifest, known, tree.generated, lab.package, lab.packages, ignored_by
+    )

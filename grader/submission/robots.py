@@ -1,4 +1,6 @@
-"""Files that hold a robot: recognised by their content, whatever they are called. Nothing is parsed."""
+"""Files that hold a robot: recognised by their content, whatever they are called. Nothing is
+parsed.
+"""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -13,8 +15,8 @@ _LONG_START = 64 * 1024  # bytes that are read if these are comments only
 _MAX_READ = 2000  # files
 _MAX_ROBOTS = 400  # found by their content alone
 
-# What may come before the first element of XML, also where a declaration ends in > instead of ?>. Possessive: always
-# linear.
+# What may come before the first element of XML, also where a declaration ends in > instead of ?>.
+# Possessive: always linear.
 _PROLOG = re.compile(
     rb"""
     (?:\xef\xbb\xbf)?                             # the byte-order mark that Windows editors write
@@ -35,19 +37,64 @@ _LIKELY = re.compile("urdf|xacro|robot")  # in names of files that are read firs
 # Files that are no text, and need not be read.
 _BINARY = frozenset(
     {
-        ".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg", ".ico", ".pdf", ".doc",
-        ".docx", ".odt", ".pages", ".xls", ".xlsx", ".ppt", ".pptx", ".mp3", ".mp4", ".mov", ".webm", ".mkv", ".avi",
-        ".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".stl", ".dae", ".obj", ".ply", ".glb", ".blend",
-        ".pyc", ".so", ".a", ".o", ".exe", ".dll", ".bin", ".db", ".db3",
+        ".png",
+        ".jpg",
+        ".jpeg",
+        ".gif",
+        ".webp",
+        ".bmp",
+        ".tif",
+        ".tiff",
+        ".heic",
+        ".svg",
+        ".ico",
+        ".pdf",
+        ".doc",
+        ".docx",
+        ".odt",
+        ".pages",
+        ".xls",
+        ".xlsx",
+        ".ppt",
+        ".pptx",
+        ".mp3",
+        ".mp4",
+        ".mov",
+        ".webm",
+        ".mkv",
+        ".avi",
+        ".zip",
+        ".tar",
+        ".gz",
+        ".tgz",
+        ".bz2",
+        ".xz",
+        ".7z",
+        ".rar",
+        ".stl",
+        ".dae",
+        ".obj",
+        ".ply",
+        ".glb",
+        ".blend",
+        ".pyc",
+        ".so",
+        ".a",
+        ".o",
+        ".exe",
+        ".dll",
+        ".bin",
+        ".db",
+        ".db3",
     }
-)  # fmt: skip
+)
 
 
 class RobotFile(NamedTuple):
     """A file that may be graded as the URDF: it is called .urdf, or its first element is <robot>.
 
-    `robot` is the name of the robot, and `includes` are the names of the files that it includes, as far as its
-    beginning tells.
+    `robot` is the name of the robot, and `includes` are the names of the files that it includes, as
+    far as its beginning tells.
     """
 
     path: str
@@ -62,8 +109,11 @@ class RobotFile(NamedTuple):
         return self.path.rpartition("/")[2]
 
 
-def find_robots(tree: Tree, urdf_name: str = "", max_size: int = URDF_LIMIT) -> tuple[RobotFile, ...]:
-    """Return the files of a tree that may be the URDF; one called `urdf_name` is whatever it contains.
+def find_robots(
+    tree: Tree, urdf_name: str = "", max_size: int = URDF_LIMIT
+) -> tuple[RobotFile, ...]:
+    """Return the files of a tree that may be the URDF; one called `urdf_name` is whatever it
+    contains.
 
     Of other files only those of at most `max_size` bytes are read, and of these the first bytes.
     """
@@ -83,7 +133,11 @@ def find_robots(tree: Tree, urdf_name: str = "", max_size: int = URDF_LIMIT) -> 
         start = _robot_start(file) if is_read else None
         if start is not None or is_urdf:
             by_content += not is_urdf
-            found.append(RobotFile(file.path, file.size, is_urdf, *(_name_and_includes(start) if start else ())))
+            found.append(
+                RobotFile(
+                    file.path, file.size, is_urdf, *(_name_and_includes(start) if start else ())
+                )
+            )
     return tuple(sorted(found))
 
 
@@ -98,11 +152,15 @@ def parts_of(robots: Sequence[RobotFile]) -> frozenset[str]:
     for robot in robots:
         for name in robot.includes:
             includers.setdefault(name, []).append(robot.path)
-    return frozenset(robot.path for robot in robots if set(includers.get(robot.name, ())) - {robot.path})
+    return frozenset(
+        robot.path for robot in robots if set(includers.get(robot.name, ())) - {robot.path}
+    )
 
 
 def _robot_start(file: File) -> bytes | None:
-    """Return the beginning of a file from its <robot> on, a longer one of xacro; None if another element is first."""
+    """Return the beginning of a file from its <robot> on, a longer one of xacro; None if another
+    element is first.
+    """
     if not file.size:
         return None
     for count in (START, _LONG_START):
@@ -129,5 +187,9 @@ def _end_of_prolog(data: bytes) -> int:
 def _name_and_includes(start: bytes) -> tuple[str, frozenset[str]]:
     tag = _ROBOT.match(start)
     name = _NAME.search(tag[1]) if tag is not None else None
-    includes = (found.decode("utf-8", "replace") for found in _INCLUDE.findall(_COMMENT.sub(b"", start)))
-    return name[1].decode("utf-8", "replace").strip() if name is not None else "", frozenset(includes)
+    includes = (
+        found.decode("utf-8", "replace") for found in _INCLUDE.findall(_COMMENT.sub(b"", start))
+    )
+    return name[1].decode("utf-8", "replace").strip() if name is not None else "", frozenset(
+        includes
+    )

@@ -1,4 +1,6 @@
-"""What of a submission is graded: where its lab is searched, and which URDF and package of these files, and why."""
+"""What of a submission is graded: where its lab is searched, and which URDF and package of these
+files, and why.
+"""
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from enum import IntEnum
@@ -50,7 +52,9 @@ _ELSEWHERE = {
 
 
 class UrdfChoice(NamedTuple):
-    """The path of the URDF that is graded, if there is one, the other candidates, and which of these fit as well."""
+    """The path of the URDF that is graded, if there is one, the other candidates, and which of
+    these fit as well.
+    """
 
     path: str | None
     others: tuple[OtherCandidate, ...]
@@ -58,11 +62,15 @@ class UrdfChoice(NamedTuple):
     reading: "_ReadCandidate | None" = None  # among several candidates
 
     def read_in(self, surroundings: Surroundings) -> tuple[Read, Budget] | None:
-        """Return the URDF as it was read among several candidates, if it is read alike in these surroundings."""
+        """Return the URDF as it was read among several candidates, if it is read alike in these
+        surroundings.
+        """
         if self.reading is None or self.reading.read is None:
             return None
         read, before = self.reading.read, self.reading.surroundings
-        is_same = before._replace(budget=surroundings.budget) == surroundings and before.budget.left >= 0
+        is_same = (
+            before._replace(budget=surroundings.budget) == surroundings and before.budget.left >= 0
+        )
         if read.has_xacro and not is_same:
             return None
         before.budget.grow(READING)
@@ -70,7 +78,9 @@ class UrdfChoice(NamedTuple):
 
 
 class _ReadCandidate(NamedTuple):
-    """A candidate as it was read. Its links are those that the lab names; all if it `is_another` or there are none."""
+    """A candidate as it was read. Its links are those that the lab names; all if it `is_another` or
+    there are none.
+    """
 
     surroundings: Surroundings
     is_another: bool = False
@@ -98,32 +108,53 @@ class _Selection(NamedTuple):
 def select(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     """Select what is graded of the files of a submission."""
     found = _searched(tree, lab, opening)
-    packages, urdf, others, fitting = found.packages, found.choice.path, found.choice.others, found.choice.fitting
+    packages, urdf, others, fitting = (
+        found.packages,
+        found.choice.path,
+        found.choice.others,
+        found.choice.fitting,
+    )
     around = package_around(packages, urdf)
     if lab.packages:
         lab_packages = _several_packages(packages, lab, around)
         graded = lab_packages.get(lab.package or _main_package(lab_packages, lab, around))
     else:
         named = best_named(packages, lab.package)
-        is_of_robot = around is not None and (not lab.package or named is None or around.name == named.name)
+        is_of_robot = around is not None and (
+            not lab.package or named is None or around.name == named.name
+        )
         graded = around if is_of_robot else named
         lab_packages = {lab.package: graded} if graded is not None else {}
     if around is not None:
-        around.packages[around.name] = around  # of several packages of this name, the robot's own one is meant
+        # of several packages of this name, the robot's own one is meant
+        around.packages[around.name] = around
     unused = (it for it in packages if it not in lab_packages.values())
-    others += tuple(OtherCandidate(it.path(MANIFEST), why_not(graded, it, lab.urdf)) for it in unused)
+    others += tuple(
+        OtherCandidate(it.path(MANIFEST), why_not(graded, it, lab.urdf)) for it in unused
+    )
     several = ""
     if fitting:
         which = f"{urdf} was graded, not {enumerated(fitting, _MAX_NAMED)}"
-        several = f"{len(fitting) + 1} robots fit this lab: {which}; to grade another one, name its file or folder"
+        several = (
+            f"{len(fitting) + 1} robots fit this lab: {which}; to grade another one, name its "
+            "file or folder"
+        )
     notes = tuple(note for note in (several, _note_on_folders(found)) if note)
     return found._replace(
-        package=graded, lab_packages=lab_packages, others=others + found.others, notes=notes, several=several
+        package=graded,
+        lab_packages=lab_packages,
+        others=others + found.others,
+        notes=notes,
+        several=several,
     )
 
 
-def _several_packages(packages: Sequence[Package], lab: Lab, around: Package | None) -> dict[str, Package]:
-    """Return the packages of a lab that names several, by these names; that of the robot counts for a missing one."""
+def _several_packages(
+    packages: Sequence[Package], lab: Lab, around: Package | None
+) -> dict[str, Package]:
+    """Return the packages of a lab that names several, by these names; that of the robot counts for
+    a missing one.
+    """
     found = packages_of_lab(packages, lab.packages)
     missing = [name for name in lab.packages if name not in found]
     if missing and around is not None and around not in found.values():
@@ -138,7 +169,10 @@ def _main_package(packages: Mapping[str, Package], lab: Lab, around: Package | N
 
 def _note_on_folders(found: _Selection) -> str:
     """Return the note on the folders that were searched, if there is one."""
-    why, urdf = f"{found.own_folder}, the folder of this lab, has no robot of this lab", found.choice.path
+    why, urdf = (
+        f"{found.own_folder}, the folder of this lab, has no robot of this lab",
+        found.choice.path,
+    )
     if found.other_lab:
         if not found.own_folder:
             why = "no folder of this lab was found"
@@ -157,7 +191,9 @@ class _Places(NamedTuple):
     def of(self, path: str) -> Belonging | None:
         """Return where a file is; None of one in the folder of another lab that is not searched."""
         place = self.labs.belonging(path)
-        is_open = place is not Belonging.OTHER_LAB or (self.other_lab and path.startswith(f"{self.other_lab}/"))
+        is_open = place is not Belonging.OTHER_LAB or (
+            self.other_lab and path.startswith(f"{self.other_lab}/")
+        )
         return place if is_open else None
 
     def only(self, tree: Tree, places: Collection[Belonging]) -> Tree:
@@ -165,8 +201,13 @@ class _Places(NamedTuple):
         return _part_of(tree, lambda path: self.of(path) in places)
 
     def own(self, tree: Tree) -> Tree:
-        """Return the files in the folders of this lab, and those beside its archives: documents may be there."""
-        return _part_of(tree, lambda path: self.of(path) is Belonging.THIS_LAB or self.labs.is_beside_archive(path))
+        """Return the files in the folders of this lab, and those beside its archives: documents may
+        be there.
+        """
+        return _part_of(
+            tree,
+            lambda path: self.of(path) is Belonging.THIS_LAB or self.labs.is_beside_archive(path),
+        )
 
 
 def _part_of(tree: Tree, belongs: Callable[[str], bool]) -> Tree:
@@ -174,21 +215,28 @@ def _part_of(tree: Tree, belongs: Callable[[str], bool]) -> Tree:
 
 
 def _searched(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
-    """Return where a lab is searched in the files of a submission, and which of its robots is graded.
+    """Return where a lab is searched in the files of a submission, and which of its robots is
+    graded.
 
-    Another lab's folder is searched only if its robot is graded, or if there is nothing else. Where the lab's folder
-    exists, no robot of a final project is graded.
+    Another lab's folder is searched only if its robot is graded, or if there is nothing else. Where
+    the lab's folder exists, no robot of a final project is graded.
     """
     labs = LabFolders(lab.folders, tree.files)
     robots = find_robots(tree, lab.urdf.rpartition("/")[2], opening.max_size)
     roots = [path for path in tree.files if path.rpartition("/")[2] in PACKAGE_FILES]
     has_own = any(labs.belonging(path) is Belonging.THIS_LAB for path in tree.files)
-    projects = {it.path for it in robots if labs.belonging(it.path) is Belonging.OTHER_LAB and labs.is_project(it.path)}
+    projects = {
+        it.path
+        for it in robots
+        if labs.belonging(it.path) is Belonging.OTHER_LAB and labs.is_project(it.path)
+    }
     projects = projects if has_own or len(projects) < len(robots) else set()
     every_package = read_packages(tree, lab)
     robots = tuple(robot for robot in robots if robot.path not in projects)
     of_lab = packages_of_lab(every_package, lab.packages).values()
-    robots = tuple(it for it in robots if any(package.holds(it.path) for package in of_lab)) or robots
+    robots = (
+        tuple(it for it in robots if any(package.holds(it.path) for package in of_lab)) or robots
+    )
     choice = UrdfSearch(tree, lab, labs, opening, every_package).choose(robots)
     places = _Places(labs, _other_lab(tree, labs, choice.path, () if has_own else roots))
     search_tree = places.only(tree, tuple(Belonging))
@@ -198,24 +246,43 @@ def _searched(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     if of_packages is not None:
         package_tree = places.only(tree, (of_packages,))
         packages = every_package if package_tree is tree else read_packages(package_tree, lab)
-    other_roots = [path for path in roots if places.of(path) is None or places.of(path) is not of_packages]
-    elsewhere = [*sorted(projects), *(path for path in other_roots if path.rpartition("/")[2] == MANIFEST)]
+    other_roots = [
+        path for path in roots if places.of(path) is None or places.of(path) is not of_packages
+    ]
+    elsewhere = [
+        *sorted(projects),
+        *(path for path in other_roots if path.rpartition("/")[2] == MANIFEST),
+    ]
     first = lab.package_names[0]
     reason, which = why_none(packages, every_package if other_roots else (), first)
-    built = next((was_not_committed(path) for path in search_tree.generated if path.endswith(f"/{MANIFEST}")), "")
+    built = next(
+        (
+            was_not_committed(path)
+            for path in search_tree.generated
+            if path.endswith(f"/{MANIFEST}")
+        ),
+        "",
+    )
     return _Selection(
         choice,
         tree=own_tree,
         packages=packages,
-        no_package=NoPackage(reason, which if packages else which + built, first if lab.packages else ""),
-        others=tuple(OtherCandidate(path, _ELSEWHERE[labs.belonging(path)]) for path in elsewhere[:_MAX_ELSEWHERE]),
+        no_package=NoPackage(
+            reason, which if packages else which + built, first if lab.packages else ""
+        ),
+        others=tuple(
+            OtherCandidate(path, _ELSEWHERE[labs.belonging(path)])
+            for path in elsewhere[:_MAX_ELSEWHERE]
+        ),
         own_folder=next(map(labs.around, own_tree.files), "") if has_own else "",
         other_lab=places.other_lab,
     )
 
 
 def _other_lab(tree: Tree, labs: LabFolders, urdf: str | None, roots: Sequence[str]) -> str:
-    """Return the folder of another lab that is searched: that of the URDF; without one, if there is nothing else."""
+    """Return the folder of another lab that is searched: that of the URDF; without one, if there is
+    nothing else.
+    """
     if urdf is not None:
         return labs.around(urdf) if labs.belonging(urdf) is Belonging.OTHER_LAB else ""
     others = {Belonging.OTHER_LAB}
@@ -224,7 +291,9 @@ def _other_lab(tree: Tree, labs: LabFolders, urdf: str | None, roots: Sequence[s
 
 
 class _Tier(IntEnum):
-    """How well a file matches the path that a rubric gives, such as urdf/my_robot.urdf; the best first."""
+    """How well a file matches the path that a rubric gives, such as urdf/my_robot.urdf; the best
+    first.
+    """
 
     EXACT = 0  # a/urdf/my_robot.urdf
     SAME_NAME = 1  # my_robot.urdf
@@ -278,7 +347,9 @@ class UrdfSearch(NamedTuple):
     packages: tuple[Package, ...]
 
     def choose(self, robots: Sequence[RobotFile]) -> UrdfChoice:
-        """Return which of the robots is graded. Only if there are several, they and launch files are read."""
+        """Return which of the robots is graded. Only if there are several, they and launch files
+        are read.
+        """
         labs = self.labs
         copies = [path for path in self.tree.generated if path.lower().endswith(".urdf")]
         copies = [path for path in copies if labs.belonging(path) < Belonging.OTHER_LAB]
@@ -287,24 +358,35 @@ class UrdfSearch(NamedTuple):
             return UrdfChoice(next((robot.path for robot in robots), None), generated)
         best, *others = sorted(self._candidates(robots))
         named = (
-            OtherCandidate(it.path, _reason_against(best, it, self.lab), it.is_part or it.is_fragment) for it in others
+            OtherCandidate(
+                it.path, _reason_against(best, it, self.lab), it.is_part or it.is_fragment
+            )
+            for it in others
         )
         fitting = tuple(it.path for it in others if _may_be_meant(best, it, self.lab))
         return UrdfChoice(best.path, (*named, *generated), fitting, best.reading)
 
     def _candidates(self, robots: Sequence[RobotFile]) -> Iterator[_Candidate]:
         labs, urdf = self.labs, self.lab.urdf
-        readings = self._readings(sorted(robots, key=lambda it: (labs.belonging(it.path), _tier_of(it, urdf), it.path)))
+        readings = self._readings(
+            sorted(robots, key=lambda it: (labs.belonging(it.path), _tier_of(it, urdf), it.path))
+        )
         launched, parts = self._launched_paths(robots), parts_of(robots)
         folders = [package.folder for package in self.packages]
         for robot in robots:
-            path, tier, around = robot.path, _tier_of(robot, urdf), package_around(self.packages, robot.path)
+            path, tier, around = (
+                robot.path,
+                _tier_of(robot, urdf),
+                package_around(self.packages, robot.path),
+            )
             yield _Candidate(
                 is_another=readings[path].is_another,
                 place=labs.belonging(path),
                 is_fragment=readings[path].is_fragment and path not in launched,
                 is_unlaunched=path not in launched,
-                is_unnamed=any(self.lab.package_names) and not self.lab.links and tier is not _Tier.EXACT,
+                is_unnamed=any(self.lab.package_names)
+                and not self.lab.links
+                and tier is not _Tier.EXACT,
                 links=-readings[path].links,
                 is_part=path in parts and tier > _Tier.OTHER_ENDING,
                 is_backup=is_backup(path),
@@ -317,19 +399,25 @@ class UrdfSearch(NamedTuple):
             )
 
     def _readings(self, robots: Sequence[RobotFile]) -> dict[str, _ReadCandidate]:
-        """Return each robot as it is read, expanded by xacro, by its path; of very many only the first are read."""
+        """Return each robot as it is read, expanded by xacro, by its path; of very many only the
+        first are read.
+        """
         lab, opening = self.lab, self.opening
         bytes_left, parts_left = _MAX_READ, READING
         found: dict[str, _ReadCandidate] = {}
         for robot in robots:
             bytes_left -= min(robot.size, opening.max_size) + _COST_OF_FILE
             around = package_around(self.packages, robot.path)
-            surroundings = Surroundings(Budget(parts_left), self.tree, around, self.packages, opening.arguments)
+            surroundings = Surroundings(
+                Budget(parts_left), self.tree, around, self.packages, opening.arguments
+            )
             if bytes_left < 0:
                 found[robot.path] = _ReadCandidate(surroundings, is_another=bool(lab.links))
                 continue
             try:
-                read = read_as_ros(self.tree.files[robot.path].read(opening.max_size), robot.path, surroundings)
+                read = read_as_ros(
+                    self.tree.files[robot.path].read(opening.max_size), robot.path, surroundings
+                )
                 found[robot.path] = _count_links(read, surroundings, robot.robot, lab)
             except (InputError, NotDecided):  # it may be the robot of the lab
                 found[robot.path] = _ReadCandidate(surroundings)
@@ -338,14 +426,20 @@ class UrdfSearch(NamedTuple):
 
     def _launched_paths(self, robots: Sequence[RobotFile]) -> set[str]:
         """Return the paths of the robots that launch files load, also without a package."""
-        loose = [robot.path for robot in robots if package_around(self.packages, robot.path) is None]
+        loose = [
+            robot.path for robot in robots if package_around(self.packages, robot.path) is None
+        ]
         found: set[str] = set()
         for package in (*self.packages, *launch_folders(self.tree, self.packages, loose)):
             for reference in {reference.path or "" for reference in package.robot_references()}:
                 name = reference.removeprefix(f"{SHARE}/").partition("/")[0]
                 target = package if name in package.names else package.find(name) or package
                 source = target.source_of(reference)
-                same = [it.path for it in robots if it.name == reference.rpartition("/")[2] and target.holds(it.path)]
+                same = [
+                    it.path
+                    for it in robots
+                    if it.name == reference.rpartition("/")[2] and target.holds(it.path)
+                ]
                 found.update([target.path(source)] if source else same)
         return found
 
@@ -358,16 +452,32 @@ def _count_links(read: Read, surroundings: Surroundings, name: str, lab: Lab) ->
         return _ReadCandidate(surroundings, bool(lab.links), 0, not name, read)
     is_another = is_another_robot(robot, lab.links)
     counted = len(robot.links) if is_another or not lab.links else known_links(robot, lab.links)
-    is_fragment = not robot.name or (read.is_expanded and not robot.links and not robot.incomplete)  # macros only
+    is_fragment = not robot.name or (
+        read.is_expanded and not robot.links and not robot.incomplete
+    )  # macros only
     return _ReadCandidate(surroundings, is_another, counted, is_fragment, read)
 
 
 def _may_be_meant(best: _Candidate, other: _Candidate, lab: Lab) -> bool:
-    """Return whether another robot may be meant as well: one in another package, or loose, perhaps of a teammate."""
-    stems = [path.partition(".")[0] for path in (best.path, other.path)]  # my_robot.urdf.xacro makes my_robot.urdf
+    """Return whether another robot may be meant as well: one in another package, or loose, perhaps
+    of a teammate.
+    """
+    stems = [
+        path.partition(".")[0] for path in (best.path, other.path)
+    ]  # my_robot.urdf.xacro makes my_robot.urdf
     is_elsewhere = best.package != other.package or (best.is_loose and stems[0] != stems[1])
-    is_worse = other.is_another or other.is_fragment or other.is_part or other.is_backup or other.place != best.place
-    return is_elsewhere and not is_worse and (bool(lab.links) or other.tier[0] <= max(best.tier[0], _Tier.SAME_ROBOT))
+    is_worse = (
+        other.is_another
+        or other.is_fragment
+        or other.is_part
+        or other.is_backup
+        or other.place != best.place
+    )
+    return (
+        is_elsewhere
+        and not is_worse
+        and (bool(lab.links) or other.tier[0] <= max(best.tier[0], _Tier.SAME_ROBOT))
+    )
 
 
 def _tier_of(robot: RobotFile, urdf: str) -> _Tier:

@@ -1,4 +1,6 @@
-"""The frames that static_transform_publisher adds to a robot's tree, as the launch files of a package start it."""
+"""The frames that static_transform_publisher adds to a robot's tree, as the launch files of a
+package start it.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -13,7 +15,11 @@ from grader.source import LazyLocation, Source
 from grader.submission.submission import Submission
 
 STATIC_PUBLISHER = ("tf2_ros", "static_transform_publisher")
-_PLACE, _RPY, _QUATERNION = ("--x", "--y", "--z"), ("--roll", "--pitch", "--yaw"), ("--qx", "--qy", "--qz", "--qw")
+_PLACE, _RPY, _QUATERNION = (
+    ("--x", "--y", "--z"),
+    ("--roll", "--pitch", "--yaw"),
+    ("--qx", "--qy", "--qz", "--qw"),
+)
 _FRAMES = ("--frame-id", "--child-frame-id")
 _BY_POSITION = {  # the words without options: with yaw, pitch and roll, or with a quaternion
     8: (*_PLACE, *reversed(_RPY), *_FRAMES),
@@ -23,7 +29,9 @@ _NORM_TOLERANCE = 10e-3  # of a quaternion; tf2 ignores others
 
 
 class _Frame(NamedTuple):
-    """A frame that a launch file places. It is `open`, for a reason, where it is not known whether and where."""
+    """A frame that a launch file places. It is `open`, for a reason, where it is not known whether
+    and where.
+    """
 
     parent: str
     child: str
@@ -33,10 +41,11 @@ class _Frame(NamedTuple):
 
 
 def with_transforms(robot: Robot, submission: Submission, paths: Sequence[str]) -> Robot:
-    """Return a robot with the frames that launch files of the graded package publish, as links at fixed joints.
+    """Return a robot with the frames that launch files of the graded package publish, as links at
+    fixed joints.
 
-    tf2 has one parent of each frame, the one that it was told of last: a frame with two is open. What places the root
-    of the robot in the world is left out.
+    tf2 has one parent of each frame, the one that it was told of last: a frame with two is open.
+    What places the root of the robot in the world is left out.
 
     Args:
         robot: The robot in the URDF.
@@ -53,7 +62,9 @@ def with_transforms(robot: Robot, submission: Submission, paths: Sequence[str]) 
         if launch is None or launch.syntax is not None or launch.faults:
             continue  # nothing is published
         started = [
-            it for it in launch.nodes if (it.package, it.executable) == STATIC_PUBLISHER and it.when is not False
+            it
+            for it in launch.nodes
+            if (it.package, it.executable) == STATIC_PUBLISHER and it.when is not False
         ]
         frames = [_frame_of(node, submission) for node in started]
         for frame in (it for it in frames if it is not None and it.child not in roots):
@@ -61,9 +72,15 @@ def with_transforms(robot: Robot, submission: Submission, paths: Sequence[str]) 
         reason = launch.unread or next((it.message for it in launch.unknown), "")
         reason = reason or ("the name of a frame is not evaluated" if None in frames else "")
         if reason:
-            robot = replace(robot, incomplete=f"cannot determine statically which frames {name} publishes: {reason}")
+            robot = replace(
+                robot,
+                incomplete=f"cannot determine statically which frames {name} publishes: {reason}",
+            )
     if any(it.frames_of("") != ("",) for it in package.launches):
-        robot = replace(robot, incomplete=robot.incomplete or "robot_state_publisher gives the frames other names")
+        robot = replace(
+            robot,
+            incomplete=robot.incomplete or "robot_state_publisher gives the frames other names",
+        )
     return robot
 
 
@@ -72,24 +89,41 @@ def _with_frame(robot: Robot, frame: _Frame) -> Robot:
         return robot  # the publisher ends with an error
     part = {"origin": UnresolvedPart(frame.open, frame.location)} if frame.open else {}
     own = f"static transform of {frame.child}"
-    joint = Joint(own, "fixed", frame.parent, frame.child, frame.origin, location=frame.location, unresolved=part)
+    joint = Joint(
+        own,
+        "fixed",
+        frame.parent,
+        frame.child,
+        frame.origin,
+        location=frame.location,
+        unresolved=part,
+    )
     before = next((it for it in robot.joints if it.known.child == frame.child), None)
     if before is None and robot.has_link(frame.child):
         return robot
     if before is None:
         return replace(
-            robot, links=(*robot.links, Link(frame.child, location=frame.location)), joints=(*robot.joints, joint)
+            robot,
+            links=(*robot.links, Link(frame.child, location=frame.location)),
+            joints=(*robot.joints, joint),
         )
     if before == joint:
         return robot
-    reason = f"the frame {frame.child!r} is placed twice: in {before.known.parent!r} and in {frame.parent!r}"
-    part = {"origin": UnresolvedPart(f"{reason}, and the one that tf2 gets last counts", frame.location)}
+    reason = (
+        f"the frame {frame.child!r} is placed twice: in {before.known.parent!r} and in "
+        f"{frame.parent!r}"
+    )
+    part = {
+        "origin": UnresolvedPart(f"{reason}, and the one that tf2 gets last counts", frame.location)
+    }
     both = replace(before.known, origin=None, unresolved={**before.known.unresolved, **part})
     return replace(robot, joints=tuple(both if it is before else it for it in robot.joints))
 
 
 def _frame_of(node: StartedNode, submission: Submission) -> _Frame | None:
-    """Return the frame that a static_transform_publisher publishes, its child empty for none; None if it is unknown."""
+    """Return the frame that a static_transform_publisher publishes, its child empty for none; None
+    if it is unknown.
+    """
     words, names = _words_of(node), frames_named(node)
     options = _options_of(words)
     if None in words and not names[1]:
@@ -111,7 +145,9 @@ def _words_of(node: StartedNode) -> tuple[str | None, ...]:
 
 
 def frames_named(node: StartedNode) -> tuple[str, str]:
-    """Return the parent and the child that a static_transform_publisher is given, empty where they are not known."""
+    """Return the parent and the child that a static_transform_publisher is given, empty where they
+    are not known.
+    """
     options = _options_of(_words_of(node))
     parent, child = ((options.get(option) or "").removeprefix("/") for option in _FRAMES)
     return parent, child
@@ -125,7 +161,9 @@ def _options_of(words: Sequence[str | None]) -> dict[str, str | None]:
 
 
 def _origin_of(options: Mapping[str, str], location: LazyLocation) -> Origin | None:
-    """Return where a frame is placed; None where the publisher ends with an error, or tf2 ignores the transform."""
+    """Return where a frame is placed; None where the publisher ends with an error, or tf2 ignores
+    the transform.
+    """
     known = {*_PLACE, *_RPY, *_QUATERNION, *_FRAMES}
     try:
         values = {name: float(text) for name, text in options.items() if name not in _FRAMES}

@@ -14,14 +14,23 @@ from grader.python.budget import Budget
 from grader.robot.model import Robot
 from grader.robot.reader import Reading, Verdict
 from grader.source import Source
-from grader.submission.urdf import Absent, OtherCandidate, Read, Surroundings, Unreadable, Urdf, read_as_ros
+from grader.submission.urdf import (
+    Absent,
+    OtherCandidate,
+    Read,
+    Surroundings,
+    Unreadable,
+    Urdf,
+    read_as_ros,
+)
 from grader.text import enumerated, was_not_committed
 
 if TYPE_CHECKING:
     from grader.documents.collection import DocumentCollection
     from grader.documents.evidence import LabelledFile
 
-_WORK_OF_READING = 1_500  # parts of a package's evaluation that take as long as reading a short URDF
+# parts of a package's evaluation that take as long as reading a short URDF
+_WORK_OF_READING = 1_500
 _FILES_OF_READING = 200
 _MAX_COST = 60  # of one reading, for hints
 _NO_FILES = make_tree("", (), ())
@@ -49,15 +58,20 @@ class Opening(NamedTuple):
     max_size: int = URDF_LIMIT  # of a URDF, in bytes
     arguments: Mapping[str, str] = _NO_ARGUMENTS  # of xacro
     no_documents: str = ""  # why no document is read, where grading ran out of memory with them
-    converted: Mapping[str, str] = _NO_ARGUMENTS  # the texts of Word and PDF files that were read before, by path
-    reports: frozenset[str] = frozenset()  # real paths of earlier reports, which are not part of a folder
+    # the texts of Word and PDF files that were read before, by path
+    converted: Mapping[str, str] = _NO_ARGUMENTS
+    reports: frozenset[str] = (
+        frozenset()
+    )  # real paths of earlier reports, which are not part of a folder
 
 
 DEFAULTS = Opening()
 
 
 class NoPackage(NamedTuple):
-    """Why there is no package, and which there are; of several packages, the name of the one that is missing."""
+    """Why there is no package, and which there are; of several packages, the name of the one that
+    is missing.
+    """
 
     message: str = NO_PACKAGE
     detail: str = ""
@@ -71,10 +85,11 @@ _NO_PACKAGE = NoPackage()
 class Submission:
     """The work that a student submitted, with what of it is graded: a URDF, a package, documents.
 
-    `opening.py` makes it of a path or of bytes: `selection.py` says which URDF and package it is, and why. Checks read
-    it, hints make others of it with edited files, and a report quotes its files. A part that is missing or broken never
-    keeps the rest from being graded: `urdf` is one of three states, and `needed_urdf` and `needed_package` raise what a
-    check reports. Documents are read when they are needed.
+    `opening.py` makes it of a path or of bytes: `selection.py` says which URDF and package it is,
+    and why. Checks read it, hints make others of it with edited files, and a report quotes its
+    files. A part that is missing or broken never keeps the rest from being graded: `urdf` is one of
+    three states, and `needed_urdf` and `needed_package` raise what a check reports. Documents are
+    read when they are needed.
 
     >>> from grader.submission.opening import read_submission
     >>> robot = b'<robot name="arm"><link name="base"/></robot>'
@@ -93,7 +108,9 @@ class Submission:
     packages: tuple[Package, ...] = ()  # the one that matches best first
     package: Package | None = None  # the graded one
     no_package: NoPackage = _NO_PACKAGE
-    lab_packages: Mapping[str, Package] = field(default_factory=dict)  # by the names that the lab gives
+    lab_packages: Mapping[str, Package] = field(
+        default_factory=dict
+    )  # by the names that the lab gives
     whole_tree: Tree = _NO_FILES  # the files of the lab and those around it
     several: str = ""  # the note that says that several robots fit
     notes: tuple[str, ...] = ()  # on how it was read
@@ -104,7 +121,8 @@ class Submission:
     neighbours: tuple[Package, ...] = ()  # those around a URDF on its own
     besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes
     reopen: "Callable[[Tree], Submission] | None" = None  # opens other files in the same way
-    # Those of its documents that were read, by the files that they are among: copies of it have them as well.
+    # Those of its documents that were read, by the files that they are among: copies of it have
+    # them as well.
     _documents: "dict[Tree, DocumentCollection]" = field(default_factory=dict, repr=False)
 
     @property
@@ -132,7 +150,11 @@ class Submission:
     def evidence_files(self) -> tuple[File, ...]:
         """The files that may show the work: pictures, films, PDF and Word files."""
         named = {labelled.file.path for labelled in self.labelled_files}
-        return tuple(file for path, file in self.tree.files.items() if path in named or file.suffix == ".docx")
+        return tuple(
+            file
+            for path, file in self.tree.files.items()
+            if path in named or file.suffix == ".docx"
+        )
 
     @property
     def path(self) -> str | None:
@@ -151,11 +173,15 @@ class Submission:
 
     @cached_property
     def sha256(self) -> str | None:
-        """The hash of the URDF's bytes; of a URDF on its own that includes others, of a list of the hashes of all."""
+        """The hash of the URDF's bytes; of a URDF on its own that includes others, of a list of the
+        hashes of all.
+        """
         own = sha256_of(self.urdf.data) if isinstance(self.urdf, Read) else None
         if own is None or not self.besides:
             return own
-        hashes = [sha256_of(self.whole_tree.files[path].read(MAX_FILE_SIZE)) for path in self.besides]
+        hashes = [
+            sha256_of(self.whole_tree.files[path].read(MAX_FILE_SIZE)) for path in self.besides
+        ]
         lines = [f"{found} {path}\n" for found, path in zip(hashes, self.besides, strict=True)]
         return sha256_of("".join([f"{own}\n", *lines]).encode())
 
@@ -164,7 +190,11 @@ class Submission:
         """How much longer reading it takes than reading a short URDF."""
         of_urdf = self.urdf.reading.source.cost if isinstance(self.urdf, Read) else 0
         of_package = self.package.budget.used if self.package is not None else 0
-        return of_urdf + len(self.whole_tree.files) // _FILES_OF_READING + of_package // _WORK_OF_READING
+        return (
+            of_urdf
+            + len(self.whole_tree.files) // _FILES_OF_READING
+            + of_package // _WORK_OF_READING
+        )
 
     @property
     def is_costly(self) -> bool:
@@ -190,7 +220,11 @@ class Submission:
     @property
     def verdict(self) -> Verdict | None:
         """ROS 2's verdict on the URDF; None if it was not read, or cannot be determined."""
-        return self.urdf.loaded.verdict if isinstance(self.urdf, Read) and self.urdf.loaded.is_certain else None
+        return (
+            self.urdf.loaded.verdict
+            if isinstance(self.urdf, Read) and self.urdf.loaded.is_certain
+            else None
+        )
 
     @property
     def ignored(self) -> tuple[str, ...]:
@@ -198,12 +232,16 @@ class Submission:
         return tuple(map(str, self.tree.ignored))
 
     def needed_package(self) -> Package:
-        """Return the graded package; raises MissingElement without one, NotDecided if an archive is unopened."""
+        """Return the graded package; raises MissingElement without one, NotDecided if an archive is
+        unopened.
+        """
         if self.package is not None:
             return self.package
         self._refuse_unopened("package")
         message, detail, name = self.no_package
-        raise MissingElement("package", name, message=message, detail=detail, absent=f"package {name}".rstrip())
+        raise MissingElement(
+            "package", name, message=message, detail=detail, absent=f"package {name}".rstrip()
+        )
 
     def with_package(self, name: str) -> "Submission":
         """Return the submission with the package that the lab gives this name as the graded one."""
@@ -211,12 +249,16 @@ class Submission:
         if package is None and self.packages:
             others = enumerated([repr(other.name) for other in self.packages])
             return replace(
-                self, package=None, no_package=NoPackage(f"no package is named {name!r}", f"; there is {others}", name)
+                self,
+                package=None,
+                no_package=NoPackage(f"no package is named {name!r}", f"; there is {others}", name),
             )
         return replace(self, package=package)
 
     def needed_urdf(self) -> Reading:
-        """Return the graded URDF; raises MissingElement without one, NotDecided if it cannot be read statically."""
+        """Return the graded URDF; raises MissingElement without one, NotDecided if it cannot be
+        read statically.
+        """
         match self.urdf:
             case Read(reading=reading):
                 if reading.robot is None and reading.undetermined:
@@ -227,20 +269,34 @@ class Submission:
             case Absent():
                 self._refuse_unopened("URDF")
         count = len(self.tree.files)
-        files = f"none of the {count} files contains a <robot>" if count > 1 else "the only file contains no <robot>"
-        built = next((path for path in self.tree.generated if path.lower().endswith(ROBOT_ENDINGS)), "")
+        files = (
+            f"none of the {count} files contains a <robot>"
+            if count > 1
+            else "the only file contains no <robot>"
+        )
+        built = next(
+            (path for path in self.tree.generated if path.lower().endswith(ROBOT_ENDINGS)), ""
+        )
         detail = f"{f': {files}' if count else ''}{was_not_committed(built) if built else ''}"
-        raise MissingElement("URDF", "", message="no URDF was submitted", detail=detail, absent="URDF")
+        raise MissingElement(
+            "URDF", "", message="no URDF was submitted", detail=detail, absent="URDF"
+        )
 
     def under(self, arguments: Mapping[str, str]) -> "Submission":
-        """Return the submission with its launch files, and its robot if it is xacro, under launch arguments."""
-        known = {package: package.under(arguments) for package in (*self.packages, *self.neighbours)}
+        """Return the submission with its launch files, and its robot if it is xacro, under launch
+        arguments.
+        """
+        known = {
+            package: package.under(arguments) for package in (*self.packages, *self.neighbours)
+        }
         changed = replace(
             self,
             packages=tuple(known[package] for package in self.packages),
             neighbours=tuple(known[package] for package in self.neighbours),
             package=known.get(self.package, self.package) if self.package is not None else None,
-            lab_packages={name: known.get(package, package) for name, package in self.lab_packages.items()},
+            lab_packages={
+                name: known.get(package, package) for name, package in self.lab_packages.items()
+            },
             budget=Budget(),
         )
         if not isinstance(self.urdf, Read) or not self.urdf.has_xacro:
@@ -263,7 +319,8 @@ class Submission:
         if self.tree.unopened:
             archives = ", ".join(archive.path for archive in self.tree.unopened[:3])
             raise NotDecided(
-                f"no {missing} was found, but {archives} could not be opened", "an archive could not be opened"
+                f"no {missing} was found, but {archives} could not be opened",
+                "an archive could not be opened",
             )
 
     def source(self, path: str) -> Source | None:

@@ -1,4 +1,6 @@
-"""The URDF of a submission, as one of three states, and what ROS 2 makes of it with the files around."""
+"""The URDF of a submission, as one of three states, and what ROS 2 makes of it with the files
+around.
+"""
 
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -56,10 +58,12 @@ class Unreadable(NamedTuple):
 
 
 class Read(NamedTuple):
-    """The URDF was read, even if ROS 2 rejects it; `reading` is of the expanded text if it is xacro.
+    """The URDF was read, even if ROS 2 rejects it; `reading` is of the expanded text if it is
+    xacro.
 
-    Of xacro that is loaded without xacro, `as_it_stands` is what ROS 2 makes of the text: whether it loads, and the
-    verdict. The robot is that of `reading`, so that everything else is graded as if it had been expanded.
+    Of xacro that is loaded without xacro, `as_it_stands` is what ROS 2 makes of the text: whether
+    it loads, and the verdict. The robot is that of `reading`, so that everything else is graded as
+    if it had been expanded.
     """
 
     path: str
@@ -77,11 +81,17 @@ class Read(NamedTuple):
     @property
     def source(self) -> Source:
         """The text that the student wrote."""
-        return Source(self.path, self.data.decode("utf-8", "replace")) if self.is_expanded else self.reading.source
+        return (
+            Source(self.path, self.data.decode("utf-8", "replace"))
+            if self.is_expanded
+            else self.reading.source
+        )
 
     @property
     def problems(self) -> tuple[Problem, ...]:
-        """Every problem of the file; of xacro that is loaded without xacro, those of the expanded text."""
+        """Every problem of the file; of xacro that is loaded without xacro, those of the expanded
+        text.
+        """
         if self.as_it_stands is None:
             return self.reading.problems
         raw = [problem for problem in self.as_it_stands.problems if problem.kind is RAW_XACRO]
@@ -92,25 +102,41 @@ Urdf = Absent | Unreadable | Read
 
 
 class Surroundings(NamedTuple):
-    """The files and packages around a URDF, as launch files and xacro find them: the Workspace of xacro."""
+    """The files and packages around a URDF, as launch files and xacro find them: the Workspace of
+    xacro.
+    """
 
     budget: Budget  # of what is expanded and evaluated
     tree: Tree = _NO_FILES
     graded: Package | None = None
     packages: tuple[Package, ...] = ()
     arguments: Mapping[str, str] = {}  # that the user gives xacro
-    launch_arguments: Mapping[str, str] = {}  # that a criterion gives launch files, and xacro if these do not
+    launch_arguments: Mapping[
+        str, str
+    ] = {}  # that a criterion gives launch files, and xacro if these do not
     is_single: bool = False  # whether the files are those around a single file
-    ask: Callable[[str], object] = lambda _: None  # is called with the name of each other file that xacro reads
+    ask: Callable[[str], object] = lambda _: (
+        None
+    )  # is called with the name of each other file that xacro reads
 
     def robot_references(self, path: str) -> "list[NamedFile]":
-        """Return where launch files of the graded package, else of others, read a URDF; or those in a folder around."""
+        """Return where launch files of the graded package, else of others, read a URDF; or those in
+        a folder around.
+        """
         around = self._launched_packages(path)
-        return [found for package in around for found in package.robot_references(path.rpartition("/")[2])]
+        return [
+            found
+            for package in around
+            for found in package.robot_references(path.rpartition("/")[2])
+        ]
 
     def other_arguments(self, path: str, references: "Sequence[NamedFile]") -> "OtherArguments":
-        """Return what is known of arguments of xacro that neither the user nor the launch file gives."""
-        launches = [launch for package in self._launched_packages(path) for launch in package.launches]
+        """Return what is known of arguments of xacro that neither the user nor the launch file
+        gives.
+        """
+        launches = [
+            launch for package in self._launched_packages(path) for launch in package.launches
+        ]
         if any(launch.unknown or launch.syntax for launch in launches):
             return "default" if references else "unknown"
         return "none" if references and not self.arguments else "default"
@@ -124,7 +150,11 @@ class Surroundings(NamedTuple):
             return [self.graded]
         own = next((it for it in self.packages if it.holds(path)), self.graded)
         others = [it for it in self.packages if it is own or it.name != own.name]
-        launched = (it for it in others if any(own.source_of(at.path or "") for at in it.robot_references(name)))
+        launched = (
+            it
+            for it in others
+            if any(own.source_of(at.path or "") for at in it.robot_references(name))
+        )
         return [*launched] or [self.graded]
 
     @property
@@ -143,7 +173,9 @@ class Surroundings(NamedTuple):
 
     def _named(self, name: str) -> list[Package]:
         """Return the packages of a name, of several that of the URDF first."""
-        return sorted((it for it in self.packages if it.name == name), key=lambda it: it is not self.graded)
+        return sorted(
+            (it for it in self.packages if it.name == name), key=lambda it: it is not self.graded
+        )
 
     def read(self, path: str) -> bytes:
         """Return the bytes of a file. Raises InputError, NotDecided."""
@@ -152,9 +184,15 @@ class Surroundings(NamedTuple):
         if file is None and ignored is not None:
             raise NotDecided(str(ignored))
         if file is None and not self.tree.files:
-            raise NotDecided(f"the included file {path} is not read with a single file: give the folder with both")
+            raise NotDecided(
+                f"the included file {path} is not read with a single file: give the folder "
+                "with both"
+            )
         if file is None and self.is_single and not self.packages:
-            raise NotDecided(f"there is no file {path} in the folder of this single file: give the folder with both")
+            raise NotDecided(
+                f"there is no file {path} in the folder of this single file: give the "
+                "folder with both"
+            )
         if file is None:
             raise InputError(f"there is no file {path} in the submission")
         try:
@@ -163,12 +201,22 @@ class Surroundings(NamedTuple):
             raise NotDecided(str(error)) from None
 
     def installed(self, package: str, inside: str) -> str | None:
-        """Return the file at a path in a package once it is built; without any package, the most similar path."""
+        """Return the file at a path in a package once it is built; without any package, the most
+        similar path.
+        """
         for own in self._named(package):
             similar = any(f"/{path}".endswith(f"/{inside}") for path in own.tree.files)
             source, setup = own.installed.get(f"share/{package}/{inside}"), own.installation
-            if source is None and similar and setup is not None and setup.is_cmake and setup.unknown:
-                raise Undetermined(f"cannot determine statically whether CMakeLists.txt installs {inside}")
+            if (
+                source is None
+                and similar
+                and setup is not None
+                and setup.is_cmake
+                and setup.unknown
+            ):
+                raise Undetermined(
+                    f"cannot determine statically whether CMakeLists.txt installs {inside}"
+                )
             return own.path(source) if source is not None else None
         if self.packages:
             return None
@@ -182,19 +230,29 @@ class Surroundings(NamedTuple):
 
 
 def launch_folders(tree: Tree, packages: Sequence[Package], paths: Iterable[str]) -> list[Package]:
-    """Return the nearest folders around these files that have launch files outside of packages, as packages."""
+    """Return the nearest folders around these files that have launch files outside of packages, as
+    packages.
+    """
     packaged = tuple(package.path("") for package in packages)
     loose = tree.only(lambda path: not path.startswith(packaged)) if packaged else tree
     files = Package("", loose, None, {}).launch_files
     folders = {folder for path in files for folder in (*parents(path), "")}
-    around = {folder for path in paths for folder in [it for it in (*parents(path), "") if it in folders][:1]}
-    return [Package(folder, loose.below(folder), None, {}) for folder in sorted(around)[:_MAX_FOLDERS]]
+    around = {
+        folder
+        for path in paths
+        for folder in [it for it in (*parents(path), "") if it in folders][:1]
+    }
+    return [
+        Package(folder, loose.below(folder), None, {}) for folder in sorted(around)[:_MAX_FOLDERS]
+    ]
 
 
 def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None) -> Read:
-    """Read a URDF as ROS 2 gets it: expanded if a launch file runs xacro on it, or else if its name says xacro.
+    """Read a URDF as ROS 2 gets it: expanded if a launch file runs xacro on it, or else if its name
+    says xacro.
 
-    Other xacro is loaded as it stands; unless that makes no difference, everything but that is graded on its expansion.
+    Other xacro is loaded as it stands; unless that makes no difference, everything but that is
+    graded on its expansion.
     """
     if not _needs_xacro(data):
         reading = read_urdf(data, path)
@@ -205,7 +263,13 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
     launched = surroundings.robot_references(path)
     programs = {reference.by for reference in launched}
     if programs == {"xacro"} if programs else _says_xacro(name):
-        return Read(path, data, _expand_xacro(data, path, surroundings, launched), is_expanded=True, has_xacro=True)
+        return Read(
+            path,
+            data,
+            _expand_xacro(data, path, surroundings, launched),
+            is_expanded=True,
+            has_xacro=True,
+        )
     reading = read_urdf(data, path)
     if not any(problem.kind is RAW_XACRO for problem in reading.problems):
         return Read(path, data, reading, has_xacro=True)
@@ -215,7 +279,9 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
     if reading.verdict == "clean":
         if _loaded_model(reading) == _loaded_model(expanded):
             return Read(path, data, reading, has_xacro=True)
-        reading = reading._replace(verdict="degraded")  # ROS 2 ignores the tags of xacro, and what they stand for
+        reading = reading._replace(
+            verdict="degraded"
+        )  # ROS 2 ignores the tags of xacro, and what they stand for
     return Read(path, data, expanded, is_expanded=True, has_xacro=True, as_it_stands=reading)
 
 
@@ -236,14 +302,18 @@ def is_another_robot(robot: Robot | None, wanted: Collection[str]) -> bool:
 
 
 def is_foreign_robot(robot: Robot | None, wanted: Collection[str]) -> bool:
-    """Return whether a robot is another one, and not only unfinished: most of its links are not wanted."""
+    """Return whether a robot is another one, and not only unfinished: most of its links are not
+    wanted.
+    """
     if robot is None or not is_another_robot(robot, wanted):
         return False
     return 2 * sum(link.name not in wanted for link in robot.links) > len(robot.links)
 
 
 def _says_xacro(name: str) -> bool:
-    """Return whether xacro in a file of this name, in lower case, is meant to be expanded; standard input is a URDF."""
+    """Return whether xacro in a file of this name, in lower case, is meant to be expanded; standard
+    input is a URDF.
+    """
     return not name.endswith(".urdf") if ".xacro" in name else ".urdf" not in name and name != "-"
 
 
@@ -258,14 +328,20 @@ def _loaded_model(reading: Reading) -> tuple[object, ...]:
 
 def _needs_xacro(data: bytes) -> bool:
     """Return whether there is xacro in a text, outside of comments."""
-    return (b"$" in data or b"xacro:" in data) and find_xacro(data.decode("utf-8", "replace")) is not None
+    return (b"$" in data or b"xacro:" in data) and find_xacro(
+        data.decode("utf-8", "replace")
+    ) is not None
 
 
-def _expand_xacro(data: bytes, path: str, surroundings: Surroundings, references: "Sequence[NamedFile]") -> Reading:
-    """Return the robot that xacro makes of a file; where it cannot be expanded at all, what can be read of the text.
+def _expand_xacro(
+    data: bytes, path: str, surroundings: Surroundings, references: "Sequence[NamedFile]"
+) -> Reading:
+    """Return the robot that xacro makes of a file; where it cannot be expanded at all, what can be
+    read of the text.
 
-    The folder that a build installs a package in is called differently in launch files and in xacro. A file that the
-    launch file names there and that no build certainly installs stays as it is: what is in it cannot be determined.
+    The folder that a build installs a package in is called differently in launch files and in
+    xacro. A file that the launch file names there and that no build certainly installs stays as it
+    is: what is in it cannot be determined.
     """
     from grader.package.launch.places import SHARE  # late: most URDFs are no xacro
     from grader.xacro.expansion import expand
@@ -289,7 +365,9 @@ def _expand_xacro(data: bytes, path: str, surroundings: Surroundings, references
     expansion = read()
     if expansion.root is None and expansion.recovered is None and expansion.problems:
         raw = read_urdf(data, path)
-        problems = [problem for problem in raw.problems if problem.kind not in (RAW_XACRO, NOT_WELL_FORMED)]
+        problems = [
+            problem for problem in raw.problems if problem.kind not in (RAW_XACRO, NOT_WELL_FORMED)
+        ]
         return Reading("rejected", raw.robot, (*expansion.problems, *problems), raw.source)
     reading = read_robot(expansion.document)
     if reading.verdict == "rejected" and expansion.meant is None and expansion.source.is_expanded:

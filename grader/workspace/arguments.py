@@ -17,11 +17,15 @@ _XACRO_ARGUMENT = re.compile(r"<xacro:arg\b[^>]*?\bname\s*=\s*[\"']([^\"']+)[\"'
 
 
 def argument_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the arguments that launch files and xacro declare, and those that includes and Command pass."""
+    """Yield the arguments that launch files and xacro declare, and those that includes and Command
+    pass.
+    """
     for package, path, launch in workspace.launches:
         start = Location(package.path(path), 1, 1)
         for owner in [target for target, source in package.installed.items() if source == path]:
-            yield from (Definition("launch argument", name, start, owner) for name in launch.declared)
+            yield from (
+                Definition("launch argument", name, start, owner) for name in launch.declared
+            )
             text = package.tree.files[path].read(_MAX_LAUNCH).decode("utf-8", "replace")
             used = {name for found in _CONFIGURATION.findall(text) for name in found if name}
             yield from (Definition("launch argument", name, start, owner) for name in used)
@@ -29,22 +33,30 @@ def argument_facts(workspace: Workspace) -> Iterator[Fact]:
             if launch.more:
                 yield Open("launch argument", owner)
     for owner, names in known()["launch_arguments"].items():
-        yield from (Definition("launch argument", name, Location(owner, 1, 1), owner) for name in names)
+        yield from (
+            Definition("launch argument", name, Location(owner, 1, 1), owner) for name in names
+        )
     for _, _, launch in workspace.launches:
         for passed in launch.passed:
             if workspace.has_file(passed.path) or passed.path in known()["launch_arguments"]:
                 for name, _ in passed.values:
                     said = f"the include of {passed.path.rpartition('/')[2]}"
-                    yield Use("launch argument", name, passed.location, said, passed.path, optional=True)
+                    yield Use(
+                        "launch argument", name, passed.location, said, passed.path, optional=True
+                    )
     yield from _of_xacro(workspace)
 
 
 def _of_included(workspace: Workspace, launch: Launch, owner: str) -> Iterator[Fact]:
-    """Yield the arguments of launch files that are not submitted, which a launch file passes on by including them."""
+    """Yield the arguments of launch files that are not submitted, which a launch file passes on by
+    including them.
+    """
     for passed in launch.passed:
         names = known()["launch_arguments"].get(passed.path)
         if names is not None:
-            yield from (Definition("launch argument", name, passed.location, owner) for name in names)
+            yield from (
+                Definition("launch argument", name, passed.location, owner) for name in names
+            )
         elif not workspace.has_file(passed.path):
             yield Open("launch argument", owner)
 
@@ -60,4 +72,6 @@ def _of_xacro(workspace: Workspace) -> Iterator[Fact]:
             path = (file.path or "").removeprefix(f"{PREFIX}/")
             if file.by == "xacro" and workspace.has_file(path):
                 for name, _ in file.arguments:
-                    yield Use("xacro argument", name, file.location, "Command of xacro", optional=True)
+                    yield Use(
+                        "xacro argument", name, file.location, "Command of xacro", optional=True
+                    )

@@ -1,4 +1,6 @@
-"""Bridges between Gazebo and ROS: the rows of ros_gz_bridge, compared with the topics that Gazebo has."""
+"""Bridges between Gazebo and ROS: the rows of ros_gz_bridge, compared with the topics that Gazebo
+has.
+"""
 
 import posixpath
 import re
@@ -27,7 +29,9 @@ _WITHOUT_SENSORS = ("sun", "ground_plane", "ground plane")
 
 
 class _BridgeRow(NamedTuple):
-    """What a bridge takes from a topic on one side to one on the other, without the first slash of the names."""
+    """What a bridge takes from a topic on one side to one on the other, without the first slash of
+    the names.
+    """
 
     ros: str
     gz: str
@@ -61,8 +65,22 @@ def bridge_rows(workspace: Workspace) -> Iterator[_BridgeRow]:
         for word in node.arguments or () if node.package == BRIDGE else ():
             found = _ARGUMENT.fullmatch(word or "")
             if found is not None:
-                name, types, at = found["topic"].strip("/"), _types_of(found["ros"], found["gz"]), node.location
-                yield _BridgeRow(name, name, *types, _DIRECTIONS[found["direction"]], at, at, at, at, is_used=True)
+                name, types, at = (
+                    found["topic"].strip("/"),
+                    _types_of(found["ros"], found["gz"]),
+                    node.location,
+                )
+                yield _BridgeRow(
+                    name,
+                    name,
+                    *types,
+                    _DIRECTIONS[found["direction"]],
+                    at,
+                    at,
+                    at,
+                    at,
+                    is_used=True,
+                )
 
 
 def _types_of(ros: str, gz: str) -> tuple[str, str]:
@@ -73,7 +91,14 @@ def _row_in_yaml(row: YamlNode, *, is_used: bool) -> Iterator[_BridgeRow]:
     both = row.get("topic_name")
     ros, gz = row.get("ros_topic_name") or both, row.get("gz_topic_name") or both
     ros_type, gz_type = row.get("ros_type_name"), row.get("gz_type_name")
-    if ros is None or gz is None or ros_type is None or gz_type is None or not ros.text or not gz.text:
+    if (
+        ros is None
+        or gz is None
+        or ros_type is None
+        or gz_type is None
+        or not ros.text
+        or not gz.text
+    ):
         return
     direction = row.get("direction")
     way = _BOTH if direction is None else direction.text or _BOTH
@@ -84,7 +109,9 @@ def _row_in_yaml(row: YamlNode, *, is_used: bool) -> Iterator[_BridgeRow]:
 
 
 def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield rows with types or directions that no bridge has, those of topics that Gazebo does not have, and clocks."""
+    """Yield rows with types or directions that no bridge has, those of topics that Gazebo does not
+    have, and clocks.
+    """
     for path in bridge_files(workspace):
         fault = workspace.yaml_files.get(path)
         if isinstance(fault, YamlFault):
@@ -110,17 +137,26 @@ def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def bridge_files(workspace: Workspace) -> set[str]:
-    """Return the files with rows that launch files give to bridges, by their paths in the submission."""
+    """Return the files with rows that launch files give to bridges, by their paths in the
+    submission.
+    """
     bridges = [node for _, node in workspace.nodes if node.package == BRIDGE]
     given = [it.values.get("config_file") for node in bridges for it in node.parameters or ()]
     paths = [it.value for it in given if it is not None]
-    passed = [it for _, launch in workspace.roots for it in launch.passed if f"/{BRIDGE}/" in it.path]
+    passed = [
+        it for _, launch in workspace.roots for it in launch.passed if f"/{BRIDGE}/" in it.path
+    ]
     paths += [value for it in passed for name, value in it.values if name == "config_file"]
-    return {found for path in paths if isinstance(path, str) and (found := workspace.source_of(path)) is not None}
+    return {
+        found
+        for path in paths
+        if isinstance(path, str) and (found := workspace.source_of(path)) is not None
+    }
 
 
 def _conversions(row: _BridgeRow, of_gazebo: set[str]) -> Iterator[Mismatch]:
-    """Yield that no bridge converts a type into the other one, and that the time of ROS is sent to Gazebo.
+    """Yield that no bridge converts a type into the other one, and that the time of ROS is sent to
+    Gazebo.
 
     Where the topics of Gazebo have the type of the row, the other one is wrong.
     """
@@ -136,45 +172,85 @@ def _conversions(row: _BridgeRow, of_gazebo: set[str]) -> Iterator[Mismatch]:
         else:
             wrong, meant, at = row.gz_type, fitting[:1], row.gz_type_location
         either = corrections(wrong, at, meant[0]) if wrong and len(meant) == 1 else ()
-        yield Mismatch("topics", f"{message}; write {enumerated(meant, word='or')}", at, None, row.is_used, either)
+        yield Mismatch(
+            "topics",
+            f"{message}; write {enumerated(meant, word='or')}",
+            at,
+            None,
+            row.is_used,
+            either,
+        )
     if row.gz_type == "gz.msgs.Clock" and row.direction == _TO_GAZEBO:
-        message = f"the bridge sends the time of ROS to Gazebo: the clock is Gazebo's, so write {_TO_ROS}"
+        message = (
+            f"the bridge sends the time of ROS to Gazebo: the clock is Gazebo's, so write {_TO_ROS}"
+        )
         yield _in_direction(row, message, _TO_ROS)
 
 
-def _in_direction(row: _BridgeRow, message: str, right: str, at: Location | None = None) -> Mismatch:
-    """Return that a row has the wrong direction, with the right one; in an argument it is a character."""
+def _in_direction(
+    row: _BridgeRow, message: str, right: str, at: Location | None = None
+) -> Mismatch:
+    """Return that a row has the wrong direction, with the right one; in an argument it is a
+    character.
+    """
     where = row.direction_location
     either = corrections(row.direction, where, right) if where != row.location else ()
     return Mismatch("topics", message, where, at, row.is_used, either)
 
 
 def _contradictions(row: _BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mismatch]:
-    """Yield that a topic of Gazebo is bridged in the other direction, or has messages of another type."""
+    """Yield that a topic of Gazebo is bridged in the other direction, or has messages of another
+    type.
+    """
     inputs = {it.is_input for it in topics}
     wrong, right = (_TO_ROS, _TO_GAZEBO) if inputs == {True} else (_TO_GAZEBO, _TO_ROS)
     if topics and len(inputs) == 1 and row.direction == wrong:
         done = "reads it" if inputs == {True} else "publishes it"
         at = topics[0].location
-        message = f"the topic {row.gz} is bridged {wrong}, but Gazebo {done} ({place_text(at)}): write {right}"
+        message = (
+            f"the topic {row.gz} is bridged {wrong}, but Gazebo {done} ({place_text(at)}): "
+            f"write {right}"
+        )
         yield _in_direction(row, message, right, at)
     fitting = [f"gz.msgs.{it}" for it in known()["bridge_types"].get(row.ros_type, ())]
-    if topics and row.gz_type in fitting and all(f"gz.msgs.{it.type}" != row.gz_type for it in topics):
+    if (
+        topics
+        and row.gz_type in fitting
+        and all(f"gz.msgs.{it.type}" != row.gz_type for it in topics)
+    ):
         at = topics[0].location
-        message = f"the topic {row.gz} of Gazebo has gz.msgs.{topics[0].type} ({place_text(at)}), not {row.gz_type}"
+        message = (
+            f"the topic {row.gz} of Gazebo has gz.msgs.{topics[0].type} ({place_text(at)}), not "
+            f"{row.gz_type}"
+        )
         yield Mismatch("topics", message, row.gz_type_location, at, row.is_used)
 
 
 def _not_there(row: _BridgeRow, unused: list[GazeboTopic], *, is_known: bool) -> Iterator[Mismatch]:
-    """Yield that Gazebo does not have the topic of a row, while no row has one of the same type that it has."""
-    fitting = {it.name: it for it in unused if f"gz.msgs.{it.type}" == row.gz_type and it.is_input != row.is_published}
+    """Yield that Gazebo does not have the topic of a row, while no row has one of the same type
+    that it has.
+    """
+    fitting = {
+        it.name: it
+        for it in unused
+        if f"gz.msgs.{it.type}" == row.gz_type and it.is_input != row.is_published
+    }
     if fitting:
         meant = closest(row.gz, fitting) or min(fitting)
         at = fitting[meant].location
         what = "no sensor publishes" if row.is_published else "nothing reads"
-        message = f"{what} {quoted(row.gz)} in Gazebo; did you mean {quoted(meant)} ({place_text(at)})?"
+        message = (
+            f"{what} {quoted(row.gz)} in Gazebo; did you mean {quoted(meant)} ({place_text(at)})?"
+        )
         is_sure = row.is_used and is_known and len(fitting) == 1
-        yield Mismatch("topics", message, row.location, at, is_sure, corrections(row.gz, row.location, meant, at))
+        yield Mismatch(
+            "topics",
+            message,
+            row.location,
+            at,
+            is_sure,
+            corrections(row.gz, row.location, meant, at),
+        )
 
 
 def _clocks(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Mismatch]:
@@ -187,16 +263,23 @@ def _clocks(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Mismatch]:
     if any(not workspace.source_of(path) and "/ros_gz_sim/" not in path for path in included):
         return
     for package, node in workspace.nodes:
-        given = parameters_of(node, partial(open_meant, package), workspace.name_of(node) or "", is_python=None).values
+        given = parameters_of(
+            node, partial(open_meant, package), workspace.name_of(node) or "", is_python=None
+        ).values
         found = given.get("use_sim_time")
         if found is not None and str(found.value).lower() == "true" and node.when:
-            message = f"{node.executable} waits for the time of the simulation, but no bridge takes clock from Gazebo"
+            message = (
+                f"{node.executable} waits for the time of the simulation, but no bridge takes "
+                "clock from Gazebo"
+            )
             yield Mismatch("topics", message, found.location, own[0].location)
             return
 
 
 def _defined(workspace: Workspace) -> set[str]:
-    """Return every topic that the robot, models and worlds name, and those that Gazebo derives from them."""
+    """Return every topic that the robot, models and worlds name, and those that Gazebo derives from
+    them.
+    """
     defined: set[str] = set()
     for root, _ in roots(workspace):
         for element in root.iter("*"):
@@ -212,8 +295,12 @@ def _is_open(workspace: Workspace) -> bool:
     is_whole = workspace.robot is not None and not workspace.has_other_robots
     if not is_whole or any(launch.more for _, _, launch in workspace.launches):
         return True
-    arguments = [node.arguments for _, node in workspace.nodes if node.package in (BRIDGE, "ros_gz_image")]
+    arguments = [
+        node.arguments for _, node in workspace.nodes if node.package in (BRIDGE, "ros_gz_image")
+    ]
     if any(words is None or None in words for words in arguments):
         return True
-    models = [it.findtext("uri") or "" for file in workspace.sdf_files for it in file.root.iter("include")]
+    models = [
+        it.findtext("uri") or "" for file in workspace.sdf_files for it in file.root.iter("include")
+    ]
     return any(uri.rpartition("/")[2].lower() not in _WITHOUT_SENSORS for uri in models)

@@ -1,4 +1,6 @@
-"""Dependencies: the packages that files of a package name, and whether its package.xml declares them."""
+"""Dependencies: the packages that files of a package name, and whether its package.xml declares
+them.
+"""
 
 import re
 from collections.abc import Iterator
@@ -25,7 +27,12 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
         declared = {*package.manifest.dependencies, *package.names}
         declared |= {name for it in declared for name in known()["metapackages"].get(it, ())}
         others = [package.find(name) for name in declared]
-        brought = {name for it in others if it is not None and it.manifest for name in it.manifest.dependencies}
+        brought = {
+            name
+            for it in others
+            if it is not None and it.manifest
+            for name in it.manifest.dependencies
+        }
         used: dict[str, Location] = {}
         for name, at in _used(workspace, package):
             used.setdefault(name, at)
@@ -34,7 +41,10 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
             if name not in declared:
                 meant, start = near(name, declared), package.manifest.name_location
                 guess = f"; did you mean {meant!r}?" if meant is not None else ""
-                message = f"package.xml of {package.name!r} does not declare {name!r}, which is used here{guess}"
+                message = (
+                    f"package.xml of {package.name!r} does not declare {name!r}, which is used "
+                    f"here{guess}"
+                )
                 # rosdep installs what packages need that are declared.
                 is_sure = name not in brought
                 either = corrections(name, at, meant, start if meant not in used else None)
@@ -45,14 +55,23 @@ def _used(workspace: Workspace, package: Package) -> Iterator[tuple[str, Locatio
     """Yield the packages that are used, and where."""
     for owner, _, launch in workspace.launches:
         if owner is package:
-            yield from ((node.package, node.location) for node in launch.nodes if not node.included_by)
+            yield from (
+                (node.package, node.location) for node in launch.nodes if not node.included_by
+            )
             paths = ((passed.path.split("/"), passed.location) for passed in launch.passed)
-            yield from ((parts[1], at) for parts, at in paths if parts[0] == "share" and len(parts) > 1)
+            yield from (
+                (parts[1], at) for parts, at in paths if parts[0] == "share" and len(parts) > 1
+            )
     own = {it.name for it in workspace.packages}
     for source in workspace.sources_of(package, (".xacro", ".urdf")):
-        named = ((found[1] or found[2], source.at(found.start())) for found in _FIND.finditer(source.text))
+        named = (
+            (found[1] or found[2], source.at(found.start()))
+            for found in _FIND.finditer(source.text)
+        )
         # A misspelt own package is a mistake of files.
-        yield from ((name, at) for name, at in named if near(name, own) is None or package.depends_on(name))
+        yield from (
+            (name, at) for name, at in named if near(name, own) is None or package.depends_on(name)
+        )
     modules = {part.removesuffix(".py") for path in package.tree.files for part in path.split("/")}
     for source in workspace.sources_of(package, (".py",)):
         for found in _IMPORT.finditer(source.text):

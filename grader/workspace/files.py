@@ -1,4 +1,6 @@
-"""Files: the paths that launch files, xacro and YAML name, and whether a build installs a file there."""
+"""Files: the paths that launch files, xacro and YAML name, and whether a build installs a file
+there.
+"""
 
 import posixpath
 import re
@@ -7,7 +9,12 @@ from typing import NamedTuple
 
 from grader.names import closest, near
 from grader.package.installation import Installation
-from grader.package.installed_files import are_installs_known, is_surely_absent, look_up, share_parts
+from grader.package.installed_files import (
+    are_installs_known,
+    is_surely_absent,
+    look_up,
+    share_parts,
+)
 from grader.package.launch.model import Launch
 from grader.package.launch.places import PREFIX, SHARE
 from grader.package.package import Package
@@ -16,8 +23,11 @@ from grader.workspace.known import known
 from grader.workspace.names import Compared, Correction, Fact, Mismatch, Undecided, corrections
 from grader.workspace.workspace import Workspace
 
-# A path ends at a quote, a tag or a space, in YAML's flow style and in a substitution also at a comma or a bracket.
-_FIND = re.compile(r"\$\(find(?:-pkg-share)? ([\w-]+)\)/?((?:[^\"'<>\s$,()[\]{}]|,(?=\w))*)(?=[\"'<\s,)\]}])")
+# A path ends at a quote, a tag or a space, in YAML's flow style and in a substitution also at a
+# comma or a bracket.
+_FIND = re.compile(
+    r"\$\(find(?:-pkg-share)? ([\w-]+)\)/?((?:[^\"'<>\s$,()[\]{}]|,(?=\w))*)(?=[\"'<\s,)\]}])"
+)
 _PACKAGE = re.compile(r"package://([\w-]+)/([\w./-]+)(?=[\"'<\s,\]}])")
 _PATH = re.compile(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
 
@@ -30,13 +40,18 @@ def file_facts(workspace: Workspace) -> Iterator[Fact]:
         if (path, at) not in seen:
             seen.add((path, at))
             for fact in _fault_of(workspace, package, path, at, is_output=is_output):
-                yield fact._replace(is_sure=fact.is_sure and is_read) if isinstance(fact, Mismatch) else fact
+                yield (
+                    fact._replace(is_sure=fact.is_sure and is_read)
+                    if isinstance(fact, Mismatch)
+                    else fact
+                )
     yield from _map_images(workspace)
     yield from _models(workspace)
 
 
 class _Named(NamedTuple):
-    """A path below the prefix, with the package whose file names it, and whether it is certainly looked for.
+    """A path below the prefix, with the package whose file names it, and whether it is certainly
+    looked for.
 
     `is_output`: whether an own node, which is given the path, may write the file.
     """
@@ -52,21 +67,35 @@ def _named(workspace: Workspace) -> Iterator[_Named]:
     """Yield the paths that are named."""
     for package, own, launch in workspace.launches:
         # From the folder of the sources, a launch file finds what is beside it.
-        beside = "" if own in package.installed.values() else f"{package.share}{posixpath.dirname(own)}/"
+        beside = (
+            "" if own in package.installed.values() else f"{package.share}{posixpath.dirname(own)}/"
+        )
         for text, at, is_read, is_output in _texts_of(workspace, launch):
             for path in _PATH.findall(text or ""):
                 is_beside = bool(beside) and path.startswith(f"{PREFIX}/{beside}")
                 yield _Named(package, path, at, is_read and not is_beside, is_output)
     for package in workspace.packages:
         for source in workspace.sources_of(package, (".xacro", ".urdf", ".yaml")):
-            of_robot = source.path.endswith(".yaml") or source.path in (workspace.robot_files or (source.path,))
+            of_robot = source.path.endswith(".yaml") or source.path in (
+                workspace.robot_files or (source.path,)
+            )
             for found in (*_FIND.finditer(source.text), *_PACKAGE.finditer(source.text)):
-                yield _Named(package, f"{SHARE}/{found[1]}/{found[2]}", source.at(found.start()), of_robot)
+                yield _Named(
+                    package, f"{SHARE}/{found[1]}/{found[2]}", source.at(found.start()), of_robot
+                )
 
 
-def _texts_of(workspace: Workspace, launch: Launch) -> Iterator[tuple[str | None, Location, bool, bool]]:
-    """Yield the texts of a launch file that may name files, whether they are used, and whether own nodes get them."""
-    yield from ((value, passed.location, True, False) for passed in launch.passed for _, value in passed.values)
+def _texts_of(
+    workspace: Workspace, launch: Launch
+) -> Iterator[tuple[str | None, Location, bool, bool]]:
+    """Yield the texts of a launch file that may name files, whether they are used, and whether own
+    nodes get them.
+    """
+    yield from (
+        (value, passed.location, True, False)
+        for passed in launch.passed
+        for _, value in passed.values
+    )
     for node in launch.nodes:
         # The launch file that includes it may never start it, whatever the arguments.
         is_read = node.when is not False or not node.included_by
@@ -76,10 +105,14 @@ def _texts_of(workspace: Workspace, launch: Launch) -> Iterator[tuple[str | None
             yield given.path, given.location, is_read, False
             values = (it for it in given.values.values() if isinstance(it.value, str))
             yield from ((it.value, it.location, is_read, is_own) for it in values)
-    yield from ((reference.path, reference.location, True, False) for reference in launch.references)
+    yield from (
+        (reference.path, reference.location, True, False) for reference in launch.references
+    )
 
 
-def _fault_of(workspace: Workspace, package: Package, path: str, at: Location, *, is_output: bool) -> Iterator[Fact]:
+def _fault_of(
+    workspace: Workspace, package: Package, path: str, at: Location, *, is_output: bool
+) -> Iterator[Fact]:
     """Yield that no file is installed at a path, if this is certain."""
     name, rest = share_parts(path)
     owner = package.find(name)
@@ -118,10 +151,18 @@ def _not_there(owner: Package, target: str, at: Location, *, is_output: bool) ->
     found, missing = look_up(owner, target), f"a build installs no {target}"
     if found.state == "elsewhere":
         message = f"{missing}: it installs the file as {found.path}"
-        return Mismatch("files", message, at, corrections=_of_folders(target, found.path, at, start))
+        return Mismatch(
+            "files", message, at, corrections=_of_folders(target, found.path, at, start)
+        )
     if found.state == "not installed":
         either, called_at = _of_install(setup, found.path, start), setup.location(setup.called_at)
-        return Mismatch("files", f"{missing}: no {setup.entry} names {found.path}", at, called_at, corrections=either)
+        return Mismatch(
+            "files",
+            f"{missing}: no {setup.entry} names {found.path}",
+            at,
+            called_at,
+            corrections=either,
+        )
     meant = closest(name, map(posixpath.basename, owner.tree.files))
     guess = f"; did you mean {meant!r}?" if meant else ""
     message = f"{missing}: the package has no file {name!r}{guess}"
@@ -130,7 +171,9 @@ def _not_there(owner: Package, target: str, at: Location, *, is_output: bool) ->
 
 
 def _no_folder(owner: Package, inside: str, missing: str, at: Location) -> Iterator[Mismatch]:
-    """Yield where else a build installs what is in a folder, if anywhere. CMake also makes folders that stay empty."""
+    """Yield where else a build installs what is in a folder, if anywhere. CMake also makes folders
+    that stay empty.
+    """
     setup = owner.installation
     assert setup is not None
     other = next((it for it in owner.installed.items() if it[1].startswith(f"{inside}/")), None)
@@ -142,16 +185,24 @@ def _no_folder(owner: Package, inside: str, missing: str, at: Location) -> Itera
         yield Mismatch("files", f"{missing}: it installs no file of the folder {inside}", at)
 
 
-def _of_folders(target: str, elsewhere: str, at: Location, start: Location) -> tuple[Correction, ...]:
-    """Return the correction of the one folder in which a path differs from that at which the file is installed."""
+def _of_folders(
+    target: str, elsewhere: str, at: Location, start: Location
+) -> tuple[Correction, ...]:
+    """Return the correction of the one folder in which a path differs from that at which the file
+    is installed.
+    """
     if target.count("/") != elsewhere.count("/"):
         return ()
-    pairs = [it for it in zip(target.split("/"), elsewhere.split("/"), strict=True) if it[0] != it[1]]
+    pairs = [
+        it for it in zip(target.split("/"), elsewhere.split("/"), strict=True) if it[0] != it[1]
+    ]
     return corrections(pairs[0][0], at, pairs[0][1], start) if len(pairs) == 1 else ()
 
 
 def _of_install(setup: Installation, own: str, start: Location) -> tuple[Correction, ...]:
-    """Return the correction of a path in setup.py or CMakeLists.txt that does not exist, into one that has the file."""
+    """Return the correction of a path in setup.py or CMakeLists.txt that does not exist, into one
+    that has the file.
+    """
     wrong = [it.path for it in setup.stops] + [posixpath.dirname(it.pattern) for it in setup.empty]
     pairs = ((path.rstrip("/"), closest(path, [own, posixpath.dirname(own)])) for path in wrong)
     return next((corrections(path, start, meant) for path, meant in pairs if meant is not None), ())
@@ -161,14 +212,20 @@ def _map_images(workspace: Workspace) -> Iterator[Fact]:
     """Yield the images of maps that are not there."""
     for path, tree in workspace.trees:
         image = tree.get("image")
-        if image is None or not image.text or tree.get("resolution") is None or image.text.startswith("/"):
+        if (
+            image is None
+            or not image.text
+            or tree.get("resolution") is None
+            or image.text.startswith("/")
+        ):
             continue
         wanted = posixpath.normpath(posixpath.join(posixpath.dirname(path), image.text))
         files = workspace.submission.whole_tree.files
         if wanted not in files:
             folder = posixpath.dirname(wanted)
             meant = closest(
-                posixpath.basename(wanted), [posixpath.basename(it) for it in files if posixpath.dirname(it) == folder]
+                posixpath.basename(wanted),
+                [posixpath.basename(it) for it in files if posixpath.dirname(it) == folder],
             )
             guess = f"; did you mean {meant!r}?" if meant else ""
             message = f"the image of the map, {image.text!r}, does not exist{guess}"
@@ -179,11 +236,17 @@ def _map_images(workspace: Workspace) -> Iterator[Fact]:
 def _models(workspace: Workspace) -> Iterator[Fact]:
     """Yield models that worlds include, and whose names are similar to those of the workspace."""
     files = [path for package in workspace.packages for path in package.tree.files]
-    models = {posixpath.basename(posixpath.dirname(it)) for it in files if it.endswith(("/model.sdf", "/model.config"))}
+    models = {
+        posixpath.basename(posixpath.dirname(it))
+        for it in files
+        if it.endswith(("/model.sdf", "/model.config"))
+    }
     for file in workspace.sdf_files:
         for element in file.root.iter("uri"):
             name = (element.text or "").strip().removeprefix("model://").partition("/")[0]
-            meant = near(name, models) if (element.text or "").strip().startswith("model://") else None
+            meant = (
+                near(name, models) if (element.text or "").strip().startswith("model://") else None
+            )
             if meant is not None and name not in models:
                 at = file.location(element)
                 message = f"there is no model {name!r}; did you mean {meant!r}?"

@@ -1,4 +1,6 @@
-"""Frames and joints: those of the robot and of static transforms, and where other files name them."""
+"""Frames and joints: those of the robot and of static transforms, and where other files name
+them.
+"""
 
 import re
 from collections.abc import Iterator
@@ -17,18 +19,35 @@ from grader.xml.parsing import Element
 _JOINTS = re.compile(r"(^|_)joints?$|(wheels?|joints?)_names?$")
 _FRAMES = re.compile(r"(^|_)(frame|frame_id)$")
 # What a program calls the frames that it makes itself.
-_OWN_FRAMES = re.compile(r"^(odom|map|world|global|fixed|parent|target)_frame(_id)?$|^frame_prefix$")
+_OWN_FRAMES = re.compile(
+    r"^(odom|map|world|global|fixed|parent|target)_frame(_id)?$|^frame_prefix$"
+)
 _GAZEBO_FRAMES = ("gz_frame_id", "ignition_frame_id", "frame_id", "frame_name", "frameName")
-_GAZEBO_JOINTS = ("left_joint", "right_joint", "joint_name", "left_steering_joint", "right_steering_joint")
+_GAZEBO_JOINTS = (
+    "left_joint",
+    "right_joint",
+    "joint_name",
+    "left_steering_joint",
+    "right_steering_joint",
+)
 
-# Systems of gz-sim that publish odometry, the elements that name its frames, and the default beside the robot's links.
-_ODOMETRY = ("AckermannSteering", "DiffDrive", "MecanumDrive", "OdometryPublisher", "TrackedVehicle")
+# Systems of gz-sim that publish odometry, the elements that name its frames, and the default beside
+# the robot's links.
+_ODOMETRY = (
+    "AckermannSteering",
+    "DiffDrive",
+    "MecanumDrive",
+    "OdometryPublisher",
+    "TrackedVehicle",
+)
 _ODOMETRY_FRAMES = ("frame_id", "child_frame_id", "odom_frame", "robot_base_frame")
 _DEFAULT_FRAMES = ("odom", "base_footprint")
 
 
 def frame_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the frames and joints that are defined, and those that YAML, SRDF, Gazebo and transforms name."""
+    """Yield the frames and joints that are defined, and those that YAML, SRDF, Gazebo and
+    transforms name.
+    """
     robot = workspace.robot
     if robot is None or not robot.links:
         return
@@ -54,7 +73,9 @@ def _place(location: LazyLocation | None) -> Location:
 
 
 def _openings(workspace: Workspace) -> Iterator[Fact]:
-    """Yield that there may be other names: of other robots, and of programs that may publish frames."""
+    """Yield that there may be other names: of other robots, and of programs that may publish
+    frames.
+    """
     if workspace.has_other_robots:
         yield from (Open("frame"), Open("link"), Open("joint"), Open("group"))
     for _, _, launch in workspace.launches:
@@ -65,7 +86,8 @@ def _openings(workspace: Workspace) -> Iterator[Fact]:
         if node.package not in known()["without_frames"] and node.package not in packages:
             yield Open("frame")
     if any(
-        package.is_cmake and package.installation and package.installation.programs for package in workspace.packages
+        package.is_cmake and package.installation and package.installation.programs
+        for package in workspace.packages
     ):
         yield Open("frame")
     if any("TransformBroadcaster" in text for text in workspace.python_texts):
@@ -79,7 +101,9 @@ def _static_transforms(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
             continue
         parent, child = frames_named(node)
         if not parent or not child or None in (node.arguments or (None,)):
-            yield Open("frame", reason="the frames of a static_transform_publisher are not evaluated")
+            yield Open(
+                "frame", reason="the frames of a static_transform_publisher are not evaluated"
+            )
             continue
         yield Definition("frame", child, node.location)
         yield Use("frame", parent, node.location, "static_transform_publisher")
@@ -91,7 +115,9 @@ def _static_transforms(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
 
 
 def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:
-    """Yield the joints and frames that a parameter names; what a node of another kind calls joints may be others."""
+    """Yield the joints and frames that a parameter names; what a node of another kind calls joints
+    may be others.
+    """
     key = value.keys[-1] if value.keys else ""
     if _JOINTS.search(key):
         for text, node in value.texts():
@@ -127,15 +153,23 @@ def _in_robot(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _of_odometry(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
-    """Yield the frames that systems of Gazebo publish: those that they name, and by default those below the model's."""
-    words = [pairwise(node.arguments or ()) for _, node in workspace.nodes if node.executable == "create"]
+    """Yield the frames that systems of Gazebo publish: those that they name, and by default those
+    below the model's.
+    """
+    words = [
+        pairwise(node.arguments or ()) for _, node in workspace.nodes if node.executable == "create"
+    ]
     created = {name for pairs in words for option, name in pairs if option == "-name" and name}
     links = [link.name for link in robot.links]
     for root, place in roots(workspace):
         for plugin in [it for it in root.iter("plugin") if system_of(it) in _ODOMETRY]:
             named = [(it.text or "").strip() for it in plugin.iterchildren(*_ODOMETRY_FRAMES)]
             around = {it.get("name", "") for it in plugin.iterancestors("robot", "model")}
-            below = [f"{model}/{name}" for model in sorted(around | created) for name in (*_DEFAULT_FRAMES, *links)]
+            below = [
+                f"{model}/{name}"
+                for model in sorted(around | created)
+                for name in (*_DEFAULT_FRAMES, *links)
+            ]
             yield from (Definition("frame", name, place(plugin)) for name in (*named, *below))
 
 

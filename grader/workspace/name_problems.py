@@ -24,17 +24,28 @@ _SIMILAR = _warning("REF009", "Name that is similar to one that is defined")
 _UNUSED = _warning("REF010", "File that no other file names")
 
 _OF_FAMILY: Mapping[Family, Kind] = {
-    "files": _NO_FILE, "frames": _NO_FRAME, "controllers": _NO_CONTROLLER, "parameters": _NO_PARAMETER,
-    "arguments": _NO_ARGUMENT, "programs": _NO_PROGRAM, "topics": _NO_TOPIC, "dependencies": _NO_DEPENDENCY,
-}  # fmt: skip
+    "files": _NO_FILE,
+    "frames": _NO_FRAME,
+    "controllers": _NO_CONTROLLER,
+    "parameters": _NO_PARAMETER,
+    "arguments": _NO_ARGUMENT,
+    "programs": _NO_PROGRAM,
+    "topics": _NO_TOPIC,
+    "dependencies": _NO_DEPENDENCY,
+}
 NAME_CATALOGUE = kinds_in(globals().values())
 
 
 def name_problems(found: Agreement) -> tuple[Problem, ...]:
     """Return what does not agree as problems, in the order of files and lines."""
     problems = [
-        Problem(_OF_FAMILY[it.family] if it.is_sure else _SIMILAR, it.message, it.location, it.family)
+        Problem(
+            _OF_FAMILY[it.family] if it.is_sure else _SIMILAR, it.message, it.location, it.family
+        )
         for it in found.mismatches
     ]
-    unused = [Problem(_UNUSED, "no other file of the workspace names this file", at, "files") for at in found.unused]
+    unused = [
+        Problem(_UNUSED, "no other file of the workspace names this file", at, "files")
+        for at in found.unused
+    ]
     return (*problems, *unused)

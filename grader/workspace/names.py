@@ -1,4 +1,6 @@
-"""Join the names that files define with those that they use: a name that is used has to be defined somewhere."""
+"""Join the names that files define with those that they use: a name that is used has to be defined
+somewhere.
+"""
 
 from collections.abc import Iterable, Mapping
 from typing import Literal, NamedTuple, get_args
@@ -8,13 +10,31 @@ from grader.source import Location
 from grader.text import quoted
 
 Family = Literal[
-    "files", "frames", "controllers", "parameters", "arguments", "programs", "topics", "dependencies"
-]  # fmt: skip
+    "files",
+    "frames",
+    "controllers",
+    "parameters",
+    "arguments",
+    "programs",
+    "topics",
+    "dependencies",
+]
 FAMILIES: tuple[Family, ...] = get_args(Family)
 _Kind = Literal[
-    "frame", "link", "joint", "group", "controller", "interface", "plugin section", "parameter", "launch argument",
-    "xacro argument", "node", "topic", "Gazebo topic",
-]  # fmt: skip
+    "frame",
+    "link",
+    "joint",
+    "group",
+    "controller",
+    "interface",
+    "plugin section",
+    "parameter",
+    "launch argument",
+    "xacro argument",
+    "node",
+    "topic",
+    "Gazebo topic",
+]
 FAMILY_OF: Mapping[_Kind, Family] = {
     **dict.fromkeys(("frame", "link", "joint", "group"), "frames"),
     **dict.fromkeys(("controller", "interface"), "controllers"),
@@ -26,7 +46,9 @@ FAMILY_OF: Mapping[_Kind, Family] = {
 
 
 class Definition(NamedTuple):
-    """A name that a file defines. Those of one kind agree within one owner only, such as the arguments of a file."""
+    """A name that a file defines. Those of one kind agree within one owner only, such as the
+    arguments of a file.
+    """
 
     kind: _Kind
     name: str
@@ -35,7 +57,9 @@ class Definition(NamedTuple):
 
 
 class Use(NamedTuple):
-    """A name that a file uses, and what the file calls it. Where it is `optional`, only a similar name is wrong."""
+    """A name that a file uses, and what the file calls it. Where it is `optional`, only a similar
+    name is wrong.
+    """
 
     kind: _Kind
     name: str
@@ -46,7 +70,9 @@ class Use(NamedTuple):
 
 
 class Open(NamedTuple):
-    """That names of a kind may be defined by what is not submitted, or, for a reason, by what is not evaluated."""
+    """That names of a kind may be defined by what is not submitted, or, for a reason, by what is
+    not evaluated.
+    """
 
     kind: _Kind
     owner: str = ""
@@ -54,7 +80,9 @@ class Open(NamedTuple):
 
 
 class Correction(NamedTuple):
-    """Another name in a file: the old one is at a place, behind it in the same element, or the key before it."""
+    """Another name in a file: the old one is at a place, behind it in the same element, or the key
+    before it.
+    """
 
     location: Location
     old: str
@@ -62,14 +90,18 @@ class Correction(NamedTuple):
 
 
 class Mismatch(NamedTuple):
-    """Something that does not agree. It is a warning, and fails no criterion, unless it certainly fails at run time."""
+    """Something that does not agree. It is a warning, and fails no criterion, unless it certainly
+    fails at run time.
+    """
 
     family: Family
     message: str
     location: Location
     related: Location | None = None  # of what was meant
     is_sure: bool = True
-    corrections: tuple[Correction, ...] = ()  # with each of which it agrees: first of the use, then of the definition
+    corrections: tuple[
+        Correction, ...
+    ] = ()  # with each of which it agrees: first of the use, then of the definition
 
 
 class Compared(NamedTuple):
@@ -116,7 +148,9 @@ def agreement(facts: Iterable[Fact]) -> Agreement:
         if isinstance(fact, Open):
             opened[fact.kind, fact.owner] = opened.get((fact.kind, fact.owner)) or fact.reason
     found = [fact for fact in every if isinstance(fact, Mismatch)]
-    undecided: dict[Family, str] = {fact.family: fact.reason for fact in reversed(every) if isinstance(fact, Undecided)}
+    undecided: dict[Family, str] = {
+        fact.family: fact.reason for fact in reversed(every) if isinstance(fact, Undecided)
+    }
     uses = [fact for fact in every if isinstance(fact, Use)]
     for use in uses:
         key = use.kind, use.owner
@@ -127,7 +161,10 @@ def agreement(facts: Iterable[Fact]) -> Agreement:
             found.append(mismatch)
         if opened.get(key):
             undecided.setdefault(FAMILY_OF[use.kind], opened[key])
-    order = sorted(dict.fromkeys(found), key=lambda it: (it.location.path, it.location.line, it.location.column))
+    order = sorted(
+        dict.fromkeys(found),
+        key=lambda it: (it.location.path, it.location.line, it.location.column),
+    )
     families = {FAMILY_OF[it.kind] for it in uses}
     families |= {fact.family for fact in every if isinstance(fact, Compared | Mismatch)}
     files = frozenset(fact.name for fact in every if isinstance(fact, Compared) and fact.name)
@@ -143,18 +180,27 @@ def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mism
     is_sure = not is_open and (meant is not None or not use.optional)
     if use.optional and meant is None:
         return None
-    guess = f"; did you mean {quoted(meant)} ({place_text(known[meant])})?" if meant is not None else ""
+    guess = (
+        f"; did you mean {quoted(meant)} ({place_text(known[meant])})?" if meant is not None else ""
+    )
     message = f"{use.said}: there is no {use.kind} {quoted(use.name)}{guess}"
     related = known[meant] if meant is not None else None
     either = corrections(use.name, use.location, meant, related)
     return Mismatch(FAMILY_OF[use.kind], message, use.location, related, is_sure, either)
 
 
-def corrections(name: str, at: Location, meant: str | None, defined: Location | None = None) -> tuple[Correction, ...]:
-    """Return that a name becomes the one that is meant, or the reverse; none for names of two sides or numbers."""
+def corrections(
+    name: str, at: Location, meant: str | None, defined: Location | None = None
+) -> tuple[Correction, ...]:
+    """Return that a name becomes the one that is meant, or the reverse; none for names of two sides
+    or numbers.
+    """
     if meant is None or not (are_of_one_side(name, meant) or near(name, [meant])):
         return ()
-    return (Correction(at, name, meant), *([Correction(defined, meant, name)] if defined is not None else []))
+    return (
+        Correction(at, name, meant),
+        *([Correction(defined, meant, name)] if defined is not None else []),
+    )
 
 
 def place_text(location: Location) -> str:

@@ -1,4 +1,6 @@
-"""Parameters: whether parameter files have some for the node that gets them, and whether own nodes declare them."""
+"""Parameters: whether parameter files have some for the node that gets them, and whether own
+nodes declare them.
+"""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,11 +19,32 @@ from grader.package.yaml_nodes import YamlFault, YamlNode, first_alias
 from grader.source import Location
 from grader.workspace.bridges import bridge_files
 from grader.workspace.known import known
-from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use, corrections, place_text
+from grader.workspace.names import (
+    Compared,
+    Definition,
+    Fact,
+    Mismatch,
+    Open,
+    Undecided,
+    Use,
+    corrections,
+    place_text,
+)
 from grader.workspace.workspace import Workspace
-from grader.workspace.yaml_values import PARAMETERS, is_misspelt_key, is_parameters, sections_in, values_in
+from grader.workspace.yaml_values import (
+    PARAMETERS,
+    is_misspelt_key,
+    is_parameters,
+    sections_in,
+    values_in,
+)
 
-_TYPES = {bool: "a boolean", int: "an integer", float: "a double", str: "a string"}  # as ROS 2 calls them
+_TYPES = {
+    bool: "a boolean",
+    int: "an integer",
+    float: "a double",
+    str: "a string",
+}  # as ROS 2 calls them
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
 _INPUT = re.compile(r"(odom|imu|pose|twist)\d+_config")  # of robot_localization
 _SEPARATORS = re.compile(r"[:/]+")
@@ -36,7 +59,9 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     for path, tree in workspace.yaml_files.items():
         if isinstance(tree, YamlFault) and path not in of_bridges:
             is_sure = path in workspace.parameter_files
-            yield Mismatch("parameters", f"this is not YAML: {tree}", tree.location, is_sure=is_sure)
+            yield Mismatch(
+                "parameters", f"this is not YAML: {tree}", tree.location, is_sure=is_sure
+            )
     for path, nodes in workspace.parameter_files.items():
         yield Compared("parameters")
         yield from _file_given(workspace, path, nodes)
@@ -50,11 +75,17 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from _filters(workspace.yaml_files.get(path))
     for package, node in workspace.nodes:
         yield from _required(workspace, package, node)
-    sections = {path: frozenset(_sections(tree)) for path, tree in workspace.trees if is_parameters(tree)}
+    sections = {
+        path: frozenset(_sections(tree)) for path, tree in workspace.trees if is_parameters(tree)
+    }
     for path, tree in workspace.trees:
         if is_parameters(tree) or "controller_names" in tree.source.text:
             # A file that may be given along with others may leave sections to them.
-            others = (it for other, it in sections.items() if other != path and not _is_given_alone(workspace, path))
+            others = (
+                it
+                for other, it in sections.items()
+                if other != path and not _is_given_alone(workspace, path)
+            )
             yield from _plugin_lists(tree, frozenset().union(*others))
             yield from _plugin_names(tree)
 
@@ -69,14 +100,20 @@ def _sections(node: YamlNode, above: str = "") -> Iterator[tuple[str, str]]:
 
 def _is_given_alone(workspace: Workspace, path: str) -> bool:
     nodes = workspace.parameter_files.get(path, ())
-    return any(sum(bool(it.path or it.unknown) for it in node.parameters or ()) == 1 for node in nodes)
+    return any(
+        sum(bool(it.path or it.unknown) for it in node.parameters or ()) == 1 for node in nodes
+    )
 
 
 def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -> Iterator[Fact]:
-    """Yield that a parameter file has nothing for a node that is given it, but for a node that is not."""
+    """Yield that a parameter file has nothing for a node that is given it, but for a node that
+    is not.
+    """
     tree = workspace.yaml_files.get(path)
     # A container gives it to the components that are loaded into it.
-    if not isinstance(tree, YamlNode) or any(node.package in ("ros_gz_bridge", "rclcpp_components") for node in nodes):
+    if not isinstance(tree, YamlNode) or any(
+        node.package in ("ros_gz_bridge", "rclcpp_components") for node in nodes
+    ):
         return
     yield from _misplaced(tree)
     names = [(node, workspace.name_of(node)) for node in nodes]
@@ -85,22 +122,33 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
     if len(read) < len(names) or not sections:
         return
     own = {child for name in read for child in workspace.children_of(name)}
-    unread = [key for key in sections if key not in own and not any(fnmatchcase(name, key) for name in read)]
+    unread = [
+        key
+        for key in sections
+        if key not in own and not any(fnmatchcase(name, key) for name in read)
+    ]
     is_passed = any(
         workspace.source_of(value or "") == path
         for _, _, launch in workspace.launches
         for passed in launch.passed
         for _, value in passed.values
     )
-    lacking = {name for name in read if not any(fnmatchcase(name, key) or key == "**" for key in sections)}
+    lacking = {
+        name for name in read if not any(fnmatchcase(name, key) or key == "**" for key in sections)
+    }
     for node, name in names:
         if name in lacking and unread:
             meant = near(name or "", unread)
-            is_known = workspace.package_of(node) is not None or node.package in known()["without_frames"]
+            is_known = (
+                workspace.package_of(node) is not None or node.package in known()["without_frames"]
+            )
             if meant is None and (is_passed or not is_known):
                 continue  # the others may be of nodes that are not submitted
             key, is_one = meant or unread[0], meant is not None or len(unread) == len(lacking) == 1
-            message = f"there are parameters for {key}, but none for the node {name!r}, which gets this file"
+            message = (
+                f"there are parameters for {key}, but none for the node {name!r}, which gets "
+                "this file"
+            )
             at = tree.key_location(*sections[key])
             either = corrections(key, at, name if is_one else None, node.location)
             yield Mismatch("parameters", message, at, node.location, True, either)
@@ -116,12 +164,16 @@ def _controllers_given(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _misplaced(tree: YamlNode) -> Iterator[Fact]:
-    """Yield aliases, values that are not below ros__parameters, and ros__parameters inside of ros__parameters."""
+    """Yield aliases, values that are not below ros__parameters, and ros__parameters inside of
+    ros__parameters.
+    """
     alias = first_alias(tree.source)
     if alias is not None:
         name, at = alias
         yield Mismatch(
-            "parameters", f"ROS 2 reads no aliases in parameter files: write the value in place of *{name}", at
+            "parameters",
+            f"ROS 2 reads no aliases in parameter files: write the value in place of *{name}",
+            at,
         )
     waiting: list[tuple[str, YamlNode, bool]] = [("", tree, False)]
     while waiting:
@@ -132,9 +184,13 @@ def _misplaced(tree: YamlNode) -> Iterator[Fact]:
                     message = f"{name}: ros__parameters is inside of other ros__parameters"
                     yield Mismatch("parameters", message, node.key_location(key))
                 elif not is_below and is_misspelt_key(key, inner):
-                    message = f"{name}: rcl does not know the key {key!r}; did you mean {PARAMETERS!r}?"
+                    message = (
+                        f"{name}: rcl does not know the key {key!r}; did you mean {PARAMETERS!r}?"
+                    )
                     at = node.key_location(key)
-                    yield Mismatch("parameters", message, at, corrections=corrections(key, at, PARAMETERS))
+                    yield Mismatch(
+                        "parameters", message, at, corrections=corrections(key, at, PARAMETERS)
+                    )
                 else:
                     waiting.append((key, inner, is_below or key == PARAMETERS))
         elif not is_below and name:
@@ -142,7 +198,9 @@ def _misplaced(tree: YamlNode) -> Iterator[Fact]:
             yield Mismatch("parameters", message, node.location)
 
 
-def _declared(workspace: Workspace, package: Package, node: StartedNode, own: PythonNode) -> Iterator[Fact]:
+def _declared(
+    workspace: Workspace, package: Package, node: StartedNode, own: PythonNode
+) -> Iterator[Fact]:
     """Yield the parameters that a node of the workspace declares, reads and is given."""
     owner = f"{node.package}/{node.executable}"
     for it in own.parameters:
@@ -156,13 +214,17 @@ def _declared(workspace: Workspace, package: Package, node: StartedNode, own: Py
     for it in own.parameters:
         if it.name is not None and not it.is_declared:
             yield Use("parameter", it.name, it.location, "get_parameter", owner)
-    found = parameters_of(node, partial(open_meant, package, absent_are_empty=True), own.name or "", is_python=True)
+    found = parameters_of(
+        node, partial(open_meant, package, absent_are_empty=True), own.name or "", is_python=True
+    )
     if found.unknown:
         yield Undecided("parameters", found.unknown)
     wide = workspace.wildcard_places(node)
     for name, value in found.values.items():
         if value.location not in wide and not name.startswith("qos_overrides."):
-            yield Use("parameter", name, value.location, f"the node {workspace.name_of(node)!r}", owner)
+            yield Use(
+                "parameter", name, value.location, f"the node {workspace.name_of(node)!r}", owner
+            )
     yield from _types_given(own, found.values)
 
 
@@ -171,7 +233,9 @@ def _types_given(own: PythonNode, values: Mapping[str, ParameterValue]) -> Itera
     for it in [it for it in own.parameters if it.is_declared and it.is_plain]:
         given = values.get(it.name or "")
         if given is not None:
-            yield from _of_other_type(it.name or "", given, it.default, it.location, is_sure=not own.doubts)
+            yield from _of_other_type(
+                it.name or "", given, it.default, it.location, is_sure=not own.doubts
+            )
 
 
 def _without_time(workspace: Workspace) -> Iterator[Mismatch]:
@@ -184,11 +248,21 @@ def _without_time(workspace: Workspace) -> Iterator[Mismatch]:
 def _of_other_type(
     name: str, given: ParameterValue, default: Any, at: Location | None, *, is_sure: bool = True
 ) -> Iterator[Mismatch]:
-    """Yield that a parameter file gives a parameter a value of another type than the node declares."""
+    """Yield that a parameter file gives a parameter a value of another type than the node
+    declares.
+    """
     declared, actual = _type_of(default), _type_of(given.value)
-    if declared and actual and declared != actual and given.location.path.endswith((".yaml", ".yml")):
+    if (
+        declared
+        and actual
+        and declared != actual
+        and given.location.path.endswith((".yaml", ".yml"))
+    ):
         there = f" ({place_text(at)})" if at is not None else ""
-        message = f"the parameter {name!r} is given {actual}; its node declares {declared}{there}, and stops"
+        message = (
+            f"the parameter {name!r} is given {actual}; its node declares {declared}{there}, "
+            "and stops"
+        )
         yield Mismatch("parameters", message, given.location, at, is_sure)
 
 
@@ -196,32 +270,48 @@ def _type_of(value: Any) -> str:
     """Return the type that ROS 2 gives a value, in words; empty where it is not known."""
     if isinstance(value, list | tuple):
         kinds = {_type_of(it) for it in value}
-        return f"a list of {kinds.pop().partition(' ')[2]}s" if len(kinds) == 1 and kinds != {""} else ""
+        return (
+            f"a list of {kinds.pop().partition(' ')[2]}s"
+            if len(kinds) == 1 and kinds != {""}
+            else ""
+        )
     return _TYPES.get(type(value), "")
 
 
 def _filters(tree: YamlNode | YamlFault | None) -> Iterator[Fact]:
-    """Yield which values of an input a filter of robot_localization takes, where there are not 15 of them."""
+    """Yield which values of an input a filter of robot_localization takes, where there are not 15
+    of them.
+    """
     for _, section in sections_in(tree) if isinstance(tree, YamlNode) else ():
         for value in values_in(section):
             count = len(value.node.items)
             if value.keys and _INPUT.fullmatch(value.keys[-1]) and count not in (0, 15):
                 message = (
-                    f"{value.keys[-1]} has {count} values; it needs 15: x y z, angles, their rates and accelerations"
+                    f"{value.keys[-1]} has {count} values; it needs 15: x y z, angles, their "
+                    "rates and accelerations"
                 )
                 yield Mismatch("parameters", message, value.node.location)
 
 
 def _required(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:
-    """Yield the parameters that a program of another package needs, and does not get as it needs them."""
+    """Yield the parameters that a program of another package needs, and does not get as it needs
+    them.
+    """
     needed = known()["required_parameters"].get(f"{node.package}/{node.executable}", ())
     if needed and node.arguments == ():
-        found = parameters_of(node, partial(open_meant, package), workspace.name_of(node) or "", is_python=False)
+        found = parameters_of(
+            node, partial(open_meant, package), workspace.name_of(node) or "", is_python=False
+        )
         for name in [it for it in needed if it not in found.values and not found.unknown]:
             guess = closest(name, found.values)
-            either = corrections(guess, found.values[guess].location, name) if guess is not None else ()
+            either = (
+                corrections(guess, found.values[guess].location, name) if guess is not None else ()
+            )
             there = f"; did you mean it by {guess!r}?" if guess is not None else ""
-            message = f"{node.executable} stops without the parameter {name}, which it does not get{there}"
+            message = (
+                f"{node.executable} stops without the parameter {name}, which it does not "
+                f"get{there}"
+            )
             yield Mismatch("parameters", message, node.location, corrections=either)
         robot = found.values.get("robot_description")
         text = robot.value.strip() if robot is not None and isinstance(robot.value, str) else ""
@@ -232,14 +322,20 @@ def _required(workspace: Workspace, package: Package, node: StartedNode) -> Iter
 
 
 def _plugin_lists(tree: YamlNode, elsewhere: frozenset[tuple[str, str]]) -> Iterator[Fact]:
-    """Yield the entries of lists of plugins that have no section beside them, and none at the same place elsewhere."""
+    """Yield the entries of lists of plugins that have no section beside them, and none at the same
+    place elsewhere.
+    """
     waiting = [("", tree)]
     while waiting:
         above, node = waiting.pop()
         if not isinstance(node.value, dict):
             continue
         waiting += [(f"{above}/{key.strip('/')}", inner) for key, inner in node.value.items()]
-        sections = {key: inner.location for key, inner in node.value.items() if isinstance(inner.value, dict)}
+        sections = {
+            key: inner.location
+            for key, inner in node.value.items()
+            if isinstance(inner.value, dict)
+        }
         for key, inner in node.value.items():
             if not sections or key in _NOT_LISTS or not (key in _LISTS or key.endswith("_plugins")):
                 continue
@@ -247,7 +343,9 @@ def _plugin_lists(tree: YamlNode, elsewhere: frozenset[tuple[str, str]]) -> Iter
             if inner.text is not None and key == "observation_sources":
                 texts = [(word, inner.location) for word in inner.text.split()]
             owner = f"{tree.source.path}:{inner.location.line}"
-            yield from (Definition("plugin section", name, at, owner) for name, at in sections.items())
+            yield from (
+                Definition("plugin section", name, at, owner) for name, at in sections.items()
+            )
             for text, at in texts:
                 if text and "/" not in text and "::" not in text and (above, text) not in elsewhere:
                     yield Use("plugin section", text, at, key, owner)
@@ -258,8 +356,11 @@ def _plugin_names(tree: YamlNode) -> Iterator[Fact]:
     names = {_SEPARATORS.sub("::", name): name for name in known()["plugins"]}
     values = [it for it in values_in(tree) if it.keys[-1:] == ("plugin",)]
     older = tuple(known()["slash_before_jazzy"])
-    # A file for an older release, which other launch files may choose, writes all of these with a slash.
-    is_of_jazzy = any("::" in (it.node.text or "") and (it.node.text or "").startswith(older) for it in values)
+    # A file for an older release, which other launch files may choose, writes all of these with a
+    # slash.
+    is_of_jazzy = any(
+        "::" in (it.node.text or "") and (it.node.text or "").startswith(older) for it in values
+    )
     for value in values:
         text = value.node.text or ""
         meant = names.get(_SEPARATORS.sub("::", text))

@@ -1,4 +1,6 @@
-"""Programs and nodes: what launch files start, entry points, and the nodes that a lifecycle manager looks after."""
+"""Programs and nodes: what launch files start, entry points, and the nodes that a lifecycle
+manager looks after.
+"""
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -11,14 +13,25 @@ from grader.package.launch.parameters import parameters_of
 from grader.package.package import CMAKE, SETUP, Package
 from grader.source import Location
 from grader.workspace.known import known
-from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Undecided, Use, corrections
+from grader.workspace.names import (
+    Compared,
+    Definition,
+    Fact,
+    Mismatch,
+    Open,
+    Undecided,
+    Use,
+    corrections,
+)
 from grader.workspace.workspace import Workspace
 
 _MAX_FIRST_LINE = 100  # bytes
 
 
 def program_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the programs that launch files start and no package has, and nodes that nothing starts."""
+    """Yield the programs that launch files start and no package has, and nodes that nothing
+    starts.
+    """
     for package in workspace.packages:
         yield from _entry_points(package)
     for package, node in workspace.nodes:
@@ -38,7 +51,11 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
             yield Mismatch("programs", reason, node.location, corrections=either)
         elif owner is not None:
             yield from _not_executed(owner, node)
-        names = known()["programs"].get(node.package, [node.executable]) if owner is None else [node.executable]
+        names = (
+            known()["programs"].get(node.package, [node.executable])
+            if owner is None
+            else [node.executable]
+        )
         if node.executable not in names:
             reason, meant = _unknown_program(node.package, node.executable, names)
             either = corrections(node.executable, node.location, meant)
@@ -58,21 +75,31 @@ def _entry_points(package: Package) -> Iterator[Fact]:
 
 
 def _not_executed(package: Package, node: StartedNode) -> Iterator[Mismatch]:
-    """Yield that Linux cannot execute a script: its first line has to name the interpreter, and end without CR."""
+    """Yield that Linux cannot execute a script: its first line has to name the interpreter, and end
+    without CR.
+    """
     copies = package.installation.copies if package.installation is not None else ()
     started = [it.source for it in copies if it.target == f"lib/{package.name}/{node.executable}"]
     for source in [it for it in started if it.endswith(".py")]:
         with suppress(InputError):
-            line, _, _ = package.tree.files[source].read(_MAX_FIRST_LINE, first=True).partition(b"\n")
+            line, _, _ = (
+                package.tree.files[source].read(_MAX_FIRST_LINE, first=True).partition(b"\n")
+            )
             if line.startswith(b"#!") and not line.endswith(b"\r"):
                 continue
-            wrong = "ends as on Windows, with CR LF" if line.startswith(b"#!") else "is not #!/usr/bin/env python3"
+            wrong = (
+                "ends as on Windows, with CR LF"
+                if line.startswith(b"#!")
+                else "is not #!/usr/bin/env python3"
+            )
             message = f"Linux cannot execute {node.executable}: its first line {wrong}"
             yield Mismatch("programs", message, Location(package.path(source), 1, 1), node.location)
 
 
 def _why_no_program(package: Package, name: str) -> tuple[str, str | None]:
-    """Return that ros2 run does not find a program, and where it is installed, or which there are; what is meant."""
+    """Return that ros2 run does not find a program, and where it is installed, or which there are;
+    what is meant.
+    """
     setup, entries = package.installation, [entry.name for entry in entry_points(package)]
     folder = setup.scripts_folder if setup is not None else ""
     if name in entries:
@@ -81,10 +108,24 @@ def _why_no_program(package: Package, name: str) -> tuple[str, str | None]:
     files = [*setup.programs, *(copy.target for copy in setup.copies)] if setup is not None else []
     elsewhere = next((path for path in files if path.rpartition("/")[2] == name), None)
     if elsewhere == f"lib/{package.name}/{name}":
-        return f"a build installs {name!r} without the right to execute it: write install(PROGRAMS ...)", None
+        return (
+            (
+                f"a build installs {name!r} without the right to execute it: write "
+                "install(PROGRAMS ...)"
+            ),
+            None,
+        )
     if elsewhere is not None:
-        return f"a build installs {name!r} as {elsewhere}, but ros2 run looks in lib/{package.name}", None
-    names = sorted({*(path.rpartition("/")[2] for path in files if path.startswith(f"lib/{package.name}/")), *entries})
+        return (
+            f"a build installs {name!r} as {elsewhere}, but ros2 run looks in lib/{package.name}",
+            None,
+        )
+    names = sorted(
+        {
+            *(path.rpartition("/")[2] for path in files if path.startswith(f"lib/{package.name}/")),
+            *entries,
+        }
+    )
     return _unknown_program(package.name, name, names)
 
 
@@ -97,7 +138,11 @@ def _unknown_program(package: str, name: str, names: Sequence[str]) -> tuple[str
 
 def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
     """Yield the nodes that lifecycle managers are told of, and all that are started."""
-    managers = [(package, node) for package, node in workspace.nodes if node.executable == "lifecycle_manager"]
+    managers = [
+        (package, node)
+        for package, node in workspace.nodes
+        if node.executable == "lifecycle_manager"
+    ]
     if managers:
         yield from _started(workspace)
     for package, node in managers:

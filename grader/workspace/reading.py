@@ -23,9 +23,20 @@ from grader.workspace.unused import unused_files
 from grader.workspace.workspace import Workspace, workspace_of
 
 _READERS = (
-    file_facts, frame_facts, controller_facts, spawner_facts, parameter_facts, argument_facts, program_facts,
-    topic_facts, gazebo_facts, bridge_facts, srdf_facts, moveit_facts, dependency_facts,
-)  # fmt: skip
+    file_facts,
+    frame_facts,
+    controller_facts,
+    spawner_facts,
+    parameter_facts,
+    argument_facts,
+    program_facts,
+    topic_facts,
+    gazebo_facts,
+    bridge_facts,
+    srdf_facts,
+    moveit_facts,
+    dependency_facts,
+)
 
 
 @lru_cache(maxsize=2)

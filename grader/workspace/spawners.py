@@ -1,4 +1,6 @@
-"""Spawners: whether the controllers and the controller manager that they name exist, and each controller is started."""
+"""Spawners: whether the controllers and the controller manager that they name exist, and each
+controller is started.
+"""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -27,10 +29,16 @@ def spawner_facts(workspace: Workspace) -> Iterator[Fact]:
         return
     if any(isinstance(tree, YamlFault) for tree in workspace.yaml_files.values()):
         yield Open("controller", reason="a parameter file cannot be read")
-    if not workspace.has_controller_manager:  # the robot's driver starts one, with controllers of its own
+    if (
+        not workspace.has_controller_manager
+    ):  # the robot's driver starts one, with controllers of its own
         yield Open("controller")
     for _, node in workspace.nodes:
-        if _is_spawner(node) and node.arguments is not None and _is_defined_by_files(workspace, node.arguments):
+        if (
+            _is_spawner(node)
+            and node.arguments is not None
+            and _is_defined_by_files(workspace, node.arguments)
+        ):
             for name in _named(node.arguments):
                 yield Use("controller", name, node.location, "spawner")
             yield from _managers_named(workspace, node)
@@ -52,9 +60,13 @@ def _named(words: Sequence[str | None]) -> Iterator[str]:
 
 
 def _is_defined_by_files(workspace: Workspace, words: Sequence[str | None]) -> bool:
-    """Return whether the controllers of a spawner are defined by files that are submitted, and not by its arguments."""
+    """Return whether the controllers of a spawner are defined by files that are submitted, and not
+    by its arguments.
+    """
     files = [path for option, path in pairwise(words) if option in ("-p", "--param-file")]
-    return not _is_typed(words) and all(path is not None and workspace.source_of(path) is not None for path in files)
+    return not _is_typed(words) and all(
+        path is not None and workspace.source_of(path) is not None for path in files
+    )
 
 
 def _is_typed(words: Sequence[str | None]) -> bool:
@@ -62,14 +74,25 @@ def _is_typed(words: Sequence[str | None]) -> bool:
 
 
 def _managers_named(workspace: Workspace, spawner: StartedNode) -> Iterator[Fact]:
-    """Yield the controller manager that a spawner waits for, where it surely stands for another one."""
-    given = [word for option, word in pairwise(spawner.arguments or ()) if option in ("-c", "--controller-manager")]
-    managers = {workspace.name_of(node): node.location for _, node in workspace.nodes if _is_manager(node)}
+    """Yield the controller manager that a spawner waits for, where it surely stands for another
+    one.
+    """
+    given = [
+        word
+        for option, word in pairwise(spawner.arguments or ())
+        if option in ("-c", "--controller-manager")
+    ]
+    managers = {
+        workspace.name_of(node): node.location for _, node in workspace.nodes if _is_manager(node)
+    }
     for name in [(word or "").rpartition("/")[2] for word in given]:
         meant = near(name, [it for it in managers if it]) if name not in managers else None
         if meant is not None:
             at = managers[meant]
-            message = f"spawner: there is no controller manager {name!r}; did you mean {meant!r} ({place_text(at)})?"
+            message = (
+                f"spawner: there is no controller manager {name!r}; did you mean {meant!r} "
+                f"({place_text(at)})?"
+            )
             either = corrections(name, spawner.location, meant)
             yield Mismatch("controllers", message, spawner.location, at, corrections=either)
 
@@ -81,29 +104,43 @@ def _is_manager(node: StartedNode) -> bool:
 def _without_type(
     workspace: Workspace, package: Package, launch: Launch, controllers: Sequence[Controller]
 ) -> Iterator[Fact]:
-    """Yield the controllers whose types are in files, but in none that the controller manager or their spawner gets."""
+    """Yield the controllers whose types are in files, but in none that the controller manager or
+    their spawner gets.
+    """
     managers = [it for it in launch.nodes if _is_manager(it) and it.when]
     if len(managers) != 1:
         return
     opened = partial(open_meant, package)
-    given = parameters_of(managers[0], opened, workspace.name_of(managers[0]) or "", is_python=False)
+    given = parameters_of(
+        managers[0], opened, workspace.name_of(managers[0]) or "", is_python=False
+    )
     # In later releases, spawners hand on their own parameters.
     spawners = [it for it in launch.nodes if _is_spawner(it) and it.when and it.parameters == ()]
     plain = [it for it in spawners if not _is_typed(it.arguments or ())]
     started = [it for spawner in plain for it in controllers_of(spawner) or ()]
     own = {it.node_name: parameters_of(it, opened, is_python=False) for it in started}
-    typed = [name for name, it in own.items() if it.unknown or "type" in it.values or f"{name}.type" in given.values]
+    typed = [
+        name
+        for name, it in own.items()
+        if it.unknown or "type" in it.values or f"{name}.type" in given.values
+    ]
     files = [workspace.source_of(it.path) for it in managers[0].parameters or () if it.path]
-    lacking = [it for it in controllers if it.name in {*own} - {*typed} and it.location.path not in files]
+    lacking = [
+        it for it in controllers if it.name in {*own} - {*typed} and it.location.path not in files
+    ]
     if lacking and not given.unknown:
         names = enumerated(dict.fromkeys(quoted(it.name) for it in lacking), _MAX_NAMED)
         place = place_text(lacking[0].location)
-        text = f"the controller manager is not given the parameters with the type of {names} ({place})"
+        text = (
+            f"the controller manager is not given the parameters with the type of {names} ({place})"
+        )
         yield Mismatch("controllers", text, managers[0].location, lacking[0].location)
 
 
 def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Iterator[Fact]:
-    """Yield the controllers that publish, or those that move joints, where no spawner starts one of them."""
+    """Yield the controllers that publish, or those that move joints, where no spawner starts one of
+    them.
+    """
     nodes = [node for _, node in workspace.nodes]
     spawned = [controllers_of(node) for node in nodes if _is_spawner(node)]
     texts = (*workspace.launch_texts, *workspace.python_texts)
@@ -113,11 +150,16 @@ def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Ite
     names = {it.node_name for each in spawned for it in each or ()}
     files = {*workspace.parameter_files, *workspace.controller_files}
     own = [it for it in controllers if it.location.path in files]
-    others = [it for it in nodes if it.package == MANAGER and not _is_manager(it) and not _is_spawner(it)]
+    others = [
+        it for it in nodes if it.package == MANAGER and not _is_manager(it) and not _is_spawner(it)
+    ]
     if others or names - {it.name for it in controllers}:
         return  # a name may be misspelt
     publishing = [it for it in own if (it.type.text or "").endswith("Broadcaster")]
     for kind in (publishing, [it for it in own if it not in publishing]):
         if kind and names.isdisjoint(it.name for it in kind):
-            text = f"no spawner starts {enumerated(dict.fromkeys(quoted(it.name) for it in kind), _MAX_NAMED, 'or')}"
+            text = (
+                "no spawner starts "
+                f"{enumerated(dict.fromkeys(quoted(it.name) for it in kind), _MAX_NAMED, 'or')}"
+            )
             yield Mismatch("controllers", text, kind[0].location)

@@ -1,4 +1,6 @@
-"""Descriptions of robots for MoveIt (SRDF): the links, joints and groups that they name, states and collisions."""
+"""Descriptions of robots for MoveIt (SRDF): the links, joints and groups that they name, states and
+collisions.
+"""
 
 from collections.abc import Iterator
 from contextlib import suppress
@@ -18,11 +20,15 @@ def srdf_facts(workspace: Workspace) -> Iterator[Fact]:
     robot, files = workspace.robot, workspace.srdf_files
     if robot is None:
         return
-    is_one_of_several = workspace.has_other_robots or any(file.root.get("name") == robot.name for file in files)
+    is_one_of_several = workspace.has_other_robots or any(
+        file.root.get("name") == robot.name for file in files
+    )
     for file in files:
         groups = file.root.iterchildren("group")
         yield from (Definition("group", it.get("name", ""), file.location(it)) for it in groups)
-        if file.root.get("name") == robot.name or not is_one_of_several:  # else it describes another robot
+        if (
+            file.root.get("name") == robot.name or not is_one_of_several
+        ):  # else it describes another robot
             yield from _names(file)
             yield from _states(robot, file)
             yield from _neighbours(robot, file)
@@ -57,20 +63,31 @@ def _states(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
         name, limit = element.get("name", ""), limits.get(element.get("name", ""))
         with suppress(ValueError):
             value = float(element.get("value", ""))
-            if limit is not None and (value < limit.lower - _ROUNDING or value > limit.upper + _ROUNDING):
+            if limit is not None and (
+                value < limit.lower - _ROUNDING or value > limit.upper + _ROUNDING
+            ):
                 message = (
-                    f"<group_state>: {quoted(name)} is at {value:g}; its limits are {limit.lower:g} and {limit.upper:g}"
+                    f"<group_state>: {quoted(name)} is at {value:g}; its limits are "
+                    f"{limit.lower:g} and {limit.upper:g}"
                 )
                 yield Mismatch("frames", message, file.location(element, "value"))
 
 
 def _neighbours(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
-    """Yield links that a joint connects and whose collisions are compared, where most such pairs are disabled."""
-    disabled = {frozenset((it.get("link1"), it.get("link2"))) for it in file.root.iterchildren("disable_collisions")}
+    """Yield links that a joint connects and whose collisions are compared, where most such pairs
+    are disabled.
+    """
+    disabled = {
+        frozenset((it.get("link1"), it.get("link2")))
+        for it in file.root.iterchildren("disable_collisions")
+    }
     solid = {link.name for link in robot.links if link.collisions}
     pairs = [(it.parent, it.child) for it in robot.joints if {it.parent, it.child} <= solid]
     missing = [pair for pair in pairs if frozenset(pair) not in disabled]
     for parent, child in missing if 2 * len(missing) < len(pairs) else ():
-        message = f"a joint connects {quoted(parent)} and {quoted(child)}, but <disable_collisions> does not name them"
+        message = (
+            f"a joint connects {quoted(parent)} and {quoted(child)}, but <disable_collisions> "
+            "does not name them"
+        )
         # Wrong only if their shapes touch in some position, which is not computed.
         yield Mismatch("frames", message, file.location(file.root), is_sure=False)

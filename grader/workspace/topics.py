@@ -1,4 +1,6 @@
-"""Topics: those of own Python nodes as they are started, with their types and quality of service, and bridge rows."""
+"""Topics: those of own Python nodes as they are started, with their types and quality of service,
+and bridge rows.
+"""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -10,14 +12,27 @@ from grader.source import Location
 from grader.workspace.bridges import bridge_rows
 from grader.workspace.controllers import controller_endpoints
 from grader.workspace.gazebo import BRIDGE
-from grader.workspace.names import Compared, Definition, Fact, Mismatch, Open, Use, corrections, place_text
+from grader.workspace.names import (
+    Compared,
+    Definition,
+    Fact,
+    Mismatch,
+    Open,
+    Use,
+    corrections,
+    place_text,
+)
 from grader.workspace.publishers import may_be_published
 from grader.workspace.workspace import Workspace
 
 # Packages whose programs subscribe to no commands.
 _WITHOUT_COMMANDS = (
-    "controller_manager", "robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui", "rviz2",
-)  # fmt: skip
+    "controller_manager",
+    "robot_state_publisher",
+    "joint_state_publisher",
+    "joint_state_publisher_gui",
+    "rviz2",
+)
 
 
 class _Opened(NamedTuple):
@@ -40,7 +55,9 @@ class _Opened(NamedTuple):
 
 
 def topic_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield topics of own nodes that differ in type or quality of service, and remappings of names that no node has."""
+    """Yield topics of own nodes that differ in type or quality of service, and remappings of names
+    that no node has.
+    """
     opened: list[_Opened] = []
     for launch, node in workspace.launched:
         if node.when is not False:
@@ -80,7 +97,8 @@ def _differences(subscription: _Opened, publisher: _Opened) -> Iterator[Mismatch
         return
     if own.type is not None and other.type is not None and own.type != other.type:
         message = (
-            f"the topic {subscription.topic} is subscribed to with {own.type}, but published with {other.type} ({at})"
+            f"the topic {subscription.topic} is subscribed to with {own.type}, but published "
+            f"with {other.type} ({at})"
         )
         yield Mismatch("topics", message, own.location, other.location)
     for wanted, given, words in (
@@ -89,7 +107,8 @@ def _differences(subscription: _Opened, publisher: _Opened) -> Iterator[Mismatch
     ):
         if (wanted, given) == words:
             message = (
-                f"the subscription of {subscription.topic} asks for {words[0]}, but its publisher is {words[1]} ({at})"
+                f"the subscription of {subscription.topic} asks for {words[0]}, but its "
+                f"publisher is {words[1]} ({at})"
             )
             yield Mismatch("topics", message, own.location, other.location)
 
@@ -105,7 +124,13 @@ def _bridged_types(workspace: Workspace, opened: list[_Opened]) -> Iterator[Mism
                 done = "published" if row.is_published else "subscribed to"
                 there = f"{done} by the bridge with {row.ros_type} ({place_text(row.location)})"
                 message = f"the topic {own.topic} has {own.endpoint.type} here, but is {there}"
-                yield Mismatch("topics", message, own.endpoint.location, row.location, row.is_used and own.is_started)
+                yield Mismatch(
+                    "topics",
+                    message,
+                    own.endpoint.location,
+                    row.location,
+                    row.is_used and own.is_started,
+                )
 
 
 def _remappings(workspace: Workspace, node: StartedNode) -> Iterator[Fact]:
@@ -119,7 +144,9 @@ def _remappings(workspace: Workspace, node: StartedNode) -> Iterator[Fact]:
     for endpoint in own.endpoints:
         if endpoint.name is not None:
             yield Definition("topic", _bare(endpoint.name), endpoint.location, owner)
-    shared = [rule for _, other in workspace.nodes if other is not node for rule in other.remaps or ()]
+    shared = [
+        rule for _, other in workspace.nodes if other is not node for rule in other.remaps or ()
+    ]
     for rule in node.remaps:
         name = _bare(rule[0])
         if rule not in shared and not name.startswith("__") and ":" not in name:
@@ -133,7 +160,9 @@ def _bare(name: str) -> str:
 
 
 def _unconnected(workspace: Workspace, opened: list[_Opened]) -> Iterator[Fact]:
-    """Yield subscriptions to topics that nothing publishes, where a similar one is published and not subscribed to."""
+    """Yield subscriptions to topics that nothing publishes, where a similar one is published and
+    not subscribed to.
+    """
     offers = list(_offers(workspace, opened))
     topics = {it.topic for it in offers}
     subscriptions = [it for it in opened if it.endpoint.kind == "subscription"]
@@ -144,7 +173,11 @@ def _unconnected(workspace: Workspace, opened: list[_Opened]) -> Iterator[Fact]:
     for own in [it for it in subscriptions if it.topic not in topics and not it.of_controller]:
         alike = [it for it in unused if it.type == own.endpoint.type and own.launch in it.launches]
         names = {it.topic for it in alike}
-        if len(names) == 1 and closest(own.topic, names) and not may_be_published(workspace, own.topic):
+        if (
+            len(names) == 1
+            and closest(own.topic, names)
+            and not may_be_published(workspace, own.topic)
+        ):
             [meant], at = names, alike[0].location
             if any(own.node.topic(rule[1]) == meant for rule in own.node.remaps or ()):
                 continue  # a remapping of another name, which is said of it
@@ -156,27 +189,48 @@ def _unconnected(workspace: Workspace, opened: list[_Opened]) -> Iterator[Fact]:
 
 
 def _unheard(workspace: Workspace, opened: list[_Opened]) -> Iterator[Mismatch]:
-    """Yield publishers that nothing subscribes to, where a controller waits for such messages on another topic."""
+    """Yield publishers that nothing subscribes to, where a controller waits for such messages on
+    another topic.
+    """
     subscriptions = [it for it in opened if it.endpoint.kind == "subscription"]
     publishers = [it for it in opened if it.endpoint.kind == "publisher" and not it.of_controller]
     heard, spoken = {it.topic for it in subscriptions}, {it.topic for it in publishers}
     unheard = [it for it in publishers if it.topic not in heard]
     for waiting in [it for it in subscriptions if it.of_controller and it.topic not in spoken]:
-        own = [it for it in unheard if it.launch == waiting.launch and it.endpoint.type == waiting.endpoint.type]
+        own = [
+            it
+            for it in unheard
+            if it.launch == waiting.launch and it.endpoint.type == waiting.endpoint.type
+        ]
         for publisher in own:
-            is_sure = publisher.is_started and waiting.is_started and _is_known(workspace, publisher.launch)
+            is_sure = (
+                publisher.is_started
+                and waiting.is_started
+                and _is_known(workspace, publisher.launch)
+            )
             is_same = publisher.topic.rpartition("/")[2] == waiting.topic.rpartition("/")[2]
             if is_same or (is_sure and len(own) == 1):
                 place = place_text(waiting.endpoint.location)
-                message = f"nothing subscribes to {publisher.topic}; did you mean {waiting.topic} ({place})?"
-                yield Mismatch("topics", message, publisher.endpoint.location, waiting.endpoint.location, is_sure)
+                message = (
+                    f"nothing subscribes to {publisher.topic}; did you mean {waiting.topic} "
+                    f"({place})?"
+                )
+                yield Mismatch(
+                    "topics",
+                    message,
+                    publisher.endpoint.location,
+                    waiting.endpoint.location,
+                    is_sure,
+                )
 
 
 def _is_known(workspace: Workspace, launch: int) -> bool:
     """Return whether all topics are known that the nodes of a launch file open."""
     nodes = [node for number, node in workspace.launched if number == launch]
     own = [workspace.python_node(node) for node in nodes if node.package not in _WITHOUT_COMMANDS]
-    return not workspace.roots[launch][1].unknown and all(it is not None and not it.doubts for it in own)
+    return not workspace.roots[launch][1].unknown and all(
+        it is not None and not it.doubts for it in own
+    )
 
 
 class _Offer(NamedTuple):

@@ -1,4 +1,6 @@
-"""Files that no other file names: parameters that no node gets, parts of a robot that nothing includes."""
+"""Files that no other file names: parameters that no node gets, parts of a robot that nothing
+includes.
+"""
 
 import posixpath
 import re
@@ -11,16 +13,33 @@ from grader.workspace.workspace import Workspace
 
 _KINDS = (".yaml", ".yml", ".xacro", ".urdf", ".rviz", ".srdf")
 _TEXTS = (
-    *_KINDS, ".py", ".xml", ".launch", ".txt", ".cpp", ".hpp", ".cc", ".h", ".md", ".sh", ".json", ".sdf", ".world",
-)  # fmt: skip
+    *_KINDS,
+    ".py",
+    ".xml",
+    ".launch",
+    ".txt",
+    ".cpp",
+    ".hpp",
+    ".cc",
+    ".h",
+    ".md",
+    ".sh",
+    ".json",
+    ".sdf",
+    ".world",
+)
 _MAX_TEXT = 512 * 1024  # bytes
 _WORD = re.compile(rb"[\w-]+")
 _BY_USUAL_NAMES = b"moveit_configs_utils"  # it finds the files of a package by their usual names
-_OF_MAP = frozenset({b"image", b"resolution"})  # the keys of a map, which is chosen when the robot starts
+_OF_MAP = frozenset(
+    {b"image", b"resolution"}
+)  # the keys of a map, which is chosen when the robot starts
 
 
 def unused_files(workspace: Workspace) -> Iterator[Location]:
-    """Yield the installed files whose names no other file of the workspace has, with or without the ending."""
+    """Yield the installed files whose names no other file of the workspace has, with or without the
+    ending.
+    """
     words = {path: found for package in workspace.packages for path, found in _words(package)}
     counts = Counter(word for found in words.values() for word in found)
     for package in workspace.packages:
@@ -30,7 +49,12 @@ def unused_files(workspace: Workspace) -> Iterator[Location]:
         for path in sorted({*package.installed.values()} - {*package.launch_files}):
             stem = posixpath.basename(path).partition(".")[0].encode()
             is_named = counts[stem] > (stem in own[path])
-            if path.endswith(_KINDS) and not is_named and not own[path] >= _OF_MAP and "test" not in path.split("/"):
+            if (
+                path.endswith(_KINDS)
+                and not is_named
+                and not own[path] >= _OF_MAP
+                and "test" not in path.split("/")
+            ):
                 yield Location(package.path(path), 1, 1)
 
 

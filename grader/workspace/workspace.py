@@ -1,4 +1,6 @@
-"""The files of a workspace whose names are compared: packages, launch files, parameter files, the robot, nodes."""
+"""The files of a workspace whose names are compared: packages, launch files, parameter files,
+the robot, nodes.
+"""
 
 import posixpath
 import re
@@ -38,19 +40,31 @@ _COMMENT = {False: re.compile(r"<!--.*?-->", re.DOTALL), True: re.compile(r"(?:^
 
 @dataclass(frozen=True, eq=False)
 class Workspace:
-    """The packages of a submission, or of a folder, as the readers of names see them. Each file is read once."""
+    """The packages of a submission, or of a folder, as the readers of names see them. Each file
+    is read once.
+    """
 
     submission: Submission
 
     @property
     def packages(self) -> tuple[Package, ...]:
-        """The packages that a build of the workspace has: the best of each name, without those that colcon ignores."""
+        """The packages that a build of the workspace has: the best of each name, without those
+        that colcon ignores.
+        """
         known = [it for it in self.submission.packages if not it.ignored_by]
-        return tuple(it for it in known if it.name in it.packages and it.packages[it.name].folder == it.folder)
+        return tuple(
+            it
+            for it in known
+            if it.name in it.packages and it.packages[it.name].folder == it.folder
+        )
 
     def means_one(self, package: Package, name: str) -> bool:
-        """Return whether a name in a file of a package certainly means one package: its own, or the only one."""
-        others = (it for it in self.submission.packages if not it.ignored_by and not is_backup(it.folder))
+        """Return whether a name in a file of a package certainly means one package: its own, or
+        the only one.
+        """
+        others = (
+            it for it in self.submission.packages if not it.ignored_by and not is_backup(it.folder)
+        )
         return name in package.names or sum(it.name == name for it in others) < 2
 
     @cached_property
@@ -59,12 +73,16 @@ class Workspace:
         return tuple(
             (package, path, package.launch(path))
             for package in self.packages
-            for path in [it for it in package.launch_files if not it.startswith("test/")][:_MAX_FILES]
+            for path in [it for it in package.launch_files if not it.startswith("test/")][
+                :_MAX_FILES
+            ]
         )
 
     @cached_property
     def nodes(self) -> tuple[tuple[Package, StartedNode], ...]:
-        """The nodes that launch files start, or may start: those that no other launch file includes."""
+        """The nodes that launch files start, or may start: those that no other launch file
+        includes.
+        """
         return tuple((package, node) for package, launch in self.roots for node in launch.nodes)
 
     @cached_property
@@ -74,20 +92,30 @@ class Workspace:
         return tuple(
             (package, launch)
             for package, path, launch in self.launches
-            if included.isdisjoint(target for target, source in package.installed.items() if source == path)
+            if included.isdisjoint(
+                target for target, source in package.installed.items() if source == path
+            )
         )
 
     @property
     def launched(self) -> Iterator[tuple[int, StartedNode]]:
         """The nodes, each with the number of the launch file that starts it on its own."""
-        yield from ((number, node) for number, (_, launch) in enumerate(self.roots) for node in launch.nodes)
+        yield from (
+            (number, node) for number, (_, launch) in enumerate(self.roots) for node in launch.nodes
+        )
 
     @cached_property
     def yaml_files(self) -> Mapping[str, YamlNode | YamlFault]:
-        """The YAML files that are no launch files, by their paths in the submission; or why one is not read."""
+        """The YAML files that are no launch files, by their paths in the submission; or why one
+        is not read.
+        """
         found: dict[str, YamlNode | YamlFault] = {}
         for package in self.packages:
-            files = [it for it in package.tree.files if it.endswith((".yaml", ".yml")) and not it.startswith("test/")]
+            files = [
+                it
+                for it in package.tree.files
+                if it.endswith((".yaml", ".yml")) and not it.startswith("test/")
+            ]
             paths = [it for it in files if it not in package.launch_files]
             for path in paths[:_MAX_FILES]:
                 own, data = package.path(path), package.tree.read(path, _MAX_YAML)
@@ -100,7 +128,9 @@ class Workspace:
     @property
     def trees(self) -> Iterator[tuple[str, YamlNode]]:
         """The YAML files that are read, with their paths."""
-        yield from ((path, node) for path, node in self.yaml_files.items() if isinstance(node, YamlNode))
+        yield from (
+            (path, node) for path, node in self.yaml_files.items() if isinstance(node, YamlNode)
+        )
 
     @cached_property
     def sdf_files(self) -> tuple[XmlFile, ...]:
@@ -123,17 +153,29 @@ class Workspace:
     def robot(self) -> Robot | None:
         """The robot; None without one, or where not all of it is known."""
         urdf = self.submission.urdf
-        is_known = isinstance(urdf, Read) and not urdf.loaded.undetermined and urdf.loaded.verdict != "rejected"
+        is_known = (
+            isinstance(urdf, Read)
+            and not urdf.loaded.undetermined
+            and urdf.loaded.verdict != "rejected"
+        )
         return urdf.loaded.robot if isinstance(urdf, Read) and is_known else None
 
     @property
     def has_other_robots(self) -> bool:
-        """Return whether there may be other robots than the one that is read, which names may belong to."""
-        return any(not it.is_part for it in self.submission.unused_candidates if not it.path.endswith(MANIFEST))
+        """Return whether there may be other robots than the one that is read, which names may
+        belong to.
+        """
+        return any(
+            not it.is_part
+            for it in self.submission.unused_candidates
+            if not it.path.endswith(MANIFEST)
+        )
 
     @property
     def has_controller_manager(self) -> bool:
-        """Return whether a launch file starts a controller manager, or the robot has one in Gazebo."""
+        """Return whether a launch file starts a controller manager, or the robot has one in
+        Gazebo.
+        """
         plugins = self.robot_root.iter("plugin") if self.robot_root is not None else ()
         is_simulated = any("ros2_control" in element.get("filename", "") for element in plugins)
         return is_simulated or any(node.executable == "ros2_control_node" for _, node in self.nodes)
@@ -160,7 +202,9 @@ class Workspace:
     def _positions(self) -> Mapping[Element, int]:
         """The position of each element of the robot in document order."""
         root = self.robot_root
-        return {element: tag for tag, element in enumerate(root.iter("*"))} if root is not None else {}
+        return (
+            {element: tag for tag, element in enumerate(root.iter("*"))} if root is not None else {}
+        )
 
     @cached_property
     def command_interfaces(self) -> Mapping[str, tuple[frozenset[str], Location]] | None:
@@ -176,21 +220,35 @@ class Workspace:
 
     @property
     def has_all_interfaces(self) -> bool:
-        """Return whether `command_interfaces` are those of every robot, also under other arguments of xacro."""
+        """Return whether `command_interfaces` are those of every robot, also under other
+        arguments of xacro.
+        """
         text = "".join(it.text for it in self.xacro_sources)
         called = {*_CALLED.findall(text)}
         if "call" not in called:  # <xacro:call macro="..."/> may compute the name
             *macros, rest = text.split("</xacro:macro>")
             text = "".join([*(_without_macro(it, called) for it in macros), rest])
         written = len(_SYSTEM.findall(text))
-        systems = len(list(self.robot_root.iterchildren("ros2_control"))) if self.robot_root is not None else -1
+        systems = (
+            len(list(self.robot_root.iterchildren("ros2_control")))
+            if self.robot_root is not None
+            else -1
+        )
         return written <= systems and not self.has_other_robots
 
     def python_node(self, node: StartedNode) -> PythonNode | None:
-        """Return the Python node of the workspace that a program starts, if it starts one that is known."""
+        """Return the Python node of the workspace that a program starts, if it starts one that
+        is known.
+        """
         owner = self.package_of(node)
-        found = self.python_nodes[owner.name] if owner is not None and owner.name in self.python_nodes else None
-        programs = [it for it in found.programs if it.name == node.executable] if found is not None else []
+        found = (
+            self.python_nodes[owner.name]
+            if owner is not None and owner.name in self.python_nodes
+            else None
+        )
+        programs = (
+            [it for it in found.programs if it.name == node.executable] if found is not None else []
+        )
         return programs[0].nodes[0] if len(programs) == 1 and len(programs[0].nodes) == 1 else None
 
     def package_of(self, node: StartedNode) -> Package | None:
@@ -202,22 +260,38 @@ class Workspace:
         if node.node_name is None or node.node_name:
             return node.node_name
         own = self.python_node(node)
-        return own.name if own is not None else known()["node_names"].get(f"{node.package}/{node.executable}")
+        return (
+            own.name
+            if own is not None
+            else known()["node_names"].get(f"{node.package}/{node.executable}")
+        )
 
     def children_of(self, name: str) -> frozenset[str]:
-        """Return the nodes that a node of another package makes in its process, and that read its parameters."""
-        return frozenset(known()["children"].get(name, ())) | (self.typed_sections if name == MANAGER else frozenset())
+        """Return the nodes that a node of another package makes in its process, and that read
+        its parameters.
+        """
+        return frozenset(known()["children"].get(name, ())) | (
+            self.typed_sections if name == MANAGER else frozenset()
+        )
 
     @cached_property
     def controllers(self) -> frozenset[str]:
         """The names of sections in parameter files that may be those of controllers."""
-        return frozenset(keys[-1] for _, tree in self.trees for keys, _ in sections_in(tree) if keys)
+        return frozenset(
+            keys[-1] for _, tree in self.trees for keys, _ in sections_in(tree) if keys
+        )
 
     @cached_property
     def typed_sections(self) -> frozenset[str]:
         """The names of controllers and others that parameter files give a type."""
-        sections = [(keys, section) for _, tree in self.trees for keys, section in sections_in(tree)]
-        own = {keys[-1].rpartition("/")[2] for keys, section in sections if keys and section.get("type") is not None}
+        sections = [
+            (keys, section) for _, tree in self.trees for keys, section in sections_in(tree)
+        ]
+        own = {
+            keys[-1].rpartition("/")[2]
+            for keys, section in sections
+            if keys and section.get("type") is not None
+        }
         named = {
             name
             for _, section in sections
@@ -232,19 +306,25 @@ class Workspace:
         return any(path in package.installed for package in self.packages)
 
     def installed_yaml(self, path: str) -> YamlNode | None:
-        """Return the YAML file that is installed at a path, which begins with the prefix's stand-in."""
+        """Return the YAML file that is installed at a path, which begins with the prefix's
+        stand-in.
+        """
         found = self.yaml_files.get(self.source_of(path) or "")
         return found if isinstance(found, YamlNode) else None
 
     def source_of(self, path: str) -> str | None:
-        """Return the file of the submission that is installed at a path, which begins with the prefix's stand-in."""
+        """Return the file of the submission that is installed at a path, which begins with the
+        prefix's stand-in.
+        """
         inside = posixpath.normpath(path).removeprefix(f"{PREFIX}/")
         holding = [package for package in self.packages if inside in package.installed]
         return holding[0].path(holding[0].installed[inside]) if holding else None
 
     @cached_property
     def parameter_files(self) -> Mapping[str, list[StartedNode]]:
-        """The parameter files, by their paths in the submission, with the nodes that are given them."""
+        """The parameter files, by their paths in the submission, with the nodes that are given
+        them.
+        """
         found: dict[str, list[StartedNode]] = {}
         for _, node in self.nodes:
             for given in node.parameters or ():
@@ -255,7 +335,9 @@ class Workspace:
 
     @cached_property
     def parameter_owners(self) -> Mapping[str, list[NodeParameters]]:
-        """The parameters that nodes and controllers are given, by their names without namespaces."""
+        """The parameters that nodes and controllers are given, by their names without
+        namespaces.
+        """
         found: dict[str, list[NodeParameters]] = {}
         for package, launch in self.roots:
             managers = [it for it in launch.nodes if self.name_of(it) == MANAGER]
@@ -263,9 +345,13 @@ class Workspace:
             for node in launch.nodes:
                 name, own = self.name_of(node), self.python_node(node)
                 if (name is not None and node.package != MANAGER) or node in managers:
-                    given = parameters_of(node, opened, name or "", is_python=own is not None or None)
+                    given = parameters_of(
+                        node, opened, name or "", is_python=own is not None or None
+                    )
                     found.setdefault(name or "", []).append(given)
-                for controller in (controllers_of(node) or ()) if node.executable in SPAWNERS else ():
+                for controller in (
+                    (controllers_of(node) or ()) if node.executable in SPAWNERS else ()
+                ):
                     before = [it for manager in managers for it in manager.parameters or ()]
                     files = (*before, *self._simulated, *(controller.parameters or ()))
                     started = replace(controller, parameters=files)
@@ -283,9 +369,19 @@ class Workspace:
 
     @cached_property
     def controller_files(self) -> frozenset[str]:
-        """The parameter files, by their paths in the submission, that Gazebo and spawners give controllers."""
-        spawned = (it for _, node in self.nodes if node.executable in SPAWNERS for it in controllers_of(node) or ())
-        given = (*self._simulated, *(it for controller in spawned for it in controller.parameters or ()))
+        """The parameter files, by their paths in the submission, that Gazebo and spawners give
+        controllers.
+        """
+        spawned = (
+            it
+            for _, node in self.nodes
+            if node.executable in SPAWNERS
+            for it in controllers_of(node) or ()
+        )
+        given = (
+            *self._simulated,
+            *(it for controller in spawned for it in controller.parameters or ()),
+        )
         paths = (self.source_of(it.path) for it in given if it.path)
         return frozenset(path for path in paths if path is not None)
 
@@ -294,7 +390,9 @@ class Workspace:
         """Why launch files may start more nodes or controllers; empty where they do not."""
         reasons = [it.message for _, launch in self.roots for it in launch.unknown]
         reasons += [launch.unread for _, launch in self.roots if launch.unread]
-        if any(node.executable in SPAWNERS and controllers_of(node) is None for _, node in self.nodes):
+        if any(
+            node.executable in SPAWNERS and controllers_of(node) is None for _, node in self.nodes
+        ):
             reasons.append("the arguments of a spawner are not evaluated")
         return next(iter(reasons), "")
 
@@ -324,7 +422,9 @@ class Workspace:
             data = package.tree.read(path, _MAX_YAML)
             if data is not None:
                 text = data.decode("utf-8", "replace")
-                yield Source(package.path(path), _COMMENT[path.endswith(_OF_YAML)].sub(_blank, text))
+                yield Source(
+                    package.path(path), _COMMENT[path.endswith(_OF_YAML)].sub(_blank, text)
+                )
 
     @cached_property
     def robot_files(self) -> frozenset[str] | None:
@@ -337,19 +437,29 @@ class Workspace:
     @cached_property
     def xacro_sources(self) -> tuple[Source, ...]:
         """The texts of the xacro files and URDFs."""
-        return tuple(it for package in self.packages for it in self.sources_of(package, (".xacro", ".urdf")))
+        return tuple(
+            it for package in self.packages for it in self.sources_of(package, (".xacro", ".urdf"))
+        )
 
     @cached_property
     def launch_texts(self) -> tuple[str, ...]:
         """The texts of the launch files, of those of ROS 1 too."""
-        sources = [source for package in self.packages for source in self._sources(package, package.launch_files)]
-        sources += [source for package in self.packages for source in self.sources_of(package, (".launch",))]
+        sources = [
+            source
+            for package in self.packages
+            for source in self._sources(package, package.launch_files)
+        ]
+        sources += [
+            source for package in self.packages for source in self.sources_of(package, (".launch",))
+        ]
         return tuple(source.text for source in sources)
 
     @cached_property
     def python_texts(self) -> tuple[str, ...]:
         """The texts of the Python files."""
-        return tuple(it.text for package in self.packages for it in self.sources_of(package, (".py",)))
+        return tuple(
+            it.text for package in self.packages for it in self.sources_of(package, (".py",))
+        )
 
 
 @lru_cache(maxsize=2)

@@ -43,8 +43,12 @@ def values_in(node: YamlNode, keys: tuple[str, ...] = ()) -> Iterator[YamlValue]
                 yield from values_in(item, (*keys, str(number)))
 
 
-def sections_in(node: YamlNode, keys: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], YamlNode]]:
-    """Yield the parameters of each node in a parameter file: the keys of the node, and the mapping below."""
+def sections_in(
+    node: YamlNode, keys: tuple[str, ...] = ()
+) -> Iterator[tuple[tuple[str, ...], YamlNode]]:
+    """Yield the parameters of each node in a parameter file: the keys of the node, and the mapping
+    below.
+    """
     for key, inner in node.pairs if len(keys) <= _MAX_DEPTH else ():
         if key == PARAMETERS:
             yield keys, _nested(inner)
@@ -59,7 +63,11 @@ def _nested(node: YamlNode) -> YamlNode:
     tables, places = dict[str, YamlNode](), dict[str, Any]()
     for key, inner in node.value.items():
         outer, _, last = key.partition(".")
-        table = replace(inner, value={last: inner}, key_marks={last: node.key_marks[key]}) if last else inner
+        table = (
+            replace(inner, value={last: inner}, key_marks={last: node.key_marks[key]})
+            if last
+            else inner
+        )
         before = tables.get(outer)
         if before is not None and isinstance(before.value, dict) and isinstance(table.value, dict):
             marks = before.key_marks | table.key_marks

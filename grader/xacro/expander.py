@@ -45,7 +45,8 @@ class Scopes(NamedTuple):
     symbols: XacroScope
 
 
-# Expands one xacro tag: its element, the expanded element that the result goes into, and the scopes.
+# Expands one xacro tag: its element, the expanded element that the result goes into, and the
+# scopes.
 Handler = Callable[["Expander", XacroNode, XacroNode, Scopes], None]
 _KINDS: Mapping[type[EvaluationFails], Kind] = {
     MacroError: xacro_problems.XACRO_MACRO,
@@ -78,7 +79,9 @@ class Expander:
         handlers: Mapping[str, Handler],
         other: Handler,
     ) -> None:
-        """`handlers` expand xacro's own tags, and `other` every other tag that begins with xacro: a macro call."""
+        """`handlers` expand xacro's own tags, and `other` every other tag that begins with
+        xacro: a macro call.
+        """
         self.files = files
         self.budget = budget
         # `texts` is set below, so that the lambda is needed.
@@ -117,7 +120,9 @@ class Expander:
         return out
 
     def content(self, source: XacroNode, out: XacroNode, scopes: Scopes) -> None:
-        """Expand the children of an element into another. Omit what is refused or cannot be determined."""
+        """Expand the children of an element into another. Omit what is refused or cannot be
+        determined.
+        """
         out.open = out.open or source.open
         for child in source.children:
             place = child.place if isinstance(child, XacroNode) else source.place
@@ -128,7 +133,10 @@ class Expander:
                     text = self.texts.text(child, scopes.symbols)
                     self._grow(text)
                     out.children.append(text)
-            except (OutOfBudget, RecursionError) as error:  # every element around may have more content
+            except (
+                OutOfBudget,
+                RecursionError,
+            ) as error:  # every element around may have more content
                 stop = error if isinstance(error, OutOfBudget) else OutOfBudget(_TOO_DEEP)
                 self._stopped, out.open = self._stopped or place, out.open or str(stop)
                 raise stop from None
@@ -137,7 +145,9 @@ class Expander:
                 out.open = out.open or reason
 
     def insert(self, source: XacroNode, out: XacroNode, scopes: Scopes) -> None:
-        """Expand the children of an element, but not itself, such as <xacro:if>; attributes set on it are lost."""
+        """Expand the children of an element, but not itself, such as <xacro:if>; attributes set
+        on it are lost.
+        """
         inside = XacroNode(source.tag, source.place)
         try:
             self.content(source, inside, scopes)
@@ -157,21 +167,30 @@ class Expander:
         return out
 
     def set(self, out: XacroNode, name: str, value: str) -> None:
-        """Set an attribute of an expanded element. Raises OutOfBudget: each is compared with all others."""
+        """Set an attribute of an expanded element. Raises OutOfBudget: each is compared with all
+        others.
+        """
         self._grow(value, len(out.attributes) // _COMPARED + len(name) // CHARACTERS)
         out.attributes[name] = value
 
     def _grow(self, text: str, parts: int = 0) -> None:
-        """Charge a text that the expanded document contains, and other parts. Raises OutOfBudget."""
+        """Charge a text that the expanded document contains, and other parts. Raises
+        OutOfBudget.
+        """
         self.budget.charge(_OF_ATTRIBUTE + parts, len(text))
         self._length += len(text)
         if self._length > _MAX_DOCUMENT:
             raise OutOfBudget("the expanded document is larger than a URDF may be")
 
     def report(
-        self, error: EvaluationFails | Undetermined | OutOfBudget, place: ScopePlace, attribute: str | None = None
+        self,
+        error: EvaluationFails | Undetermined | OutOfBudget,
+        place: ScopePlace,
+        attribute: str | None = None,
     ) -> str:
-        """List a problem, or what cannot be determined; return why it cannot, nothing for what xacro refuses."""
+        """List a problem, or what cannot be determined; return why it cannot, nothing for what
+        xacro refuses.
+        """
         message = str(error)
         if isinstance(error, Reported) or not self._is_new(message, place, attribute):
             return "" if isinstance(error, EvaluationFails) else message
@@ -190,25 +209,38 @@ class Expander:
         self.problems.append(Problem(kind, f"{message}{joint}{STOPS}", location))
         return ""
 
-    def warn(self, kind: Kind, message: str, place: ScopePlace, attribute: str | None = None) -> None:
+    def warn(
+        self, kind: Kind, message: str, place: ScopePlace, attribute: str | None = None
+    ) -> None:
         """List something that xacro expands, and warns of."""
         if self._is_new(message, place, attribute):
             self.warnings.append(Problem(kind, message, self._place(place).at(attribute)))
 
     def _warn_of_names(self) -> None:
-        """List the functions that wrote to stderr, the names of xacro that got other values, and each use of ^."""
+        """List the functions that wrote to stderr, the names of xacro that got other values, and
+        each use of ^.
+        """
         for name, place, attribute in self.texts.redefined.values():
-            message = f"{quoted(name)} is a built-in name of xacro, which warns if it is redefined: choose another name"
+            message = (
+                f"{quoted(name)} is a built-in name of xacro, which warns if it is redefined: "
+                "choose another name"
+            )
             self.warn(xacro_problems.XACRO_REDEFINED, message, place, attribute)
         for name, expression in self.texts.noted:
             at = self._where(expression)
             if name == "^":
-                kind, message = xacro_problems.XACRO_CARET, "^ is exclusive or in Python; power is **"
+                kind, message = (
+                    xacro_problems.XACRO_CARET,
+                    "^ is exclusive or in Python; power is **",
+                )
             elif name.startswith("xacro."):
                 kind, message = xacro_problems.XACRO_MESSAGE, f"{name}() writes a message to stderr"
             else:
                 full = f"{'python' if name in ('sorted', 'range') else 'xacro'}.{name}"
-                kind, message = xacro_problems.XACRO_DEPRECATED, f"xacro warns of {name}(): write {full}()"
+                kind, message = (
+                    xacro_problems.XACRO_DEPRECATED,
+                    f"xacro warns of {name}(): write {full}()",
+                )
             self.warn(kind, message, *at)
 
     def _where(self, expression: str) -> tuple[ScopePlace, str | None]:
@@ -222,14 +254,20 @@ class Expander:
         return next(iter(self.files.documents.values())).place, None
 
     def _is_new(self, message: str, place: ScopePlace, attribute: str | None) -> bool:
-        """Return whether something is to be listed: once for each place in the source, for all calls of a macro."""
+        """Return whether something is to be listed: once for each place in the source, for all
+        calls of a macro.
+        """
         known = len(self._listed)
         if known < _MAX_LISTED:
             self._listed.add((message, place.source.path, place.tag, attribute))
         return len(self._listed) > known
 
     def _place(self, place: ScopePlace, scope: XacroScope | None = None) -> ScopePlace:
-        return place if place.calls is not None else ScopePlace(place.source, place.tag, self.calls, scope)
+        return (
+            place
+            if place.calls is not None
+            else ScopePlace(place.source, place.tag, self.calls, scope)
+        )
 
     def _element(self, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
         self.budget.charge(_OF_ELEMENT, len(node.tag))

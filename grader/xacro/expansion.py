@@ -1,7 +1,8 @@
-"""A xacro file, expanded statically, as the document that ROS 2 reads; every element keeps its place in the source.
+"""A xacro file, expanded statically, as the document that ROS 2 reads; every element keeps its
+place in the source.
 
-xacro (ros/xacro 2.1) stops at the first thing that it refuses. Here it becomes a problem, and the rest is expanded all
-the same, so that one defect does not hide another.
+xacro (ros/xacro 2.1) stops at the first thing that it refuses. Here it becomes a problem, and the
+rest is expanded all the same, so that one defect does not hide another.
 """
 
 import re
@@ -23,7 +24,14 @@ from grader.xacro.files import Files, Workspace
 from grader.xacro.tags import CALL, HANDLERS
 from grader.xacro.texts import OtherArguments, Texts
 from grader.xacro.xacro_nodes import XacroNode, read_nodes, recovered_nodes
-from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError, error_location, make_element
+from grader.xml.parsing import (
+    Element,
+    Unresolved,
+    XmlDocument,
+    XMLSyntaxError,
+    error_location,
+    make_element,
+)
 from grader.xml.xml_problems import MISPLACED_DECLARATION, RECOVERED
 
 _READING_OF_SHORT = 1_500  # parts
@@ -35,30 +43,44 @@ class ExpandedSource(Source):
     is_expanded = True
 
     def __init__(
-        self, source: Source, nodes: list[XacroNode], expander: Expander, work: int, corrected: Edits = ()
+        self,
+        source: Source,
+        nodes: list[XacroNode],
+        expander: Expander,
+        work: int,
+        corrected: Edits = (),
     ) -> None:
         super().__init__(source.path, source.text)
-        self.corrected = corrected  # the edits without which xacro refuses what it was expanded from
+        # the edits without which xacro refuses what it was expanded from
+        self.corrected = corrected
         self.nodes: Sequence[XacroNode] = nodes
         self._expander, self._work = expander, work
 
     def tag(self, index: int, attribute: str | None = None) -> Location:
-        """Return the location in the source of an expanded element, or of an attribute if it has it."""
+        """Return the location in the source of an expanded element, or of an attribute if it has
+        it.
+        """
         return self.nodes[index].place.at(attribute)
 
     def next_tag(self, index: int, name: str) -> int:
-        """Return the index of the first expanded element of this name after another one; that one if there is none."""
+        """Return the index of the first expanded element of this name after another one; that
+        one if there is none.
+        """
         others = range(index + 1, len(self.nodes))
         return next((other for other in others if self.nodes[other].tag == name), index)
 
     @property
     def documents(self) -> Mapping[str, XacroNode]:
-        """The files that it was expanded from, as they are written, by their paths: this one first."""
+        """The files that it was expanded from, as they are written, by their paths: this one
+        first.
+        """
         return self._expander.files.documents
 
     @property
     def includes(self) -> Mapping[tuple[str, int], list[str]]:
-        """The files that were included, by the path of the file and the index of the tag that include them."""
+        """The files that were included, by the path of the file and the index of the tag that
+        include them.
+        """
         return self._expander.files.followed
 
     @property
@@ -92,21 +114,26 @@ class ExpandedSource(Source):
         return super().cost + self._work // _READING_OF_SHORT
 
     def element(self, tag: int) -> tuple[Source, int]:
-        """Return the text, perhaps of an included file, with an expanded element, and the offset of its start tag."""
+        """Return the text, perhaps of an included file, with an expanded element, and the offset
+        of its start tag.
+        """
         place = self.nodes[tag].place
         return place.source.element(place.tag)
 
 
-_INSTRUCTION = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?(?!xml\s)(?P<target>[\w:.-]+)", re.DOTALL)
+_INSTRUCTION = re.compile(
+    r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?(?!xml\s)(?P<target>[\w:.-]+)", re.DOTALL
+)
 _MAX_ASSUMED = 20
 
 
 class _Expansion(NamedTuple):
     """An expanded file.
 
-    If it cannot be expanded at all, `root` is None, and `recovered` is what can be read despite broken tags. `is_meant`
-    says whether xacro refuses nothing else. If what it refuses can surely be corrected, `meant` is the expansion of the
-    corrected files, and `assumed` lists what was corrected.
+    If it cannot be expanded at all, `root` is None, and `recovered` is what can be read despite
+    broken tags. `is_meant` says whether xacro refuses nothing else. If what it refuses can surely
+    be corrected, `meant` is the expansion of the corrected files, and `assumed` lists what was
+    corrected.
     """
 
     root: Element | None
@@ -122,9 +149,12 @@ class _Expansion(NamedTuple):
 
     @property
     def document(self) -> XmlDocument:
-        """The expanded file as the reader of robots takes it; what cannot be determined is a problem in it."""
+        """The expanded file as the reader of robots takes it; what cannot be determined is a
+        problem in it.
+        """
         undetermined = [
-            Problem(xacro_problems.XACRO_UNDETERMINED, found.reason, found.location) for found in self.undetermined
+            Problem(xacro_problems.XACRO_UNDETERMINED, found.reason, found.location)
+            for found in self.undetermined
         ]
         problems = [*self.problems, *undetermined, *self.warnings]
         found = XmlDocument(self.root, self.source, problems, 0, self.unresolved, is_expanded=True)
@@ -139,10 +169,11 @@ def expand(
     others: OtherArguments = "default",
     edits: Edits = (),
 ) -> _Expansion:
-    """Return a xacro file as xacro expands it with these arguments; never raises. `path` is that in the submission.
+    """Return a xacro file as xacro expands it with these arguments; never raises. `path` is that in
+    the submission.
 
-    `others` says what is known of other arguments. With `edits`, which surely are meant, `meant` is the expansion of
-    the files after these, too.
+    `others` says what is known of other arguments. With `edits`, which surely are meant, `meant` is
+    the expansion of the files after these, too.
     """
     read = partial(_expand, data, path, workspace, arguments, others)
     expansion, expander = read({})
@@ -151,10 +182,14 @@ def expand(
     corrected, assumed = dict.fromkeys(edits), dict[str, Problem]()
     if edits:
         sentence, first = sentence_of(edits), edits[0]
-        assumed[sentence] = Problem(RECOVERED, sentence, Location(first.path, first.line, first.column))
+        assumed[sentence] = Problem(
+            RECOVERED, sentence, Location(first.path, first.line, first.column)
+        )
         meant, expander = read(_by_path(corrected))
     while expander is not None and expander.corrections and len(assumed) < _MAX_ASSUMED:
-        of_elements = [found for found in expander.corrections if found.is_of_element]  # first: they may define names
+        of_elements = [
+            found for found in expander.corrections if found.is_of_element
+        ]  # first: they may define names
         new = of_elements or expander.corrections
         if all(corrected.keys() >= set(found.edits) for found in new):
             break
@@ -221,7 +256,9 @@ def _expand(
 def _read(
     data: bytes, text: Source, budget: Budget, edits: Edits
 ) -> tuple[XacroNode | None, tuple[Problem, ...], bool]:
-    """Return the elements of a file, what xacro refuses in it, and whether they are only what broken tags leave."""
+    """Return the elements of a file, what xacro refuses in it, and whether they are only what
+    broken tags leave.
+    """
     path = text.path
     try:
         return read_nodes(data, path, budget, edits=edits), (), False
@@ -238,16 +275,24 @@ def _read(
 
 
 def _instructions(text: Source) -> Iterator[Problem]:
-    """Yield the first processing instruction: xacro keeps it, after its own comment, where TinyXML2 refuses it."""
-    instruction = next((found for found in _INSTRUCTION.finditer(text.text) if found["target"]), None)
+    """Yield the first processing instruction: xacro keeps it, after its own comment, where
+    TinyXML2 refuses it.
+    """
+    instruction = next(
+        (found for found in _INSTRUCTION.finditer(text.text) if found["target"]), None
+    )
     if instruction is not None:
         what = f"<?{instruction['target'][:40]}?>"
         message = f"{what} comes after the comment that xacro adds, which ROS 2 rejects: remove it"
         yield Problem(MISPLACED_DECLARATION, message, text.at(instruction.start()))
 
 
-def _element(root: XacroNode, nodes: list[XacroNode], unresolved: dict[Element, Unresolved]) -> Element:
-    """Return the elements of lxml for expanded ones; `nodes` becomes the latter in document order."""
+def _element(
+    root: XacroNode, nodes: list[XacroNode], unresolved: dict[Element, Unresolved]
+) -> Element:
+    """Return the elements of lxml for expanded ones; `nodes` becomes the latter in document
+    order.
+    """
     made = make_element(_name(root.tag), _attributes(root.attributes))
     pending: list[tuple[XacroNode, Element]] = [(root, made)]
     while pending:
@@ -259,7 +304,10 @@ def _element(root: XacroNode, nodes: list[XacroNode], unresolved: dict[Element, 
         for kind, found in groupby(node.children, type):
             if kind is XacroNode:
                 inside = [child for child in found if isinstance(child, XacroNode)]
-                children += [(it, make_element(_name(it.tag), _attributes(it.attributes), element)) for it in inside]
+                children += [
+                    (it, make_element(_name(it.tag), _attributes(it.attributes), element))
+                    for it in inside
+                ]
             elif children:
                 children[-1][1].tail = "".join(map(str, found))
             else:
@@ -269,7 +317,9 @@ def _element(root: XacroNode, nodes: list[XacroNode], unresolved: dict[Element, 
 
 
 def _name(tag: str) -> str:
-    """Return a name for lxml: a prefix stands for its namespace, because no element with one belongs to a URDF."""
+    """Return a name for lxml: a prefix stands for its namespace, because no element with one
+    belongs to a URDF.
+    """
     if ":" not in tag:
         return tag
     prefix, _, local = tag.partition(":")
@@ -277,4 +327,8 @@ def _name(tag: str) -> str:
 
 
 def _attributes(attributes: dict[str, str]) -> dict[str, str]:
-    return attributes if ":" not in "".join(attributes) else {_name(name): it for name, it in attributes.items()}
+    return (
+        attributes
+        if ":" not in "".join(attributes)
+        else {_name(name): it for name, it in attributes.items()}
+    )

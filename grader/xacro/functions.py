@@ -1,4 +1,6 @@
-"""The names that every xacro expression knows: Python's functions, math, and the namespaces python, math and xacro."""
+"""The names that every xacro expression knows: Python's functions, math, and the namespaces python,
+math and xacro.
+"""
 
 import re
 from collections.abc import Callable, Iterator, Mapping
@@ -27,9 +29,13 @@ _PLAIN_SEPARATORS = re.compile(r"[^\]\[\\^-]+")
 _OF_EVENT = 10  # what a part of the file is charged
 _MAX_NUMBER = 100  # characters
 _UNITS = {
-    "!radians": 1.0, "!degrees": 3.141592653589793 / 180.0, "!meters": 1.0, "!millimeters": 0.001, "!foot": 0.3048,
+    "!radians": 1.0,
+    "!degrees": 3.141592653589793 / 180.0,
+    "!meters": 1.0,
+    "!millimeters": 0.001,
+    "!foot": 0.3048,
     "!inches": 0.0254,
-}  # fmt: skip
+}
 _WORDS = {"true": True, "yes": True, "on": True, "false": False, "no": False, "off": False}
 _INTEGER = re.compile(r"[-+]?(?:0|[1-9][0-9]*|0x[0-9a-fA-F]+)")
 _SPECIAL = {".nan": "nan", ".inf": "inf", "+.inf": "inf", "-.inf": "-inf"}
@@ -59,17 +65,27 @@ def _dot(value: Value) -> Value:
 
 
 def document_functions(
-    load_yaml: Callable[[Value], Value], argument: Callable[[str], str], note: Callable[[str], object]
+    load_yaml: Callable[[Value], Value],
+    argument: Callable[[str], str],
+    note: Callable[[str], object],
 ) -> dict[str, Value]:
-    """Return the functions that need the document: those of the namespace xacro, and the old ones outside of it.
+    """Return the functions that need the document: those of the namespace xacro, and the old ones
+    outside of it.
 
     `note` is called with the full name of each function that writes to stderr when it is called.
     """
-    own = {**_XACRO, "load_yaml": PlainFunction("load_yaml", load_yaml), "arg": PlainFunction("arg", argument)}
+    own = {
+        **_XACRO,
+        "load_yaml": PlainFunction("load_yaml", load_yaml),
+        "arg": PlainFunction("arg", argument),
+    }
     old = {name: own[name] for name in ("load_yaml", "abs_filename", "dotify")}
     old |= {name: BUILTINS[name] for name in ("sorted", "range")}
     own |= {name: _noted(f"xacro.{name}", own[name], note) for name in _MESSAGES}
-    return {"xacro": namespace("xacro", own), **{name: _noted(name, it, note) for name, it in old.items()}}
+    return {
+        "xacro": namespace("xacro", own),
+        **{name: _noted(name, it, note) for name, it in old.items()},
+    }
 
 
 def _noted(name: str, function: PlainFunction, note: Callable[[str], object]) -> PlainFunction:
@@ -108,13 +124,16 @@ _XACRO: dict[str, PlainFunction] = {
 GLOBALS: Mapping[str, Value] = {
     **MATH,
     **{name: BUILTINS[name] for name in _OLD_BUILTINS},
-    "python": namespace("python", {name: it for name, it in BUILTINS.items() if name not in _NOT_IN_XACRO}),
+    "python": namespace(
+        "python", {name: it for name, it in BUILTINS.items() if name not in _NOT_IN_XACRO}
+    ),
     "math": namespace("math", MATH),
 }
 
 
 def read_yaml_values(data: bytes, find: Callable[[str], Value], budget: Budget) -> Value:
-    """Return the value of a YAML text. `find` returns the value of a name in an expression with a unit: !radians pi/2.
+    """Return the value of a YAML text. `find` returns the value of a name in an expression with a
+    unit: !radians pi/2.
 
     Raises EvaluationFails for what is not YAML, Undetermined for what is too large or rarely used.
     """
@@ -125,7 +144,9 @@ def read_yaml_values(data: bytes, find: Callable[[str], Value], budget: Budget) 
     except UnicodeDecodeError:
         raise EvaluationFails("the YAML file is not UTF-8 text") from None
     except (yaml.YAMLError, ValueError) as error:
-        raise EvaluationFails(f"the file is not YAML: {' '.join(str(error).split())[:200]}") from None
+        raise EvaluationFails(
+            f"the file is not YAML: {' '.join(str(error).split())[:200]}"
+        ) from None
     except RecursionError:
         raise Undetermined("the YAML file is nested too deeply") from None
     if len(values) > 1:
@@ -152,9 +173,12 @@ class _Values:
             if event.anchor not in self._anchors:
                 raise Undetermined(f"the alias {event.anchor} has no value, or contains itself")
             return self._budget.checked(self._anchors[event.anchor])
-        if event.anchor in self._anchors or (event.tag in _UNITS and not isinstance(event, yaml.ScalarEvent)):
+        if event.anchor in self._anchors or (
+            event.tag in _UNITS and not isinstance(event, yaml.ScalarEvent)
+        ):
             raise EvaluationFails(
-                f"the file is not YAML: {event.anchor or event.tag} is used twice, or not of a number"
+                f"the file is not YAML: {event.anchor or event.tag} is used twice, or not "
+                "of a number"
             )
         if event.tag not in (None, "!", *_UNITS):
             raise Undetermined(f"the YAML tag {event.tag} is not supported")
@@ -172,7 +196,9 @@ class _Values:
         text = event.value
         if event.tag in _UNITS:
             return call_plain(float, evaluate(text, self._find, self._budget)) * _UNITS[event.tag]
-        match _RESOLVER.resolve(yaml.ScalarNode, text[:_MAX_NUMBER], event.implicit).rpartition(":")[2]:
+        match _RESOLVER.resolve(yaml.ScalarNode, text[:_MAX_NUMBER], event.implicit).rpartition(
+            ":"
+        )[2]:
             case "str":
                 return text
             case "null":

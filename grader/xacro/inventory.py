@@ -1,4 +1,6 @@
-"""The properties and macros that xacro files define, and the names that they use, as they are written."""
+"""The properties and macros that xacro files define, and the names that they use, as they are
+written.
+"""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -19,7 +21,9 @@ Definitions = dict[str, list[ScopePlace]]
 
 @dataclass(frozen=True, slots=True)
 class Inventory:
-    """The definitions in files, each with its places, and what is used; `dynamic` are tags with evaluated names."""
+    """The definitions in files, each with its places, and what is used; `dynamic` are tags with
+    evaluated names.
+    """
 
     properties: Definitions = field(default_factory=dict)
     macros: Definitions = field(default_factory=dict)
@@ -37,14 +41,24 @@ class Inventory:
 
 
 def take_inventory(documents: Iterable[XacroNode], budget: Budget) -> Inventory:
-    """Return what files define and use; a macro's parameter is no use of a property of its name. Raises OutOfBudget."""
+    """Return what files define and use; a macro's parameter is no use of a property of its name.
+    Raises OutOfBudget.
+    """
     found, roots = Inventory(), [*documents]
-    namespaces = {node.attributes.get("ns") for root in roots for node in walk(root) if node.tag == "xacro:include"}
+    namespaces = {
+        node.attributes.get("ns")
+        for root in roots
+        for node in walk(root)
+        if node.tag == "xacro:include"
+    }
     waiting = [(root, frozenset[str]()) for root in reversed(roots)]
     while waiting:
         node, hidden = waiting.pop()
         own = _note_tag(node, found)
-        texts = [*node.attributes.values(), *(child for child in node.children if isinstance(child, str))]
+        texts = [
+            *node.attributes.values(),
+            *(child for child in node.children if isinstance(child, str)),
+        ]
         dotted = {name.partition(".") for text in texts for name in _names_in(text)}
         names = {other if first in namespaces else first for first, _, other in dotted}
         found.used.update(names - hidden - {own})
@@ -55,7 +69,9 @@ def take_inventory(documents: Iterable[XacroNode], budget: Budget) -> Inventory:
 
 
 def _note_tag(node: XacroNode, found: Inventory) -> str:
-    """Note what a tag of xacro defines or calls; return the name of a property, whose own text is no use of it."""
+    """Note what a tag of xacro defines or calls; return the name of a property, whose own text is
+    no use of it.
+    """
     name = node.attributes.get("name", "")
     match node.tag:
         case "xacro:property":
@@ -79,7 +95,9 @@ def _note_tag(node: XacroNode, found: Inventory) -> str:
 
 
 def _parameters(node: XacroNode, found: Inventory, budget: Budget) -> frozenset[str]:
-    """Return the names of a macro's parameters; forwarding one uses the caller's property. Raises OutOfBudget."""
+    """Return the names of a macro's parameters; forwarding one uses the caller's property. Raises
+    OutOfBudget.
+    """
     try:
         parameters = read_parameters(node.attributes.get("params", ""), budget)
     except (EvaluationFails, Undetermined):

@@ -10,12 +10,12 @@ from grader.xacro.scopes import Definition, UnknownName, XacroFails, XacroScope
 from grader.xacro.texts import Texts
 from grader.xacro.xacro_nodes import XacroNode
 
-# A parameter with a default, by xacro's `re_macro_arg`. Possessive, to be linear: xacro also tries a later quote as the
-# end of one, and `read_parameters` refuses the texts where that matters.
+# A parameter with a default, by xacro's `re_macro_arg`. Possessive, to be linear: xacro also tries
+# a later quote as the end of one, and `read_parameters` refuses the texts where that matters.
 _WITH_DEFAULT = re.compile(
     r"""
     \s*([^\s:=]+?)\s*:?=\s*                       # side:=, side=
-    (\^\|?)?                                      # ^, or ^| before a default: the caller's value comes first
+    (\^\|?)?                           # ^, or ^| before a default: the caller's value comes first
     (
         \$\{.*?\} | \$\(.*?\)                     # ${2*pi}, $(arg side)
       | (?:'[^'\n]*'|\"[^\"\n]*\"|[^\s'\"]++)++   # 0.1, 'left wheel'
@@ -33,7 +33,9 @@ class MacroError(XacroFails):
 
 
 class _MacroParameter(NamedTuple):
-    """A parameter: `default` is its text, `is_forwarded` whether the caller's property of this name comes before it."""
+    """A parameter: `default` is its text, `is_forwarded` whether the caller's property of this name
+    comes before it.
+    """
 
     name: str
     default: str | None = None
@@ -84,7 +86,10 @@ def bind_values(
     for name, text in call.attributes.items():
         if name not in first:
             known = dict.fromkeys(first, (macro.body.place, "params"))
-            message = f"the macro {macro.name} has no parameter {name}; it has: {', '.join(known) or 'none'}"
+            message = (
+                f"the macro {macro.name} has no parameter {name}; it has: "
+                f"{', '.join(known) or 'none'}"
+            )
             meant = near(name, known.keys() - call.attributes.keys())
             raise MacroError(message, UnknownName(name, known, "parameter", meant))
         del left[first[name]]
@@ -93,7 +98,9 @@ def bind_values(
     return list(left.values())
 
 
-def bind_blocks(macro: Macro, blocks: list[XacroNode], left: list[_MacroParameter], inner: XacroScope) -> None:
+def bind_blocks(
+    macro: Macro, blocks: list[XacroNode], left: list[_MacroParameter], inner: XacroScope
+) -> None:
     """Bind the parameters that are elements to the children of a call."""
     waiting = list(blocks)
     for parameter in left:
@@ -119,7 +126,9 @@ def bind_defaults(
             continue
         if parameter.is_forwarded and texts.is_bound(parameter.name, caller):
             holder = caller.holder(parameter.name)
-            definition = holder.properties[parameter.name].definition if holder is not None else None
+            definition = (
+                holder.properties[parameter.name].definition if holder is not None else None
+            )
             texts.check_name(parameter.name, macro.body.place, "params")
             inner.bind(parameter.name, texts.find(parameter.name, caller), definition=definition)
         elif parameter.default is not None:
@@ -129,5 +138,6 @@ def bind_defaults(
             missing.append(parameter.name)
     if missing:
         raise MacroError(
-            f"this call of the macro {macro.name} gives no value for {', '.join(missing)}", lacking=tuple(missing)
+            f"this call of the macro {macro.name} gives no value for {', '.join(missing)}",
+            lacking=tuple(missing),
         )

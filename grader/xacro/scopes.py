@@ -1,4 +1,6 @@
-"""The names that xacro binds: properties, evaluated when they are first used, and macros, in nested scopes."""
+"""The names that xacro binds: properties, evaluated when they are first used, and macros, in
+nested scopes.
+"""
 
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
@@ -7,7 +9,8 @@ from grader.names import MAX_LENGTH
 from grader.python.values import EvaluationFails, Namespace, Undetermined, Value
 from grader.source import Location, Source
 
-# What a scope needs to evaluate a text in it, and to report that xacro refuses one, or that it cannot be determined.
+# What a scope needs to evaluate a text in it, and to report that xacro refuses one, or that it
+# cannot be determined.
 _Evaluate = Callable[[str, "XacroScope"], Value]
 ReportFailure = Callable[[EvaluationFails | Undetermined, "ScopePlace", str], object]
 
@@ -17,7 +20,9 @@ BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
 
 
 class ScopePlace(NamedTuple):
-    """A start tag in a source file; once expanded, with its macro calls, outermost first, and the scope."""
+    """A start tag in a source file; once expanded, with its macro calls, outermost first, and
+    the scope.
+    """
 
     source: Source
     tag: int
@@ -29,7 +34,9 @@ class ScopePlace(NamedTuple):
         location = self.source.tag(self.tag, attribute)
         if not self.calls:
             return location
-        return location._replace(calls=tuple((macro, place.at()) for macro, place in self.calls[:_MAX_CALLS]))
+        return location._replace(
+            calls=tuple((macro, place.at()) for macro, place in self.calls[:_MAX_CALLS])
+        )
 
 
 # Where a definition whose text is in an attribute has its name; a macro call has it in no value.
@@ -38,7 +45,9 @@ Key = tuple[str, int, str, str]
 
 
 class Definition(NamedTuple):
-    """Where a name got its value: the text in an attribute, and the scope in which it is evaluated."""
+    """Where a name got its value: the text in an attribute, and the scope in which it is
+    evaluated.
+    """
 
     name: str
     text: str
@@ -57,10 +66,11 @@ Known = Mapping[str, tuple[ScopePlace, str] | None]
 
 
 class UnknownName(NamedTuple):
-    """A name that is not defined, and those that are; `meant` is the one that it surely stands for, if there is one.
+    """A name that is not defined, and those that are; `meant` is the one that it surely stands for,
+    if there is one.
 
-    `kind` is property where the name is in an expression, else what it names: a macro, block, parameter, attribute or
-    file.
+    `kind` is property where the name is in an expression, else what it names: a macro, block,
+    parameter, attribute or file.
     """
 
     name: str
@@ -70,9 +80,13 @@ class UnknownName(NamedTuple):
 
 
 class XacroFails(EvaluationFails):
-    """Something that xacro refuses, perhaps for a name that it does not know, or values that a call lacks."""
+    """Something that xacro refuses, perhaps for a name that it does not know, or values that a call
+    lacks.
+    """
 
-    def __init__(self, message: str, unknown: UnknownName | None = None, lacking: tuple[str, ...] = ()) -> None:
+    def __init__(
+        self, message: str, unknown: UnknownName | None = None, lacking: tuple[str, ...] = ()
+    ) -> None:
         super().__init__(message)
         self.unknown, self.lacking = unknown, lacking
 
@@ -82,7 +96,9 @@ class Reported(EvaluationFails):
 
 
 class _Property:
-    """A value, or the text whose value is determined at the first use; `failure` is why it has none."""
+    """A value, or the text whose value is determined at the first use; `failure` is why it has
+    none.
+    """
 
     __slots__ = ("definition", "failure", "is_lazy", "is_open", "value")
 
@@ -115,7 +131,9 @@ class XacroScope:
 
     @property
     def caller(self) -> "XacroScope | None":
-        """The scope that the scope parent means: around a macro, the namespace that it is defined in does not count."""
+        """The scope that the scope parent means: around a macro, the namespace that it is defined
+        in does not count.
+        """
         scope = self.parent
         while not self.is_namespace and scope is not None and scope.is_namespace:
             scope = scope.parent
@@ -142,20 +160,39 @@ class XacroScope:
         return scope
 
     def definitions(self) -> dict[str, tuple[ScopePlace, str] | None]:
-        """Return the names that are known here, each with the tag and attribute that define it where there is one."""
+        """Return the names that are known here, each with the tag and attribute that define it
+        where there is one.
+        """
         found = self.parent.definitions() if self.parent is not None else {}
-        for name, definition in ((name, bound.definition) for name, bound in self.properties.items()):
+        for name, definition in (
+            (name, bound.definition) for name, bound in self.properties.items()
+        ):
             if _is_compared(name):
                 attribute = _NAMED_IN.get(definition.attribute) if definition is not None else None
-                found[name] = (definition.place, attribute) if definition is not None and attribute else None
+                found[name] = (
+                    (definition.place, attribute) if definition is not None and attribute else None
+                )
         return found
 
     def blocks(self) -> dict[str, tuple[ScopePlace, str] | None]:
         """Return the names of the blocks of this macro, with its own tag."""
-        bound = {name.lstrip("*"): it.definition for name, it in self.properties.items() if name.startswith("*")}
-        return {name: (it.place, it.attribute) if it is not None else None for name, it in bound.items()}
+        bound = {
+            name.lstrip("*"): it.definition
+            for name, it in self.properties.items()
+            if name.startswith("*")
+        }
+        return {
+            name: (it.place, it.attribute) if it is not None else None for name, it in bound.items()
+        }
 
-    def bind(self, name: str, value: Value, *, is_lazy: bool = False, definition: Definition | None = None) -> None:
+    def bind(
+        self,
+        name: str,
+        value: Value,
+        *,
+        is_lazy: bool = False,
+        definition: Definition | None = None,
+    ) -> None:
         """Give a name a value, or a text that is evaluated lazily."""
         self.properties[name] = _Property(value, is_lazy=is_lazy, definition=definition)
 
@@ -197,7 +234,9 @@ def _is_compared(name: str) -> bool:
 
 
 def _literal(value: Value) -> Value:
-    """Return the number or boolean that a text is for xacro, else the text, without single quotes around it."""
+    """Return the number or boolean that a text is for xacro, else the text, without single quotes
+    around it.
+    """
     if not isinstance(value, str):
         return value
     if len(value) >= 2 and value[0] == "'" == value[-1]:

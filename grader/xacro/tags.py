@@ -17,7 +17,14 @@ from grader.xacro.macros import (
     bind_values,
     read_parameters,
 )
-from grader.xacro.scopes import BOOLEANS, Definition, IncludedNames, Reported, UnknownName, XacroScope
+from grader.xacro.scopes import (
+    BOOLEANS,
+    Definition,
+    IncludedNames,
+    Reported,
+    UnknownName,
+    XacroScope,
+)
 from grader.xacro.xacro_nodes import XacroNode, walk
 
 _MAX_CALLS = 100  # macros that call each other
@@ -27,14 +34,18 @@ def _needed(node: XacroNode, name: str) -> str:
     """Return an attribute that xacro requires."""
     if name not in node.attributes:
         given = [other for other in node.attributes if near(other, [name])]
-        unknown = UnknownName(given[0], {name: None}, "attribute", name) if len(given) == 1 else None
+        unknown = (
+            UnknownName(given[0], {name: None}, "attribute", name) if len(given) == 1 else None
+        )
         raise TagFails(f"<{node.tag}> has no attribute {name}", unknown)
     return node.attributes[name]
 
 
 def _renamed(node: XacroNode, tag: str, without: str) -> XacroNode:
     """Return an element with another tag and without an attribute."""
-    other = XacroNode(tag, node.place, {name: text for name, text in node.attributes.items() if name != without})
+    other = XacroNode(
+        tag, node.place, {name: text for name, text in node.attributes.items() if name != without}
+    )
     other.children, other.unresolved = node.children, node.unresolved
     return other
 
@@ -49,7 +60,9 @@ def _define_macro(expander: Expander, node: XacroNode, _: XacroNode, scopes: Sco
         message = f"the macro is called {name}: write its name without xacro:"
         expander.warn(xacro_problems.XACRO_PREFIXED, message, node.place, "name")
     macro = Macro(name, node, read_parameters(node.attributes.get("params", ""), expander.budget))
-    scopes.macros.bind(name, macro, definition=Definition(name, "", node.place, "name", scopes.symbols))
+    scopes.macros.bind(
+        name, macro, definition=Definition(name, "", node.place, "name", scopes.symbols)
+    )
 
 
 def _call_macro(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
@@ -64,7 +77,9 @@ def _call_dynamically(expander: Expander, node: XacroNode, out: XacroNode, scope
     _call_by_name(expander, name, call, out, scopes)
 
 
-def _call_by_name(expander: Expander, name: str, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
+def _call_by_name(
+    expander: Expander, name: str, node: XacroNode, out: XacroNode, scopes: Scopes
+) -> None:
     macro, around = _find_macro(name, scopes)
     if macro is None:
         if expander.texts.names_open is not None:
@@ -92,7 +107,9 @@ def _call_by_name(expander: Expander, name: str, node: XacroNode, out: XacroNode
 
 
 def _find_macro(name: str, scopes: Scopes) -> tuple[Macro | None, Scopes]:
-    """Return the macro of a name, perhaps in namespaces (arms.left), and the scopes that its body is evaluated in."""
+    """Return the macro of a name, perhaps in namespaces (arms.left), and the scopes that its body
+    is evaluated in.
+    """
     macro = scopes.macros.bound(name)
     if macro is None:
         *namespaces, name = name.split(".")
@@ -140,7 +157,9 @@ def _boolean(value: Value, text: str) -> bool:
     try:
         return BOOLEANS[value] if value in BOOLEANS else bool(int(value))
     except ValueError:
-        raise TagFails(f'the condition "{text}" gives "{value}", which is neither true nor false') from None
+        raise TagFails(
+            f'the condition "{text}" gives "{value}", which is neither true nor false'
+        ) from None
 
 
 def _flag(node: XacroNode, name: str, default: str, expander: Expander, scopes: Scopes) -> bool:
@@ -169,11 +188,16 @@ def _property(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes)
     value: Value = text
     if text is None:
         name, value = f"**{name}", node
-    is_lazy = _flag(node, "lazy_eval", "true", expander, scopes) and given.get("scope") not in ("global", "parent")
+    is_lazy = _flag(node, "lazy_eval", "true", expander, scopes) and given.get("scope") not in (
+        "global",
+        "parent",
+    )
     target = _target(given.get("scope"), name, symbols)
     texts.check_name(name, node.place)
     if is_lazy or text is None:
-        definition = Definition(name, text, node.place, attribute, target) if text is not None else None
+        definition = (
+            Definition(name, text, node.place, attribute, target) if text is not None else None
+        )
         target.bind(name, value, is_lazy=True, definition=definition)
     else:
         texts.bind(target, name, text, symbols, node.place, attribute)
@@ -209,11 +233,17 @@ def _if(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> 
         expander.insert(node, out, scopes)
 
 
-def _leave_names_open(expander: Expander, node: XacroNode, symbols: XacroScope, error: Undetermined) -> None:
+def _leave_names_open(
+    expander: Expander, node: XacroNode, symbols: XacroScope, error: Undetermined
+) -> None:
     """Note that what an element would define, if it were kept, may have any value."""
     for inner in walk(node):
         name = inner.attributes.get("name", "")
-        if inner.tag == "xacro:property" and "value" in inner.attributes and "scope" not in inner.attributes:
+        if (
+            inner.tag == "xacro:property"
+            and "value" in inner.attributes
+            and "scope" not in inner.attributes
+        ):
             symbols.bind(name, "")
             symbols.properties[name].failure = error
         elif inner.tag.startswith("xacro:") and inner.tag not in ("xacro:if", "xacro:unless"):
@@ -226,7 +256,9 @@ def _arg(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes) -> N
         expander.texts.arguments[name] = None
     if name not in expander.texts.arguments:
         expander.texts.arguments[name] = expander.texts.text(default, scopes.symbols)
-        expander.texts.defaults[name] = Definition(name, default, node.place, "default", scopes.symbols)
+        expander.texts.defaults[name] = Definition(
+            name, default, node.place, "default", scopes.symbols
+        )
 
 
 def _element(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
@@ -243,7 +275,9 @@ def _attribute(*_: object) -> None:
 
 def _check_name(name: Value, node: XacroNode, expander: Expander) -> None:
     if not isinstance(name, str) or not _NAME.fullmatch(name):
-        raise TagFails(f"<{node.tag}> needs a name that XML allows, not {expander.texts.written(name)[:60]!r}")
+        raise TagFails(
+            f"<{node.tag}> needs a name that XML allows, not {expander.texts.written(name)[:60]!r}"
+        )
 
 
 def _include(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
@@ -252,7 +286,9 @@ def _include(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes
         message = "xacro ignores the elements inside <xacro:include>"
         expander.warn(xacro_problems.XACRO_CHILDREN, message, node.place)
     if node.attributes.get("ns"):
-        inner = _namespace(expander, texts.text(node.attributes["ns"], scopes.symbols), scopes, node)
+        inner = _namespace(
+            expander, texts.text(node.attributes["ns"], scopes.symbols), scopes, node
+        )
     else:
         inner = scopes
     optional = node.attributes.get("optional")
@@ -260,7 +296,9 @@ def _include(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes
     try:
         path = expander.files.path(texts.text(_needed(node, "filename"), scopes.symbols))
         _insert_file(expander, path, out, inner)
-        expander.files.followed.setdefault((node.place.source.path, node.place.tag), []).append(path)
+        expander.files.followed.setdefault((node.place.source.path, node.place.tag), []).append(
+            path
+        )
     except FileFails as error:
         if is_optional:
             return
@@ -272,11 +310,15 @@ def _include(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes
         raise
 
 
-_OF_XACRO = frozenset(("parent", "root", "depth", "unevaluated", "recursive", "top"))  # attributes of its scopes
+_OF_XACRO = frozenset(
+    ("parent", "root", "depth", "unevaluated", "recursive", "top")
+)  # attributes of its scopes
 
 
 def _namespace(expander: Expander, name: str, scopes: Scopes, node: XacroNode) -> Scopes:
-    """Return the scopes of an included file with a namespace, which `name` stands for: it sees no macros around."""
+    """Return the scopes of an included file with a namespace, which `name` stands for: it sees no
+    macros around.
+    """
 
     def find(wanted: str) -> Value:
         if wanted in _OF_XACRO:

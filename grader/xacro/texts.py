@@ -34,18 +34,24 @@ PIECE = re.compile(
 TEXT_IN_QUOTES = re.compile(r"'[^']*'|\"[^\"]*\"")
 _NESTED_FIND = re.compile(r"\$\(find +([^\s()$]+) *\)")
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-_OF_PIECE, _OF_NAME = 2, 20  # what a part of a text, and comparing a name with another one, are charged
+_OF_PIECE, _OF_NAME = (
+    2,
+    20,
+)  # what a part of a text, and comparing a name with another one, are charged
 _MAX_SHOWN = 60  # characters of a name
-INSTALLED = "/install"  # where the packages are for $(find package): in a folder that no submission has
+# where the packages are for $(find package): in a folder that no submission has
+INSTALLED = "/install"
 
 
-# What is known of arguments that are not given: the file's defaults count, or a launch file may give them, or certainly
-# nothing gives one that has no default.
+# What is known of arguments that are not given: the file's defaults count, or a launch file may
+# give them, or certainly nothing gives one that has no default.
 OtherArguments = Literal["default", "unknown", "none"]
 
 
 class Texts:
-    """Evaluates texts. `arguments` are those of $(arg): given ones, then the file's defaults; None if unknown."""
+    """Evaluates texts. `arguments` are those of $(arg): given ones, then the file's defaults;
+    None if unknown.
+    """
 
     def __init__(
         self,
@@ -55,23 +61,33 @@ class Texts:
         own: dict[str, Value],
         is_own: Callable[[str], bool],
     ) -> None:
-        """`own` are functions that need the document, such as load_yaml; `is_own`: whether a package was submitted."""
+        """`own` are functions that need the document, such as load_yaml; `is_own`: whether a
+        package was submitted.
+        """
         self.arguments = arguments
         self.other_arguments: OtherArguments = "default"
         self.defaults: dict[str, Definition] = {}  # of arguments that have no other value
-        self.names_open: EvaluationFails | Undetermined | None = None  # why a name may be bound that is not known
+        # why a name may be bound that is not known
+        self.names_open: EvaluationFails | Undetermined | None = None
         self._budget = budget
         self._is_own = is_own
         self._report = report
         self._globals = {**GLOBALS, **own}
-        self.noted: dict[tuple[str, str], None] = {}  # functions that write to stderr, and ^, each with the expression
-        self.redefined: dict[object, tuple[str, ScopePlace, str]] = {}  # names of xacro's own that get another value
+        self.noted: dict[
+            tuple[str, str], None
+        ] = {}  # functions that write to stderr, and ^, each with the expression
+        self.redefined: dict[
+            object, tuple[str, ScopePlace, str]
+        ] = {}  # names of xacro's own that get another value
         self._expression = ""  # that is evaluated
-        # What is said of a name, and the name that it stands for, by this name and those that are known.
+        # What is said of a name, and the name that it stands for, by this name and those that are
+        # known.
         self._similar: dict[tuple[str, ...], tuple[str, str | None]] = {}
 
     def evaluate(self, text: str, scope: XacroScope) -> Value:
-        """Return the value of a text: that of its expression, if it is a single one, else a text."""
+        """Return the value of a text: that of its expression, if it is a single one, else a
+        text.
+        """
         if "$" not in text:
             return text
         self._budget.charge(1, len(text))
@@ -112,17 +128,25 @@ class Texts:
             raise self.names_open.with_traceback(None)
         raise XacroFails(*self.unknown("property", name, scope, self._globals))
 
-    def unknown(self, kind: str, name: str, scope: XacroScope, own: Iterable[str] = ()) -> tuple[str, UnknownName]:
-        """Return that a name is undefined, and the known ones. Raises OutOfBudget: finding a similar one takes long."""
+    def unknown(
+        self, kind: str, name: str, scope: XacroScope, own: Iterable[str] = ()
+    ) -> tuple[str, UnknownName]:
+        """Return that a name is undefined, and the known ones. Raises OutOfBudget: finding a
+        similar one takes long.
+        """
         known: Known = {**dict.fromkeys(own), **scope.definitions()}
         self._budget.charge(len(known))
         key = (name, *known)
         if key not in self._similar:
             self._budget.charge(_OF_NAME * len(known))
-            values = [it for it in known if isinstance(self._globals.get(it, 0), int | float)]  # no functions
+            values = [
+                it for it in known if isinstance(self._globals.get(it, 0), int | float)
+            ]  # no functions
             self._similar[key] = did_you_mean(name, known), near(name, values)
         guess, meant = self._similar[key]
-        return f"there is no {kind} {name[:_MAX_SHOWN]} at this place{guess}", UnknownName(name, known, kind, meant)
+        return f"there is no {kind} {name[:_MAX_SHOWN]} at this place{guess}", UnknownName(
+            name, known, kind, meant
+        )
 
     def note(self, name: str) -> None:
         """Note that the expression that is evaluated calls a function that writes to stderr."""
@@ -138,9 +162,17 @@ class Texts:
         return scope.holder(name) is not None or name in self._globals
 
     def bind(
-        self, target: XacroScope, name: str, text: str, scope: XacroScope, place: ScopePlace, attribute: str
+        self,
+        target: XacroScope,
+        name: str,
+        text: str,
+        scope: XacroScope,
+        place: ScopePlace,
+        attribute: str,
     ) -> None:
-        """Bind a name to the value that the text of an attribute has in a scope, or to why it has none."""
+        """Bind a name to the value that the text of an attribute has in a scope, or to why it has
+        none.
+        """
         failure: EvaluationFails | Undetermined | None = None
         value: Value = ""
         self._budget.charge(1, len(text))
@@ -165,7 +197,11 @@ class Texts:
         if piece["substitution"] is not None:
             return self._substitution(self.text(piece["substitution"], scope))
         expression = self.text(piece["expression"], scope).strip()
-        if expression.isidentifier() and not iskeyword(expression) and not expression.startswith("__"):
+        if (
+            expression.isidentifier()
+            and not iskeyword(expression)
+            and not expression.startswith("__")
+        ):
             return self.find(expression, scope)
         around, self._expression = self._expression, expression
         try:
@@ -184,14 +220,20 @@ class Texts:
         if text.startswith("eval "):
             raise Undetermined("$(eval ...) is not supported: use ${...}")
         if (command in ("env", "optenv") and args) or text == "cwd":
-            what = f"the environment variable {args[0]}" if args else "the folder in which xacro runs"
+            what = (
+                f"the environment variable {args[0]}" if args else "the folder in which xacro runs"
+            )
             raise Undetermined(f"{what} is known only at run time")
         if "$" in text or "(" in text:
             raise EvaluationFails(f"$({text}): no $ and no ( can be inside of $(...)")
         if command not in ("find", "arg") or len(args) != 1:
             raise EvaluationFails(f"$({text}): expected $(find PACKAGE) or $(arg NAME)")
         found = self._charge(self.share(args[0]) if command == "find" else self.argument(args[0]))
-        return _NESTED_FIND.sub(lambda nested: self.share(nested[1]), found) if "$(" in found else found
+        return (
+            _NESTED_FIND.sub(lambda nested: self.share(nested[1]), found)
+            if "$(" in found
+            else found
+        )
 
     def share(self, package: str) -> str:
         """Return the text that $(find package) gives."""
@@ -203,20 +245,29 @@ class Texts:
         """Return the value of an argument."""
         if name not in self.arguments and self.other_arguments == "none":
             default = f'<xacro:arg name="{name}" default="..."/>'
-            message = f"nothing gives the argument {name} a value: give it a default ({default}), or pass it"
+            message = (
+                f"nothing gives the argument {name} a value: give it a default ({default}), or "
+                "pass it"
+            )
             raise XacroFails(f"{message} in the launch file")
         if name not in self.arguments:
             raise Undetermined(f"the argument {name} has no default, and nothing gives it a value")
         value = self.arguments[name]
         if value is None and self.other_arguments == "unknown":
-            raise Undetermined(f"the launch file may give the argument {name} a value, and is not evaluated")
+            raise Undetermined(
+                f"the launch file may give the argument {name} a value, and is not evaluated"
+            )
         if value is None:
-            raise Undetermined(f"the launch file gives the argument {name} a value that is known only at run time")
+            raise Undetermined(
+                f"the launch file gives the argument {name} a value that is known only at run time"
+            )
         return value
 
 
 def _for_xml(value: str) -> str:
-    """Return a text that is written into XML; raise EvaluationFails for characters that XML cannot hold."""
+    """Return a text that is written into XML; raise EvaluationFails for characters that XML cannot
+    hold.
+    """
     if not value.isprintable() and _NO_XML.search(value):
         raise EvaluationFails("the value has a character that XML cannot hold")
     return value

@@ -1,4 +1,6 @@
-"""The elements of a xacro file before and after expansion, each with the place in the source that it came from."""
+"""The elements of a xacro file before and after expansion, each with the place in the source that
+it came from.
+"""
 
 import re
 from bisect import bisect_right
@@ -27,23 +29,31 @@ _DECLARATION = re.compile(
 )
 _MISPLACED = re.compile(r"<\?xml\s[^<>]*\?>")
 _UNDECLARED = re.compile(r"(</?\s*)xacro:")
-_STAND_IN = "\u02d0"  # for the colon of an undeclared prefix: a letter that looks like one, so that columns stay
+# for the colon of an undeclared prefix: a letter that looks like one, so that columns stay
+_STAND_IN = "\u02d0"
 _UNDECLARED_TAG = f"xacro{_STAND_IN}"
 _CDATA = re.compile(r"<!--.*?-->|<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
 
 
 class XacroNode:
-    """An element. `unresolved` holds why attributes are left as written: they are refused, or cannot be determined."""
+    """An element. `unresolved` holds why attributes are left as written: they are refused, or
+    cannot be determined.
+    """
 
     __slots__ = ("attributes", "children", "open", "place", "tag", "unresolved")
 
-    def __init__(self, tag: str, place: ScopePlace, attributes: dict[str, str] | None = None) -> None:
+    def __init__(
+        self, tag: str, place: ScopePlace, attributes: dict[str, str] | None = None
+    ) -> None:
         self.tag = tag
         self.place = place
         self.attributes: dict[str, str] = attributes if attributes is not None else {}
         self.children: _Children = []
-        self.unresolved: dict[str, str] = {}  # attribute -> why it cannot be determined; empty where xacro refuses it
-        self.open: str | None = None  # why it may have more children or attributes; empty where xacro refuses them
+        self.unresolved: dict[
+            str, str
+        ] = {}  # attribute -> why it cannot be determined; empty where xacro refuses it
+        # why it may have more children or attributes; empty where xacro refuses them
+        self.open: str | None = None
 
     @property
     def elements(self) -> "list[XacroNode]":
@@ -60,11 +70,14 @@ def walk(node: XacroNode) -> Iterator[XacroNode]:
         waiting += reversed(found.elements)
 
 
-def read_nodes(data: bytes, path: str, budget: Budget, *, is_repaired: bool = False, edits: Edits = ()) -> XacroNode:
-    """Return the root of an XML file. Raises XMLSyntaxError, and Undetermined for a file with entities of its own.
+def read_nodes(
+    data: bytes, path: str, budget: Budget, *, is_repaired: bool = False, edits: Edits = ()
+) -> XacroNode:
+    """Return the root of an XML file. Raises XMLSyntaxError, and Undetermined for a file with
+    entities of its own.
 
-    With `is_repaired`, two faults that xacro refuses do not matter: a misplaced declaration, and no xmlns:xacro. The
-    text is read after the `edits`; places are those in the text before.
+    With `is_repaired`, two faults that xacro refuses do not matter: a misplaced declaration, and no
+    xmlns:xacro. The text is read after the `edits`; places are those in the text before.
     """
     _decode(data, budget)
     root, parts = _read(data, path, is_repaired, edits)
@@ -90,27 +103,39 @@ def _read(data: bytes, path: str, is_repaired: bool, edits: Edits) -> tuple[Xacr
     own = Budget()
     if edits:
         written, count = Source(path, text), sum(1 for _ in root.iter())
-        source = Source(path, source.text, [origin(written.element(index)[1]) for index in range(count)])
+        source = Source(
+            path, source.text, [origin(written.element(index)[1]) for index in range(count)]
+        )
     return _nodes(root, source, own), own.used
 
 
 def _edited(source: Source, edits: Edits) -> tuple[str, Callable[[int], int]]:
-    """Return a text after edits, and what returns the offset before them of a character; one that is moved has its own.
+    """Return a text after edits, and what returns the offset before them of a character; one that
+    is moved has its own.
 
     Of edits that overlap, the first counts.
     """
     removed = {
-        edit.old.strip(): source.offset(edit.line, edit.column) + len(edit.old) - len(edit.old.lstrip())
+        edit.old.strip(): source.offset(edit.line, edit.column)
+        + len(edit.old)
+        - len(edit.old.lstrip())
         for edit in edits
         if not edit.new
     }
     pieces: list[str] = []
-    places: list[tuple[int, int]] = []  # of the pieces: the offset after the edits, and the one before
+    places: list[
+        tuple[int, int]
+    ] = []  # of the pieces: the offset after the edits, and the one before
     length = position = 0
-    for start, edit in sorted(((source.offset(it.line, it.column), it) for it in edits), key=lambda pair: pair[0]):
+    for start, edit in sorted(
+        ((source.offset(it.line, it.column), it) for it in edits), key=lambda pair: pair[0]
+    ):
         if start < position:
             continue
-        for piece, at in ((source.text[position:start], position), (edit.new, removed.get(edit.new.strip(), start))):
+        for piece, at in (
+            (source.text[position:start], position),
+            (edit.new, removed.get(edit.new.strip(), start)),
+        ):
             places.append((length, at))
             pieces.append(piece)
             length += len(piece)
@@ -127,7 +152,9 @@ def _edited(source: Source, edits: Edits) -> tuple[str, Callable[[int], int]]:
 def recovered_nodes(
     data: bytes, path: str, budget: Budget, edits: Edits = ()
 ) -> tuple[XacroNode | None, list[Problem]]:
-    """Return what can be read of a file with broken tags, None if no link can, and what was assumed."""
+    """Return what can be read of a file with broken tags, None if no link can, and what was
+    assumed.
+    """
     from grader.xml.repair import repair  # late: few files are broken
 
     written = Source(path, _decode(data, budget))
@@ -135,7 +162,8 @@ def recovered_nodes(
     repaired = repair(text)
     source = Source(path, written.text, [*map(origin, repaired.offsets)])
     assumed = [
-        Problem(found.kind, found.message, source.at(origin(found.offset)), found.subject) for found in repaired.assumed
+        Problem(found.kind, found.message, source.at(origin(found.offset)), found.subject)
+        for found in repaired.assumed
     ]
     return _nodes(parse_xml(repaired.xml), source, budget) if repaired.xml else None, assumed
 
@@ -156,9 +184,13 @@ def _nodes(root: Element, source: Source, budget: Budget) -> XacroNode:
 
 
 def _decode(data: bytes, budget: Budget) -> str:
-    """Return the text of a file as UTF-8, which xacro assumes whatever the declaration says; charge its tags."""
+    """Return the text of a file as UTF-8, which xacro assumes whatever the declaration says; charge
+    its tags.
+    """
     prefixes = data.count(b"xmlns") * data.count(b":") // 8
-    budget.charge(_OF_TAG * data.count(b"<") + _OF_ATTRIBUTE * data.count(b"=") + prefixes, len(data))
+    budget.charge(
+        _OF_TAG * data.count(b"<") + _OF_ATTRIBUTE * data.count(b"=") + prefixes, len(data)
+    )
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError:
@@ -183,7 +215,9 @@ def _attributes(element: Element) -> dict[str, str]:
     if "{" not in "".join(attributes):
         return attributes
     prefixes = {uri: prefix for prefix, uri in element.nsmap.items() if prefix} | {_XML: "xml"}
-    named = (name[1:].partition("}") if name.startswith("{") else ("", "", name) for name in attributes)
+    named = (
+        name[1:].partition("}") if name.startswith("{") else ("", "", name) for name in attributes
+    )
     names = (f"{prefixes[uri]}:{local}" if uri else local for uri, _, local in named)
     return dict(zip(names, attributes.values(), strict=True))
 

@@ -12,7 +12,10 @@ XACRO_MACRO = _stops("XACRO003", "A macro call that xacro refuses")
 XACRO_FILE = _stops("XACRO004", "An included file that does not exist")
 XACRO_TAG = _stops("XACRO005", "A xacro tag that xacro refuses")
 XACRO_UNDETERMINED = Kind(
-    "XACRO006", "xacro that cannot be determined statically", severity="warning", effect="undetermined"
+    "XACRO006",
+    "xacro that cannot be determined statically",
+    severity="warning",
+    effect="undetermined",
 )
 # xacro writes these to stderr, and expands the file all the same.
 XACRO_REDEFINED = warns("XACRO007", "A built-in name of xacro that is redefined")
@@ -22,7 +25,14 @@ XACRO_ATTRIBUTE = warns("XACRO010", "An attribute that a xacro tag does not have
 XACRO_CHILDREN = warns("XACRO011", "Elements inside an include")
 XACRO_MESSAGE = warns("XACRO012", "A message that the file lets xacro write")
 WRITTEN_TO_STDERR = frozenset(
-    {XACRO_REDEFINED, XACRO_DEPRECATED, XACRO_PREFIXED, XACRO_ATTRIBUTE, XACRO_CHILDREN, XACRO_MESSAGE}
+    {
+        XACRO_REDEFINED,
+        XACRO_DEPRECATED,
+        XACRO_PREFIXED,
+        XACRO_ATTRIBUTE,
+        XACRO_CHILDREN,
+        XACRO_MESSAGE,
+    }
 )
 XACRO_CARET = notes("XACRO013", "An exclusive or where a power may be meant")
 

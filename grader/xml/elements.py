@@ -10,8 +10,15 @@ _Scalar = str | float | bool
 _MADE_UP = re.compile(r"ns\d+")  # a prefix that lxml gives an element that is made, not read
 _SLACK = 1e-12  # a tolerance includes its end
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
-FOREIGN = ("gazebo", "ros2_control", "transmission", "sensor")  # below <robot>; ROS 2 itself ignores them
-_INSTALLED = re.compile(r"/install/([^/\s]+)/share/\1(?=[/\s]|\Z)")  # what the expansion makes of $(find package)
+FOREIGN = (
+    "gazebo",
+    "ros2_control",
+    "transmission",
+    "sensor",
+)  # below <robot>; ROS 2 itself ignores them
+_INSTALLED = re.compile(
+    r"/install/([^/\s]+)/share/\1(?=[/\s]|\Z)"
+)  # what the expansion makes of $(find package)
 
 
 def name_of(element: Element) -> str:
@@ -38,7 +45,9 @@ def text_in(element: Element) -> str:
 
 
 def matches_value(text: str, expected: _Scalar, tolerance: float) -> bool:
-    """Return whether a text is an expected value: numbers and lists are compared as numbers, true and 1 are equal."""
+    """Return whether a text is an expected value: numbers and lists are compared as numbers,
+    true and 1 are equal.
+    """
     wanted = xml_text(expected)
     one, other = text.strip().lower(), wanted.strip().lower()
     if "true" in (one, other) or "false" in (one, other):
@@ -46,7 +55,9 @@ def matches_value(text: str, expected: _Scalar, tolerance: float) -> bool:
     actual, numbers = numbers_in(text), numbers_in(wanted)
     if actual and numbers:
         pairs = zip(actual, numbers, strict=False)
-        return len(actual) == len(numbers) and all(abs(a - b) <= tolerance + _SLACK for a, b in pairs)
+        return len(actual) == len(numbers) and all(
+            abs(a - b) <= tolerance + _SLACK for a, b in pairs
+        )
     return text.split() == wanted.split()
 
 
@@ -58,7 +69,9 @@ def xml_text(value: _Scalar) -> str:
 
 
 def readable(text: str) -> str:
-    """Return a text in which paths of installed packages are as xacro writes them: $(find package)."""
+    """Return a text in which paths of installed packages are as xacro writes them: $(find
+    package).
+    """
     return _INSTALLED.sub(r"$(find \1)", text)
 
 
@@ -68,7 +81,11 @@ def foreign_elements(root: Element) -> list[Element]:
 
 
 def words_of_foreign(root: Element) -> set[str]:
-    """Return the words in the elements for simulators and controllers, such as names of joints and paths."""
+    """Return the words in the elements for simulators and controllers, such as names of joints and
+    paths.
+    """
     found = [inner for element in foreign_elements(root) for inner in element.iter("*")]
-    texts = [text for inner in found for text in (inner.text or "", *map(str, inner.attrib.values()))]
+    texts = [
+        text for inner in found for text in (inner.text or "", *map(str, inner.attrib.values()))
+    ]
     return {word for text in texts for word in text.split()}

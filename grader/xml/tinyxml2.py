@@ -1,9 +1,10 @@
 """The TinyXML2 dialect of XML, translated into well-formed XML for lxml.
 
-ROS 2 reads URDF with TinyXML2, which accepts much that XML forbids and rejects a little that XML allows. A URDF's
-meaning is in its tags and attributes, so the translation keeps these, in order, and the text in elements, which
-simulators read; it omits comments and declarations. The functions are named after those of `tinyxml2.cpp` whose rules
-they follow: `StrPair::GetStr`, `XMLElement::ParseAttributes`, `XMLDocument::Identify`, `XMLNode::ParseDeep`.
+ROS 2 reads URDF with TinyXML2, which accepts much that XML forbids and rejects a little that XML
+allows. A URDF's meaning is in its tags and attributes, so the translation keeps these, in order,
+and the text in elements, which simulators read; it omits comments and declarations. The functions
+are named after those of `tinyxml2.cpp` whose rules they follow: `StrPair::GetStr`,
+`XMLElement::ParseAttributes`, `XMLDocument::Identify`, `XMLNode::ParseDeep`.
 """
 
 import re
@@ -23,12 +24,22 @@ _KNOWN_REFERENCE = re.compile(rb"&(?:(quot;|amp;|apos;|lt;|gt;)|#)")
 _DECIMAL, _HEXADECIMAL = b"0123456789", b"0123456789abcdefABCDEF"
 _LAST_CODE_POINT, _FIVE_BYTES = 0x10FFFF, 0x200000
 _ESCAPES = str.maketrans(
-    {"&": "&amp;", "<": "&lt;", '"': "&quot;", "\t": "&#9;", "\n": "&#10;", "\r": "&#13;", "\v": "&#9;", "\f": "&#9;"}
+    {
+        "&": "&amp;",
+        "<": "&lt;",
+        '"': "&quot;",
+        "\t": "&#9;",
+        "\n": "&#10;",
+        "\r": "&#13;",
+        "\v": "&#9;",
+        "\f": "&#9;",
+    }
 )
 
 # A bare & or an entity that XML does not define.
 _BARE_AMPERSAND = re.compile(r"&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)")
-# Characters that XML 1.0 does not allow, not even as a reference; bytes that are not UTF-8 are surrogates here.
+# Characters that XML 1.0 does not allow, not even as a reference; bytes that are not UTF-8 are
+# surrogates here.
 _ILLEGAL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
@@ -44,7 +55,9 @@ def decode(raw: str) -> str:
     read = 0
     while (found := _KNOWN_REFERENCE.search(source, read)) is not None:
         _copy(source, read, found.start(), decoded)
-        piece, width = (_ENTITIES[found[1]], len(found[0])) if found[1] else references.at(found.start())
+        piece, width = (
+            (_ENTITIES[found[1]], len(found[0])) if found[1] else references.at(found.start())
+        )
         decoded += piece
         read = found.start() + width
     _copy(source, read, len(source), decoded)
@@ -54,7 +67,8 @@ def decode(raw: str) -> str:
 def _copy(source: bytes, start: int, end: int, decoded: bytearray) -> None:
     """Append the text between two references.
 
-    TinyXML2 decodes in place and skips an & that begins no reference without writing it: the byte that was there stays.
+    TinyXML2 decodes in place and skips an & that begins no reference without writing it: the byte
+    that was there stays.
     """
     write = len(decoded)
     decoded += source[start:end]
@@ -67,7 +81,8 @@ def _copy(source: bytes, start: int, end: int, decoded: bytearray) -> None:
 
 
 class _References:
-    """The characters that each &# of a value refers to (`XMLUtil::GetCharacterRef`), asked from left to right.
+    """The characters that each &# of a value refers to (`XMLUtil::GetCharacterRef`), asked from
+    left to right.
 
     A numeric reference extends to the next semicolon, and its digits are read backwards from there.
     """
@@ -80,7 +95,9 @@ class _References:
         self._decimal: tuple[int, int] | None = None
 
     def at(self, offset: int) -> tuple[bytes, int]:
-        """Return the bytes that the &# at this offset refers to, and how many bytes it takes itself."""
+        """Return the bytes that the &# at this offset refers to, and how many bytes it takes
+        itself.
+        """
         source = self._source
         if len(source) == offset + 2:
             return b"", 1
@@ -111,16 +128,27 @@ class _References:
 
 
 def _encode(code: int) -> bytes:
-    """Return a code point as UTF-8, as TinyXML2 does for surrogates and beyond the last; nothing over four bytes."""
+    """Return a code point as UTF-8, as TinyXML2 does for surrogates and beyond the last; nothing
+    over four bytes.
+    """
     if code <= _LAST_CODE_POINT:
         return chr(code).encode("utf-8", "surrogatepass")
     if code < _FIVE_BYTES:
-        return bytes((0xF0 | code >> 18, 0x80 | code >> 12 & 0x3F, 0x80 | code >> 6 & 0x3F, 0x80 | code & 0x3F))
+        return bytes(
+            (
+                0xF0 | code >> 18,
+                0x80 | code >> 12 & 0x3F,
+                0x80 | code >> 6 & 0x3F,
+                0x80 | code & 0x3F,
+            )
+        )
     return b""
 
 
 def escape(value: str) -> str:
-    """Return a value for double quotes in XML; characters that XML forbids are spelt out, so that names differ."""
+    """Return a value for double quotes in XML; characters that XML forbids are spelt out, so
+    that names differ.
+    """
     return _ILLEGAL.sub(_spell, value.translate(_ESCAPES))
 
 
@@ -133,7 +161,9 @@ def _spell(match: re.Match[str]) -> str:
 
 # --- Tags
 
-_Note = Callable[[str, str, int], None]  # the kind of a difference from XML, its description and its offset
+_Note = Callable[
+    [str, str, int], None
+]  # the kind of a difference from XML, its description and its offset
 
 _BLANK = re.compile(r"[ \t\n\v\f\r]*")
 _NAME = re.compile(r"[A-Za-z_:\u0080-\U0010ffff][A-Za-z0-9_:.\-\u0080-\U0010ffff]*")
@@ -142,7 +172,9 @@ MAX_NAME_LENGTH = 60  # the longest name that urdfdom knows has 17 letters
 
 
 class Tag(NamedTuple):
-    """One tag; attribute values are decoded. Names that XML or lxml may refuse are `_`: urdfdom ignores them anyway."""
+    """One tag; attribute values are decoded. Names that XML or lxml may refuse are `_`: urdfdom
+    ignores them anyway.
+    """
 
     name: str
     form: Literal["open", "close", "empty"]
@@ -157,7 +189,9 @@ class Tag(NamedTuple):
     @property
     def xml(self) -> str:
         """A start tag as XML, without attributes that mean nothing to urdfdom."""
-        values = "".join(f' {key}="{escape(value)}"' for key, value in self.attributes.items() if _is_plain(key))
+        values = "".join(
+            f' {key}="{escape(value)}"' for key, value in self.attributes.items() if _is_plain(key)
+        )
         prefix, colon, _ = self.xml_name.partition(":")
         declared = f' xmlns:{prefix}="{prefix}"' if colon else ""
         return f"<{self.xml_name}{declared}{values}{'>' if self.form == 'open' else '/>'}"
@@ -176,10 +210,11 @@ class Difference(NamedTuple):
 
 
 class Scan(NamedTuple):
-    """The first top-level <robot> as XML, with the offset of each of its start tags; both empty if there is none.
+    """The first top-level <robot> as XML, with the offset of each of its start tags; both empty if
+    there is none.
 
-    They are empty as well if TinyXML2 refuses the text: `is_refused`. The XML has no comments, and a prefix stands for
-    its namespace.
+    They are empty as well if TinyXML2 refuses the text: `is_refused`. The XML has no comments, and
+    a prefix stands for its namespace.
     """
 
     xml: bytes
@@ -190,7 +225,9 @@ class Scan(NamedTuple):
 
 
 class MalformedTagError(Exception):
-    """A tag that TinyXML2 rejects, with the offset of the error, and the one at which reading can go on."""
+    """A tag that TinyXML2 rejects, with the offset of the error, and the one at which reading
+    can go on.
+    """
 
     def __init__(self, message: str, offset: int, resume: int) -> None:
         super().__init__(message)
@@ -228,7 +265,9 @@ def read_tag(text: str, start: int, note: _Note) -> tuple[Tag, int]:
 
 
 def _resume_after(text: str, position: int) -> int:
-    """Return the offset at which to go on after a malformed tag: after its > or before the next <."""
+    """Return the offset at which to go on after a malformed tag: after its > or before the next
+    <.
+    """
     closed, opened = text.find(">", position), text.find("<", position + 1)
     if closed >= 0 and (opened < 0 or closed < opened):
         return closed + 1
@@ -236,11 +275,15 @@ def _resume_after(text: str, position: int) -> int:
 
 
 def short(text: str) -> str:
-    """Return a name for a message, cut where it is very long; bytes that are not UTF-8 are spelt out."""
+    """Return a name for a message, cut where it is very long; bytes that are not UTF-8 are spelt
+    out.
+    """
     return cut(text, 40).encode("utf-8", "backslashreplace").decode()
 
 
-def _read_attributes(text: str, start: int, position: int, tag: str, note: _Note) -> tuple[dict[str, str], int]:
+def _read_attributes(
+    text: str, start: int, position: int, tag: str, note: _Note
+) -> tuple[dict[str, str], int]:
     """Return the attributes of a tag, and the offset of the > or /> that ends it."""
     attributes: dict[str, str] = {}
     while True:
@@ -256,16 +299,26 @@ def _read_attributes(text: str, start: int, position: int, tag: str, note: _Note
         position = end
 
 
-def _unclosed_quote(text: str, start: int, tag: str, attributes: dict[str, str]) -> MalformedTagError | None:
-    """Return the likelier error, if a value contains the next tag because its quote is not closed."""
-    unclosed = next((name for name, value in attributes.items() if "\n" in value and "<" in value), None)
+def _unclosed_quote(
+    text: str, start: int, tag: str, attributes: dict[str, str]
+) -> MalformedTagError | None:
+    """Return the likelier error, if a value contains the next tag because its quote is not
+    closed.
+    """
+    unclosed = next(
+        (name for name, value in attributes.items() if "\n" in value and "<" in value), None
+    )
     if unclosed is None:
         return None
-    message = f"the quote of {short(unclosed)!r} in <{short(tag)}> is not closed before the next tag"
+    message = (
+        f"the quote of {short(unclosed)!r} in <{short(tag)}> is not closed before the next tag"
+    )
     return MalformedTagError(message, start, max(text.find("\n", start), start + 1))
 
 
-def _read_attribute(text: str, start: int, position: int, tag: str, attributes: dict[str, str], note: _Note) -> int:
+def _read_attribute(
+    text: str, start: int, position: int, tag: str, attributes: dict[str, str], note: _Note
+) -> int:
     """Add the attribute at this offset to the others; return the offset after it."""
     name = _NAME.match(text, position)
     if name is None:
@@ -278,10 +331,14 @@ def _read_attribute(text: str, start: int, position: int, tag: str, attributes: 
     at = _skip_blank(text, at + 1)
     quote = text[at : at + 1]
     if quote not in ('"', "'"):
-        raise MalformedTagError(f"the value of {shown} is not in straight quotes", offset, _resume_after(text, at))
+        raise MalformedTagError(
+            f"the value of {shown} is not in straight quotes", offset, _resume_after(text, at)
+        )
     end = text.find(quote, at + 1)
     if end < 0:
-        raise MalformedTagError(f"the quote of {shown} is not closed", offset, _resume_after(text, at))
+        raise MalformedTagError(
+            f"the quote of {shown} is not closed", offset, _resume_after(text, at)
+        )
     raw = text[at + 1 : end]
     if "<" in raw:
         note("less", "< inside a value (write &lt;)", offset)
@@ -305,9 +362,13 @@ def _misfit(text: str, start: int, at: int, name: str) -> MalformedTagError:
             message = f'<{shown}= has no attribute name; write <{shown} {main}="...">'
             return MalformedTagError(message, start, _resume_after(text, at))
         case "<":
-            return MalformedTagError(f"<{shown}> is not closed with > before the next tag", start, at)
+            return MalformedTagError(
+                f"<{shown}> is not closed with > before the next tag", start, at
+            )
         case ",":
-            message = f"there is a comma between the attributes of <{shown}>; separate them with spaces"
+            message = (
+                f"there is a comma between the attributes of <{shown}>; separate them with spaces"
+            )
         case _:
             word = text[at : at + 12].split(" ", maxsplit=1)[0]
             message = f"{word!r} in <{shown}> is not an attribute"
@@ -332,7 +393,9 @@ def scan(text: str) -> Scan:
 
 
 class _Scanner:
-    """One pass over a text. Where TinyXML2 would stop at an error, it goes on, to find other broken tags."""
+    """One pass over a text. Where TinyXML2 would stop at an error, it goes on, to find other broken
+    tags.
+    """
 
     def __init__(self, text: str) -> None:
         self._text = text
@@ -352,32 +415,49 @@ class _Scanner:
             position = self._node(position)
         first_tag = self._top_level[0].offset if self._top_level else 0
         if self._errors:
-            errors = [found for found in self._differences if found.kind is not xml_problems.NOT_WELL_FORMED]
+            errors = [
+                found
+                for found in self._differences
+                if found.kind is not xml_problems.NOT_WELL_FORMED
+            ]
             return Scan(b"", [], first_tag, errors, is_refused=True)
         robot = next((tag for tag in self._top_level if tag.name == "robot"), None)
         other = next((tag for tag in self._top_level if tag is not robot), None)
         if robot and other:
-            message = f"ROS 2 reads the first <robot> at the top level and ignores <{short(other.name)}> beside it"
+            message = (
+                "ROS 2 reads the first <robot> at the top level and ignores "
+                f"<{short(other.name)}> beside it"
+            )
             self._add(xml_problems.SEVERAL_ROOTS, message, other.offset)
         return Scan("".join(self._xml).encode(), self._offsets, first_tag, self._differences)
 
     def _start(self) -> int | None:
         text = self._text
         if text.startswith(("\udcff\udcfe", "\udcfe\udcff")) or "\0" in text[:4]:
-            return self._refuse(xml_problems.NOT_UTF8, "the file is not UTF-8 text; ROS 2 cannot read it", 0)
+            return self._refuse(
+                xml_problems.NOT_UTF8, "the file is not UTF-8 text; ROS 2 cannot read it", 0
+            )
         end = text.find("\0")
         if end >= 0:
-            self._add(xml_problems.IGNORED_REST, "ROS 2 ignores everything after this NUL byte", end)
+            self._add(
+                xml_problems.IGNORED_REST, "ROS 2 ignores everything after this NUL byte", end
+            )
             text = self._text = text[:end]
         position = _skip_blank(text, 0)
         if text.startswith("\ufeff", position):
             position += 1
         if position == len(text):
-            return self._refuse(xml_problems.EMPTY_DOCUMENT, "the file is empty; ROS 2 rejects it", 0)
+            return self._refuse(
+                xml_problems.EMPTY_DOCUMENT, "the file is empty; ROS 2 rejects it", 0
+            )
         illegal = _ILLEGAL.search(text)
         if illegal:
             what = "invalid UTF-8" if illegal[0] >= "\ud800" else "a control character"
-            self._differ(what, f"{what} ({illegal[0].encode('utf-8', 'surrogateescape').hex()})", illegal.start())
+            self._differ(
+                what,
+                f"{what} ({illegal[0].encode('utf-8', 'surrogateescape').hex()})",
+                illegal.start(),
+            )
         return position
 
     def _node(self, start: int) -> int | None:
@@ -396,7 +476,9 @@ class _Scanner:
         try:
             tag, end = read_tag(text, position, self._differ)
         except MalformedTagError as error:
-            self._refuse(xml_problems.MALFORMED_TAG, f"{error}; ROS 2 rejects the file", error.offset)
+            self._refuse(
+                xml_problems.MALFORMED_TAG, f"{error}; ROS 2 rejects the file", error.offset
+            )
             return error.resume
         return self._close(tag, end) if tag.form == "close" else self._open(tag, end)
 
@@ -415,7 +497,9 @@ class _Scanner:
         else:
             end = self._skip_to(position, "<!", ">", "<!")
             if end is not None and "doctype" not in self._noted:
-                entities = {"text", "reference"} if "[" in text[position:end] else set()  # XML may define them there
+                entities = (
+                    {"text", "reference"} if "[" in text[position:end] else set()
+                )  # XML may define them there
                 self._noted |= {"doctype", *entities}
                 message = "ROS 2 skips a DOCTYPE and does not expand the entities that it defines"
                 self._add(xml_problems.DOCTYPE, message, position)
@@ -435,7 +519,10 @@ class _Scanner:
         if end < 0:
             message = "there is text after the robot; ROS 2 rejects the file"
             if not self._top_level:
-                message = f"this is not XML: it begins with {short(self._text.strip()[:20])!r}; ROS 2 rejects the file"
+                message = (
+                    f"this is not XML: it begins with {short(self._text.strip()[:20])!r}; ROS 2 "
+                    "rejects the file"
+                )
             return self._refuse(xml_problems.STRAY_TEXT, message, position)
         if not self._open_tags:
             self._only_declarations = False
@@ -455,12 +542,18 @@ class _Scanner:
         if end is None:
             return None
         if self._open_tags or not self._only_declarations:
-            message = "an XML declaration must be at the very top of the file; ROS 2 rejects the file"
-            self._add(xml_problems.MISPLACED_DECLARATION, message, position)  # the elements around it can be read
+            message = (
+                "an XML declaration must be at the very top of the file; ROS 2 rejects the file"
+            )
+            self._add(
+                xml_problems.MISPLACED_DECLARATION, message, position
+            )  # the elements around it can be read
         elif position > 0 and not self._text.startswith("\ufeff<"):
             self._differ("declaration", "something before the XML declaration", position)
         elif not _DECLARATION.fullmatch(self._text, position + 2, end - 2):
-            self._differ("declaration", "an XML declaration without a known version or encoding", position)
+            self._differ(
+                "declaration", "an XML declaration without a known version or encoding", position
+            )
         return end
 
     def _skip_to(self, position: int, opening: str, closing: str, what: str) -> int | None:
@@ -473,7 +566,11 @@ class _Scanner:
     def _open(self, tag: Tag, end: int) -> int | None:
         prefix, colon, _ = tag.name.partition(":")
         if colon and "prefix" not in self._noted and prefix not in self._prefixes:
-            self._differ("prefix", f"the prefix of <{short(tag.name)}> is not declared with xmlns", tag.offset)
+            self._differ(
+                "prefix",
+                f"the prefix of <{short(tag.name)}> is not declared with xmlns",
+                tag.offset,
+            )
         depth = len(self._open_tags)
         if depth:
             is_written = depth < _MAX_WRITTEN_DEPTH and self._open_tags[-1][1]
@@ -487,7 +584,9 @@ class _Scanner:
             self._open_tags.append((tag, is_written))
             if depth + 2 >= _MAX_DEPTH and not self._errors:
                 return self._refuse(
-                    xml_problems.TOO_DEEP, "tags are nested too deep; ROS 2 rejects the file", tag.offset
+                    xml_problems.TOO_DEEP,
+                    "tags are nested too deep; ROS 2 rejects the file",
+                    tag.offset,
                 )
         return end
 
@@ -495,7 +594,9 @@ class _Scanner:
         if not self._open_tags:
             if self._errors:
                 return end
-            self._differ("stray", f"the closing tag </{short(tag.name)}>, which closes nothing", tag.offset)
+            self._differ(
+                "stray", f"the closing tag </{short(tag.name)}>, which closes nothing", tag.offset
+            )
             if _skip_blank(self._text, end) < len(self._text):
                 message = "ROS 2 stops reading at this closing tag, which closes nothing"
                 self._add(xml_problems.IGNORED_REST, message, tag.offset)
@@ -506,7 +607,9 @@ class _Scanner:
         if opened.name != tag.name and not self._errors:
             line = self._text.count("\n", 0, opened.offset) + 1
             message = f"</{short(tag.name)}> does not match <{short(opened.name)}> in line {line}"
-            self._refuse(xml_problems.MISMATCHED_TAG, f"{message}; ROS 2 rejects the file", tag.offset)
+            self._refuse(
+                xml_problems.MISMATCHED_TAG, f"{message}; ROS 2 rejects the file", tag.offset
+            )
         return end
 
     @cached_property

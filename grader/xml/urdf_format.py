@@ -1,4 +1,6 @@
-"""The format of a URDF: the elements that urdfdom reads, their attributes, and the elements that may be in each."""
+"""The format of a URDF: the elements that urdfdom reads, their attributes, and the elements that
+may be in each.
+"""
 
 from collections.abc import Mapping
 from math import isfinite
@@ -9,7 +11,8 @@ JOINT_TYPES: tuple[str, ...] = get_args(JointType)
 
 
 class _AttributeFormat(NamedTuple):
-    """An attribute: the unit and the parts of its numbers (no parts: text), and what ROS 2 uses where it is not given.
+    """An attribute: the unit and the parts of its numbers (no parts: text), and what ROS 2 uses
+    where it is not given.
 
     An attribute without a default is required.
     """
@@ -20,11 +23,15 @@ class _AttributeFormat(NamedTuple):
 
 
 class _TagFormat(NamedTuple):
-    """An element: its attributes in usual order, children (also needed, repeated ones), wrong names of attributes."""
+    """An element: its attributes in usual order, children (also needed, repeated ones), wrong names
+    of attributes.
+    """
 
     attributes: Mapping[str, _AttributeFormat] = {}
     children: tuple[str, ...] = ()
-    needed: tuple[str, ...] = ()  # of geometry one is needed, and of a joint that is revolute or prismatic also limit
+    needed: tuple[
+        str, ...
+    ] = ()  # of geometry one is needed, and of a joint that is revolute or prismatic also limit
     repeated: tuple[str, ...] = ()
     aliases: Mapping[str, str] = {}
 
@@ -39,12 +46,26 @@ _SHAPES = ("box", "cylinder", "sphere", "mesh")
 TAGS: dict[str, _TagFormat] = {
     "robot": _TagFormat(
         {"name": _REQUIRED, "version": _AttributeFormat(default="1.0")},
-        ("link", "joint", "material"), needed=("link",), repeated=("link", "joint", "material"),
+        ("link", "joint", "material"),
+        needed=("link",),
+        repeated=("link", "joint", "material"),
     ),
-    "link": _TagFormat({"name": _REQUIRED}, ("inertial", "visual", "collision"), repeated=("visual", "collision")),
+    "link": _TagFormat(
+        {"name": _REQUIRED}, ("inertial", "visual", "collision"), repeated=("visual", "collision")
+    ),
     "joint": _TagFormat(
         {"name": _REQUIRED, "type": _REQUIRED},
-        ("origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "safety_controller", "calibration"),
+        (
+            "origin",
+            "parent",
+            "child",
+            "axis",
+            "limit",
+            "dynamics",
+            "mimic",
+            "safety_controller",
+            "calibration",
+        ),
         ("parent", "child"),
     ),
     "material": _TagFormat({"name": _REQUIRED}, ("color", "texture")),
@@ -63,17 +84,28 @@ TAGS: dict[str, _TagFormat] = {
     ),
     "box": _TagFormat({"size": _AttributeFormat("m", _XYZ)}),
     "cylinder": _TagFormat(
-        {"radius": _AttributeFormat("m", _ONE), "length": _AttributeFormat("m", _ONE)}, aliases={"height": "length"}
+        {"radius": _AttributeFormat("m", _ONE), "length": _AttributeFormat("m", _ONE)},
+        aliases={"height": "length"},
     ),
     "sphere": _TagFormat({"radius": _AttributeFormat("m", _ONE)}),
     "mesh": _TagFormat({"filename": _REQUIRED, "scale": _AttributeFormat("1", _XYZ, "1 1 1")}),
-    "color": _TagFormat({"rgba": _AttributeFormat("1", ("red", "green", "blue", "alpha"))}, aliases={"rgb": "rgba"}),
+    "color": _TagFormat(
+        {"rgba": _AttributeFormat("1", ("red", "green", "blue", "alpha"))}, aliases={"rgb": "rgba"}
+    ),
     "texture": _TagFormat({"filename": _REQUIRED}),
     "mass": _TagFormat({"value": _AttributeFormat("kg", _ONE)}),
     "inertia": _TagFormat(
-        {"ixx": _POSITIVE, "ixy": _MIXED, "ixz": _MIXED, "iyy": _POSITIVE, "iyz": _MIXED, "izz": _POSITIVE}
+        {
+            "ixx": _POSITIVE,
+            "ixy": _MIXED,
+            "ixz": _MIXED,
+            "iyy": _POSITIVE,
+            "iyz": _MIXED,
+            "izz": _POSITIVE,
+        }
     ),
-    "axis": _TagFormat({"xyz": _AttributeFormat("1", _XYZ, "0 0 0")}),  # a joint without <axis> has 1 0 0
+    # a joint without <axis> has 1 0 0
+    "axis": _TagFormat({"xyz": _AttributeFormat("1", _XYZ, "0 0 0")}),
     "limit": _TagFormat(
         {
             "lower": _END,
@@ -88,7 +120,9 @@ TAGS: dict[str, _TagFormat] = {
             "friction": _AttributeFormat("N m or N", _ONE, "0"),
         }
     ),
-    "mimic": _TagFormat({"joint": _REQUIRED, "multiplier": _AttributeFormat("1", _ONE, "1"), "offset": _END}),
+    "mimic": _TagFormat(
+        {"joint": _REQUIRED, "multiplier": _AttributeFormat("1", _ONE, "1"), "offset": _END}
+    ),
     "safety_controller": _TagFormat(
         {
             "soft_lower_limit": _END,
@@ -98,9 +132,12 @@ TAGS: dict[str, _TagFormat] = {
         }
     ),
     "calibration": _TagFormat(
-        {"rising": _AttributeFormat("rad or m", _ONE, ""), "falling": _AttributeFormat("rad or m", _ONE, "")}
+        {
+            "rising": _AttributeFormat("rad or m", _ONE, ""),
+            "falling": _AttributeFormat("rad or m", _ONE, ""),
+        }
     ),
-}  # fmt: skip
+}
 
 # Elements of SDF and of other tools, which no element below <robot> has: what to do instead.
 ELSEWHERE = {
@@ -116,10 +153,13 @@ ELSEWHERE = {
 ATTRIBUTES = {name: frozenset(tag.attributes) for name, tag in TAGS.items()}
 CHILDREN = {name: tag.children for name, tag in TAGS.items() if tag.children}
 REQUIRED = {
-    name: tuple(key for key, one in tag.attributes.items() if one.default is None) for name, tag in TAGS.items()
+    name: tuple(key for key, one in tag.attributes.items() if one.default is None)
+    for name, tag in TAGS.items()
 }
 OWNERS = {
-    key: [name for name, tag in TAGS.items() if key in tag.attributes] for it in TAGS.values() for key in it.attributes
+    key: [name for name, tag in TAGS.items() if key in tag.attributes]
+    for it in TAGS.values()
+    for key in it.attributes
 }
 # The parts of the numbers in an attribute of this name; texts have none.
 PARTS = {key: one.parts for tag in TAGS.values() for key, one in tag.attributes.items()}
@@ -131,4 +171,6 @@ def numbers_in(text: str) -> list[float]:
         values = [float(piece) for piece in text.split()]
     except ValueError:
         return []
-    return values if "_" not in text and all(map(isfinite, values)) else []  # Python reads 1_000 as a number
+    return (
+        values if "_" not in text and all(map(isfinite, values)) else []
+    )  # Python reads 1_000 as a number

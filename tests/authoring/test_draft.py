@@ -45,7 +45,12 @@ def test_every_mutant_of_the_reference_loses_something(reference: Path, tmp_path
     done = run(("rubric", "test", tmp_path / "lab.toml", "--format", "json"))
     result = json.loads(done.stdout)
     survivors = [row["id"] for row in result["survivors"] if not UNTESTED.fullmatch(row["id"])]
-    assert (done.returncode, survivors, result["idle"], result["unused_patterns"]) == (0, [], [], [])
+    assert (done.returncode, survivors, result["idle"], result["unused_patterns"]) == (
+        0,
+        [],
+        [],
+        [],
+    )
     assert result["equivalents"]["lost"] == []
 
 
@@ -56,7 +61,10 @@ def test_the_order_of_elements_does_not_matter(tmp_path: Path) -> None:
     for element in (robot, *robot.iter("link")):
         element[:] = reversed(element)
     (tmp_path / "reversed.urdf").write_bytes(ET.tostring(robot))
-    assert run(("grade", tmp_path / "reversed.urdf", "--rubric", tmp_path / "lab.toml")).returncode == 0
+    assert (
+        run(("grade", tmp_path / "reversed.urdf", "--rubric", tmp_path / "lab.toml")).returncode
+        == 0
+    )
 
 
 NUMBER = re.compile(r"""(?<=[" ])-?[\d.]+(?=[" ])""")
@@ -68,7 +76,9 @@ TAGS = ("origin", "box", "cylinder", "sphere", "color", "axis", "limit", "mass",
 def test_huge_numbers_are_no_fault(source: Path, tag: str, tmp_path: Path) -> None:
     """A rubric is written, in which what cannot be measured is omitted."""
     text = "".join(
-        NUMBER.sub("1e308", line) if f"<{tag or 'robot'}" in line or (not tag and "<?" not in line) else line
+        NUMBER.sub("1e308", line)
+        if f"<{tag or 'robot'}" in line or (not tag and "<?" not in line)
+        else line
         for line in source.read_text().splitlines(keepends=True)
     )
     (tmp_path / "r.urdf").write_text(text)
@@ -115,15 +125,25 @@ SHAPE = '<{0}><geometry><box size="1 1 {{}}1"/></geometry></{0}>'
         ("gazebo", '<y a{}="1"/>', "gazebo x: it has more than 500 elements and attributes"),
     ],
 )
-def test_an_element_with_too_much_in_it_is_omitted(tag: str, item: str, omitted: str, tmp_path: Path) -> None:
+def test_an_element_with_too_much_in_it_is_omitted(
+    tag: str, item: str, omitted: str, tmp_path: Path
+) -> None:
     """What is compared each with each is bounded; the rest of the robot is tested."""
-    joint = '<joint name="j" type="fixed"><parent link="base"/><child link="x"/></joint>' if tag == "link" else ""
+    joint = (
+        '<joint name="j" type="fixed"><parent link="base"/><child link="x"/></joint>'
+        if tag == "link"
+        else ""
+    )
     (tmp_path / "r.urdf").write_text(megabyte(item, f'{joint}<{tag} name="x">', f"</{tag}>"))
     done = new(tmp_path, tmp_path / "r.urdf")
-    assert (done.returncode, f"omitted: {omitted}" in done.stdout.decode()) == (0, True), done.stdout
+    assert (done.returncode, f"omitted: {omitted}" in done.stdout.decode()) == (0, True), (
+        done.stdout
+    )
 
 
-def test_a_rubric_that_is_too_large_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_rubric_that_is_too_large_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The loader reads rubrics up to a size, so no larger one is written."""
     monkeypatch.setattr("grader.commands.rubric_making.URDF_LIMIT", 1000)
     done = new(tmp_path, ARM)
@@ -168,18 +188,30 @@ def test_values_of_parameters_are_comments_that_may_become_criteria(of_cart: Rub
     done = run(("rubric", "check", changed))
     more = values.count("# [[criterion]]")
     assert more == 10
-    assert f"{len(of_cart.criteria) + more} criteria, 100 points, no mistakes found" in done.stdout.decode(), (
-        done.stderr
-    )
+    assert (
+        f"{len(of_cart.criteria) + more} criteria, 100 points, no mistakes found"
+        in done.stdout.decode()
+    ), done.stderr
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("family", dict.fromkeys(family for family, _, _ in WRONG))
-def test_what_is_odd_in_the_names_of_a_reference_is_said_in_one_line(family: str, tmp_path: Path) -> None:
+def test_what_is_odd_in_the_names_of_a_reference_is_said_in_one_line(
+    family: str, tmp_path: Path
+) -> None:
     """Its family is no criterion, and the other families are."""
     edits = next(edits for one, _, edits in WRONG if one == family)
     lines = new(tmp_path, write_cart(tmp_path / "src", *edits)).stdout.decode().splitlines()
-    assert len([line for line in lines if re.match(rf"omitted: {family} names_agree: .*1.*: \S+:\d+: ", line)]) == 1
+    assert (
+        len(
+            [
+                line
+                for line in lines
+                if re.match(rf"omitted: {family} names_agree: .*1.*: \S+:\d+: ", line)
+            ]
+        )
+        == 1
+    )
     asked = re.findall('with = { of = "(.*)" }', (tmp_path / "lab.toml").read_text())
     assert family not in asked
     assert len(asked) == 7
@@ -199,8 +231,11 @@ SIMULATED: list[Edit] = [
 ]
 CAUSES = {
     "an argument": ((LAUNCH, '" use_mock_hardware:="', '" mock_hardware:="'), {"names_agree"}),
-    "the robot": ((URDF, 'radius="${wheel_radius}"', 'radius="0.07"'), {"shows_cylinder", "inertia_plausible"}),
-}  # fmt: skip
+    "the robot": (
+        (URDF, 'radius="${wheel_radius}"', 'radius="0.07"'),
+        {"shows_cylinder", "inertia_plausible"},
+    ),
+}
 
 
 def write_diffdrive(folder: Path, *edits: Edit) -> Path:
@@ -222,7 +257,9 @@ def of_diffdrive(tmp_path_factory: pytest.TempPathFactory) -> Rubric:
 
 
 @pytest.mark.parametrize(("edit", "lost"), CAUSES.values(), ids=CAUSES)
-def test_a_mistake_costs_where_it_is(edit: Edit, lost: set[str], of_diffdrive: Rubric, tmp_path: Path) -> None:
+def test_a_mistake_costs_where_it_is(
+    edit: Edit, lost: set[str], of_diffdrive: Rubric, tmp_path: Path
+) -> None:
     """Elements that an argument of xacro changes cost nothing more, nor what is compared with a wrong robot."""
     package = write_diffdrive(tmp_path, *SIMULATED, edit)
     report = grade(of_diffdrive, open_submission(str(package), of_diffdrive.lab))
@@ -236,7 +273,9 @@ def rename_joints(package: Path) -> None:
             _ = path.write_text(text.replace("_wheel_joint", "_drive"))
 
 
-def test_joints_may_have_other_names_where_all_files_use_them(of_diffdrive: Rubric, tmp_path: Path) -> None:
+def test_joints_may_have_other_names_where_all_files_use_them(
+    of_diffdrive: Rubric, tmp_path: Path
+) -> None:
     """What controllers name is compared with the robot, so a draft asks for no names of joints."""
     package = write_diffdrive(tmp_path, *SIMULATED)
     rename_joints(package)
@@ -271,11 +310,13 @@ NAMED: dict[str, tuple[str, str, str]] = {
         '<gazebo reference="spar">',
         '<gazebo reference="base_link">',
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("added", "old", "wrong"), NAMED.values(), ids=NAMED)
-def test_joints_are_asked_for_by_their_links(added: str, old: str, wrong: str, tmp_path: Path) -> None:
+def test_joints_are_asked_for_by_their_links(
+    added: str, old: str, wrong: str, tmp_path: Path
+) -> None:
     """So each has its interfaces, and is the one that is meant, whatever its name."""
     system = "urdf/diffdrive.ros2_control.xacro"
     edits: list[Edit] = [(URDF, "</robot>", f"{added}</robot>")]
@@ -293,7 +334,8 @@ def test_joints_are_asked_for_by_their_links(added: str, old: str, wrong: str, t
 def test_plugins_that_are_alike_may_be_in_several_elements(tmp_path: Path) -> None:
     """Gazebo collects them from all <gazebo> elements."""
     plugins = [
-        f'<plugin filename="p"><joint_name>{side}_wheel_joint</joint_name></plugin>' for side in ("left", "right")
+        f'<plugin filename="p"><joint_name>{side}_wheel_joint</joint_name></plugin>'
+        for side in ("left", "right")
     ]
     one = f"<gazebo>{''.join(plugins)}</gazebo></robot>"
     assert new(tmp_path, write_diffdrive(tmp_path, (URDF, "</robot>", one))).returncode == 0
@@ -302,12 +344,16 @@ def test_plugins_that_are_alike_may_be_in_several_elements(tmp_path: Path) -> No
         apart = "".join(f"<gazebo>{it}</gazebo>" for it in texts)
         package = write_diffdrive(tmp_path / name, (URDF, "</robot>", f"{apart}</robot>"))
         report = grade(rubric, open_submission(str(package), rubric.lab))
-        assert [it.criterion.check.name for it in report.results if it.is_lost] == ["entry_is"] * lost
+        assert [it.criterion.check.name for it in report.results if it.is_lost] == [
+            "entry_is"
+        ] * lost
 
 
 def test_lists_with_names_of_joints_that_are_compared_are_not_asked_for(tmp_path: Path) -> None:
     """Such as the joints whose positions Gazebo publishes, and the joint that another one follows."""
-    publisher = "".join(f"<joint_name>{side}_wheel_joint</joint_name>" for side in ("left", "right"))
+    publisher = "".join(
+        f"<joint_name>{side}_wheel_joint</joint_name>" for side in ("left", "right")
+    )
     mimic = '<param name="mimic">left_wheel_joint</param><param name="multiplier">1</param><state_interface'
     edits: list[Edit] = [
         (URDF, "</robot>", f"<gazebo><plugin>{publisher}</plugin></gazebo></robot>"),
@@ -324,8 +370,12 @@ def test_lists_with_names_of_joints_that_are_compared_are_not_asked_for(tmp_path
 @pytest.mark.parametrize("name", [name for name in SAMPLES if not name.startswith("equivalent")])
 def test_the_mistake_of_a_sample_costs_once(name: str, of_diffdrive: Rubric) -> None:
     """Whatever else of the differential drive fails because of it."""
-    report = grade(of_diffdrive, open_submission(str(ROOT / "submissions/diffdrive" / name), of_diffdrive.lab))
-    lost = [it.criterion for it in report.results if it.is_lost and it.criterion.about != "<gazebo>"]
+    report = grade(
+        of_diffdrive, open_submission(str(ROOT / "submissions/diffdrive" / name), of_diffdrive.lab)
+    )
+    lost = [
+        it.criterion for it in report.results if it.is_lost and it.criterion.about != "<gazebo>"
+    ]
     assert len(lost) == 1, lost
 
 

@@ -17,10 +17,16 @@ from grader.submission.opening import read_submission
 from grader.submission.urdf import Read
 from tests.authoring.robots import ARM, BOX, FRAME, TOP, rubric_in
 
-POSITIONS = ((0.0, 0.0), (0.4, 0.03), (-1.1, 0.09))  # of the shoulder and the slide, which are told by their limits
+POSITIONS = (
+    (0.0, 0.0),
+    (0.4, 0.03),
+    (-1.1, 0.09),
+)  # of the shoulder and the slide, which are told by their limits
 
 
-def made(kept: set[str] | None = None, text: str = ARM, *, placed: bool = False) -> list[Equivalent]:
+def made(
+    kept: set[str] | None = None, text: str = ARM, *, placed: bool = False
+) -> list[Equivalent]:
     """Return the equivalents of the arm, or of another robot."""
     urdf = read_submission(text.encode(), identity="a", path="birch.urdf").urdf
     assert isinstance(urdf, Read)
@@ -46,18 +52,24 @@ def seen(robot: Robot) -> list[tuple[str, tuple[float, ...]]]:
 
 def _seen(robot: Robot) -> Iterator[tuple[str, tuple[float, ...]]]:
     shoulder, slide = (
-        next(joint.name for joint in robot.joints if joint.limit and joint.limit.upper == it) for it in (1.4, 0.1)
+        next(joint.name for joint in robot.joints if joint.limit and joint.limit.upper == it)
+        for it in (1.4, 0.1)
     )
     for positions in POSITIONS:
         posed = Configuration(robot, dict(zip((shoulder, slide), positions, strict=True)))
         for link in robot.links:
             pose = posed.pose(link.name)
             shapes = [(shape.geometry, shape.origin) for shape in link.visuals]
-            for geometry, origin in shapes + [(shape.geometry, shape.origin) for shape in link.collisions]:
+            for geometry, origin in shapes + [
+                (shape.geometry, shape.origin) for shape in link.collisions
+            ]:
                 yield f"{positions} {geometry}", _numbers(placed_by(pose, origin).matrix)
             if link.inertial is not None:
                 mass = link.inertial
-                yield f"{positions} {mass.mass} {mass.inertia}", _numbers(placed_by(pose, mass.origin).matrix)
+                yield (
+                    f"{positions} {mass.mass} {mass.inertia}",
+                    _numbers(placed_by(pose, mass.origin).matrix),
+                )
 
 
 def _numbers(matrix: tuple[tuple[float, ...], ...]) -> tuple[float, ...]:
@@ -73,7 +85,9 @@ def test_every_equivalent_is_the_same_robot() -> None:
         robot = read(equivalent)
         assert dict(seen(robot)).keys() == expected.keys(), equivalent.family
         for name, numbers in seen(robot):
-            assert numbers == pytest.approx(expected[name], abs=1e-9), f"{equivalent.family}: {name}"
+            assert numbers == pytest.approx(expected[name], abs=1e-9), (
+                f"{equivalent.family}: {name}"
+            )
         assert sorted(map(str, limits(robot))) == sorted(map(str, limits(read_arm())))
 
 
@@ -94,13 +108,23 @@ def test_each_family_changes_what_it_says() -> None:
     """Each differs from the reference in the thing that gives it its name."""
     first = {equivalent.family: equivalent for equivalent in made()}
     arm, robots = read_arm(), {family: read(equivalent) for family, equivalent in first.items()}
-    assert [link.name for link in robots["order of elements"].links] != [link.name for link in arm.links]
+    assert [link.name for link in robots["order of elements"].links] != [
+        link.name for link in arm.links
+    ]
     assert len(robots["fixed joints split"].links) > len(arm.links)
-    assert [joint.origin for joint in robots["frames moved"].joints] != [joint.origin for joint in arm.joints]
+    assert [joint.origin for joint in robots["frames moved"].joints] != [
+        joint.origin for joint in arm.joints
+    ]
     assert len(robots["frames moved"].links) == len(arm.links)
-    assert {joint.name for joint in robots["joints renamed"].joints} != {joint.name for joint in arm.joints}
-    assert {link.name for link in robots["links renamed"].links} != {link.name for link in arm.links}
-    assert robots["layout of the text"] == arm == robots["xacro properties"] == robots["xacro macro"]
+    assert {joint.name for joint in robots["joints renamed"].joints} != {
+        joint.name for joint in arm.joints
+    }
+    assert {link.name for link in robots["links renamed"].links} != {
+        link.name for link in arm.links
+    }
+    assert (
+        robots["layout of the text"] == arm == robots["xacro properties"] == robots["xacro macro"]
+    )
     assert "<!--" in first["layout of the text"].text
     assert "${number_0}" in first["xacro properties"].text
     assert "<xacro:part name=" in first["xacro macro"].text
@@ -124,12 +148,16 @@ def test_names_that_something_refers_to_stay(tmp_path: Path) -> None:
 
 def test_frames_of_links_that_are_named_by_their_place_stay() -> None:
     """@root, @tip and @moved:1 are the ends of the tree and the links that move."""
-    moved = next(equivalent for equivalent in made(placed=True) if equivalent.family == "frames moved")
+    moved = next(
+        equivalent for equivalent in made(placed=True) if equivalent.family == "frames moved"
+    )
     robot, arm = Configuration(read(moved)), Configuration(read_arm())
     inner = {joint.parent for joint in arm.robot.joints}
     for joint in arm.robot.joints:
         if joint.type != "fixed" or joint.child not in inner:
-            assert robot.pose(joint.child).translation == pytest.approx(arm.pose(joint.child).translation, abs=1e-9)
+            assert robot.pose(joint.child).translation == pytest.approx(
+                arm.pose(joint.child).translation, abs=1e-9
+            )
 
 
 @pytest.mark.parametrize(
@@ -142,12 +170,18 @@ def test_frames_of_links_that_are_named_by_their_place_stay() -> None:
         ("kinematics_match_reference", {"match": "order"}, ()),
         ("kinematics_match_reference", {"links": ["tool"]}, ("joints renamed",)),
         ("entry_is", {"at": "gazebo[@reference='a']"}, ()),
-        ("entry_is", {"at": "joint"}, ("fixed joints split", "frames moved", "links renamed", "joints renamed")),
+        (
+            "entry_is",
+            {"at": "joint"},
+            ("fixed joints split", "frames moved", "links renamed", "joints renamed"),
+        ),
         ("without_problems", {"problems": ["URDF063"]}, EQUIVALENTS),
         ("xacro_uses", {"macros": 1}, EQUIVALENTS),
     ],
-)  # fmt: skip
-def test_a_check_breaks_under_families(check: str, arguments: dict[str, object], families: tuple[str, ...]) -> None:
+)
+def test_a_check_breaks_under_families(
+    check: str, arguments: dict[str, object], families: tuple[str, ...]
+) -> None:
     """By its arguments: a count of links breaks where there are more links, and one of moving joints does not."""
     found = find_check(check)
     assert found is not None
@@ -169,7 +203,9 @@ def test_a_material_that_a_visual_defines_keeps_its_place() -> None:
     """Visuals before it would have no colour; text in elements that ROS 2 ignores stays as well."""
     for equivalent in made(text=SHARED):
         colours = [visual.material for link in read(equivalent).links for visual in link.visuals]
-        assert [colour.rgba for colour in colours if colour is not None] == [(1.0, 0.0, 0.0, 1.0)] * 3
+        assert [colour.rgba for colour in colours if colour is not None] == [
+            (1.0, 0.0, 0.0, 1.0)
+        ] * 3
         assert ">Text &amp; more<" in equivalent.text
 
 

@@ -22,7 +22,8 @@ def parameters(submission: Submission) -> dict[str, list[object]]:
     """Return the values that nodes and controllers get, by their names."""
     owners = Workspace(submission).parameter_owners
     return {
-        name: [{key: it.value for key, it in one.values.items()} for one in given] for name, given in owners.items()
+        name: [{key: it.value for key, it in one.values.items()} for one in given]
+        for name, given in owners.items()
     }
 
 
@@ -33,10 +34,16 @@ def test_nodes_get_the_same_parameters_from_equivalents() -> None:
     found = dict(file_equivalents(submission))
     assert list(found["parameters of /**"]) == [DETECTOR]
     assert {path.rpartition("/")[2] for path in found["flow style of YAML"]} == {
-        "bridge.yaml", "controllers.yaml", "detector.yaml", "hall.yaml", "navigation.yaml",
-    }  # fmt: skip
+        "bridge.yaml",
+        "controllers.yaml",
+        "detector.yaml",
+        "hall.yaml",
+        "navigation.yaml",
+    }
     for texts in found.values():
-        changed = overlaid(submission.whole_tree, {path: text.encode() for path, text in texts.items()})
+        changed = overlaid(
+            submission.whole_tree, {path: text.encode() for path, text in texts.items()}
+        )
         same = submission.reopen(changed)
         assert parameters(same) == parameters(submission)
         assert read_agreement(same).mismatches == ()
@@ -49,16 +56,26 @@ def test_nodes_get_the_same_parameters_from_equivalents() -> None:
         ("/**:\n  ros__parameters:\n    threshold: 0.5\n", {"flow"}),
         ("other:\n  ros__parameters:\n    threshold: 0.5\n", {"flow"}),
         ("{detector: {ros__parameters: {threshold: 0.5}}}\n", {"flow"}),
-        ("detector:\n  ros__parameters:\n    threshold: 0.5\nalarm:\n  ros__parameters:\n    volume: 3\n", {"flow"}),
-        ("detector:\n  ros__parameters:\n    text: |\n      a\n", {"/**"}),  # no block of text is in braces
+        (
+            "detector:\n  ros__parameters:\n    threshold: 0.5\nalarm:\n  ros__parameters:\n    volume: 3\n",
+            {"flow"},
+        ),
+        (
+            "detector:\n  ros__parameters:\n    text: |\n      a\n",
+            {"/**"},
+        ),  # no block of text is in braces
         ("detector:\n  ros__parameters:\n    text: a, b\n", {"/**"}),
         ("detector:\n  ros__parameters:\n    text: ]\n    other: {\n", set()),
     ],
 )
-def test_a_file_that_would_mean_something_else_has_no_equivalent(detector: str, families: set[str]) -> None:
+def test_a_file_that_would_mean_something_else_has_no_equivalent(
+    detector: str, families: set[str]
+) -> None:
     """What an equivalent changes is the text only: the parameters in it are those of the file."""
     found = {
-        family: texts[DETECTOR] for family, texts in file_equivalents(workspace_with(detector)) if DETECTOR in texts
+        family: texts[DETECTOR]
+        for family, texts in file_equivalents(workspace_with(detector))
+        if DETECTOR in texts
     }
     assert {"/**" if "/**" in family else "flow" for family in found} == families
     for text in found.values():

@@ -18,7 +18,9 @@ def test_a_link_that_must_show_nothing_gets_a_visual() -> None:
     """Whether its tag is empty or not; other links do not."""
     box = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
     text = '<robot><link name="a"/><link name="b"></link><link name="c"/></robot>'
-    found = [it for it in mutants(text, "a.urdf", ["a", "b", "nowhere"]) if it.family == "visual added"]
+    found = [
+        it for it in mutants(text, "a.urdf", ["a", "b", "nowhere"]) if it.family == "visual added"
+    ]
     assert [mutant.id for mutant in found] == ["visual added: link a", "visual added: link b"]
     assert [mutant.applied(text) for mutant in found] == [
         text.replace('"a"/>', f'"a">{box}</link>'),
@@ -29,20 +31,28 @@ def test_a_link_that_must_show_nothing_gets_a_visual() -> None:
 def test_ids_are_unique_and_do_not_depend_on_lines() -> None:
     """Other lines, comments and elements above do not change an id, so a pattern goes on to match."""
     assert len(FOUND) == len(list(mutants(ARM)))
-    longer = ARM.replace('<link name="base">', '<!-- a -->\n\n<link name="new"/>\n<link name="base">', 1)
-    assert {name for name in FOUND if "exchanged" not in name} <= {mutant.id for mutant in mutants(longer)}
+    longer = ARM.replace(
+        '<link name="base">', '<!-- a -->\n\n<link name="new"/>\n<link name="base">', 1
+    )
+    assert {name for name in FOUND if "exchanged" not in name} <= {
+        mutant.id for mutant in mutants(longer)
+    }
 
 
 def test_equal_siblings_are_counted() -> None:
     """The second visual of a link has a place of its own."""
     found = mutants("<robot><link name='a'><visual/><visual/></link><link/><link/></robot>")
-    labels = [mutant.id.partition(": ")[2] for mutant in found if mutant.family == "element deleted"]
+    labels = [
+        mutant.id.partition(": ")[2] for mutant in found if mutant.family == "element deleted"
+    ]
     assert labels == ["link a", "link a/visual", "link a/visual 2", "link", "link 2"]
 
 
 def test_markup_that_only_ros_2_reads_has_mutants() -> None:
     """TinyXML2 allows white space before the declaration."""
-    assert [mutant.line for mutant in mutants("\n<?xml version='1.0'?><robot><link name='a'/></robot>")] == [2, 2, 2]
+    assert [
+        mutant.line for mutant in mutants("\n<?xml version='1.0'?><robot><link name='a'/></robot>")
+    ] == [2, 2, 2]
 
 
 @pytest.mark.parametrize(

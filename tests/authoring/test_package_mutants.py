@@ -23,7 +23,10 @@ def text(path: str) -> str:
 def found_in(submission: Submission, text: Callable[[str], str] = text) -> dict[str, Mutant]:
     """Return the mutants of a package by their ids."""
     assert submission.package is not None
-    return {mutant.id: mutant for mutant in package_mutants(submission.package, ["base_link", "base_footprint"], text)}
+    return {
+        mutant.id: mutant
+        for mutant in package_mutants(submission.package, ["base_link", "base_footprint"], text)
+    }
 
 
 FOUND = found_in(REFERENCE)
@@ -52,11 +55,16 @@ def test_files_are_deleted_and_renamed() -> None:
     assert deleted == set(REFERENCE.whole_tree.files)
     renamed = FOUND["file renamed: urdf/my_robot.urdf"]
     assert (renamed.path, renamed.renamed) == ("urdf/my_robot.urdf", "urdf/my_robt.urdf")
-    for_people = dict.fromkeys(("README.md", "LICENSE", "docs/a.urdf", "test/test_a.py", ".gitignore", "a.png"), b"")
+    for_people = dict.fromkeys(
+        ("README.md", "LICENSE", "docs/a.urdf", "test/test_a.py", ".gitignore", "a.png"), b""
+    )
     assert REFERENCE.reopen is not None
     assert found_in(REFERENCE.reopen(overlaid(REFERENCE.whole_tree, for_people))) == FOUND
     built = found_in(REFERENCE.reopen(overlaid(REFERENCE.whole_tree, {"CMakeLists.txt": b""})))
-    assert set(built) - set(FOUND) == {"file deleted: CMakeLists.txt", "file renamed: CMakeLists.txt"}
+    assert set(built) - set(FOUND) == {
+        "file deleted: CMakeLists.txt",
+        "file renamed: CMakeLists.txt",
+    }
 
 
 @pytest.mark.parametrize(
@@ -83,7 +91,9 @@ def test_texts_for_people_are_not_changed() -> None:
     """Docstrings, descriptions, licences."""
     setup = "'''Doc'''\nfrom setuptools import setup\nsetup(name='a', description='b', license='c', data_files=[('d', ['e'])])\n"
     labels = [mutant.id.partition(": ")[2] for mutant in mutants_of("setup.py", setup)]
-    assert labels == [f"setup.py {it}" for it in ("('d', ['e'])", "from setuptools import setup", "a", "d", "e")]
+    assert labels == [
+        f"setup.py {it}" for it in ("('d', ['e'])", "from setuptools import setup", "a", "d", "e")
+    ]
     launch = "def generate_launch_description():\n    '''Doc'''\n    ld = LaunchDescription()\n    ld.add_action(Node(executable='x'))\n"
     found = mutants_of("launch/a.launch.py", launch)
     assert [mutant.id.partition(": ")[2] for mutant in found] == ["launch/a.launch.py x"] * 2
@@ -93,12 +103,19 @@ def test_texts_for_people_are_not_changed() -> None:
 @pytest.mark.parametrize(
     ("name", "content", "ids"),
     [
-        ("launch/a.launch.xml", '<launch><node pkg="rviz2" exec="rviz2"/></launch>', ["element deleted: launch/a.launch.xml node", "text misspelt: launch/a.launch.xml node exec"]),
+        (
+            "launch/a.launch.xml",
+            '<launch><node pkg="rviz2" exec="rviz2"/></launch>',
+            [
+                "element deleted: launch/a.launch.xml node",
+                "text misspelt: launch/a.launch.xml node exec",
+            ],
+        ),
         ("launch/c.launch.yaml", "launch: [", []),
         ("rviz/d.rviz", "a: [", []),
         ("launch/e.launch.py", "def (", []),
     ],
-)  # fmt: skip
+)
 def test_other_files(name: str, content: str, ids: list[str]) -> None:
     """Launch files in XML have mutants, too; a file that cannot be read has none but its own deletion."""
     own = mutants_of(name, content)

@@ -10,7 +10,9 @@ from hypothesis import strategies as st
 from tests.command_line import run
 from tests.examples import examples
 
-numbers = st.floats(-3, 3).map(lambda value: f"{value:.6g}") | st.sampled_from(("0", "1.57", "-3.14", "1e-3", ".5"))
+numbers = st.floats(-3, 3).map(lambda value: f"{value:.6g}") | st.sampled_from(
+    ("0", "1.57", "-3.14", "1e-3", ".5")
+)
 sizes = st.floats(0.005, 2).map(lambda value: f"{value:.5g}") | st.just("-0.2")
 vectors = st.tuples(numbers, numbers, numbers).map(" ".join)
 axes = st.sampled_from(("0 0 1", "0 -1 0", "2 0 0", "1 1 1", "0.3 -0.2 0.9"))
@@ -22,7 +24,9 @@ shapes = st.one_of(
     st.builds('<sphere radius="{}"/>'.format, sizes),
     st.builds('<mesh filename="package://ash/{}.stl"/>'.format, st.sampled_from(("a", "b"))),
 ).map("<geometry>{}</geometry>".format)
-colours = st.builds('<material name=""><color rgba="{} {} {} 1"/></material>'.format, channels, channels, channels)
+colours = st.builds(
+    '<material name=""><color rgba="{} {} {} 1"/></material>'.format, channels, channels, channels
+)
 visuals = st.builds("<visual>{}{}{}</visual>".format, origins, shapes, colours | st.just(""))
 collisions = st.builds("<collision>{}{}</collision>".format, origins, shapes)
 inertials = st.builds(
@@ -33,8 +37,12 @@ inertials = st.builds(
     sizes,
     sizes,
 )
-ends = st.integers(-30, 30).map(lambda tenths: f"{tenths / 10}")  # a range below the usual tolerance is warned of
-limits = st.builds('<limit lower="{}" upper="{}" effort="{}" velocity="{}"/>'.format, ends, ends, sizes, sizes)
+ends = st.integers(-30, 30).map(
+    lambda tenths: f"{tenths / 10}"
+)  # a range below the usual tolerance is warned of
+limits = st.builds(
+    '<limit lower="{}" upper="{}" effort="{}" velocity="{}"/>'.format, ends, ends, sizes, sizes
+)
 dynamics = st.builds('<dynamics damping="{}" friction="{}"/>'.format, sizes, sizes)
 kinds = st.sampled_from(("fixed", "continuous", "revolute", "prismatic", "planar", "floating"))
 
@@ -44,7 +52,9 @@ def urdfs(draw: st.DrawFn) -> str:
     """Return a robot of up to six links, in a random order, some of whose joints mimic the first."""
     parts, first = [], ""
     for index in range(draw(st.integers(1, 6))):
-        inside = draw(st.lists(visuals, max_size=2)) + draw(st.lists(collisions | inertials, max_size=1))
+        inside = draw(st.lists(visuals, max_size=2)) + draw(
+            st.lists(collisions | inertials, max_size=1)
+        )
         parts.append(f'<link name="l{index}">{"".join(inside)}</link>')
         if index:
             kind = draw(kinds)
@@ -72,7 +82,9 @@ def test_a_random_reference_gets_full_marks(text: str) -> None:
         checked = run(("rubric", "check", folder / "lab.toml"))
         assert checked.stdout.decode().endswith("its reference gets full marks\n"), checked.stderr
         assert checked.stderr == b""
-        assert run(("grade", folder / "robot.urdf", "--rubric", folder / "lab.toml")).returncode == 0
+        assert (
+            run(("grade", folder / "robot.urdf", "--rubric", folder / "lab.toml")).returncode == 0
+        )
         rows = tomllib.loads((folder / "lab.toml").read_text())["criterion"]
         links = {f"l{index}" for index in range(1, text.count("<link "))}
         for check in ("frame_at", "held_by"):

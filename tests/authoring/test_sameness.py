@@ -15,7 +15,9 @@ REFERENCE = read_as_ros(ARM.encode(), "birch.urdf")
 def is_same(old: str, new: str, *kept: str) -> bool:
     """Return whether the robot stays the same if one text in it becomes another."""
     assert old in ARM
-    return is_same_robot(REFERENCE, read_as_ros(ARM.replace(old, new, 1).encode(), "birch.urdf"), kept)
+    return is_same_robot(
+        REFERENCE, read_as_ros(ARM.replace(old, new, 1).encode(), "birch.urdf"), kept
+    )
 
 
 @pytest.mark.parametrize("change", CHANGES["same"], ids=lambda change: change["new"])

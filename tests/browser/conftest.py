@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 CHROMIUM = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("google-chrome")
 
 
-@pytest.fixture(scope="module")  # not of the session: while Playwright runs, the thread has an event loop
+@pytest.fixture(
+    scope="module"
+)  # not of the session: while Playwright runs, the thread has an event loop
 def browser() -> Iterator["Browser"]:
     """Return a headless browser."""
     sync_api = pytest.importorskip(
@@ -27,7 +29,9 @@ def browser() -> Iterator["Browser"]:
     if CHROMIUM is None:
         pytest.skip("Chromium is not installed")
     with sync_api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])  # tests may run as root
+        browser = playwright.chromium.launch(
+            executable_path=CHROMIUM, args=["--no-sandbox"]
+        )  # tests may run as root
         yield browser
         browser.close()
 

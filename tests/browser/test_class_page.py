@@ -38,7 +38,13 @@ def test_sort_search_and_groups(open_page: Open, pages: Path) -> None:
     """With the pointer and with keys; the state is in the address, so that "back" restores it."""
     opened = open_page(pages / "index.html")
     page = opened.page
-    assert names(opened) == ["Anna Ek", "Dora Fi", "Ben Oh", "Ben Oh", "Cleo Ray"]  # by the family name
+    assert names(opened) == [
+        "Anna Ek",
+        "Dora Fi",
+        "Ben Oh",
+        "Ben Oh",
+        "Cleo Ray",
+    ]  # by the family name
     grade = page.locator("#students th[data-column=grade]")
     grade.get_by_role("button").click()
     assert (names(opened)[0], names(opened)[-1], grade.get_attribute("aria-sort")) == (
@@ -109,14 +115,19 @@ def test_names_are_found_as_they_are_typed(open_page: Open, tmp_path: Path) -> N
         "Sørensen, Åse",
         "Nguyễn, Samuel",
     )
-    rows = [f'robot-{"hgfaedc"[number]},"{name}",{int(name in SEARCHES["late"])}' for number, name in enumerate(people)]
+    rows = [
+        f'robot-{"hgfaedc"[number]},"{name}",{int(name in SEARCHES["late"])}'
+        for number, name in enumerate(people)
+    ]
     (tmp_path / "roster.csv").write_text("\n".join(("id,name,late", *rows)), encoding="utf-8")
     (tmp_path / "small.toml").write_text(lab_text("percent_per_day = 10\n"), encoding="utf-8")
     for row in rows:
         folder = tmp_path / "class" / row.partition(",")[0]
         folder.mkdir(parents=True)
         shutil.copy(ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf", folder)
-    assert batch(tmp_path, "--reports", tmp_path / "pages", "--report-format", "html").returncode == 0
+    assert (
+        batch(tmp_path, "--reports", tmp_path / "pages", "--report-format", "html").returncode == 0
+    )
     opened = open_page(tmp_path / "pages" / "index.html")
     assert names(opened)[:3] == ["Łukasiewicz, Ewa", "Mueller, Bo", "Müller, Anna"]
     found = {}
@@ -135,11 +146,16 @@ def test_names_come_first_in_a_search(open_page: Open, tmp_path: Path) -> None:
         write_submission(tmp_path / "class" / key, size)
     (tmp_path / "roster.csv").write_text("id,name\nbox,Bo Box\nash,Ada Ash\nbirch,Ben Birch\n")
     (tmp_path / "small.toml").write_text(lab_text())
-    assert batch(tmp_path, "--reports", tmp_path / "pages", "--report-format", "html").returncode == 0
+    assert (
+        batch(tmp_path, "--reports", tmp_path / "pages", "--report-format", "html").returncode == 0
+    )
     opened = open_page(tmp_path / "pages" / "index.html")
     opened.page.locator("#find").fill("box")
     assert names(opened) == ["Bo Box"]
-    assert opened.page.get_by_role("status").inner_text() == "1 of 3 students by name; 2 more elsewhere in the table"
+    assert (
+        opened.page.get_by_role("status").inner_text()
+        == "1 of 3 students by name; 2 more elsewhere in the table"
+    )
     opened.page.locator("#find").fill("tall")
     assert sorted(names(opened)) == ["Ada Ash", "Ben Birch"]
     chips = opened.page.locator(".chips button")
@@ -159,12 +175,16 @@ def test_every_part_fits(open_page: Open, tmp_path: Path, width: int) -> None:
         (tmp_path / f"class/{key}.urdf").write_text(wrong, encoding="utf-8")
     done = batch(tmp_path, "--reports", tmp_path / "pages", "--report-format", "html")
     assert done.returncode == 0, done.stderr
-    page = open_page(tmp_path / "pages" / "index.html", viewport={"width": width, "height": 700}).page
+    page = open_page(
+        tmp_path / "pages" / "index.html", viewport={"width": width, "height": 700}
+    ).page
     page.evaluate("for (const one of document.querySelectorAll('details')) one.open = true")
     assert page.evaluate("document.documentElement.scrollWidth") == width
     cut = "[...document.querySelectorAll('pre, th, td, p, li')].filter((one) => one.scrollWidth > one.clientWidth + 1)"
     assert page.evaluate(f"{cut}.map((one) => one.textContent)") == []
-    shown = "row => [...row.children].filter((one) => getComputedStyle(one).display !== 'none').length"
+    shown = (
+        "row => [...row.children].filter((one) => getComputedStyle(one).display !== 'none').length"
+    )
     if width >= 900:  # below, each student is a block
         cells = {row.evaluate(shown) for row in page.locator("#students tr:not([hidden])").all()}
         assert len(cells) == 1, cells
@@ -173,14 +193,18 @@ def test_every_part_fits(open_page: Open, tmp_path: Path, width: int) -> None:
     head, box = page.locator("#students thead th").first.bounding_box(), grade.bounding_box()
     assert head is not None and head["y"] < 60
     assert box is not None and box["x"] + box["width"] <= width
-    rows = page.locator("#criteria tbody tr").evaluate_all("rows => rows.map((row) => row.offsetHeight)")
+    rows = page.locator("#criteria tbody tr").evaluate_all(
+        "rows => rows.map((row) => row.offsetHeight)"
+    )
     assert max(rows) < 130
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_narrow_screens_and_print(open_page: Open, pages: Path, scheme: str) -> None:
     """No part is wider than the screen, and the table of a print has all rows."""
-    opened = open_page(pages / "index.html", viewport={"width": 360, "height": 700}, color_scheme=scheme)
+    opened = open_page(
+        pages / "index.html", viewport={"width": 360, "height": 700}, color_scheme=scheme
+    )
     assert opened.page.evaluate("document.documentElement.scrollWidth") == 360
     opened.page.emulate_media(media="print")
     assert not opened.page.locator(".tools").is_visible()
@@ -215,7 +239,10 @@ def test_a_class_of_a_thousand(open_page: Open, tmp_path: Path) -> None:
     assert names(opened) == ["s0990", "s0994", "s0998"]
     opened.page.locator("[data-group=criterion-loads] button").click()
     opened.page.locator("#find").fill("")
-    assert opened.page.get_by_role("status").inner_text() == "250 of 1000 students: lost points in loads"
+    assert (
+        opened.page.get_by_role("status").inner_text()
+        == "250 of 1000 students: lost points in loads"
+    )
     assert len(names(opened)) == 200
     opened.page.locator("#more").click()
     assert len(names(opened)) == 250

@@ -29,7 +29,9 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for key in KEYS:
         write_submission(top / "class" / key)
         (top / "class" / key / "screen.png").write_bytes(png(640, 400))
-    (top / "class" / "dogwood" / "screen.png").write_text("<svg xmlns='http://www.w3.org/2000/svg' onload='alert(1)'/>")
+    (top / "class" / "dogwood" / "screen.png").write_text(
+        "<svg xmlns='http://www.w3.org/2000/svg' onload='alert(1)'/>"
+    )
     (top / "class" / "birch" / "screen 2.png").write_bytes(png(300, 200))
     packed = shutil.make_archive(str(top / "cedar"), "zip", top / "class", "cedar")
     shutil.rmtree(top / "class" / "cedar")
@@ -116,10 +118,16 @@ def test_ten_items_by_keys_alone(review: Review, open_page: Open, book: Path) ->
     assert page.locator("h1").inner_text() == "1 mark left"
     assert rows_of(book) == ["3.5", "4", "2", "0", "4", "1", "0.5", "1", "-", "1", "1", "0"]
     assert marks_in(book) == [
-        ("ash", "essay", "3.5", "the roots are missing"), ("ash", "picture", "0.5", ""), ("birch", "essay", "4", ""),
-        ("cedar", "essay", "2", "half of it"), ("cedar", "picture", "1", ""), ("dogwood", "essay", "0", ""),
-        ("dogwood", "picture", "1", ""), ("elm", "essay", "4", ""), ("elm", "picture", "0", "a script"),
-    ]  # fmt: skip
+        ("ash", "essay", "3.5", "the roots are missing"),
+        ("ash", "picture", "0.5", ""),
+        ("birch", "essay", "4", ""),
+        ("cedar", "essay", "2", "half of it"),
+        ("cedar", "picture", "1", ""),
+        ("dogwood", "essay", "0", ""),
+        ("dogwood", "picture", "1", ""),
+        ("elm", "essay", "4", ""),
+        ("elm", "picture", "0", "a script"),
+    ]
     press(page, "b", "10")
     page.go_back()
     page.get_by_role("button", name="Show what is left").click()
@@ -153,10 +161,23 @@ def test_somebody_else_marks_meanwhile(review: Review, open_page: Open, book: Pa
     """The page shows the newer mark, and the person keeps or replaces it."""
     page = open_page(f"{review.url}1").page
     for key, name in (("ash", "1"), ("birch", "2")):
-        done = grader("mark", key, "essay", "1", "--by", "Lee", "--comment", "<b>seen</b>", "--gradebook", book)
+        done = grader(
+            "mark",
+            key,
+            "essay",
+            "1",
+            "--by",
+            "Lee",
+            "--comment",
+            "<b>seen</b>",
+            "--gradebook",
+            book,
+        )
         assert done.returncode == 0
         press(page, "4 Enter")
-        page.wait_for_function("() => document.getElementById('error').textContent.includes('has changed')")
+        page.wait_for_function(
+            "() => document.getElementById('error').textContent.includes('has changed')"
+        )
         assert (page.locator("#points").input_value(), page.locator(".marked").count()) == ("4", 1)
         press(page, "Enter")
         page.wait_for_selector("#newer:visible")
@@ -171,9 +192,14 @@ def test_mistakes_are_said_and_nothing_is_lost(review: Review, open_page: Open, 
     """Invalid points, leaving what is not saved, also if it was changed after the warning, and the help."""
     page = open_page(f"{review.url}1").page
     error = page.locator("#error")
-    for typed, why in (("", "Enter the points first."), ("9", "essay is worth 0 to 4 points, not 9")):
+    for typed, why in (
+        ("", "Enter the points first."),
+        ("9", "essay is worth 0 to 4 points, not 9"),
+    ):
         press(page, f"{typed} Enter")
-        page.wait_for_function("why => document.getElementById('error').textContent.includes(why)", arg=why)
+        page.wait_for_function(
+            "why => document.getElementById('error').textContent.includes(why)", arg=why
+        )
         assert page.evaluate("document.activeElement.id") == "points"
     press(page, "n")
     assert error.inner_text() == "Not saved. Do the same again to leave without saving."
@@ -194,7 +220,9 @@ def test_mistakes_are_said_and_nothing_is_lost(review: Review, open_page: Open, 
 def test_the_page_fits(review: Review, open_page: Open) -> None:
     """On a laptop, on a small screen and enlarged to 400 %, in both colour schemes, nothing is cut off sideways."""
     for width, height, scheme in ((1280, 800, "light"), (800, 600, "dark"), (320, 480, "light")):
-        page = open_page(f"{review.url}7", viewport={"width": width, "height": height}, color_scheme=scheme).page
+        page = open_page(
+            f"{review.url}7", viewport={"width": width, "height": height}, color_scheme=scheme
+        ).page
         assert page.evaluate("document.documentElement.scrollWidth") <= width
         assert page.locator("#points").is_visible()
         assert page.evaluate("document.activeElement.id") == "points"
@@ -219,7 +247,9 @@ def test_fast_typing_saves_every_mark_where_it_belongs(open_page: Open, tmp_path
     ]
 
 
-def test_keys_after_a_refused_mark_are_discarded(review: Review, open_page: Open, book: Path) -> None:
+def test_keys_after_a_refused_mark_are_discarded(
+    review: Review, open_page: Open, book: Path
+) -> None:
     """Keys typed for the next item are discarded if it is not shown: the page says so, and nothing is saved for either item."""
     page = open_page(f"{review.url}1").page
     held: list[Any] = []  # the answer to the first mark comes after all keys
@@ -229,7 +259,9 @@ def test_keys_after_a_refused_mark_are_discarded(review: Review, open_page: Open
     while not held:
         page.wait_for_timeout(10)
     held[0].continue_()
-    page.wait_for_function("() => document.getElementById('error').textContent.endsWith('is discarded.')")
+    page.wait_for_function(
+        "() => document.getElementById('error').textContent.endsWith('is discarded.')"
+    )
     assert page.locator("#points").input_value() == "9"
     assert page.url.endswith("/1")
     assert marks_in(book) == []
@@ -251,7 +283,9 @@ def test_deductions(open_page: Open, chosen: Path) -> None:
         page.locator("[data-choice='2']").click()
         assert page.locator("#comment").input_value() == "no reason; see me"
         press(page, "p 2")
-        assert page.locator("[data-choice][aria-pressed=true]").all_inner_texts() == ["Alt+1 no reason (-2)"]
+        assert page.locator("[data-choice][aria-pressed=true]").all_inner_texts() == [
+            "Alt+1 no reason (-2)"
+        ]
         press(page, "Enter", "2")
         rest(page)
     assert marks_in(chosen) == [("ash", "essay", "2", "no reason; see me")]
@@ -263,7 +297,9 @@ def open_class(tmp_path_factory: pytest.TempPathFactory) -> Path:
     top = tmp_path_factory.mktemp("open")
     for key in KEYS[:2]:
         write_submission(top / "class" / key)
-    unknown = urdf("$(env SIDE) 1 1").replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')
+    unknown = urdf("$(env SIDE) 1 1").replace(
+        "<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" '
+    )
     (top / "class" / "birch" / "robot.urdf").unlink()
     (top / "class" / "birch" / "robot.urdf.xacro").write_text(unknown)
     return graded_in(top, "id,name\nash,Ash Ek\nbirch,Änne Birch\n")
@@ -281,7 +317,11 @@ def test_points_for_all_are_shared(open_page: Open, opened: Path) -> None:
         page = open_page(f"{review.url}1").page
         fields = page.locator("[data-most]")
         each = "[...document.querySelectorAll('[data-most]')].map(field => field.value)"
-        assert fields.evaluate_all("all => all.map(field => field.dataset.most)") == ["3", "2.5", "0.5"]
+        assert fields.evaluate_all("all => all.map(field => field.dataset.most)") == [
+            "3",
+            "2.5",
+            "0.5",
+        ]
         press(page, "f")
         assert page.evaluate(each) == ["3", "2.5", "0.5"]
         press(page, "Control+a '4'")
@@ -292,7 +332,11 @@ def test_points_for_all_are_shared(open_page: Open, opened: Path) -> None:
         page.wait_for_url("**/5")
         assert page.locator("h1").inner_text() == "Änne Birch (birch)"
         rest(page)
-    assert marks_in(opened) == [("birch", "box", "2.5", ""), ("birch", "loads", "2", ""), ("birch", "tall", "0.33", "")]
+    assert marks_in(opened) == [
+        ("birch", "box", "2.5", ""),
+        ("birch", "loads", "2", ""),
+        ("birch", "tall", "0.33", ""),
+    ]
 
 
 def test_the_list_of_students(open_page: Open, opened: Path) -> None:
@@ -310,7 +354,9 @@ def test_the_list_of_students(open_page: Open, opened: Path) -> None:
         page.locator("#find").fill("")
         page.locator("#points").focus()
         press(page, "f Enter", "5")
-        page.wait_for_function("() => document.getElementById('people-list').innerText.includes('1 left')")
+        page.wait_for_function(
+            "() => document.getElementById('people-list').innerText.includes('1 left')"
+        )
         small = open_page(f"{review.url}1", viewport={"width": 400, "height": 700}).page
         assert not small.locator("#people").is_visible()
         small.get_by_role("button", name="Students").click()
@@ -327,8 +373,14 @@ def test_a_server_that_has_ended_saves_nothing(open_pages: Open, opened: Path) -
         page = open_pages(f"{review.url}1").page
         page.wait_for_selector("#people-list button", state="attached")
     press(page, "f c 'good' Enter")
-    page.wait_for_function("() => document.getElementById('error').textContent.includes('not saved')")
-    assert page.locator("#error").inner_text().startswith("The server has ended: run `grader review` again")
+    page.wait_for_function(
+        "() => document.getElementById('error').textContent.includes('not saved')"
+    )
+    assert (
+        page.locator("#error")
+        .inner_text()
+        .startswith("The server has ended: run `grader review` again")
+    )
     assert page.locator("#comment").input_value() == "good"
     assert page.locator("#points").input_value() == "6"
     page.close()
@@ -349,7 +401,10 @@ def test_one_column_below_900_pixels(review: Review, open_page: Open) -> None:
         page = open_page(f"{review.url}7", viewport={"width": width, "height": 500}).page
         for place in (0, 200):
             page.evaluate("place => scrollTo(0, place)", place)
-            box, points = page.locator("#found-title").bounding_box(), page.locator("#points").bounding_box()
+            box, points = (
+                page.locator("#found-title").bounding_box(),
+                page.locator("#points").bounding_box(),
+            )
             assert box is not None and box["width"] > width - 40
             assert points is not None and 0 < points["y"] < 500 - points["height"]
             assert page.evaluate("scrollY") == place

@@ -9,12 +9,12 @@ from grader.report.pages.shell import Assets, render_page
 from tests.browser.conftest import OpenPage
 
 pytestmark = pytest.mark.exhaustive
-HOSTILE = (
-    "<script>document.title='run'</script><img src=x onerror=\"document.title='run'\"><style>body{color:red}</style>"
-)
+HOSTILE = "<script>document.title='run'</script><img src=x onerror=\"document.title='run'\"><style>body{color:red}</style>"
 
 
-def test_browser_refuses_what_the_policy_does_not_name(open_page: Callable[..., OpenPage], tmp_path: Path) -> None:
+def test_browser_refuses_what_the_policy_does_not_name(
+    open_page: Callable[..., OpenPage], tmp_path: Path
+) -> None:
     """Markup that were to get into a page neither runs, nor loads, nor styles."""
     file = tmp_path / "page.html"
     text = render_page("base.html", {"version": "1", "title": "A page"}, {}, Assets())

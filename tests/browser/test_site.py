@@ -16,7 +16,10 @@ from tests.command_line import ROOT
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
-pytestmark = [pytest.mark.exhaustive, pytest.mark.filterwarnings("default")]  # the warnings of Sphinx' own dependencies
+pytestmark = [
+    pytest.mark.exhaustive,
+    pytest.mark.filterwarnings("default"),
+]  # the warnings of Sphinx' own dependencies
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +56,11 @@ def references(site: Path, path: str) -> Iterator[tuple[Path, str]]:
 def test_links_and_anchors_lead_somewhere(builder: ModuleType, site: Path) -> None:
     """A link is a file of the site and an id in it, or a file of the repository, or another website."""
     ids = {page: set(parsed(page).xpath("//@id")) for page in site.glob("*.html")}
-    links = [(page, link) for page, link in references(site, "//@href | //@src") if not link.startswith("data:")]
+    links = [
+        (page, link)
+        for page, link in references(site, "//@href | //@src")
+        if not link.startswith("data:")
+    ]
     assert len(links) > 1000
     for page, link in links:
         if file := re.match(rf"{builder.REPOSITORY}/(?:blob|tree)/main/([^#]+)", link):
@@ -75,7 +82,9 @@ def test_nothing_is_loaded_from_elsewhere(site: Path) -> None:
 
 def test_every_page_is_built(builder: ModuleType, site: Path) -> None:
     """Each page of docs/ and each file of the project that belongs to the site is in it."""
-    assert {Path(name).stem for name in builder.PAGES.values()} <= {page.stem for page in site.glob("*.html")}
+    assert {Path(name).stem for name in builder.PAGES.values()} <= {
+        page.stem for page in site.glob("*.html")
+    }
 
 
 @pytest.mark.parametrize(
@@ -88,7 +97,12 @@ def test_every_page_is_built(builder: ModuleType, site: Path) -> None:
     ],
 )
 def test_a_mistake_fails_the_build(  # so that the others can fail
-    builder: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, page: str, before: str, after: str
+    builder: ModuleType,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    page: str,
+    before: str,
+    after: str,
 ) -> None:
     """A link to no page, a link to no heading, and a page in no section are errors."""
     texts = dict(builder.sources())
@@ -106,7 +120,9 @@ def test_a_link_to_a_missing_file_fails_the_build(builder: ModuleType) -> None:
 
 
 @pytest.mark.parametrize("width", [390, 820, 1440])
-def test_pages_fit_and_the_search_works_from_disk(browser: "Browser", site: Path, width: int) -> None:
+def test_pages_fit_and_the_search_works_from_disk(
+    browser: "Browser", site: Path, width: int
+) -> None:
     """No page is wider than the window, the search finds a word, and nothing but files is requested."""
     page = browser.new_page(viewport={"width": width, "height": 900})
     requests: list[str] = []

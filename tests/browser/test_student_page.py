@@ -35,7 +35,10 @@ def test_number_of_a_failure_leads_to_the_picture(page: Any) -> None:
     """The three views stay beside the failures on a wide screen, and follow them on a narrow one."""
     page.locator("#criterion-lidar-frame .pin").first.click()
     assert page.url.endswith("#robot")
-    assert page.locator(".views svg").bounding_box()["x"] > page.locator(".report").bounding_box()["width"]
+    assert (
+        page.locator(".views svg").bounding_box()["x"]
+        > page.locator(".report").bounding_box()["width"]
+    )
     page.set_viewport_size({"width": 400, "height": 800})
     assert page.locator(".views svg").bounding_box()["x"] < 100
     page.set_viewport_size({"width": 1280, "height": 900})
@@ -59,7 +62,10 @@ def test_dark_mode_and_print(page: Any) -> None:
     page.emulate_media(media="print", color_scheme="dark")
     assert page.evaluate(BACKGROUND, "body") == "rgb(255, 255, 255)"
     assert page.evaluate(BACKGROUND, ".hint") == "rgb(218, 251, 225)"
-    tops = [page.locator(f"{part} h2").first.bounding_box()["y"] for part in (".robot", ".report", ".all")]
+    tops = [
+        page.locator(f"{part} h2").first.bounding_box()["y"]
+        for part in (".robot", ".report", ".all")
+    ]
     assert tops == sorted(tops)
     assert page.locator("details td").first.is_visible()
     tables = page.locator(".all details table").evaluate_all(
@@ -74,7 +80,9 @@ def test_no_width_scrolls_sideways(page: Any, width: int) -> None:
     """A telephone, a small and a large window: nothing is wider than the page."""
     page.set_viewport_size({"width": width, "height": 800})
     assert page.evaluate("() => document.documentElement.scrollWidth") <= width
-    for lines in page.locator(".diff, .source").all():  # all of each line is visible, also what changes
+    for lines in page.locator(
+        ".diff, .source"
+    ).all():  # all of each line is visible, also what changes
         assert lines.evaluate("lines => lines.scrollWidth <= lines.clientWidth")
     page.set_viewport_size({"width": 1280, "height": 900})
 

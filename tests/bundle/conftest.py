@@ -44,7 +44,9 @@ def with_grader(tmp_path: Path, source: Path) -> Callable[..., Autograder]:
         other = tmp_path / "source"
         (other / "grader").mkdir(parents=True)
         (other / "grader" / "__main__.py").write_text(program)
-        (other / "autograder.json").write_text(f'{{"rubric": "lab6", "sha256": "", "seconds": {seconds}}}')
+        (other / "autograder.json").write_text(
+            f'{{"rubric": "lab6", "sha256": "", "seconds": {seconds}}}'
+        )
         for name in ("autograder.py", "run_autograder"):
             (other / name).write_bytes((source / name).read_bytes())
             (other / name).chmod(0o755)

@@ -41,16 +41,24 @@ def test_the_files(bundle: Path) -> None:
     files = (path.relative_to(ROOT) for path in (ROOT / "grader").rglob("*.*"))
     second = {path.as_posix() for path in files if "__pycache__" not in path.parts}
     assert {name for name in names if "/" not in name} == {
-        "setup.sh", "run_autograder", "autograder.py", "autograder.json", "requirements.txt",
-    }  # fmt: skip
+        "setup.sh",
+        "run_autograder",
+        "autograder.py",
+        "autograder.json",
+        "requirements.txt",
+    }
     rendered = {name for name in names if name.startswith("grader/")}
     reference = {
-        f"grader/{path.relative_to(ROOT)}" for path in (ROOT / "rubrics/lab6/my_robot").rglob("*") if path.is_file()
+        f"grader/{path.relative_to(ROOT)}"
+        for path in (ROOT / "rubrics/lab6/my_robot").rglob("*")
+        if path.is_file()
     }
     assert reference
     assert rendered == {*second, "grader/bundle/on_gradescope/run_autograder", *RUBRICS, *reference}
     assert {name for name in names if "rubrics/" in name} == {*RUBRICS, *reference}
-    assert not [name for name in names if "__pycache__" in name or name.endswith(".pyc") or "tests" in name]
+    assert not [
+        name for name in names if "__pycache__" in name or name.endswith(".pyc") or "tests" in name
+    ]
     assert list(names) == sorted(names)
 
 
@@ -70,9 +78,13 @@ def test_model_answers_are_excluded(bundle: Path, tmp_path: Path) -> None:
 
 def test_permissions_and_times(bundle: Path) -> None:
     """Only the two scripts are executable, and no timestamp depends on the clock."""
-    programs = {name for name, entry in members(bundle).items() if entry.external_attr >> 16 == 0o100755}
+    programs = {
+        name for name, entry in members(bundle).items() if entry.external_attr >> 16 == 0o100755
+    }
     assert programs == {"setup.sh", "run_autograder"}
-    others = {entry.external_attr >> 16 for name, entry in members(bundle).items() if name not in programs}
+    others = {
+        entry.external_attr >> 16 for name, entry in members(bundle).items() if name not in programs
+    }
     assert others == {0o100644}
     assert {(entry.date_time, entry.create_system) for entry in members(bundle).values()} == {
         ((1980, 1, 1, 0, 0, 0), 3)
@@ -80,7 +92,9 @@ def test_permissions_and_times(bundle: Path) -> None:
 
 
 @pytest.mark.exhaustive
-def test_scripts_have_unix_lines(source: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_scripts_have_unix_lines(
+    source: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Scripts have Unix line endings even if git checked them out with CRLF; bash accepts them."""
     from grader.bundle import gradescope
 
@@ -120,7 +134,10 @@ def as_wheel(into: Path) -> Path:
     for extra, expected in PROJECT["optional-dependencies"].items():
         lines += [
             f"Provides-Extra: {extra}",
-            *(f"Requires-Dist: {in_order(requirement)}; extra == '{extra}'" for requirement in expected),
+            *(
+                f"Requires-Dist: {in_order(requirement)}; extra == '{extra}'"
+                for requirement in expected
+            ),
         ]
     (into / "urdf_grader-9.9.dist-info").mkdir()
     head = "Metadata-Version: 2.4\nName: urdf-grader\nVersion: 9.9\n"
@@ -133,8 +150,14 @@ def test_from_a_wheel(bundle: Path, tmp_path: Path) -> None:
     """A bundle from an installed wheel has the same bytes as one from a checkout."""
     target = as_wheel(tmp_path / "packages")
     out = tmp_path / "out.zip"
-    start = f"import sys; sys.path.insert(0, {str(target)!r}); from grader.__main__ import main; main()"
-    subprocess.run([sys.executable, "-I", "-c", start, "bundle", "gradescope", str(out)], cwd=tmp_path, check=True)
+    start = (
+        f"import sys; sys.path.insert(0, {str(target)!r}); from grader.__main__ import main; main()"
+    )
+    subprocess.run(
+        [sys.executable, "-I", "-c", start, "bundle", "gradescope", str(out)],
+        cwd=tmp_path,
+        check=True,
+    )
     assert out.read_bytes() == bundle.read_bytes()
 
 
@@ -142,7 +165,9 @@ def test_requirements(bundle: Path) -> None:
     """The requirements are those of the grader and of the extra for documents, no others."""
     with zipfile.ZipFile(bundle) as archive:
         lines = archive.read("requirements.txt").decode().splitlines()
-    assert lines == sorted(map(in_order, PROJECT["dependencies"] + PROJECT["optional-dependencies"]["documents"]))
+    assert lines == sorted(
+        map(in_order, PROJECT["dependencies"] + PROJECT["optional-dependencies"]["documents"])
+    )
 
 
 def test_requirements_with_conditions(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -210,8 +235,13 @@ def test_a_custom_rubric(tmp_path: Path) -> None:
     source = unpacked(tmp_path / "out.zip", tmp_path / "source")
     assert (source / "rubric.toml").read_bytes() == own.read_bytes()
     settings = json.loads((source / "autograder.json").read_text())
-    assert (settings["rubric"], settings["sha256"]) == ("source/rubric.toml", sha256_of(own.read_bytes()))
-    autograder = Autograder(tmp_path / "autograder", source, environment_for(source, tmp_path / "venv"))
+    assert (settings["rubric"], settings["sha256"]) == (
+        "source/rubric.toml",
+        sha256_of(own.read_bytes()),
+    )
+    autograder = Autograder(
+        tmp_path / "autograder", source, environment_for(source, tmp_path / "venv")
+    )
     autograder.submission.rmdir()
     write_submission(autograder.submission)
     results = autograder.run()

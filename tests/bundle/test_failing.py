@@ -64,8 +64,12 @@ def test_no_report(with_grader: Making, program: str) -> None:
 
 def test_error_text_is_escaped(with_grader: Making) -> None:
     """The reason why nothing was graded reaches the student as plain text, whatever it contains."""
-    words = b"grader: <b>\x1b[31m\x00\xff\xe2\x80\xae `a` " + b"long " * 1000 + b"\ngrader: second\n"
-    results = with_grader(f"import sys; sys.stderr.buffer.write({words!r}); raise SystemExit(2)").run()
+    words = (
+        b"grader: <b>\x1b[31m\x00\xff\xe2\x80\xae `a` " + b"long " * 1000 + b"\ngrader: second\n"
+    )
+    results = with_grader(
+        f"import sys; sys.stderr.buffer.write({words!r}); raise SystemExit(2)"
+    ).run()
     assert (results["score"], results["output_format"]) == (0, "text")
     assert "\n<b>?[31m?\ufffd? `a` long long" in results["output"]
     assert len(results["output"]) < 3000

@@ -66,8 +66,12 @@ def test_a_changed_rubric_is_refused(tmp_path: Path, autograder: Autograder, sou
     settings = json.loads((source / "autograder.json").read_text())
     (autograder.root / "source").unlink()
     (autograder.root / "source").mkdir()
-    (autograder.root / "source" / "autograder.py").write_bytes((source / "autograder.py").read_bytes())
-    (autograder.root / "source" / "autograder.json").write_text(json.dumps({**settings, "sha256": "0" * 64}))
+    (autograder.root / "source" / "autograder.py").write_bytes(
+        (source / "autograder.py").read_bytes()
+    )
+    (autograder.root / "source" / "autograder.json").write_text(
+        json.dumps({**settings, "sha256": "0" * 64})
+    )
     autograder.submit("reference")
     results = autograder.run()
     assert (results["score"], results["tests"]) == (0, [])
@@ -87,7 +91,9 @@ def named(folder: Path) -> None:
         path = Path(os.fsdecode(os.path.join(os.fsencode(folder), name)))
         path.write_bytes(text)
         path.with_suffix(".png").write_bytes(PNG)
-    (folder / "<img src=x onerror=alert(1)>.md").write_text("# Step 15\n\n<script>alert(1)</script>\x00\x1b[2J\n```\n")
+    (folder / "<img src=x onerror=alert(1)>.md").write_text(
+        "# Step 15\n\n<script>alert(1)</script>\x00\x1b[2J\n```\n"
+    )
     (folder / "step 2.md").write_bytes(b"# Task 2 step 2\n\n\xff\xfe\xed\xa0\x80\n")
 
 
@@ -113,8 +119,13 @@ def test_a_hostile_submission(autograder: Autograder, hostile: object) -> None:
     assert results["score"] <= 90
     assert "root:" not in json.dumps(results)
     assert sorted(path.name for path in autograder.root.iterdir()) == [
-        "results", "run_autograder", "source", "submission", "submission_metadata.json", "venv",
-    ]  # fmt: skip
+        "results",
+        "run_autograder",
+        "source",
+        "submission",
+        "submission_metadata.json",
+        "venv",
+    ]
 
 
 @pytest.mark.exhaustive

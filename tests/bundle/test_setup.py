@@ -46,7 +46,9 @@ def test_from_the_zip_to_a_grade(bundle: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stdout
     assert done.stdout.endswith("setup.sh: the grader is ready\n")
     assert "lab6" in done.stdout
-    installed = subprocess.run([root / "venv/bin/python", "-I", "-c", WORD], capture_output=True, text=True, check=True)
+    installed = subprocess.run(
+        [root / "venv/bin/python", "-I", "-c", WORD], capture_output=True, text=True, check=True
+    )
     assert installed.stdout.count(str(root / "venv")) == 3
     (tmp_path / "again").mkdir()
     autograder = Autograder(tmp_path / "again", source, root / "venv")
@@ -73,9 +75,13 @@ OLD = "exit 1"
 
 
 @pytest.mark.parametrize(
-    ("python3", "packages"), [(OLD, "python3.11 python3.11-venv"), (NEW, "python3-venv")], ids=["22.04", "24.04"]
+    ("python3", "packages"),
+    [(OLD, "python3.11 python3.11-venv"), (NEW, "python3-venv")],
+    ids=["22.04", "24.04"],
 )
-def test_python_is_installed_if_needed(source: Path, tmp_path: Path, python3: str, packages: str) -> None:
+def test_python_is_installed_if_needed(
+    source: Path, tmp_path: Path, python3: str, packages: str
+) -> None:
     """setup.sh installs a newer Python beside an old one, or the venv package for a new one; the system's Python stays."""
     newer = {"python3_11": '[ -e "$LOG.done" ] && echo it runs >>"$LOG"'} if python3 == OLD else {}
     path = image(tmp_path, python3=python3, apt_get=APT, **newer)
@@ -83,11 +89,16 @@ def test_python_is_installed_if_needed(source: Path, tmp_path: Path, python3: st
     shutil.copytree(source, tmp_path / "root" / "source")
     set_up(tmp_path / "root" / "source", tmp_path, PATH=path, LOG=str(tmp_path / "log"))
     lines = (tmp_path / "log").read_text().splitlines()
-    assert lines[:2] == ["update --quiet", f"install --yes --quiet --no-install-recommends {packages}"]
+    assert lines[:2] == [
+        "update --quiet",
+        f"install --yes --quiet --no-install-recommends {packages}",
+    ]
     assert "it runs" in lines[2:]
 
 
-@pytest.mark.parametrize("programs", [{}, {"apt_get": "exit 100", "python3": OLD}], ids=["nothing", "no network"])
+@pytest.mark.parametrize(
+    "programs", [{}, {"apt_get": "exit 100", "python3": OLD}], ids=["nothing", "no network"]
+)
 def test_without_a_python(source: Path, tmp_path: Path, programs: dict[str, str]) -> None:
     """The build fails, and its last line says what to do."""
     done = set_up(source, tmp_path, PATH=image(tmp_path, **programs))
@@ -100,7 +111,9 @@ def test_without_a_python(source: Path, tmp_path: Path, programs: dict[str, str]
 def test_a_rubric_broken_after_bundling(bundle: Path, tmp_path: Path) -> None:
     """A rubric that was broken in the unpacked files is detected when the image is built."""
     source = unpacked(bundle, tmp_path / "source")
-    (source / "autograder.json").write_text('{"rubric": "source/rubric.toml", "sha256": "", "seconds": 1}')
+    (source / "autograder.json").write_text(
+        '{"rubric": "source/rubric.toml", "sha256": "", "seconds": 1}'
+    )
     (source / "rubric.toml").write_text("id = 1\n")
     check = [sys.executable, "-I", "source/autograder.py", "--check"]
     done = subprocess.run(check, cwd=tmp_path, capture_output=True, text=True, check=False)

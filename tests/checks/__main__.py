@@ -19,7 +19,14 @@ def write(row: Row, found: str) -> None:
 
 if __name__ == "__main__":
     for row in read_rows():
-        if row.check.name in (sys.argv[1:] or row.check.name) and (found := row.found()) != row.expected:
+        if (
+            row.check.name in (sys.argv[1:] or row.check.name)
+            and (found := row.found()) != row.expected
+        ):
             texts = row.expected.splitlines(), found.splitlines()
-            print(f"== {row.name}", *difflib.unified_diff(*texts, "before", "now", lineterm="", n=1), sep="\n")
+            print(
+                f"== {row.name}",
+                *difflib.unified_diff(*texts, "before", "now", lineterm="", n=1),
+                sep="\n",
+            )
             write(row, found)

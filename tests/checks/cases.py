@@ -44,24 +44,41 @@ def _case(check: Check, table: Mapping[str, Any], kind: type[Subject]) -> Case[S
     passing, failing = first.subject, second.subject
     assert isinstance(passing, kind)
     assert isinstance(failing, kind)
-    edges = {name: partial(_off_by, passing, edits) for name, edits in table.get("edges", {}).items()}
+    edges = {
+        name: partial(_off_by, passing, edits) for name, edits in table.get("edges", {}).items()
+    }
     one_sided, meshes = tuple(table.get("one_sided", ())), table.get("meshes", "passed")
     return Case(
-        check.function, first.arguments, passing, failing, edges, one_sided, meshes, table.get("needs_size", True)
+        check.function,
+        first.arguments,
+        passing,
+        failing,
+        edges,
+        one_sided,
+        meshes,
+        table.get("needs_size", True),
     )
 
 
 def _off_by(robot: Any, edits: list[list[Any]], amount: float) -> Scene:
     """Return a robot with edits: a text, what replaces it, and for each {} in it a number, and how it grows with the amount."""
     numbers = [[float(number) for number in edit[2:]] for edit in edits]
-    amounts = [[start + amount * by for start, by in zip(row[::2], row[1::2], strict=True)] for row in numbers]
-    pairs = [(old, new.format(*map(repr, row))) for (old, new, *_), row in zip(edits, amounts, strict=True)]
+    amounts = [
+        [start + amount * by for start, by in zip(row[::2], row[1::2], strict=True)]
+        for row in numbers
+    ]
+    pairs = [
+        (old, new.format(*map(repr, row)))
+        for (old, new, *_), row in zip(edits, amounts, strict=True)
+    ]
     return Scene(edited(robot.text, pairs))
 
 
 _ALL = list(tables())
 CASES = tuple(_case(check, table, Scene) for check, table in _ALL if "scene" in table["row"][0])
-_OTHERS = tuple(_case(check, table, Submitted) for check, table in _ALL if "package" in table["row"][0])
+_OTHERS = tuple(
+    _case(check, table, Submitted) for check, table in _ALL if "package" in table["row"][0]
+)
 PENDING_CASES = tuple(case for case in _OTHERS if case.name in ("answered", "evidence_shown"))
 PACKAGE_CASES = tuple(case for case in _OTHERS if case not in PENDING_CASES)
 CASE = {case.name: case for case in CASES}

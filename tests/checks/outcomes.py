@@ -27,10 +27,14 @@ Arguments = dict[str, Any]
 _EXPLANATION = re.compile(r" \(URDF\d{3}: .*\)\Z", re.DOTALL)
 
 
-def ask(check: AnyCheck, of: Scene | Submitted, reference: Scene = ARM, /, **arguments: Any) -> Outcome:
+def ask(
+    check: AnyCheck, of: Scene | Submitted, reference: Scene = ARM, /, **arguments: Any
+) -> Outcome:
     """Return the outcome of a check."""
     described = describe(check)
-    return described.outcome((_subject(name, of, reference) for name in described.examined), arguments)
+    return described.outcome(
+        (_subject(name, of, reference) for name in described.examined), arguments
+    )
 
 
 def missing(check: AnyCheck, of: Scene | Submitted, /, **arguments: Any) -> MissingElement:
@@ -40,10 +44,21 @@ def missing(check: AnyCheck, of: Scene | Submitted, /, **arguments: Any) -> Miss
     return caught.value
 
 
-def graded(check: AnyCheck, of: Scene | Submitted, reference: Scene = ARM, /, **arguments: Any) -> Outcome:
+def graded(
+    check: AnyCheck, of: Scene | Submitted, reference: Scene = ARM, /, **arguments: Any
+) -> Outcome:
     """Return the outcome of a rubric's only criterion, which uses this check."""
     criterion = Criterion("only", "The only one", "all", Decimal(1), describe(check), arguments)
-    rubric = Rubric("test", "Test", (Part("all", "All"),), (criterion,), "robot.urdf", "", b"", Path("test.toml"))
+    rubric = Rubric(
+        "test",
+        "Test",
+        (Part("all", "All"),),
+        (criterion,),
+        "robot.urdf",
+        "",
+        b"",
+        Path("test.toml"),
+    )
     submission = _subject("submission", of, reference)
     assert isinstance(submission, Submission)
     return grade(replace(rubric, solution=_Solution(reference)), submission).results[0].outcome

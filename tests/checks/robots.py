@@ -124,7 +124,9 @@ def joint(
         f'<child link="{child}"/>',
         _origin(xyz, rpy),
         f'<axis xyz="{numbers(axis)}"/>' if axis else "",
-        '<limit lower="-1" upper="1" effort="1" velocity="1"/>' if kind in ("revolute", "prismatic") else "",
+        '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
+        if kind in ("revolute", "prismatic")
+        else "",
     )
     return "\n".join((f'<joint name="{name}" type="{kind}">', *filter(None, inside), "</joint>"))
 
@@ -148,7 +150,9 @@ def _attribute(name: str, value: Numbers) -> str:
     return f' {name}="{numbers(value)}"' if value else ""
 
 
-BASE = link("base", visual(box(0.6, 0.4, 0.2), xyz=(0.0, 0.0, 0.1), material=paint("0 0.6 0 1", "green")))
+BASE = link(
+    "base", visual(box(0.6, 0.4, 0.2), xyz=(0.0, 0.0, 0.1), material=paint("0 0.6 0 1", "green"))
+)
 LIDAR = link("lidar", visual(cylinder()))
 WHEEL = link("wheel", visual(cylinder()))
 CASTER = link("caster", visual(sphere(0.05)))
@@ -156,7 +160,9 @@ CASTER = link("caster", visual(sphere(0.05)))
 
 def rolling(*, rpy: Numbers = (-pi / 2, 0.0, 0.0), wheel: str = WHEEL) -> Scene:
     """Return a base with one wheel on its left side, which drives it forward by default."""
-    held = joint("wheel_joint", "continuous", "base", "wheel", xyz=(-0.15, 0.225, 0.0), rpy=rpy, axis="0 0 1")
+    held = joint(
+        "wheel_joint", "continuous", "base", "wheel", xyz=(-0.15, 0.225, 0.0), rpy=rpy, axis="0 0 1"
+    )
     return scene(BASE, wheel, held)
 
 

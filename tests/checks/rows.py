@@ -22,7 +22,19 @@ from tests.checks.robots import PATH, Scene
 from tests.checks.submissions import REFERENCE, Submitted
 
 CORPUS = Path(__file__).parents[1] / "corpus" / "checks"
-GIVEN = ("about", "scene", "urdf", "package", "removed", "renamed", "files", "copies", "edits", "reference", "with")
+GIVEN = (
+    "about",
+    "scene",
+    "urdf",
+    "package",
+    "removed",
+    "renamed",
+    "files",
+    "copies",
+    "edits",
+    "reference",
+    "with",
+)
 _LONG = 1_000  # characters of an answer, of which the rest is counted
 _REST = 60  # characters of the line that are shown from a place on
 
@@ -48,7 +60,9 @@ class Row:
         """Return the robot or the submission."""
         if "package" in self.given:
             return submitted(self.given)
-        text = whole(self.given["urdf"]) if "urdf" in self.given else scene_text(self.given["scene"])
+        text = (
+            whole(self.given["urdf"]) if "urdf" in self.given else scene_text(self.given["scene"])
+        )
         return Scene(edited(text, self.given.get("edits", ())))
 
     @property
@@ -60,7 +74,12 @@ class Row:
     def found(self) -> str:
         """Return what the check finds now."""
         reference = Scene(scene_text(self.given.get("reference", "arm")))
-        return finding(self.check.for_arguments(self.arguments).function, self.subject, reference, self.arguments)
+        return finding(
+            self.check.for_arguments(self.arguments).function,
+            self.subject,
+            reference,
+            self.arguments,
+        )
 
 
 def finding(check: AnyCheck, of: Scene | Submitted, reference: Scene, arguments: Arguments) -> str:
@@ -74,13 +93,22 @@ def finding(check: AnyCheck, of: Scene | Submitted, reference: Scene, arguments:
         alone = _fields(ask(check, of, reference, **arguments)._asdict(), of)
     except MissingElement as error:
         alone = {"missing": [error.kind, error.name, *error.known], "message": str(error)}
-        alone |= _fields({"location": error.location, "mistake": error.mistake, "problem": error.problem}, of)
+        alone |= _fields(
+            {"location": error.location, "mistake": error.mistake, "problem": error.problem}, of
+        )
     except (NotDecided, UnknownShape) as error:
-        alone = {"open": type(error).__name__, "message": str(error), "mistake": getattr(error, "cause", "")}
+        alone = {
+            "open": type(error).__name__,
+            "message": str(error),
+            "mistake": getattr(error, "cause", ""),
+        }
     except NoSubject:
         alone = {}
     message = own_message(outcome)
-    usual = {**found, "message": message.removesuffix("; needs manual grading") if "open" in alone else message}
+    usual = {
+        **found,
+        "message": message.removesuffix("; needs manual grading") if "open" in alone else message,
+    }
     different = {key: value for key, value in alone.items() if usual.get(key) != value}
     return lines({**found, "alone": different} if different else found)
 
@@ -119,8 +147,13 @@ def submitted(given: Fields) -> Submitted:
     of = of.without(*given.get("removed", ()))
     for old, new in given.get("renamed", {}).items():
         of = of.renaming(old, new)
-    encoded = {path: whole(text).encode(_encoding(text)) for path, text in given.get("files", {}).items()}
-    copied = {path: (CORPUS / "files" / name).read_bytes() for path, name in given.get("copies", {}).items()}
+    encoded = {
+        path: whole(text).encode(_encoding(text)) for path, text in given.get("files", {}).items()
+    }
+    copied = {
+        path: (CORPUS / "files" / name).read_bytes()
+        for path, name in given.get("copies", {}).items()
+    }
     of = of.with_files(encoded | copied)
     for path, old, new in given.get("edits", ()):
         of = of.with_files({path: edited(of.data(path).decode(), [(old, new)])})
@@ -133,7 +166,9 @@ def _encoding(text: Any) -> str:
 
 def _fields(found: Fields, of: Scene | Submitted) -> dict[str, Any]:
     """Return the fields that are not empty, with the place in words."""
-    fields = {key: value for key, value in found.items() if value is not None and value not in ("", ())}
+    fields = {
+        key: value for key, value in found.items() if value is not None and value not in ("", ())
+    }
     if len(str(fields.get("measured", ""))) > _LONG:
         fields["measured"] = (
             f"{fields['measured'][:40]} ... {fields['measured'][-40:]}: {len(fields['measured'])} characters"
@@ -164,7 +199,9 @@ def toml(value: object) -> str:
         case int() | float():
             return f"{round(value, 9) + 0.0:.6g}"
         case Mapping():
-            return "{ " + ", ".join(f"{_key(key)} = {toml(one)}" for key, one in value.items()) + " }"
+            return (
+                "{ " + ", ".join(f"{_key(key)} = {toml(one)}" for key, one in value.items()) + " }"
+            )
         case list() | tuple():
             return f"[{', '.join(map(toml, value))}]"
     return _quoted(str(value))
@@ -180,7 +217,9 @@ def _quoted(text: str) -> str:
         return f"'''\n{text}'''"
     if is_plain and "\n" not in text and "'" not in text and ('"' in text or "\\" in text):
         return f"'{text}'"
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\t", "\\t")
+    escaped = (
+        text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\t", "\\t")
+    )
     return '"' + re.sub(r"[\x00-\x1f\x7f]", lambda found: f"\\u{ord(found[0]):04x}", escaped) + '"'
 
 

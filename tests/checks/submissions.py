@@ -33,13 +33,17 @@ class Submitted:
     @cached_property
     def submission(self) -> Submission:
         """Return the submission that the grader reads from the files."""
-        files = [file_of(path, self.data(path)) for path in self.files if not path.startswith("install/")]
+        files = [
+            file_of(path, self.data(path)) for path in self.files if not path.startswith("install/")
+        ]
         tree = make_tree(
             "submission",
             files,
             (),
             ignored=[
-                IgnoredFile(path, "is a rar archive", is_closed=True) for path in self.files if path.endswith(".rar")
+                IgnoredFile(path, "is a rar archive", is_closed=True)
+                for path in self.files
+                if path.endswith(".rar")
             ],
             generated=[path for path in self.files if path.startswith("install/")],
         )
@@ -66,7 +70,11 @@ class Submitted:
 
     def renaming(self, old: str, new: str) -> "Submitted":
         """Return a copy with a file or folder under another path."""
-        moved = {path: path.replace(old, new, 1) for path in self.files if path == old or path.startswith(old + "/")}
+        moved = {
+            path: path.replace(old, new, 1)
+            for path in self.files
+            if path == old or path.startswith(old + "/")
+        }
         assert moved, f"{old} is not among {sorted(self.files)}"
         return Submitted({moved.get(path, path): content for path, content in self.files.items()})
 
@@ -75,11 +83,15 @@ def png(width: int = 640, height: int = 480) -> bytes:
     """Return an empty PNG."""
 
     def chunk(kind: bytes, data: bytes) -> bytes:
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        return (
+            struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        )
 
     header = struct.pack(">IIBBBBB", width, height, 1, 0, 0, 0, 0)
     rows = zlib.compress(bytes((1 + (width + 7) // 8) * height))
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", rows) + chunk(b"IEND", b"")
+    return (
+        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", rows) + chunk(b"IEND", b"")
+    )
 
 
 def gif(width: int = 320, height: int = 240) -> bytes:

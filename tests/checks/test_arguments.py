@@ -26,14 +26,21 @@ with = {{ {} }}
 SENSOR = "at = \"gazebo[@reference='@tip']/sensor\", values = "
 CONTENT = "must be a table of strings, numbers, booleans or lists of these, not"
 CODES = "problems of without_problems must be codes of problems"
-HEIGHT = '<link name="base_link"/><xacro:property name="height" value="1"/><link name="l${height}"/>'
+HEIGHT = (
+    '<link name="base_link"/><xacro:property name="height" value="1"/><link name="l${height}"/>'
+)
 MAIN = f"{URDF}.xacro"
 
 
 @pytest.mark.parametrize(
     ("check", "arguments", "code", "message"),
     [
-        ("entry_is", SENSOR + '{ "@type" = "camera", update_rate = 30, "camera/image/width" = [640] }', 0, ""),
+        (
+            "entry_is",
+            SENSOR + '{ "@type" = "camera", update_rate = 30, "camera/image/width" = [640] }',
+            0,
+            "",
+        ),
         ("entry_is", SENSOR + '{ "@type" = "lidar" }', 1, ""),
         ("entry_is", SENSOR + "{ update_rate = { a = 1 } }", 2, CONTENT),
         ("entry_is", SENSOR + "{ update_rate = [[1]] }", 2, CONTENT),
@@ -50,7 +57,9 @@ MAIN = f"{URDF}.xacro"
         ("xacro_uses", "macros = [1]", 2, "macros"),
     ],
 )
-def test_a_rubric_is_refused_in_one_line(tmp_path: Path, check: str, arguments: str, code: int, message: str) -> None:
+def test_a_rubric_is_refused_in_one_line(
+    tmp_path: Path, check: str, arguments: str, code: int, message: str
+) -> None:
     """Names of links may be selectors; a value of another type or range is a mistake of the rubric."""
     (tmp_path / "rubric.toml").write_text(RUBRIC.format(check, arguments))
     (tmp_path / "robot.urdf").write_text(CASE["entry_is"].passing.text)
@@ -64,6 +73,8 @@ def test_a_lone_xacro_file_is_its_own_source(tmp_path: Path, name: str, code: in
     """What a file that is not there may use needs manual grading."""
     file = tmp_path / "my_robot.urdf.xacro"
     file.write_text(IN_XACRO.data(MAIN).decode().replace('<link name="base_link"/>', HEIGHT))
-    (tmp_path / "rubric.toml").write_text(RUBRIC.format("xacro_uses", f'file = "other.xacro", properties = ["{name}"]'))
+    (tmp_path / "rubric.toml").write_text(
+        RUBRIC.format("xacro_uses", f'file = "other.xacro", properties = ["{name}"]')
+    )
     done = run(("grade", file, "--rubric", tmp_path / "rubric.toml"))
     assert (done.returncode, b"needs manual grading" in done.stdout) == (code, name == "width")

@@ -33,10 +33,22 @@ def answer_in(submitted: Submitted, locations: Sequence[str] = PLACES) -> Outcom
 
 def test_a_word_file_is_read() -> None:
     """Paragraphs and tables of a Word file are read as lines."""
-    data = docx("Task 1 step 15", "It vanishes.", "Task 1 step 18", "no", row=("Task 2 step 2", "rviz2 shows it"))
+    data = docx(
+        "Task 1 step 15",
+        "It vanishes.",
+        "Task 1 step 18",
+        "no",
+        row=("Task 2 step 2", "rviz2 shows it"),
+    )
     found = answer_in(ALONE.with_files({"answers.docx": data}))
-    assert found.message == 'What happens? The answer in answers.docx, below "Task 1 step 15", needs manual grading'
-    assert (found.measured, found.location) == ("Task 1 step 15\nIt vanishes.", Location("answers.docx", 1, 1))
+    assert (
+        found.message
+        == 'What happens? The answer in answers.docx, below "Task 1 step 15", needs manual grading'
+    )
+    assert (found.measured, found.location) == (
+        "Task 1 step 15\nIt vanishes.",
+        Location("answers.docx", 1, 1),
+    )
     row = answer_in(ALONE.with_files({"answers.docx": data}), ["task 2 step 2"])
     assert row.measured == "Task 2 step 2\trviz2 shows it"
 
@@ -47,13 +59,17 @@ def test_a_damaged_document_is_named(name: str) -> None:
     message = answer_in(ALONE.with_files({name: b"no document"})).message
     assert message.startswith(f"{NOT_FOUND}; needs manual grading (not read: {name} ")
     assert message.endswith(": open it yourself)")
-    beside = answer_in(ALONE.with_files({name: b"no document", "b.txt": "Task 1 step 15: It vanishes."}))
+    beside = answer_in(
+        ALONE.with_files({name: b"no document", "b.txt": "Task 1 step 15: It vanishes."})
+    )
     assert beside.measured == "Task 1 step 15: It vanishes."
     assert f" (not read: {name} " in beside.message
 
 
 @pytest.mark.parametrize("name", ["answers.docx", "answers.pdf"])
-def test_without_the_readers_the_document_is_named(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_readers_the_document_is_named(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """If the packages for Word and PDF are not installed, the message says how to install them."""
     monkeypatch.setattr(sys, "executable", "python-that-is-not-there")
     message = f"{name} could not be read on this machine: open it yourself"
@@ -65,7 +81,9 @@ def test_without_the_readers_the_document_is_named(name: str, monkeypatch: pytes
 
 
 SLOW = b"import time; time.sleep(60)"  # a converter that never ends
-TOO_LATE = "was not read: the Word and PDF files take longer than 0.5 s in all; needs manual grading"
+TOO_LATE = (
+    "was not read: the Word and PDF files take longer than 0.5 s in all; needs manual grading"
+)
 
 
 def converter(code: bytes, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -77,17 +95,27 @@ def converter(code: bytes, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_all_documents_share_one_budget(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A document that takes too long uses up the time of later documents; texts are read all the same."""
     log = tmp_path / "log"
-    converter(f"open({str(log)!r}, 'a').write('x')\n".encode() + SLOW, tmp_path / "slow.py", monkeypatch)
+    converter(
+        f"open({str(log)!r}, 'a').write('x')\n".encode() + SLOW, tmp_path / "slow.py", monkeypatch
+    )
     monkeypatch.setattr("grader.documents.collection.MAX_SECONDS", 0.5)
-    submitted = ALONE.with_files({f"{name}.pdf": b"" for name in "abcd"} | {"e.txt": "Task 1 step 15: It vanishes."})
+    submitted = ALONE.with_files(
+        {f"{name}.pdf": b"" for name in "abcd"} | {"e.txt": "Task 1 step 15: It vanishes."}
+    )
     outcome = answer_in(submitted)
     assert outcome.measured == "Task 1 step 15: It vanishes."
-    assert outcome.message.endswith(f"(not read: {'; '.join(f'{name}.pdf {TOO_LATE}' for name in 'abcd')})")
-    assert not log.exists() or log.read_text() == "x"  # the first one may end before it writes; no other one starts
+    assert outcome.message.endswith(
+        f"(not read: {'; '.join(f'{name}.pdf {TOO_LATE}' for name in 'abcd')})"
+    )
+    assert (
+        not log.exists() or log.read_text() == "x"
+    )  # the first one may end before it writes; no other one starts
 
 
 @pytest.mark.slow
-def test_the_converter_bounds_its_own_processor_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_converter_bounds_its_own_processor_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The system stops a converter that the grader cannot stop."""
     code = f"import sys; sys.argv[2] = '1'; sys.path.insert(0, {str(ROOT)!r})\n"
     code += "from grader.documents import converter\n"
@@ -102,18 +130,30 @@ def test_a_document_is_converted_once(tmp_path: Path, monkeypatch: pytest.Monkey
     """Two questions about the same document start one converter."""
     log = tmp_path / "log"
     text = "Step 15: It vanishes.\nStep 18: yes"
-    converter(f"open({str(log)!r}, 'a').write('x'); print({text!r})".encode(), tmp_path / "count.py", monkeypatch)
+    converter(
+        f"open({str(log)!r}, 'a').write('x'); print({text!r})".encode(),
+        tmp_path / "count.py",
+        monkeypatch,
+    )
     submission = ALONE.with_files({"a.pdf": b""}).submission
     for at_location, text in (("step 15", "Step 15: It vanishes."), ("step 18", "Step 18: yes")):
-        assert answered(submission, question=QUESTION, answer=ANSWER, places=[at_location]).measured == text
+        assert (
+            answered(submission, question=QUESTION, answer=ANSWER, places=[at_location]).measured
+            == text
+        )
     assert log.read_text() == "x"
 
 
-def test_the_number_of_converted_documents_is_limited(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_number_of_converted_documents_is_limited(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The message names the limit and the first document beyond it."""
     converter(b"print('none')", tmp_path / "none.py", monkeypatch)
     message = answer_in(ALONE.with_files({f"{number}.pdf": b"" for number in range(10)})).message
-    assert "8.pdf was not read: at most 8 Word and PDF files are; needs manual grading; 9.pdf" in message
+    assert (
+        "8.pdf was not read: at most 8 Word and PDF files are; needs manual grading; 9.pdf"
+        in message
+    )
     assert "7.pdf was not read" not in message
 
 

@@ -35,14 +35,20 @@ FACT = "A robot has wheels."
             },
         ),
         ("A robot\n    has wheels.\n    ", (FACT,), {}),
-        ("\n    Arguments:\n      link:   The link.\n      - not: one\n    ", (), {"link": "The link."}),
+        (
+            "\n    Arguments:\n      link:   The link.\n      - not: one\n    ",
+            (),
+            {"link": "The link."},
+        ),
         (f"{FACT}\n\n    Args:\n    ", (FACT,), {}),
         (f"{FACT}\n\n    Args: of what?", (FACT, "Args: of what?"), {}),
         ("", (), {}),
         (None, (), {}),
     ],
 )
-def test_a_docstring_is_split(docstring: str | None, paragraphs: tuple[str, ...], arguments: dict[str, str]) -> None:
+def test_a_docstring_is_split(
+    docstring: str | None, paragraphs: tuple[str, ...], arguments: dict[str, str]
+) -> None:
     """The fact, the other paragraphs and the arguments are found; other sections are none of them."""
 
     def check() -> None: ...

@@ -15,15 +15,30 @@ XMLNS = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 # The arguments that name links, and the checks of the relation of two links.
 NAMING = ("link", "leader", "relative_to", "parent", "holds", "on", "of", "base")
 LISTING = ("links", "wheels")
-OPTIONAL = {("joints_named", "parent")}  # a parent joint has its name, whatever the parent link is called
-UNRELATED = ("joints_named", "mimics")  # the relation of two joints does not depend on the chain between them
-RELATED = [case for case in CASES if case.name not in UNRELATED and set(NAMING) & set(case.arguments) - {"link"}]
-RELATED = [case for case in RELATED if case.arguments.get("relative_to") != case.arguments.get("link")]
+OPTIONAL = {
+    ("joints_named", "parent")
+}  # a parent joint has its name, whatever the parent link is called
+UNRELATED = (
+    "joints_named",
+    "mimics",
+)  # the relation of two joints does not depend on the chain between them
+RELATED = [
+    case
+    for case in CASES
+    if case.name not in UNRELATED and set(NAMING) & set(case.arguments) - {"link"}
+]
+RELATED = [
+    case for case in RELATED if case.arguments.get("relative_to") != case.arguments.get("link")
+]
 
 every_case = pytest.mark.parametrize("case", CASES, ids=[case.name for case in CASES])
 every_edge = pytest.mark.parametrize(
     ("case", "argument"),
-    [pytest.param(case, argument, id=f"{case.name}-{argument}") for case in CASES for argument in case.edges],
+    [
+        pytest.param(case, argument, id=f"{case.name}-{argument}")
+        for case in CASES
+        for argument in case.edges
+    ],
 )
 every_related_case = pytest.mark.parametrize("case", RELATED, ids=[case.name for case in RELATED])
 
@@ -38,7 +53,9 @@ def test_a_link_that_is_missing_is_named(case: Case[Scene]) -> None:
         assert (error.kind, error.name, error.known) == ("link", "nowhere", case.passing.links)
         assert "'nowhere'" in str(error)
     for argument in set(LISTING) & set(case.arguments) if case.name != "counts" else ():
-        error = missing(case.check, case.passing, **{**case.arguments, argument: ["wheel", "nowhere"]})
+        error = missing(
+            case.check, case.passing, **{**case.arguments, argument: ["wheel", "nowhere"]}
+        )
         assert (error.kind, error.name) == ("link", "nowhere")
 
 
@@ -54,15 +71,23 @@ def test_unconnected_links_are_reported(case: Case[Scene]) -> None:
 def test_a_loop_of_joints_stops_no_check(case: Case[Scene]) -> None:
     """ROS 2 rejects a file with a loop; the joint that closes it is ignored and the rest is examined."""
     inner, outer = case.passing.links[-1], case.passing.links[0]
-    looped = Scene(case.passing.text.replace("</robot>", joint("zz_back", "fixed", inner, outer) + "\n</robot>"))
-    assert ask(case.check, looped, **case.arguments) == ask(case.check, case.passing, **case.arguments)
+    looped = Scene(
+        case.passing.text.replace(
+            "</robot>", joint("zz_back", "fixed", inner, outer) + "\n</robot>"
+        )
+    )
+    assert ask(case.check, looped, **case.arguments) == ask(
+        case.check, case.passing, **case.arguments
+    )
 
 
 @every_case
 def test_a_mesh_has_a_frame_and_a_colour_but_no_size(case: Case[Scene]) -> None:
     """Measuring a mesh, which the message names, needs manual grading; a mesh is no box, cylinder or sphere."""
     outcome = graded(
-        case.check, case.passing.with_shape('<mesh filename="package://my_robot/meshes/part.stl"/>'), **case.arguments
+        case.check,
+        case.passing.with_shape('<mesh filename="package://my_robot/meshes/part.stl"/>'),
+        **case.arguments,
     )
     assert outcome.status == case.mesh_status
     assert outcome.status != "pending" or "'package://my_robot/meshes/part.stl'" in outcome.message
@@ -86,13 +111,25 @@ def test_what_xacro_leaves_open_is_not_wrong(case: Case[Scene]) -> None:
     head, rest = case.passing.text.replace("<robot ", f"<robot {XMLNS} ").split(">", 1)
     values = re.finditer(r'(?<=[a-z]=")[^"]*(?=")', rest)
     parts = re.finditer(
-        r"<(visual|collision|inertial)>.*?</\1>|<(origin|axis|limit|mimic|dynamics) [^>]*/>", rest, re.DOTALL
+        r"<(visual|collision|inertial)>.*?</\1>|<(origin|axis|limit|mimic|dynamics) [^>]*/>",
+        rest,
+        re.DOTALL,
     )
     perhaps = '<xacro:if value="{0}">\n{1}\n</xacro:if>'
-    for found, text in [*((found, "{0}") for found in values), *((found, perhaps) for found in parts)]:
-        for value, statuses in (("$(env X)", ("passed", "pending")), ("${nothing}", ("passed", "pending", "failed"))):
-            xacro = f"{head}>{rest[: found.start()]}{text.format(value, found[0])}{rest[found.end() :]}"
-            outcome = graded(case.check, Submitted({"robot.urdf.xacro": xacro.encode()}), **case.arguments)
+    for found, text in [
+        *((found, "{0}") for found in values),
+        *((found, perhaps) for found in parts),
+    ]:
+        for value, statuses in (
+            ("$(env X)", ("passed", "pending")),
+            ("${nothing}", ("passed", "pending", "failed")),
+        ):
+            xacro = (
+                f"{head}>{rest[: found.start()]}{text.format(value, found[0])}{rest[found.end() :]}"
+            )
+            outcome = graded(
+                case.check, Submitted({"robot.urdf.xacro": xacro.encode()}), **case.arguments
+            )
             assert outcome.status in statuses, (outcome, xacro)
 
 
@@ -100,7 +137,11 @@ def test_what_xacro_leaves_open_is_not_wrong(case: Case[Scene]) -> None:
 def test_every_tolerance_has_an_edge(case: Case[Scene]) -> None:
     """A sample has an edge for each argument of its check that is a tolerance, as its text says: how far something may be off."""
     texts = describe(case.check).documentation.arguments
-    tolerances = {name for name, text in texts.items() if re.match("How (far|large|deep) .* (may|may each) ", text)}
+    tolerances = {
+        name
+        for name, text in texts.items()
+        if re.match("How (far|large|deep) .* (may|may each) ", text)
+    }
     assert set(case.edges) == tolerances
 
 
@@ -109,6 +150,10 @@ def test_every_tolerance_has_an_edge(case: Case[Scene]) -> None:
 def test_the_edge_of_a_tolerance(case: Case[Scene], argument: str, sign: int) -> None:
     """A check passes at the end of its tolerance and fails just outside, unless the tolerance is one-sided."""
     edge, tolerance = case.edges[argument], case.arguments[argument]
-    inside, outside = (ask(case.check, edge(sign * share * tolerance), **case.arguments) for share in (1.0, 1.05))
+    inside, outside = (
+        ask(case.check, edge(sign * share * tolerance), **case.arguments) for share in (1.0, 1.05)
+    )
     assert inside.status == "passed", inside
-    assert outside.status == ("passed" if sign < 0 and argument in case.one_sided else "failed"), outside
+    assert outside.status == ("passed" if sign < 0 and argument in case.one_sided else "failed"), (
+        outside
+    )

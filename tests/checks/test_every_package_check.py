@@ -10,9 +10,20 @@ from grader.errors import InputError
 from grader.package.package import Package
 from tests.checks.cases import PACKAGE_CASES, Case
 from tests.checks.outcomes import ask, graded
-from tests.checks.submissions import FOLDER, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, Submitted
+from tests.checks.submissions import (
+    FOLDER,
+    LAUNCH,
+    MANIFEST,
+    REFERENCE,
+    RVIZ,
+    SETUP,
+    URDF,
+    Submitted,
+)
 
-every_case = pytest.mark.parametrize("case", PACKAGE_CASES, ids=[case.name for case in PACKAGE_CASES])
+every_case = pytest.mark.parametrize(
+    "case", PACKAGE_CASES, ids=[case.name for case in PACKAGE_CASES]
+)
 
 # Contents that no file of a package should have, and that must not break a check.
 ODD = {
@@ -55,7 +66,9 @@ def test_the_folder_of_the_package_does_not_matter(case: Case[Submitted]) -> Non
     for submitted in (case.passing, case.failing):
         moved = Submitted(
             {
-                deeper + path.removeprefix(FOLDER) if path.startswith(FOLDER + "/") else path: content
+                deeper + path.removeprefix(FOLDER)
+                if path.startswith(FOLDER + "/")
+                else path: content
                 for path, content in submitted.files.items()
             }
         )
@@ -81,7 +94,9 @@ def test_a_check_of_another_module_may_declare_it(monkeypatch: pytest.MonkeyPatc
         return passed(f"{package.name} starts {name}")
 
     assert describe(has_driver).about == About()
-    monkeypatch.setattr(sys.modules[__name__], "ABOUT", {"has_driver": About(("launch",))}, raising=False)
+    monkeypatch.setattr(
+        sys.modules[__name__], "ABOUT", {"has_driver": About(("launch",))}, raising=False
+    )
     assert describe(has_driver).about.looks_at == ("launch",)
     monkeypatch.setattr(sys.modules[__name__], "ABOUT", {"has_driver": ("launch",)})
     with pytest.raises(InputError, match=r"^ABOUT says of has_driver what is no About\(\.\.\.\)$"):

@@ -26,7 +26,11 @@ WITH_ALL = """<robot name="a"><link name="l"/><link name="m"><inertial><mass val
 
 def names_of(value: object) -> tuple[str, ...]:
     """Return the names of the fields of a dataclass or named tuple."""
-    return tuple(one.name for one in fields(value)) if is_dataclass(value) else getattr(value, "_fields", ())
+    return (
+        tuple(one.name for one in fields(value))
+        if is_dataclass(value)
+        else getattr(value, "_fields", ())
+    )
 
 
 def inside(value: object, found: dict[int, object]) -> Iterator[object]:
@@ -52,8 +56,12 @@ def test_what_a_check_gets_is_frozen() -> None:
     subjects, results = Subjects(LAB6, submission), grade(LAB6, submission).results
     assert subjects.robot is not None
     examined = (
-        submission, subjects.robot, subjects.robot.pose("lidar"), read_urdf(WITH_ALL.encode(), "a.urdf"), results
-    )  # fmt: skip
+        submission,
+        subjects.robot,
+        subjects.robot.pose("lidar"),
+        read_urdf(WITH_ALL.encode(), "a.urdf"),
+        results,
+    )
     kinds = set()
     for value in inside(examined, {}):
         kinds.add(type(value).__name__)

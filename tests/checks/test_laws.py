@@ -49,17 +49,31 @@ from tests.checks.robots import (
     swinging,
     turned,
     visual,
-)  # fmt: skip
+)
 from tests.examples import examples
 from tests.work import limited_work
 
 SIZE = (0.6, 0.4, 0.2)
 PLATE, ROD, BALL = Box(SIZE), Cylinder(0.1, 0.5), Sphere(0.1)
 TEXTS = {PLATE: box(*SIZE), ROD: cylinder(0.1, 0.5), BALL: sphere(0.1)}
-SYMMETRIES = {PLATE: ((1.0, 0.0, 0.0), pi), ROD: ((0.0, 0.0, 1.0), 0.7), BALL: ((0.6, 0.0, 0.8), 2.1)}
+SYMMETRIES = {
+    PLATE: ((1.0, 0.0, 0.0), pi),
+    ROD: ((0.0, 0.0, 1.0), 0.7),
+    BALL: ((0.6, 0.0, 0.8), 2.1),
+}
 SOLIDS = st.sampled_from([PLATE, ROD, BALL])
-CENTRE: Arguments = {"link": "wheel", "relative_to": "base", "xyz": (-0.15, 0.225, 0.0), "tolerance": 0.002}
-ALONG: Arguments = {"link": "wheel", "axis": (0.0, 0.0, 1.0), "relative_to": "base", "direction": (0.0, 0.0, 1.0)}
+CENTRE: Arguments = {
+    "link": "wheel",
+    "relative_to": "base",
+    "xyz": (-0.15, 0.225, 0.0),
+    "tolerance": 0.002,
+}
+ALONG: Arguments = {
+    "link": "wheel",
+    "axis": (0.0, 0.0, 1.0),
+    "relative_to": "base",
+    "direction": (0.0, 0.0, 1.0),
+}
 ITSELF: Arguments = {"link": "wheel", "base": "base", "tolerance": 0.002, "angle": 1.0}
 
 _rpys = st.tuples(*[st.floats(-4.0, 4.0)] * 3)
@@ -74,11 +88,19 @@ _directions = st.tuples(_lengths, _lengths, _lengths).filter(lambda axis: sum(ma
 
 @examples(10)
 @given(order=st.permutations((0, 1, 2)), turns=st.tuples(*[st.integers(-2, 2)] * 3))
-def test_a_box_passes_in_every_orientation_that_lies_right(order: list[int], turns: tuple[int, int, int]) -> None:
+def test_a_box_passes_in_every_orientation_that_lies_right(
+    order: list[int], turns: tuple[int, int, int]
+) -> None:
     """Whatever quarter turns a visual has, a box passes exactly if one assignment of its edges fits."""
     size = (SIZE[order[0]], SIZE[order[1]], SIZE[order[2]])
     rpy = (turns[0] * pi / 2, turns[1] * pi / 2, turns[2] * pi / 2)
-    outcome = ask(shows_box, scene(link("base", visual(box(*size), rpy=rpy))), link="base", size=SIZE, tolerance=0.002)
+    outcome = ask(
+        shows_box,
+        scene(link("base", visual(box(*size), rpy=rpy))),
+        link="base",
+        size=SIZE,
+        tolerance=0.002,
+    )
     assert outcome.measured in [pytest.approx(size) for size in permutations(SIZE)]
     assert (outcome.status == "passed") == (outcome.measured == pytest.approx(SIZE))
 
@@ -90,7 +112,9 @@ def test_grey_is_decided_by_the_channels_alone(channels: tuple[int, int, int], l
     rgba = " ".join(f"{channel / 100:.2f}" for channel in channels) + " 1"
     shown = scene(link("lidar", visual(sphere(1.0), material=paint(rgba))))
     outcome = ask(shows_grey, shown, link="lidar", at_least=level / 100, tolerance=0.01)
-    assert (outcome.status == "passed") == (max(channels) - min(channels) <= 1 and min(channels) >= level)
+    assert (outcome.status == "passed") == (
+        max(channels) - min(channels) <= 1 and min(channels) >= level
+    )
 
 
 @examples(10)
@@ -101,7 +125,12 @@ def test_turned_solids(shape: Shape, rpy: Vector) -> None:
     pose = Transform(rotation_from_rpy(rpy), (0.1, 0.2, 0.3))
     same = (pose @ Transform(rotation_about(*SYMMETRIES[shape]))).rpy
     shown = visual(text, xyz=pose.translation, rpy=rpy)
-    for off, status in ((0.0, "passed"), (0.0019, "passed"), (0.0021, "failed"), (-0.0021, "failed")):
+    for off, status in (
+        (0.0, "passed"),
+        (0.0019, "passed"),
+        (0.0021, "failed"),
+        (-0.0021, "failed"),
+    ):
         body = scene(link("arm", shown, collision(text, xyz=(0.1, 0.2 + off, 0.3), rpy=same)))
         assert ask(collision_matches_visual, body, link="arm", tolerance=0.002).status == status
 
@@ -111,19 +140,32 @@ def test_turned_solids(shape: Shape, rpy: Vector) -> None:
 def test_the_frames_do_not_matter(shape: Shape, of_shape: Vector, of_inertial: Vector) -> None:
     """However the shape and the frame of <inertial> are turned, an inertia within the tolerance passes and another fails."""
     solid = uniform_solid([(shape, Transform(rotation_from_rpy(of_shape), (0.1, 0.2, 0.3)))], 2.0)
-    own = turned_inertia(solid.inertia, Transform(rotation_from_rpy(of_inertial)).inverse().rotation)
+    own = turned_inertia(
+        solid.inertia, Transform(rotation_from_rpy(of_inertial)).inverse().rotation
+    )
     shown = visual(TEXTS[shape], xyz="0.1 0.2 0.3", rpy=of_shape)
     for factor, status in ((1.0, "passed"), (1.08, "passed"), (1.12, "failed"), (0.88, "failed")):
         mass = inertial(2.0, [value * factor for value in own], xyz=solid.centre, rpy=of_inertial)
-        assert ask(inertia_plausible, scene(link("arm", mass, shown)), link="arm", tolerance=10.0).status == status
+        assert (
+            ask(
+                inertia_plausible, scene(link("arm", mass, shown)), link="arm", tolerance=10.0
+            ).status
+            == status
+        )
 
 
 @examples(10)
-@given(x=st.floats(-0.5, 0.5, width=16), z=st.floats(-0.5, 0.5, width=16), yaw=st.floats(-4.0, 4.0, width=16))
+@given(
+    x=st.floats(-0.5, 0.5, width=16),
+    z=st.floats(-0.5, 0.5, width=16),
+    yaw=st.floats(-4.0, 4.0, width=16),
+)
 def test_the_depth_of_two_spheres(x: float, z: float, yaw: float) -> None:
     """For spheres the depth is known: the sum of the radii minus the distance of the centres."""
     one, other = link("base", visual(sphere(0.3))), link("wheel", visual(sphere(0.2)))
-    found = scene(one, other, joint("j", "fixed", "base", "wheel", xyz=(x, 0.0, z), rpy=(0.0, 0.0, yaw)))
+    found = scene(
+        one, other, joint("j", "fixed", "base", "wheel", xyz=(x, 0.0, z), rpy=(0.0, 0.0, yaw))
+    )
     depth = 0.5 - (x * x + z * z) ** 0.5
     outcome = ask(clear_of, found, link="wheel", of="base", tolerance=0.002)
     if depth < 0.0019:
@@ -135,10 +177,21 @@ def test_the_depth_of_two_spheres(x: float, z: float, yaw: float) -> None:
 
 @examples(10)
 @given(rpy=_turns, height=st.floats(-2.0, 2.0, width=16))
-def test_a_sphere_stands_on_its_lowest_point_however_it_is_turned(rpy: tuple[float, ...], height: float) -> None:
+def test_a_sphere_stands_on_its_lowest_point_however_it_is_turned(
+    rpy: tuple[float, ...], height: float
+) -> None:
     """A sphere's bottom is its radius below its centre, for every orientation."""
-    found = scene(BASE, CASTER, joint("j", "fixed", "base", "caster", xyz=f"0.2 0 {height!r}", rpy=rpy))
-    passes(bottom_at_height, found, link="caster", relative_to="base", height=height - 0.05, tolerance=1e-9)
+    found = scene(
+        BASE, CASTER, joint("j", "fixed", "base", "caster", xyz=f"0.2 0 {height!r}", rpy=rpy)
+    )
+    passes(
+        bottom_at_height,
+        found,
+        link="caster",
+        relative_to="base",
+        height=height - 0.05,
+        tolerance=1e-9,
+    )
 
 
 # --- Places -----------------------------------------------------------------------------------------------------------
@@ -193,7 +246,10 @@ def in_line(*kinds: str) -> Scene:
 
 
 @examples(10)
-@given(kinds=st.lists(st.sampled_from(JOINT_TYPES), min_size=1, max_size=5), required=st.sampled_from(JOINT_TYPES))
+@given(
+    kinds=st.lists(st.sampled_from(JOINT_TYPES), min_size=1, max_size=5),
+    required=st.sampled_from(JOINT_TYPES),
+)
 def test_a_chain_passes_exactly_for_its_moving_joints(kinds: list[str], required: str) -> None:
     """Only the moving joints of a chain count: none for a fixed one, else one of the type."""
     moving = [kind for kind in kinds if kind != "fixed"]
@@ -211,7 +267,14 @@ def test_a_wheel_drives_where_its_axis_says(yaw: float, spin: float, radius: flo
     found = scene(
         BASE,
         link("wheel", visual(cylinder(radius, 0.05), rpy=(0.0, 0.0, spin))),
-        joint("wheel_joint", "continuous", "base", "wheel", rpy=turned(roll=-90, yaw=yaw), axis="0 0 1"),
+        joint(
+            "wheel_joint",
+            "continuous",
+            "base",
+            "wheel",
+            rpy=turned(roll=-90, yaw=yaw),
+            axis="0 0 1",
+        ),
     )
     outcome = ask(rolls_forward, found, link="wheel", base="base", tolerance=1.0)
     assert outcome.measured == pytest.approx((cos(radians(yaw)), sin(radians(yaw)), 0.0), abs=1e-6)
@@ -241,7 +304,11 @@ def test_the_eccentricity_does_not_depend_on_the_frame(
     """The distance of the two axes is as written, however the joint is turned and wherever the wheel is."""
     xyz = f"{beside * cos(around)!r} {beside * sin(around)!r} {along!r}"
     joined = joint("wheel_joint", "continuous", "base", "wheel", rpy=rpy, axis="0 0 -1")
-    outcome = ask(turns_about_itself, scene(BASE, link("wheel", visual(cylinder(), xyz=xyz)), joined), **ITSELF)
+    outcome = ask(
+        turns_about_itself,
+        scene(BASE, link("wheel", visual(cylinder(), xyz=xyz)), joined),
+        **ITSELF,
+    )
     assert outcome.measured == pytest.approx(beside, abs=1e-9)
     assert (outcome.status == "passed") == (beside <= 0.002)
 
@@ -275,7 +342,12 @@ def test_a_rotation_of_the_frame_with_its_contents_changes_nothing(
     shift = tuple(component * slide for component in moved[1])
     along = moved[0].apply((shift[0], shift[1], shift[2]))
     x, y, z = (component * scale for component in moved[1])
-    arguments: Arguments = {"link": "tip", "relative_to": "base", "direction": wanted, "tolerance": 40.0}
+    arguments: Arguments = {
+        "link": "tip",
+        "relative_to": "base",
+        "direction": wanted,
+        "tolerance": 40.0,
+    }
     arguments |= {"through": (0.1, -3.0, 0.2), "distance": 1.0}
     before = ask(joint_axis, swinging(xyz=frame.translation, rpy=frame.rpy, axis=axis), **arguments)
     after = ask(joint_axis, swinging(xyz=along, rpy=moved[0].rpy, axis=(x, y, z)), **arguments)
@@ -294,13 +366,23 @@ def test_the_axis_is_measured_in_the_pose_of_the_robot() -> None:
     ).robot.robot
     turned_robot = Configuration(robot, {"yaw": radians(90), "pitch": 1.0})
     wanted: Arguments = {"link": "lower", "relative_to": "base", "tolerance": 0.1}
-    assert joint_axis(turned_robot, **wanted, direction=(-1.0, 0.0, 0.0), through=(7.0, 1.0, 0.0)).status == "passed"
     assert (
-        joint_axis(Configuration(robot), **wanted, direction=(0.0, 1.0, 0.0), through=(1.0, 7.0, 0.0)).status
+        joint_axis(
+            turned_robot, **wanted, direction=(-1.0, 0.0, 0.0), through=(7.0, 1.0, 0.0)
+        ).status
+        == "passed"
+    )
+    assert (
+        joint_axis(
+            Configuration(robot), **wanted, direction=(0.0, 1.0, 0.0), through=(1.0, 7.0, 0.0)
+        ).status
         == "passed"
     )
     seen = joint_axis(
-        turned_robot, **{**wanted, "relative_to": "lower"}, direction=(0.0, 1.0, 0.0), through=(0.0, 0.0, 0.0)
+        turned_robot,
+        **{**wanted, "relative_to": "lower"},
+        direction=(0.0, 1.0, 0.0),
+        through=(0.0, 0.0, 0.0),
     )
     assert seen.status == "passed"
 
@@ -314,7 +396,9 @@ def test_comparing_with_the_reference_is_bounded() -> None:
         names = [f"l{index}" for index in range(count + 1)]
         pairs = enumerate(pairwise(names))
         joints = [
-            joint(f"j{index}", "revolute", *pair, xyz="0 0.1 0.3", axis=("0 0 1", "0 1 0")[index % 2])
+            joint(
+                f"j{index}", "revolute", *pair, xyz="0 0.1 0.3", axis=("0 0 1", "0 1 0")[index % 2]
+            )
             for index, pair in pairs
         ]
         robot = scene(*map(link, names), *joints).robot
@@ -337,5 +421,7 @@ def test_a_submission_that_used_up_its_work() -> None:
 
 def test_an_element_of_a_file_that_is_no_xml() -> None:
     """It misses the robot, as everything in it does."""
-    with pytest.raises(MissingElement, match="the file is not well-formed XML, so it has no elements"):
+    with pytest.raises(
+        MissingElement, match="the file is not well-formed XML, so it has no elements"
+    ):
         entry_is(ARM.robot, Scene("nothing").submission, at="gazebo")

@@ -24,11 +24,17 @@ def _read(data: bytes, limit: int, *, first: bool = False) -> bytes:
 @pytest.mark.parametrize(
     ("name", "data"),
     [
-        ("a.stl", b"solid arm\nendsolid arm\n"), ("a.STL", b"  SOLID arm\n"), ("a.stl", BINARY),
-        ("a.dae", b'<?xml version="1.0"?>\n<COLLADA version="1.4.1"/>'), ("a.obj", b"# made by hand\nv 0 0 0\n"),
-        ("a.glb", b"glTF\2\0\0\0"), ("a.ply", b"ply\nformat ascii 1.0\n"), ("a.3ds", b"MM"), ("a", b"?"),
+        ("a.stl", b"solid arm\nendsolid arm\n"),
+        ("a.STL", b"  SOLID arm\n"),
+        ("a.stl", BINARY),
+        ("a.dae", b'<?xml version="1.0"?>\n<COLLADA version="1.4.1"/>'),
+        ("a.obj", b"# made by hand\nv 0 0 0\n"),
+        ("a.glb", b"glTF\2\0\0\0"),
+        ("a.ply", b"ply\nformat ascii 1.0\n"),
+        ("a.3ds", b"MM"),
+        ("a", b"?"),
     ],
-)  # fmt: skip
+)
 def test_a_mesh_of_its_format_has_no_fault(name: str, data: bytes) -> None:
     """STL in both forms, COLLADA, OBJ, glTF, PLY; of other formats nothing is known. The installed name counts."""
     assert content_fault(file_with("a.bin", data), f"share/arm/{name}") == ""
@@ -37,11 +43,15 @@ def test_a_mesh_of_its_format_has_no_fault(name: str, data: bytes) -> None:
 @pytest.mark.parametrize(
     ("name", "data", "fault"),
     [
-        ("a.stl", b"", "is empty"), ("a.stl", BINARY[:-1], "is no STL file"), ("a.stl", b"<html>", "is no STL file"),
-        ("a.dae", b"<html>", "is no DAE file"), ("a.obj", b"\0\0", "is no OBJ file"), ("a.glb", b"{}", "is no GLB file"),
+        ("a.stl", b"", "is empty"),
+        ("a.stl", BINARY[:-1], "is no STL file"),
+        ("a.stl", b"<html>", "is no STL file"),
+        ("a.dae", b"<html>", "is no DAE file"),
+        ("a.obj", b"\0\0", "is no OBJ file"),
+        ("a.glb", b"{}", "is no GLB file"),
         ("a.ply", b"obj", "is no PLY file"),
     ],
-)  # fmt: skip
+)
 def test_a_mesh_of_another_format_is_named(name: str, data: bytes, fault: str) -> None:
     """Also one that is empty, or cut off."""
     assert content_fault(file_with("a.bin", data), f"share/arm/{name}") == fault

@@ -20,16 +20,20 @@ MASS = """<robot name="r" xmlns:xacro="x">
 <link name="wheel"/>
 <joint name="j" type="continuous"><parent link="base_link"/><child link="wheel"/><xacro:if value="$(env M)"><mimic joint="k"/></xacro:if></joint>
 </robot>"""
-INCLUDE = (
-    '<robot name="r" xmlns:xacro="x"><xacro:include filename="$(find other)/a.xacro"/><link name="base_link"/></robot>'
-)
+INCLUDE = '<robot name="r" xmlns:xacro="x"><xacro:include filename="$(find other)/a.xacro"/><link name="base_link"/></robot>'
 
 # What a check asks of a robot, the robot, and the status of its criterion.
 ASKED: dict[str, tuple[Callable[[Configuration], object], str, str]] = {
     "a sum over all links": (
-        lambda it: sum(link.inertial.mass for link in it.robot.links if link.inertial is not None), MASS, "pending",
+        lambda it: sum(link.inertial.mass for link in it.robot.links if link.inertial is not None),
+        MASS,
+        "pending",
     ),
-    "whether a joint mimics another": (lambda it: it.robot.joint("j").mimic is None, MASS, "pending"),
+    "whether a joint mimics another": (
+        lambda it: it.robot.joint("j").mimic is None,
+        MASS,
+        "pending",
+    ),
     "the text of a part": (lambda it: f"{it.link('base_link').inertial}", MASS, "pending"),
     "another field of the link": (lambda it: it.link("base_link").visuals, MASS, "passed"),
     "the type of the joint": (lambda it: it.robot.joint("j").type, MASS, "passed"),
@@ -39,7 +43,7 @@ ASKED: dict[str, tuple[Callable[[Configuration], object], str, str]] = {
     "whether a link is there": (lambda it: it.robot.has_link("lidar"), INCLUDE, "pending"),
     "a link that may be there": (lambda it: it.link("lidar"), INCLUDE, "pending"),
     "a link that is there": (lambda it: it.link("base_link"), INCLUDE, "passed"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", ASKED)
@@ -53,7 +57,9 @@ def test_what_is_open_needs_manual_grading(name: str) -> None:
         return judged(True, "it was read")
 
     criterion = Criterion("only", "Only", "a", Decimal(1), describe(reads), {})
-    rubric = Rubric("r", "R", (Part("a", "A"),), (criterion,), "robot.urdf", "", b"", Path("r.toml"))
+    rubric = Rubric(
+        "r", "R", (Part("a", "A"),), (criterion,), "robot.urdf", "", b"", Path("r.toml")
+    )
     submission = read_submission(text.encode(), identity="a", path="my_robot.urdf.xacro")
     assert grade(rubric, submission).results[0].outcome.status == status
 

@@ -56,11 +56,16 @@ def installed(monkeypatch: pytest.MonkeyPatch, *entries: EntryPoint) -> None:
         ((f"{__name__}:takes_any",), "its argument \\*names: str cannot be given by name"),
         ((f"{__name__}:unannotated",), "its argument name has no annotation"),
         (("tests.nowhere:check",), "ModuleNotFoundError: No module named 'tests.nowhere'"),
-        (("one:check", "two:check"), "the check other is in several packages, one and two: uninstall all but one"),
+        (
+            ("one:check", "two:check"),
+            "the check other is in several packages, one and two: uninstall all but one",
+        ),
     ],
     ids=["no-names", "no-type", "no-module", "twice"],
 )
-def test_a_check_that_cannot_be_used(monkeypatch: pytest.MonkeyPatch, values: tuple[str, ...], message: str) -> None:
+def test_a_check_that_cannot_be_used(
+    monkeypatch: pytest.MonkeyPatch, values: tuple[str, ...], message: str
+) -> None:
     """A rubric that names it is refused with the reason; for anything else it does not exist."""
     installed(monkeypatch, *map(entry, values))
     with pytest.raises(InputError, match=message):
@@ -108,9 +113,17 @@ def graded(result: Callable[[], Any]) -> Outcome:
         found: Outcome = result()
         return found
 
-    criterion = Criterion("only", "Only", "a", Decimal(1), describe(check)._replace(distribution="labs"), {})
-    rubric = Rubric("r", "R", (Part("a", "A"),), (criterion,), "robot.urdf", "", b"", Path("r.toml"))
-    return grade(rubric, read_submission(scene(BASE).text.encode(), identity="me", path=PATH)).results[0].outcome
+    criterion = Criterion(
+        "only", "Only", "a", Decimal(1), describe(check)._replace(distribution="labs"), {}
+    )
+    rubric = Rubric(
+        "r", "R", (Part("a", "A"),), (criterion,), "robot.urdf", "", b"", Path("r.toml")
+    )
+    return (
+        grade(rubric, read_submission(scene(BASE).text.encode(), identity="me", path=PATH))
+        .results[0]
+        .outcome
+    )
 
 
 def raising(error: Exception) -> Callable[[], Any]:
@@ -130,12 +143,18 @@ def raising(error: Exception) -> Callable[[], Any]:
             lambda: Outcome("skipped", "no"),
             "it returned the status 'skipped'; a check returns passed, failed or pending",
         ),
-        (lambda: passed("so")._replace(message=WRONG), "it returned an Outcome with an invalid message"),
+        (
+            lambda: passed("so")._replace(message=WRONG),
+            "it returned an Outcome with an invalid message",
+        ),
         (
             lambda: Outcome("passed", "so", measured=(1.0, float("inf"))),
             "it returned an Outcome with an invalid measured",
         ),
-        (lambda: Outcome("passed", "so")._replace(expected=WRONG), "it returned an Outcome with an invalid expected"),
+        (
+            lambda: Outcome("passed", "so")._replace(expected=WRONG),
+            "it returned an Outcome with an invalid expected",
+        ),
         (raising(KeyError("x")), "KeyError: 'x'"),
         (raising(Unreadable()), "Unreadable"),
     ],
@@ -144,7 +163,10 @@ def raising(error: Exception) -> Callable[[], Any]:
 def test_a_faulty_check_is_named_with_its_package(result: Callable[[], Any], fault: str) -> None:
     """Whatever it returns or raises, only its own criterion is errored."""
     outcome = graded(result)
-    assert (outcome.status, outcome.message) == ("errored", f"the check check of the package labs is faulty: {fault}")
+    assert (outcome.status, outcome.message) == (
+        "errored",
+        f"the check check of the package labs is faulty: {fault}",
+    )
 
 
 @pytest.mark.parametrize("measured", [None, 1.0, "a", (1.0, 2.0), ("a", "b"), {"a": "b"}])

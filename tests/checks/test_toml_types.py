@@ -34,29 +34,74 @@ TYPES: dict[Any, tuple[str, Any, list[tuple[Any, Any]], list[Any]]] = {
     Literal["a", "b"]: ("one of a, b", {"enum": ["a", "b"]}, [("b", "b")], ["c", 1]),
     str | None: ("a string", TEXT, [("a", "a")], [1]),
     int | list[str]: (
-        "a whole number or a list of strings", {"anyOf": [WHOLE, {"type": "array", "items": TEXT, "minItems": 1}]},
-        [(2, 2), (["a"], ["a"])], ["a", [], [1]],
+        "a whole number or a list of strings",
+        {"anyOf": [WHOLE, {"type": "array", "items": TEXT, "minItems": 1}]},
+        [(2, 2), (["a"], ["a"])],
+        ["a", [], [1]],
     ),
-    list[int]: ("a list of values", {"type": "array", "items": WHOLE, "minItems": 1}, [([1], [1])], [1, [], [ONE]]),
-    tuple[float, ...]: ("a list of numbers", {"type": "array", "items": NUMBER, "minItems": 1}, [([1], (1.0,))], [[]]),
-    tuple[float, float, float]: ("3 numbers", THREE, [([1, 2, HALF], (1.0, 2.0, 0.5))], [[1, 2], [1, 2, 3, 4]]),
-    Mapping[str, str]: ("a table of strings", {**TABLE, "additionalProperties": TEXT}, [({"a": "b"}, {"a": "b"})], [{}, []]),
-    Mapping[str, int]: ("a table of values", {**TABLE, "additionalProperties": WHOLE}, [({"a": 1}, {"a": 1})], [{"a": "b"}]),
+    list[int]: (
+        "a list of values",
+        {"type": "array", "items": WHOLE, "minItems": 1},
+        [([1], [1])],
+        [1, [], [ONE]],
+    ),
+    tuple[float, ...]: (
+        "a list of numbers",
+        {"type": "array", "items": NUMBER, "minItems": 1},
+        [([1], (1.0,))],
+        [[]],
+    ),
+    tuple[float, float, float]: (
+        "3 numbers",
+        THREE,
+        [([1, 2, HALF], (1.0, 2.0, 0.5))],
+        [[1, 2], [1, 2, 3, 4]],
+    ),
+    Mapping[str, str]: (
+        "a table of strings",
+        {**TABLE, "additionalProperties": TEXT},
+        [({"a": "b"}, {"a": "b"})],
+        [{}, []],
+    ),
+    Mapping[str, int]: (
+        "a table of values",
+        {**TABLE, "additionalProperties": WHOLE},
+        [({"a": 1}, {"a": 1})],
+        [{"a": "b"}],
+    ),
     Mapping[str, Content]: (
-        "a table of strings, numbers, booleans or lists of these", {**TABLE, "additionalProperties": CONTENT},
-        [({"a": [1, "b"]}, {"a": [1.0, "b"]})], [{"a": []}],
+        "a table of strings, numbers, booleans or lists of these",
+        {**TABLE, "additionalProperties": CONTENT},
+        [({"a": [1, "b"]}, {"a": [1.0, "b"]})],
+        [{"a": []}],
     ),
-    Mapping: ("a table of strings", {**TABLE, "additionalProperties": TEXT}, [({"a": "b"}, {"a": "b"})], [{"a": 1}]),
-    list[Scalar]: ("a list of strings, numbers or booleans", {"type": "array", "items": SCALAR, "minItems": 1}, [], [[[1]]]),
+    Mapping: (
+        "a table of strings",
+        {**TABLE, "additionalProperties": TEXT},
+        [({"a": "b"}, {"a": "b"})],
+        [{"a": 1}],
+    ),
+    list[Scalar]: (
+        "a list of strings, numbers or booleans",
+        {"type": "array", "items": SCALAR, "minItems": 1},
+        [],
+        [[[1]]],
+    ),
     Colour: (
         "3 numbers or 4 numbers",
-        {"anyOf": [THREE, THREE | {"minItems": 4, "maxItems": 4}], "items": BOUNDED}, [([0, 1, HALF], (0.0, 1.0, 0.5))], [[1]],
+        {"anyOf": [THREE, THREE | {"minItems": 4, "maxItems": 4}], "items": BOUNDED},
+        [([0, 1, HALF], (0.0, 1.0, 0.5))],
+        [[1]],
     ),
-}  # fmt: skip
+}
 
 
-@pytest.mark.parametrize(("annotation", "expected"), TYPES.items(), ids=[row[0] for row in TYPES.values()])
-def test_a_type(annotation: Any, expected: tuple[str, Any, list[tuple[Any, Any]], list[Any]]) -> None:
+@pytest.mark.parametrize(
+    ("annotation", "expected"), TYPES.items(), ids=[row[0] for row in TYPES.values()]
+)
+def test_a_type(
+    annotation: Any, expected: tuple[str, Any, list[tuple[Any, Any]], list[Any]]
+) -> None:
     """A value of the type is converted, any other one is refused with the name of the type."""
     name, schema, values, refused = expected
     found = toml_type(annotation)

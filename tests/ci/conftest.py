@@ -12,16 +12,33 @@ import pytest
 from tests.command_line import HANG_TIMEOUT, ROOT
 from tests.wheels import offline
 
-PUBLISHED = ("pyproject.toml", "README.md", "LICENSE", "action.yml", ".pre-commit-hooks.yaml", "grader", "rubrics")
+PUBLISHED = (
+    "pyproject.toml",
+    "README.md",
+    "LICENSE",
+    "action.yml",
+    ".pre-commit-hooks.yaml",
+    "grader",
+    "rubrics",
+)
 
 
 def git(folder: Path, *arguments: str) -> None:
     """Return a function that runs git with its own user name."""
-    named = {f"GIT_{who}_{what}": "test@example.org" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")}
+    named = {
+        f"GIT_{who}_{what}": "test@example.org"
+        for who in ("AUTHOR", "COMMITTER")
+        for what in ("NAME", "EMAIL")
+    }
     done = subprocess.run(
-        ["git", *arguments], cwd=folder, env={**os.environ, **named}, capture_output=True, text=True, check=False,
+        ["git", *arguments],
+        cwd=folder,
+        env={**os.environ, **named},
+        capture_output=True,
+        text=True,
+        check=False,
         timeout=HANG_TIMEOUT,
-    )  # fmt: skip
+    )
     assert done.returncode == 0, done.stderr
 
 

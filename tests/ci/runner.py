@@ -14,7 +14,16 @@ from tests.command_line import HANG_TIMEOUT
 
 Step = dict[str, Any]
 _EXPRESSION = re.compile(r"\$\{\{\s*(.+?)\s*\}\}")
-_KEPT = ("HOME", "PATH", "LANG", "TMPDIR", "PIP_NO_INDEX", "PIP_FIND_LINKS", "PIP_CONFIG_FILE", "GIT_CONFIG_GLOBAL")
+_KEPT = (
+    "HOME",
+    "PATH",
+    "LANG",
+    "TMPDIR",
+    "PIP_NO_INDEX",
+    "PIP_FIND_LINKS",
+    "PIP_CONFIG_FILE",
+    "GIT_CONFIG_GLOBAL",
+)
 
 
 def load(path: Path) -> dict[str, Any]:
@@ -64,18 +73,32 @@ class Runner:
         if "uses" in step:
             given = {key: self.value(str(value)) for key, value in step.get("with", {}).items()}
             return self.actions[step["uses"]](self, given)
-        assert _EXPRESSION.search(step["run"]) is None, "an expression in a script is how commands are injected"
-        files = {name: self.temp / f"_{name}" for name in ("GITHUB_OUTPUT", "GITHUB_STEP_SUMMARY", "GITHUB_ENV")}
+        assert _EXPRESSION.search(step["run"]) is None, (
+            "an expression in a script is how commands are injected"
+        )
+        files = {
+            name: self.temp / f"_{name}"
+            for name in ("GITHUB_OUTPUT", "GITHUB_STEP_SUMMARY", "GITHUB_ENV")
+        }
         for file in files.values():
             file.write_text("")
         script = self.temp / "_script.sh"
         script.write_text(step["run"], encoding="utf-8")
         given = {key: self.value(str(value)) for key, value in step.get("env", {}).items()}
-        options = ["--noprofile", "--norc", "-e", "-o", "pipefail"] if step.get("shell") == "bash" else ["-e"]
+        options = (
+            ["--noprofile", "--norc", "-e", "-o", "pipefail"]
+            if step.get("shell") == "bash"
+            else ["-e"]
+        )
         ran = subprocess.run(
             ["bash", *options, str(script)],
             cwd=self.workspace,
-            env={**self._environment(), **variables, **{key: str(file) for key, file in files.items()}, **given},
+            env={
+                **self._environment(),
+                **variables,
+                **{key: str(file) for key, file in files.items()},
+                **given,
+            },
             capture_output=True,
             text=True,
             check=False,

@@ -28,7 +28,9 @@ def test_a_commit_with_a_mistake_is_rejected(tmp_path: Path, published: Path) ->
     assert held.returncode == 1
     assert "lidar-frame" in held.stdout
     assert "43/70" in held.stdout
-    (work / "my_robot.urdf").write_bytes((ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_bytes())
+    (work / "my_robot.urdf").write_bytes(
+        (ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_bytes()
+    )
     git(work, "add", "--all")
     let_through = _commit(work, tmp_path / "home")
     assert let_through.returncode == 0, let_through.stdout + let_through.stderr

@@ -23,7 +23,9 @@ WORKFLOWS = ROOT / "docs" / "ci"
 
 pytestmark = [
     pytest.mark.exhaustive,
-    pytest.mark.skipif(os.name == "nt" or shutil.which("bash") is None, reason="the steps are for bash"),
+    pytest.mark.skipif(
+        os.name == "nt" or shutil.which("bash") is None, reason="the steps are for bash"
+    ),
 ]
 
 
@@ -43,7 +45,11 @@ def temp(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the temporary folder of a job, in which the action is installed once."""
     temp = tmp_path_factory.mktemp("temp")
     installing = Runner(temp, temp)
-    installing.contexts = {"github.action_path": str(ROOT), "github.action_repository": "", "inputs.version": ""}
+    installing.contexts = {
+        "github.action_path": str(ROOT),
+        "github.action_repository": "",
+        "inputs.version": "",
+    }
     done = installing.step(load(ROOT / "action.yml")["runs"]["steps"][0])
     assert done.code == 0, done.stderr
     return temp
@@ -56,7 +62,9 @@ class Job:
         self.runner = Runner(workspace, temp)
         action = load(ROOT / "action.yml")
         self.step = action["runs"]["steps"][1]
-        self.defaults = {f"inputs.{name}": about["default"] for name, about in action["inputs"].items()}
+        self.defaults = {
+            f"inputs.{name}": about["default"] for name, about in action["inputs"].items()
+        }
 
     def grade(self, **inputs: str) -> Done:
         """Run the step with some inputs; `_` in a name stands for `-`."""
@@ -81,7 +89,11 @@ def test_a_green_check(job: Job) -> None:
     """A robot without mistakes exits with 0 and has score, summary and reports."""
     done = job.grade()
     assert done.code == 0, done.stderr
-    assert (job.output("score"), job.output("max-score"), job.output("pending")) == ("90", "100", "10")
+    assert (job.output("score"), job.output("max-score"), job.output("pending")) == (
+        "90",
+        "100",
+        "10",
+    )
     assert job.runner.summary.startswith("# lab6: ")
     assert "90 of 90 points" in job.runner.summary
     for kind in ("json", "markdown", "junit", "html", "svg"):
@@ -93,12 +105,16 @@ def test_a_green_check(job: Job) -> None:
 def test_a_red_check(job: Job, tmp_path: Path) -> None:
     """A mistake exits with 1, is annotated on its line, and the outputs are set all the same."""
     [urdf] = (tmp_path / "work").rglob("*.urdf")
-    urdf.write_bytes((ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf").read_bytes())
+    urdf.write_bytes(
+        (ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf").read_bytes()
+    )
     done = job.grade()
     path = urdf.relative_to(tmp_path / "work").as_posix()
     assert done.code == 1
     title = "-8 points%3A lidar-frame 6%2C lidar-on-top 2"
-    assert f"::error file={path},line=39,endLine=39,col=15,endColumn=30,title={title}::" in done.stderr
+    assert (
+        f"::error file={path},line=39,endLine=39,col=15,endColumn=30,title={title}::" in done.stderr
+    )
     assert job.output("score") == "63"
     assert "lidar-frame" in job.runner.summary
 
@@ -131,7 +147,13 @@ def test_nothing_graded(job: Job, tmp_path: Path) -> None:
 
 def test_inputs_are_not_executed(job: Job, tmp_path: Path) -> None:
     """No input is run as a command or read as an option."""
-    for text in ("$(touch owned)", "; touch owned", "`touch owned`", '" && touch owned "', "--help"):
+    for text in (
+        "$(touch owned)",
+        "; touch owned",
+        "`touch owned`",
+        '" && touch owned "',
+        "--help",
+    ):
         for name in ("path", "rubric", "part", "fail_under", "expect_rubric"):
             assert job.grade(**{name: text}).code == 2, (name, text)
     assert not list(tmp_path.rglob("owned"))
@@ -139,7 +161,15 @@ def test_inputs_are_not_executed(job: Job, tmp_path: Path) -> None:
 
 def test_modules_in_the_repository_are_not_imported(job: Job, tmp_path: Path) -> None:
     """Files named like Python's own modules, or like the grader, are not imported."""
-    for name in ("json.py", "sys.py", "grader.py", "typing.py", "sitecustomize.py", "venv.py", "pip.py"):
+    for name in (
+        "json.py",
+        "sys.py",
+        "grader.py",
+        "typing.py",
+        "sitecustomize.py",
+        "venv.py",
+        "pip.py",
+    ):
         (tmp_path / "work" / name).write_text("raise SystemExit('imported')\n", encoding="utf-8")
     shutil.copytree(ROOT / "rubrics", tmp_path / "work" / "rubrics")
     done = job.grade()
@@ -152,7 +182,9 @@ def test_the_student_workflow(tmp_path: Path, temp: Path) -> None:
     kept: list[str] = []
 
     def upload(runner: Runner, given: Mapping[str, str]) -> Done:
-        kept.extend(sorted(path.name for path in map(Path, given["path"].split()) if path.is_file()))
+        kept.extend(
+            sorted(path.name for path in map(Path, given["path"].split()) if path.is_file())
+        )
         return Done(0, "", "")
 
     for sample, code in (("reference", 0), ("missing-import-os", 1)):
@@ -172,14 +204,17 @@ def test_a_version_is_taken_from_the_repository(tmp_path: Path, published: Path)
     action = load(ROOT / "action.yml")
     runner = Runner(tmp_path, tmp_path, instead_of_github(published))
     for version, code in (("; touch owned", 2), ("--help", 2), ("v1", 0)):
-        path = f"{tmp_path}/_actions/YOUR-ORG/grader/{version}"  # the context is empty on some runners
+        # the context is empty on some runners
+        path = f"{tmp_path}/_actions/YOUR-ORG/grader/{version}"
         runner.contexts = {
             "github.action_path": path,
             "github.action_repository": "",
             "inputs.version": version,
         }
         assert runner.step(action["runs"]["steps"][0]).code == code
-    done = subprocess.run([tmp_path / "grader-venv/bin/grader", "--version"], capture_output=True, check=False)
+    done = subprocess.run(
+        [tmp_path / "grader-venv/bin/grader", "--version"], capture_output=True, check=False
+    )
     assert done.stdout.startswith(b"grader ")
     assert not (tmp_path / "owned").exists()
 
@@ -199,7 +234,11 @@ def too_large(host: Path) -> None:
 def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
     """The template for a class organisation fetches and grades every student's repository, even if some are broken."""
     host = tmp_path / "host"
-    for name, sample in (("lab6-ada", "reference"), ("lab6-grace", "missing-import-os"), ("other", "reference")):
+    for name, sample in (
+        ("lab6-ada", "reference"),
+        ("lab6-grace", "missing-import-os"),
+        ("other", "reference"),
+    ):
         shutil.copytree(ROOT / "submissions/lab6" / sample, host / name)
         repository(host / name)
     too_large(host)
@@ -226,21 +265,37 @@ def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
 
     def checkout(runner: Runner, given: Mapping[str, str]) -> Done:
         if "repository" in given:
-            git(runner.workspace, "clone", "--quiet", str(published / given["repository"]), given["path"])
+            git(
+                runner.workspace,
+                "clone",
+                "--quiet",
+                str(published / given["repository"]),
+                given["path"],
+            )
         return Done(0, "", "")
 
     runner.actions = dict.fromkeys((PYTHON, UPLOAD), nothing)
     runner.actions[CHECKOUT] = checkout
-    limits = {**{name: str(value) for name, value in workflow["env"].items()}, "MAX_MEGABYTES": "2", "MAX_FILES": "200"}
+    limits = {
+        **{name: str(value) for name, value in workflow["env"].items()},
+        "MAX_MEGABYTES": "2",
+        "MAX_FILES": "200",
+    }
     assert runner.job(workflow["jobs"]["grade"]["steps"], limits) == 0, runner.done
     printed = "".join(done.stdout for _, done in runner.done)
     for name in ("gone", "pushed"):
-        why = "Not graded: this repository could not be fetched, or is larger than MAX_MEGABYTES (2)."
+        why = (
+            "Not graded: this repository could not be fetched, or is larger than MAX_MEGABYTES (2)."
+        )
         assert f"::warning title=lab6-{name}::{why}" in printed
     for name in ("many", "zeros"):
         why = "Not graded: it has more than MAX_MEGABYTES (2) or MAX_FILES (200) in this workflow."
         assert f"::warning title=lab6-{name}::{why}" in printed
-    assert {path.name for path in (runner.temp / "class").iterdir()} == {"lab6-ada", "lab6-grace", "lab6-none"}
+    assert {path.name for path in (runner.temp / "class").iterdir()} == {
+        "lab6-ada",
+        "lab6-grace",
+        "lab6-none",
+    }
     assert "::warning title=lab6-none::This repository is empty." in printed
     grades = (runner.temp / "grades" / "grades.csv").read_text(encoding="utf-8")
     assert len(grades.splitlines()) == 5  # a header, the roster, and the empty one
@@ -256,8 +311,17 @@ def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
     (work / "result.json").symlink_to(tmp_path / "victim")
     (work / "release-body.md").mkdir()
     urls = ("COMMIT_URL", "RELEASE_URL", "REVIEW_URL")
-    who = {"CLASSROOM": "robo", "ASSIGNMENT": "lab6", "USERNAME": "ada", **dict.fromkeys(urls, "https://example.org")}
-    variables = {**who, "SUBMISSION_TAG": "submit/2026-09-01T10-00-00Z-ab12cd3", **instead_of_github(published)}
+    who = {
+        "CLASSROOM": "robo",
+        "ASSIGNMENT": "lab6",
+        "USERNAME": "ada",
+        **dict.fromkeys(urls, "https://example.org"),
+    }
+    variables = {
+        **who,
+        "SUBMISSION_TAG": "submit/2026-09-01T10-00-00Z-ab12cd3",
+        **instead_of_github(published),
+    }
     done = subprocess.run(
         [sys.executable, str(WORKFLOWS / "classroom50.py")],
         cwd=work,
@@ -284,7 +348,9 @@ def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
     assert not (work / "result.json").exists()
 
 
-@pytest.mark.parametrize(("sample", "code"), [("reference", 0), ("missing-import-os", 1), ("xacro-in-urdf", None)])
+@pytest.mark.parametrize(
+    ("sample", "code"), [("reference", 0), ("missing-import-os", 1), ("xacro-in-urdf", None)]
+)
 def test_the_gitlab_job(tmp_path: Path, sample: str, code: int | None) -> None:
     """The exit code is the grader's; reports are not written through a student's symlinks, and old reports are removed."""
     work = tmp_path / "work"
@@ -293,9 +359,13 @@ def test_the_gitlab_job(tmp_path: Path, sample: str, code: int | None) -> None:
     (work / "grader-reports").symlink_to("../victim")
     job = load(WORKFLOWS / "gitlab-ci.yml")["lab6"]
     grader = Path(sys.executable).with_name("grader")
-    script = "\n".join(["set -e", *job["script"][2:]]).replace("/tmp/grader/bin/grader", str(grader))
+    script = "\n".join(["set -e", *job["script"][2:]]).replace(
+        "/tmp/grader/bin/grader", str(grader)
+    )
     variables = {**os.environ, **job["variables"], "CI": "true", "CI_PROJECT_DIR": str(work)}
-    done = subprocess.run(["bash", "-c", script], cwd=work, env=variables, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        ["bash", "-c", script], cwd=work, env=variables, capture_output=True, text=True, check=False
+    )
     alone = subprocess.run([grader, "grade", work], capture_output=True, check=False)
     assert done.returncode == (alone.returncode if code is None else code), done.stderr
     assert list((tmp_path / "victim").iterdir()) == []

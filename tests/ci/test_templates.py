@@ -23,7 +23,10 @@ SCHEMAS = {
         f".github/ISSUE_TEMPLATE/{name}.yml": "vendor.github-issue-forms"
         for name in ("bug", "feature", "rubric-question", "wrong-mark")
     },
-    **{str(path.relative_to(ROOT)): "vendor.github-workflows" for path in (ROOT / ".github" / "workflows").iterdir()},
+    **{
+        str(path.relative_to(ROOT)): "vendor.github-workflows"
+        for path in (ROOT / ".github" / "workflows").iterdir()
+    },
 }
 
 
@@ -32,7 +35,14 @@ SCHEMAS = {
 def test_the_file_is_valid_for_its_host(name: str) -> None:
     """An action, a workflow and a GitLab job satisfy their published schemas."""
     done = subprocess.run(
-        [sys.executable, "-m", "check_jsonschema", "--builtin-schema", SCHEMAS[name], str(ROOT / name)],
+        [
+            sys.executable,
+            "-m",
+            "check_jsonschema",
+            "--builtin-schema",
+            SCHEMAS[name],
+            str(ROOT / name),
+        ],
         capture_output=True,
         text=True,
         check=False,
@@ -71,12 +81,16 @@ def test_no_token_stays_in_a_checkout() -> None:
     for name in WORKFLOWS[1:]:
         text, workflow = (ROOT / name).read_text(encoding="utf-8"), load(ROOT / name)
         assert workflow["permissions"] == {"contents": "read"}
-        steps = [step for job in workflow["jobs"].values() for step in job["steps"] if "uses" in step]
+        steps = [
+            step for job in workflow["jobs"].values() for step in job["steps"] if "uses" in step
+        ]
         for step in steps:
             if step["uses"].startswith("actions/checkout@"):
                 assert step["with"]["persist-credentials"] is False
             if not step["uses"].startswith("YOUR-ORG/"):
-                assert re.search(rf"{step['uses']} # v[0-9]+\.[0-9]+\.[0-9]+$", text, re.MULTILINE), step["uses"]
+                assert re.search(
+                    rf"{step['uses']} # v[0-9]+\.[0-9]+\.[0-9]+$", text, re.MULTILINE
+                ), step["uses"]
                 assert re.fullmatch(r"[a-z/-]+@[0-9a-f]{40}", step["uses"])
 
 
@@ -84,7 +98,14 @@ def test_no_token_stays_in_a_checkout() -> None:
 def test_hooks_are_valid() -> None:
     """pre-commit accepts the file of hooks."""
     done = subprocess.run(
-        [sys.executable, "-m", "pre_commit", "validate-manifest", str(ROOT / ".pre-commit-hooks.yaml")], check=False
+        [
+            sys.executable,
+            "-m",
+            "pre_commit",
+            "validate-manifest",
+            str(ROOT / ".pre-commit-hooks.yaml"),
+        ],
+        check=False,
     )
     assert done.returncode == 0
 
@@ -109,7 +130,9 @@ def test_the_commands_of_the_image(tmp_path: Path) -> None:
     """What the Dockerfile runs makes an environment in which a robot can be graded. The image itself is not built."""
     text = (ROOT / "Dockerfile").read_text(encoding="utf-8")
     ignored = (ROOT / ".dockerignore").read_text(encoding="utf-8").split()
-    shutil.copytree(ROOT, tmp_path / "source", ignore=lambda folder, _: ignored if Path(folder) == ROOT else [])
+    shutil.copytree(
+        ROOT, tmp_path / "source", ignore=lambda folder, _: ignored if Path(folder) == ROOT else []
+    )
     subprocess.run([sys.executable, "-m", "venv", tmp_path / "venv"], check=True)
     runs = re.findall(r"^RUN (?:--mount=\S+ )?pip (.*)$", text, re.MULTILINE)
     assert len(runs) == 2
@@ -119,7 +142,10 @@ def test_the_commands_of_the_image(tmp_path: Path) -> None:
     robot = ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf"
     entry = json.loads(re.findall(r"^ENTRYPOINT (.*)$", text, re.MULTILINE)[0])
     done = subprocess.run(
-        [tmp_path / "venv/bin" / entry[0], "grade", robot], capture_output=True, text=True, check=False
+        [tmp_path / "venv/bin" / entry[0], "grade", robot],
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 0, done.stderr
 
@@ -128,4 +154,7 @@ def test_the_devcontainer_installs_the_checkout() -> None:
     """It is JSON, and installs an extra that exists."""
     settings = json.loads((ROOT / ".devcontainer/devcontainer.json").read_text(encoding="utf-8"))
     assert settings["image"].startswith("mcr.microsoft.com/devcontainers/python:")
-    assert settings["postCreateCommand"] == "python -m pip install --quiet --editable '.[test,documents]'"
+    assert (
+        settings["postCreateCommand"]
+        == "python -m pip install --quiet --editable '.[test,documents]'"
+    )

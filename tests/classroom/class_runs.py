@@ -38,7 +38,11 @@ _SKIPPED = ("latin-name", "links-out", "deep-folders")  # what a zip cannot hold
 def grader(*arguments: str | Path, cwd: str = "", **variables: str) -> Done:
     """Run the command line and return its result with standard output and standard error."""
     words = [*map(str, arguments)]
-    done = run_process(words, variables=variables, folder=Path(cwd)) if cwd else run(words, **variables)
+    done = (
+        run_process(words, variables=variables, folder=Path(cwd))
+        if cwd
+        else run(words, **variables)
+    )
     return Done(done.args, done.returncode, done.stdout.decode(), done.stderr.decode())
 
 
@@ -102,7 +106,9 @@ def lines_of(book: Path, kind: str = "student") -> list[dict[str, Any]]:
     """Return the whole lines of results, or of runs, in the order of the file, without checksums; none without a file."""
     file = book / "results.jsonl"
     lines = file.read_bytes().split(b"\n")[:-1] if file.exists() else []  # the last one may be torn
-    found = [{key: value for key, value in json.loads(line).items() if key != "crc32"} for line in lines]
+    found = [
+        {key: value for key, value in json.loads(line).items() if key != "crc32"} for line in lines
+    ]
     return [line for line in found if next(iter(line)) == kind]
 
 
@@ -123,7 +129,9 @@ def reasons(book: Path) -> dict[str, str]:
 
 def repeated(book: Path) -> list[str]:
     """Return the students with the same result twice."""
-    counts = Counter((line["student"], line.get("digest"), line["context"]) for line in lines_of(book))
+    counts = Counter(
+        (line["student"], line.get("digest"), line["context"]) for line in lines_of(book)
+    )
     return [student for (student, *_), count in counts.items() if count > 1]
 
 
@@ -143,7 +151,9 @@ def report_in_process(path: Path, to: Path, *more: str) -> tuple[int, bytes | st
     output = io.StringIO()
     to.unlink(missing_ok=True)
     with redirect_stdout(io.StringIO()), redirect_stderr(output):
-        code = run_here(["grade", "--save", f"json={to}", "--format", "json", *more, "--", str(path)])
+        code = run_here(
+            ["grade", "--save", f"json={to}", "--format", "json", *more, "--", str(path)]
+        )
     return code, to.read_bytes() if to.exists() else output.getvalue()
 
 
@@ -155,7 +165,9 @@ def without_hints() -> Path:
     shutil.copytree(ROOT / "rubrics/lab6", folder, dirs_exist_ok=True)
     text = (ROOT / "rubrics/lab6/rubric.toml").read_text(encoding="utf-8")
     assert text.count('hints = "cause"') == 1
-    (folder / "lab6.toml").write_text(text.replace('hints = "cause"', 'hints = "none"'), encoding="utf-8")
+    (folder / "lab6.toml").write_text(
+        text.replace('hints = "cause"', 'hints = "none"'), encoding="utf-8"
+    )
     return folder / "lab6.toml"
 
 
@@ -166,7 +178,9 @@ def urdf_class(folder: Path, count: int, seed: int = 1) -> Path:
     return folder
 
 
-def mixed_class(folder: Path, count: int, layout: str = "folders", seed: int = 1, *, for_zip: bool = False) -> Path:
+def mixed_class(
+    folder: Path, count: int, layout: str = "folders", seed: int = 1, *, for_zip: bool = False
+) -> Path:
     """Make a class of all kinds of submissions; `for_zip` omits what a zip cannot hold as a folder does."""
     for submission in made_up.make_class(folder, count, seed, "mixed", layout):
         if for_zip and (submission.kind in _SKIPPED or not submission.person.name.isprintable()):

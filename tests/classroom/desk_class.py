@@ -8,8 +8,21 @@ from tests.checks.submissions import png
 from tests.samples import ROOT
 
 STUDENTS, ANSWERS, PICTURES = 121, 40, 50
-_ENDS = ("vanishes", "is gone", "stays", "has two roots", "is not in the tree", "cannot be placed", "fails to load")
-_WHYS = ("no joint joins it", "the tree has two roots", "nothing says where it is", "the parser refuses it")
+_ENDS = (
+    "vanishes",
+    "is gone",
+    "stays",
+    "has two roots",
+    "is not in the tree",
+    "cannot be placed",
+    "fails to load",
+)
+_WHYS = (
+    "no joint joins it",
+    "the tree has two roots",
+    "nothing says where it is",
+    "the parser refuses it",
+)
 _NODES = ("robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui", "rviz2")
 
 
@@ -28,7 +41,9 @@ def make_desk_class(folder: Path) -> Path:
         if number < ANSWERS:
             why = f"The link {chance.choice(_ENDS)}, because {chance.choice(_WHYS)}."
             nodes = f"It starts {' and '.join(chance.sample(_NODES, 2))}, which show the robot."
-            (top / "answers.md").write_text(f"# Task 1 Step 15\n\n{why}\n\n# Task 2 Step 2\n\n{nodes}\n")
+            (top / "answers.md").write_text(
+                f"# Task 1 Step 15\n\n{why}\n\n# Task 2 Step 2\n\n{nodes}\n"
+            )
         if number % 2 and number < 2 * PICTURES:
             (top / "Task3_Step3.png").write_bytes(png(640 + number, 400))
     (folder / "roster.csv").write_text("\n".join(rows) + "\n")

@@ -31,7 +31,9 @@ def lab_text(late: str = "", **points: str) -> str:
     ]
     parts = '[[part]]\nid = "robot"\ntitle = "Robot"\n\n[[part]]\nid = "report"\ntitle = "Report"\nneeds = "files"'
     policy = f"[late]\n{late}" if late else ""
-    return "\n\n".join(['id = "small"\ntitle = "A small lab"\nurdf = "robot.urdf"', parts, *rows, policy])
+    return "\n\n".join(
+        ['id = "small"\ntitle = "A small lab"\nurdf = "robot.urdf"', parts, *rows, policy]
+    )
 
 
 def lab(late: str = "", **points: str) -> Rubric:
@@ -39,9 +41,13 @@ def lab(late: str = "", **points: str) -> Rubric:
     return read_rubric(lab_text(late, **points).encode(), Path("small.toml"))
 
 
-def grader(*arguments: object, stdin: str | bytes = "", **variables: str) -> subprocess.CompletedProcess[str]:
+def grader(
+    *arguments: object, stdin: str | bytes = "", **variables: str
+) -> subprocess.CompletedProcess[str]:
     """Run the command line from the project's root."""
-    done = run_with_input(arguments, stdin if isinstance(stdin, bytes) else stdin.encode(), variables)
+    done = run_with_input(
+        arguments, stdin if isinstance(stdin, bytes) else stdin.encode(), variables
+    )
     out, err = done.stdout.decode(), done.stderr.decode()
     return subprocess.CompletedProcess(done.args, done.returncode, out, err)
 
@@ -58,9 +64,7 @@ def refusal(done: subprocess.CompletedProcess[str]) -> str:
 
 def urdf(size: str = "1 1 1") -> str:
     """Return a robot of one box."""
-    return (
-        f'<robot name="r"><link name="base"><visual><geometry><box size="{size}"/></geometry></visual></link></robot>'
-    )
+    return f'<robot name="r"><link name="base"><visual><geometry><box size="{size}"/></geometry></visual></link></robot>'
 
 
 PNG = bytes.fromhex(
@@ -102,6 +106,15 @@ def make_class(top: Path, late: str = "") -> Path:
 def batch(top: Path, *more: object, rubric: object = None) -> subprocess.CompletedProcess[str]:
     """Grade the class into the folder `book`."""
     return grader(
-        "batch", top / "class", "--gradebook", top / "book", "--rubric", rubric or top / "small.toml",
-        "--roster", top / "roster.csv", "--jobs", 2, *more,
-    )  # fmt: skip
+        "batch",
+        top / "class",
+        "--gradebook",
+        top / "book",
+        "--rubric",
+        rubric or top / "small.toml",
+        "--roster",
+        top / "roster.csv",
+        "--jobs",
+        2,
+        *more,
+    )

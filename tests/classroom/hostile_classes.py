@@ -51,7 +51,9 @@ class ClassLayout:
 
     def place(self, owner: str) -> str:
         """Return the folder of a student, as the platform or the instructor names it."""
-        name = {"login": owner, "name": _FULL[owner], "email": f"{owner}@example.org"}[self.spelling]
+        name = {"login": owner, "name": _FULL[owner], "email": f"{owner}@example.org"}[
+            self.spelling
+        ]
         return {
             "prefixed": f"lab6-{owner}",
             "teams": f"{_TEAM[owner]}/Lab6/{name}",
@@ -73,8 +75,14 @@ class ClassLayout:
     def is_own(self, name: str) -> bool:
         """Return whether the instructor or platform would give a folder of this name to an honest student on the roster."""
         stem = name.removeprefix("./").removeprefix("lab6-").split(".urdf")[0].split(".zip")[0]
-        words = {word for owner in NAMES for word in (owner, f"k{_NUMBER[owner]}", f"{owner}@example.org")}
-        return self.has_roster and self.layout in ("folders", "prefixed", "nbgrader") and stem in words
+        words = {
+            word
+            for owner in NAMES
+            for word in (owner, f"k{_NUMBER[owner]}", f"{owner}@example.org")
+        }
+        return (
+            self.has_roster and self.layout in ("folders", "prefixed", "nbgrader") and stem in words
+        )
 
     @property
     def roster(self) -> Roster | None:
@@ -82,35 +90,76 @@ class ClassLayout:
         in_canvas, in_moodle = self.layout == "canvas", self.layout == "moodle"
         students = [
             Student(
-                f"k{_NUMBER[name]}", _FULL[name], f"{name}@example.org", name, group=_TEAM[name],
-                canvas=_NUMBER[name] if in_canvas else "", moodle=_NUMBER[name] if in_moodle else "",
+                f"k{_NUMBER[name]}",
+                _FULL[name],
+                f"{name}@example.org",
+                name,
+                group=_TEAM[name],
+                canvas=_NUMBER[name] if in_canvas else "",
+                moodle=_NUMBER[name] if in_moodle else "",
             )
             for name in (*NAMES, MALLORY)
-        ]  # fmt: skip
+        ]
         return Roster(tuple(students)) if self.has_roster else None
 
 
 def _in_canvas(name: str) -> str:
     words = name.split()
-    return "".join(letter for letter in "".join(words[1:] + words[:1]).lower() if letter.isalnum() or letter == "_")
+    return "".join(
+        letter
+        for letter in "".join(words[1:] + words[:1]).lower()
+        if letter.isalnum() or letter == "_"
+    )
 
 
 def _variants(name: str) -> list[str]:
     """Return spellings of a name that could be mistaken for it."""
     full, number = _FULL[name], _NUMBER[name]
     return [
-        name, name.upper(), name.title(), full, full.lower(), f"{full.split()[1]}, {full.split()[0]}", full.split()[1],
-        f"{name}~2", f"./{name}", f"k{number}", number, f"{name}_{number}", f"{full}_{number}", f"lab6-{name}", f"x-{name}",
-        f"{full.split()[0]}_{number} {full.split()[1]}", f"5_x_{number} {full.split()[1]}", f"{name}@example.org",
-        f"{name}@elsewhere.example", f"{full}_{number}_{_FILE}_", f"{name}_{number}_99", _TEAM[name], f"{name}_{number}_5_x",
-        unicodedata.normalize("NFD", full.replace("A", "\u00c5")), full.replace("a", "\u0430"), f"{name}\u200b", f"{name}\n",
-        f"{name}\udcff", f"{name}.urdf", f"{name}.zip", f"{_TEAM[name]}-{name}", f"{_TEAM[name]}\\{name}", f"{name} ",
-        f".{name}", f"anon_{name}x", f"surname\n{full.split()[1]}", f"canvas {number}",
-    ]  # fmt: skip
+        name,
+        name.upper(),
+        name.title(),
+        full,
+        full.lower(),
+        f"{full.split()[1]}, {full.split()[0]}",
+        full.split()[1],
+        f"{name}~2",
+        f"./{name}",
+        f"k{number}",
+        number,
+        f"{name}_{number}",
+        f"{full}_{number}",
+        f"lab6-{name}",
+        f"x-{name}",
+        f"{full.split()[0]}_{number} {full.split()[1]}",
+        f"5_x_{number} {full.split()[1]}",
+        f"{name}@example.org",
+        f"{name}@elsewhere.example",
+        f"{full}_{number}_{_FILE}_",
+        f"{name}_{number}_99",
+        _TEAM[name],
+        f"{name}_{number}_5_x",
+        unicodedata.normalize("NFD", full.replace("A", "\u00c5")),
+        full.replace("a", "\u0430"),
+        f"{name}\u200b",
+        f"{name}\n",
+        f"{name}\udcff",
+        f"{name}.urdf",
+        f"{name}.zip",
+        f"{_TEAM[name]}-{name}",
+        f"{_TEAM[name]}\\{name}",
+        f"{name} ",
+        f".{name}",
+        f"anon_{name}x",
+        f"surname\n{full.split()[1]}",
+        f"canvas {number}",
+    ]
 
 
 HOSTILE = st.sampled_from([variant for name in NAMES for variant in _variants(name)])
-LINKS = st.sampled_from(["my_robot.urdf", "urdf", "attempt_9", "src/my_robot", "timestamp.txt", "zz.zip"])
+LINKS = st.sampled_from(
+    ["my_robot.urdf", "urdf", "attempt_9", "src/my_robot", "timestamp.txt", "zz.zip"]
+)
 
 
 class HostileClass(RuleBasedStateMachine):
@@ -118,7 +167,9 @@ class HostileClass(RuleBasedStateMachine):
 
     def __init__(self) -> None:
         super().__init__()
-        self._folder = tempfile.TemporaryDirectory(dir="/dev/shm" if Path("/dev/shm").is_dir() else None)
+        self._folder = tempfile.TemporaryDirectory(
+            dir="/dev/shm" if Path("/dev/shm").is_dir() else None
+        )
         self.root = Path(self._folder.name).resolve() / "class"
 
     def teardown(self) -> None:
@@ -149,11 +200,17 @@ class HostileClass(RuleBasedStateMachine):
             self._check()
 
     @rule(
-        victim=st.sampled_from(NAMES), at=LINKS, is_absolute=st.booleans(), part=st.sampled_from(["", "/my_robot.urdf"])
+        victim=st.sampled_from(NAMES),
+        at=LINKS,
+        is_absolute=st.booleans(),
+        part=st.sampled_from(["", "/my_robot.urdf"]),
     )
     def link_to_another(self, victim: str, at: str, is_absolute: bool, part: str) -> None:
         """Add a symlink in a student's own folder to another's work."""
-        link, target = self.root / self.made.place(MALLORY) / at, self.root / (self.made.place(victim) + part)
+        link, target = (
+            self.root / self.made.place(MALLORY) / at,
+            self.root / (self.made.place(victim) + part),
+        )
         link.parent.mkdir(parents=True, exist_ok=True)
         if link.is_dir() and not link.is_symlink():
             shutil.rmtree(link)
@@ -175,8 +232,14 @@ class HostileClass(RuleBasedStateMachine):
         path = self.root / (f"{place}.zip" if is_packed else f"{place}/my_robot.urdf")
         path.parent.mkdir(parents=True, exist_ok=True)
         victims = [self.made.place(name) for name in NAMES if name != owner]
-        is_others = any(f"{os.path.normpath(path)}/".startswith(f"{self.root}/{victim}/") for victim in victims)
-        if path.parent.resolve() != Path(os.path.normpath(path.parent)) or path.is_symlink() or is_others:
+        is_others = any(
+            f"{os.path.normpath(path)}/".startswith(f"{self.root}/{victim}/") for victim in victims
+        )
+        if (
+            path.parent.resolve() != Path(os.path.normpath(path.parent))
+            or path.is_symlink()
+            or is_others
+        ):
             return
         if not is_packed:
             path.write_bytes(work(owner))
@@ -187,10 +250,18 @@ class HostileClass(RuleBasedStateMachine):
     def _check(self) -> None:
         found = self._read()
         for name, paths in self.before.items():
-            listed = [line for line in self.unmatched if line.startswith(paths[0]) and "none is graded" in line]
+            listed = [
+                line
+                for line in self.unmatched
+                if line.startswith(paths[0]) and "none is graded" in line
+            ]
             assert not self.unclear & {f"k{_NUMBER[one]}" for one in found}, self.made
-            is_unclear = not self.made.has_roster or f"k{_NUMBER[name]}" in self.unclear  # so that it is no 0
-            assert found.get(name) == paths or (name not in found and len(listed) == 1 and is_unclear), (
+            is_unclear = (
+                not self.made.has_roster or f"k{_NUMBER[name]}" in self.unclear
+            )  # so that it is no 0
+            assert found.get(name) == paths or (
+                name not in found and len(listed) == 1 and is_unclear
+            ), (
                 self.made,
                 os.listdir(self.root),
             )
@@ -204,10 +275,17 @@ class HostileClass(RuleBasedStateMachine):
         intake = read_class([self.source], self.made.roster, layout, rubric_id="lab6")
         self.unmatched, self.unclear = intake.unmatched, intake.unclear
         for one in intake.submissions:
-            owners = {next((name for name in NAMES if self._is_of(name, path)), MALLORY) for path in one.paths}
+            owners = {
+                next((name for name in NAMES if self._is_of(name, path)), MALLORY)
+                for path in one.paths
+            }
             assert len(owners) == 1, one
             (owner,) = owners
-            assert not self.made.has_roster or owner == MALLORY or one.student.key == f"k{_NUMBER[owner]}", one
+            assert (
+                not self.made.has_roster
+                or owner == MALLORY
+                or one.student.key == f"k{_NUMBER[owner]}"
+            ), one
             self._check_files(one.paths, one.names, owner)
             if owner != MALLORY:
                 assert owner not in found, (owner, one)
@@ -217,7 +295,9 @@ class HostileClass(RuleBasedStateMachine):
     def _is_of(self, name: str, path: str) -> bool:
         """Return whether a path is that of an honest student, also of the whole repository of a team with no other."""
         place = self.made.place(name)
-        return _is_below(path, place) or (self.made.layout == "teams" and place.startswith(f"{path}/"))
+        return _is_below(path, place) or (
+            self.made.layout == "teams" and place.startswith(f"{path}/")
+        )
 
     def _check_files(self, paths: tuple[str, ...], names: tuple[str, ...], owner: str) -> None:
         """Assert that the files read for a submission belong to the owner of its folder."""
@@ -228,7 +308,12 @@ class HostileClass(RuleBasedStateMachine):
             for file in opened.tree.files.values() if opened.tree is not None else ():
                 with suppress(InputError):
                     read.append(file.read(1_000_000))
-        others = [name for name in (*NAMES, MALLORY) for data in read if name != owner and work(name) in (data or b"")]
+        others = [
+            name
+            for name in (*NAMES, MALLORY)
+            for data in read
+            if name != owner and work(name) in (data or b"")
+        ]
         assert not others, (paths, owner, others)
 
 
@@ -254,14 +339,22 @@ def try_classes(number: int, start: int | None = None) -> None:
     run_state_machine_as_test(
         HostileClass if start is None else seed(start)(HostileClass),
         settings=settings(
-            max_examples=number, stateful_step_count=6, deadline=None, suppress_health_check=list(HealthCheck)
+            max_examples=number,
+            stateful_step_count=6,
+            deadline=None,
+            suppress_health_check=list(HealthCheck),
         ),
     )
 
 
 if __name__ == "__main__":
-    requested, chosen = int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else random.randrange(2**32)
+    requested, chosen = (
+        int(sys.argv[1]),
+        int(sys.argv[2]) if len(sys.argv) > 2 else random.randrange(2**32),
+    )
     print(f"seed {chosen}", flush=True)
     began = time.monotonic()
     try_classes(requested, chosen)
-    print(f"{requested} classes, {time.monotonic() - began:.0f} s: no student has anybody else's submission")
+    print(
+        f"{requested} classes, {time.monotonic() - began:.0f} s: no student has anybody else's submission"
+    )

@@ -30,7 +30,11 @@ def plain(number: Decimal) -> str:
 
 def newest(marks: Sequence[Row], student: str) -> dict[str, str]:
     """Return the points of a student's newest marks by criterion, without those that were withdrawn."""
-    found = {one["criterion"]: one["points"] for one in marks if one["student"] == student and one["points"]}
+    found = {
+        one["criterion"]: one["points"]
+        for one in marks
+        if one["student"] == student and one["points"]
+    }
     return {name: points for name, points in found.items() if points != "-"}
 
 
@@ -39,18 +43,29 @@ def days_late(student: Row, own_deadline: str, policy: Policy) -> int:
     if student["late"] not in ("", "yes"):
         return int(student["late"])
     if student["submitted"]:
-        due = datetime.fromisoformat(own_deadline or student["due"]) if own_deadline or student["due"] else policy.due
+        due = (
+            datetime.fromisoformat(own_deadline or student["due"])
+            if own_deadline or student["due"]
+            else policy.due
+        )
         over = datetime.fromisoformat(student["submitted"]) - due - policy.grace
         return max(0, ceil(over / timedelta(days=1)))
     return int(student["late"] == "yes")
 
 
-def cells_of(student: Row, report: Mapping[str, Any] | None, marks: Sequence[Row], policy: Policy) -> dict[str, str]:
+def cells_of(
+    student: Row, report: Mapping[str, Any] | None, marks: Sequence[Row], policy: Policy
+) -> dict[str, str]:
     """Return the cells of a student in `grades.csv` by column, without those that are empty."""
     given = newest(marks, student["id"])
     final = given.pop("total", "")
     own_deadline = given.pop("deadline", "")
-    cells = {"id": student["id"], "name": student["name"], "section": student["section"], "email": student["email"]}
+    cells = {
+        "id": student["id"],
+        "name": student["name"],
+        "section": student["section"],
+        "email": student["email"],
+    }
     if report is None:
         status = "excused" if final == "excused" else "missing"
         return {**cells, "status": status, "total": final if final != "excused" else ""}
@@ -65,7 +80,10 @@ def cells_of(student: Row, report: Mapping[str, Any] | None, marks: Sequence[Row
             points[one["id"]] = plain(Decimal(str(one["points"])))
     if final == "excused":
         return {**cells, "status": "excused"}
-    score, days = sum(map(Decimal, points.values()), Decimal(0)), days_late(student, own_deadline, policy)
+    score, days = (
+        sum(map(Decimal, points.values()), Decimal(0)),
+        days_late(student, own_deadline, policy),
+    )
     least = min(score, maximum * policy.floor / 100)
     late = max(least, score - maximum * policy.per_day * days / 100) - score
     if final:
@@ -78,7 +96,13 @@ def cells_of(student: Row, report: Mapping[str, Any] | None, marks: Sequence[Row
         "late_points": late,
     }
     total = final or plain(score + late)
-    return {**cells, **points, "status": "graded", "total": total, **{key: plain(one) for key, one in numbers.items()}}
+    return {
+        **cells,
+        **points,
+        "status": "graded",
+        "total": total,
+        **{key: plain(one) for key, one in numbers.items()},
+    }
 
 
 def published(cells: Mapping[str, str]) -> str:

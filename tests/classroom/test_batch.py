@@ -32,7 +32,19 @@ REFERENCE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot/urd
 def batch(path: Path, out: Path, *arguments: str, cwd: str = "") -> dict[str, bytes]:
     """Grade a class into a new gradebook and return the JSON reports by key."""
     book, reports = out.with_suffix(".book"), out.with_suffix(".reports")
-    done = grader("batch", path, "--gradebook", book, "--jobs", "2", "--reports", reports, *JSON, *arguments, cwd=cwd)
+    done = grader(
+        "batch",
+        path,
+        "--gradebook",
+        book,
+        "--jobs",
+        "2",
+        "--reports",
+        reports,
+        *JSON,
+        *arguments,
+        cwd=cwd,
+    )
     assert done.returncode == 0, done.stderr
     return reports_of(book, reports)
 
@@ -103,14 +115,20 @@ def without_other_parts(report: bytes, alone: bytes | str) -> object:
         return data
     assert (data["parts"], other["parts"]) == (["task1", "task2", "task3", "questions"], ["task1"])
     kept = [result for result in data["results"] if result["part"] == "task1"]
-    assert {result["status"] for result in data["results"][len(kept) :]} <= {"failed", "skipped", "pending"}
+    assert {result["status"] for result in data["results"][len(kept) :]} <= {
+        "failed",
+        "skipped",
+        "pending",
+    }
     changed = ("notes", "parts", "max_score", "pending", "evidence")
     return {**data, "results": kept, **{key: other[key] for key in changed}}
 
 
 def is_undecided(report: bytes | str) -> bool:
     """Return whether something needs manual grading that a program normally decides."""
-    waiting = {result["id"] for result in json.loads(report)["results"] if result["status"] == "pending"}
+    waiting = {
+        result["id"] for result in json.loads(report)["results"] if result["status"] == "pending"
+    }
     return bool(waiting - {"answer-floating-link", "answer-launch-nodes", "evidence-webcam"})
 
 
@@ -172,12 +190,15 @@ def test_reports_quote_unchanged_files_only(tmp_path: Path) -> None:
         shutil.copytree(ROOT / "submissions/lab6/several-mistakes/my_robot/urdf", folder / name)
     grader("batch", folder, "--gradebook", book, "--reports", words)
     alone = grader("grade", folder / "ann").stdout
-    assert (words / "ann.txt").read_text() == alone.replace("my_robot.urdf\n", "my_robot.urdf (ann)\n", 1)
+    assert (words / "ann.txt").read_text() == alone.replace(
+        "my_robot.urdf\n", "my_robot.urdf (ann)\n", 1
+    )
     quoted = next(line for line in alone.splitlines() if "<" in line and "xyz" in line)
     (folder / "ann/my_robot.urdf").write_text('<robot name="other"/>\n' * 100)
     before = (book / "results.jsonl").read_bytes()
     texts = {
-        key: render(report_of(Gradebook(book), Gradebook(book).grade(key)), Format.TERMINAL) for key in ("ann", "bea")
+        key: render(report_of(Gradebook(book), Gradebook(book).grade(key)), Format.TERMINAL)
+        for key in ("ann", "bea")
     }
     assert quoted not in texts["ann"]
     assert "The submission has moved or changed" in " ".join(texts["ann"].split())
@@ -188,9 +209,21 @@ def test_reports_quote_unchanged_files_only(tmp_path: Path) -> None:
 # --- Safety -----------------------------------------------------------------------------------------------------------
 
 MODULES = (
-    "numpy", "lxml", "yaml", "signal", "resource", "multiprocessing", "zlib", "json", "token", "selectors",
-    "pebble", "rich", "distributed", "pypdf",
-)  # fmt: skip
+    "numpy",
+    "lxml",
+    "yaml",
+    "signal",
+    "resource",
+    "multiprocessing",
+    "zlib",
+    "json",
+    "token",
+    "selectors",
+    "pebble",
+    "rich",
+    "distributed",
+    "pypdf",
+)
 
 
 @pytest.mark.slow
@@ -200,7 +233,9 @@ def test_nothing_of_a_class_is_imported(tmp_path: Path) -> None:
     mark = tmp_path / "ran"
     for name in MODULES:
         (folder / f"{name}.py").write_text(f"open({str(mark)!r}, 'w').close()\nraise SystemExit\n")
-    done = grader("batch", ".", "--gradebook", "../lab6", "--reports", "../reports", cwd=str(folder))
+    done = grader(
+        "batch", ".", "--gradebook", "../lab6", "--reports", "../reports", cwd=str(folder)
+    )
     assert (done.returncode, counted(done)) == (0, "5 graded, 0 unchanged")
     assert not mark.exists()
     assert GRADER[-2:] == ("-m", "grader")
@@ -210,7 +245,14 @@ def test_nothing_of_a_class_is_imported(tmp_path: Path) -> None:
 def test_awkward_names_are_found_in_the_roster(tmp_path: Path) -> None:
     """A folder with a bidirectional mark, a line break or a tab in its name belongs to the student of that name."""
     unmatched, absent = class_with_roster(tmp_path / "class", tmp_path / "roster.csv", 120)
-    done = grader("batch", tmp_path / "class", "--gradebook", tmp_path / "lab6", "--roster", tmp_path / "roster.csv")
+    done = grader(
+        "batch",
+        tmp_path / "class",
+        "--gradebook",
+        tmp_path / "lab6",
+        "--roster",
+        tmp_path / "roster.csv",
+    )
     assert done.returncode == 0
     students = {grade.student.key: grade for grade in Gradebook(tmp_path / "lab6")}
     assert [key for key, grade in students.items() if not grade.student.is_on_roster] == unmatched

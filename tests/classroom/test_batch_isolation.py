@@ -51,7 +51,9 @@ def test_each_misbehaviour_affects_one_submission(tmp_path: Path) -> None:
     command = ("batch", folder, "--gradebook", book, *RUBRIC, "--timeout", "4", "--jobs", "4")
     done = grader(*command, **WITH_HOSTILE)
     assert done.returncode == 0, done.stderr
-    assert counted(done) == f"{len(REASONS) + len(GOOD)} graded ({len(REASONS)} errored), 0 unchanged"
+    assert (
+        counted(done) == f"{len(REASONS) + len(GOOD)} graded ({len(REASONS)} errored), 0 unchanged"
+    )
     assert "Traceback" not in done.stderr
     assert verdicts(book) == {**dict.fromkeys(REASONS, "errored"), **dict.fromkeys(GOOD, "graded")}
     found = reasons(book)
@@ -63,7 +65,9 @@ def test_each_misbehaviour_affects_one_submission(tmp_path: Path) -> None:
     for name in REASONS:  # as their students submit something else
         (folder / f"{name}.urdf").write_text('<robot name="fine"><link name="a"/></robot>')
     (folder / "dies.urdf").write_text('<robot name="dies"><link name="a"/></robot>')
-    assert counted(grader(*command, **WITH_HOSTILE)) == (f"{len(REASONS)} graded (1 errored), {len(GOOD)} unchanged")
+    assert counted(grader(*command, **WITH_HOSTILE)) == (
+        f"{len(REASONS)} graded (1 errored), {len(GOOD)} unchanged"
+    )
     assert counted(grader(*command, **WITH_HOSTILE)) == (
         f"1 graded (1 errored), {len(GOOD) + len(REASONS) - 1} unchanged"
     )
@@ -74,7 +78,18 @@ def test_a_class_of_misbehaving_submissions_finishes(tmp_path: Path) -> None:
     """Even if every worker is killed again and again, each submission has its reason."""
     names = [f"{name}-{number}" for name in ("dies", "leaves", "crashes") for number in range(8)]
     folder, book = hostile_class(tmp_path / "class", *names), tmp_path / "lab"
-    done = grader("batch", folder, "--gradebook", book, *RUBRIC, "--timeout", "6", "--jobs", "2", **WITH_HOSTILE)
+    done = grader(
+        "batch",
+        folder,
+        "--gradebook",
+        book,
+        *RUBRIC,
+        "--timeout",
+        "6",
+        "--jobs",
+        "2",
+        **WITH_HOSTILE,
+    )
     assert (done.returncode, counted(done)) == (0, "24 graded (24 errored), 0 unchanged")
     assert set(verdicts(book)) == set(names)
 
@@ -92,8 +107,12 @@ HANGING = ("hangs", "hangs-2", "hangs_in_c", "fine")
 
 
 @pytest.mark.exhaustive
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGKILL, -9), (signal.SIGTERM, -15)])
-def test_no_process_outlives_a_killed_command(number: signal.Signals, code: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGKILL, -9), (signal.SIGTERM, -15)]
+)
+def test_no_process_outlives_a_killed_command(
+    number: signal.Signals, code: int, tmp_path: Path
+) -> None:
     """Not even workers that hang within a submission and never return to the interpreter."""
     folder, book = hostile_class(tmp_path / "class", *HANGING), tmp_path / "lab"
     command = ("batch", folder, "--gradebook", book, *RUBRIC, "--timeout", "3600", "--jobs", "4")

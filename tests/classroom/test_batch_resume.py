@@ -59,7 +59,17 @@ def undisturbed(folder: Path) -> tuple[dict[str, bytes], float]:
 
 
 def _command(folder: Path, out: Path) -> tuple[str | Path, ...]:
-    return "batch", folder, "--gradebook", out.with_suffix(".book"), "--reports", out, *JSON, "--jobs", "2"
+    return (
+        "batch",
+        folder,
+        "--gradebook",
+        out.with_suffix(".book"),
+        "--reports",
+        out,
+        *JSON,
+        "--jobs",
+        "2",
+    )
 
 
 def _visible(folder: Path) -> dict[str, bytes]:
@@ -68,7 +78,9 @@ def _visible(folder: Path) -> dict[str, bytes]:
 
 
 @pytest.mark.exhaustive
-def test_killed_six_times(folder: Path, undisturbed: tuple[dict[str, bytes], float], tmp_path: Path) -> None:
+def test_killed_six_times(
+    folder: Path, undisturbed: tuple[dict[str, bytes], float], tmp_path: Path
+) -> None:
     """After kill -9 during start, grading and writing every result is there once, and the reports equal those of one run."""
     reports, seconds = undisturbed
     out, dice = tmp_path / "out", Random(7)
@@ -79,7 +91,9 @@ def test_killed_six_times(folder: Path, undisturbed: tuple[dict[str, bytes], flo
             if number % 2:
                 _wait(process, dice.uniform(0, seconds / 3 if number < KILLS / 2 else seconds))
             else:
-                assert eventually(lambda: len(verdicts(book)) > kept[-1] or process.poll() is not None)
+                assert eventually(
+                    lambda: len(verdicts(book)) > kept[-1] or process.poll() is not None
+                )
             process.kill()
             process.wait()
             assert eventually(lambda: not session_of(process))
@@ -99,7 +113,10 @@ def _wait(process: "subprocess.Popen[str]", seconds: float) -> None:
 
 @pytest.mark.parametrize("is_written", [False, True])
 def test_only_what_is_written_is_called_kept(
-    is_written: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    is_written: bool,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     """Where Ctrl-C arrives just before or after the write."""
     append = ResultsWriter.append
@@ -122,9 +139,22 @@ def test_interrupted(tmp_path: Path) -> None:
     """Ctrl-C reports in a line how many results are kept, which they are; then the run continues."""
     names = [f"fine-{number}" for number in range(20)]
     folder, book = hostile_class(tmp_path / "class", "hangs", *names), tmp_path / "lab"
-    command = ("batch", folder, "--gradebook", book, "--rubric", HOSTILE_RUBRIC, "--timeout", "3600", "--jobs", "2")
+    command = (
+        "batch",
+        folder,
+        "--gradebook",
+        book,
+        "--rubric",
+        HOSTILE_RUBRIC,
+        "--timeout",
+        "3600",
+        "--jobs",
+        "2",
+    )
     with started(*command, **WITH_HOSTILE) as process:
-        assert eventually(lambda: len(verdicts(book)) > 0)  # others may wait in a group with the one that hangs
+        assert eventually(
+            lambda: len(verdicts(book)) > 0
+        )  # others may wait in a group with the one that hangs
         os.killpg(process.pid, signal.SIGINT)
         _, output = process.communicate(timeout=HANG_TIMEOUT)
         assert process.returncode == 130
@@ -149,7 +179,10 @@ def test_interrupted_at_the_start(folder: Path, moment: float, tmp_path: Path) -
         time.sleep(moment)
         os.killpg(process.pid, signal.SIGINT)
         _, output = process.communicate(timeout=HANG_TIMEOUT)
-        assert (shell_code(process.returncode), output.splitlines()[-1]) == (130, "grader: interrupted")
+        assert (shell_code(process.returncode), output.splitlines()[-1]) == (
+            130,
+            "grader: interrupted",
+        )
         assert all(line.startswith("grader: ") for line in output.splitlines())
         assert eventually(lambda: not session_of(process))
 
@@ -173,7 +206,9 @@ def _limited(limit: int, *arguments: str | Path) -> Done:
 
 def _is_one_complaint(done: Done) -> bool:
     """Return whether standard error has only plain lines, the last of them the reason."""
-    return all(line.startswith("grader: ") and "Traceback" not in line for line in done.stderr.splitlines())
+    return all(
+        line.startswith("grader: ") and "Traceback" not in line for line in done.stderr.splitlines()
+    )
 
 
 @pytest.mark.exhaustive
@@ -220,9 +255,12 @@ def test_one_run_at_a_time(folder: Path, tmp_path: Path) -> None:
         done = grader(*command)
         assert done.returncode == 2
         assert (
-            done.stderr.splitlines()[-1] == f"grader: another `grader batch` writes to {book}: wait until it has ended"
+            done.stderr.splitlines()[-1]
+            == f"grader: another `grader batch` writes to {book}: wait until it has ended"
         )
-        (book / "marks/kim.csv").write_text(f"time,by,student,criterion,points\n,kim,{min(verdicts(book))},total,7\n")
+        (book / "marks/kim.csv").write_text(
+            f"time,by,student,criterion,points\n,kim,{min(verdicts(book))},total,7\n"
+        )
         assert process.wait(HANG_TIMEOUT) == 0
     assert (len(lines_of(book)), len(verdicts(book)), len(lines_of(book, "run"))) == (SIZE, SIZE, 1)
     assert ",7," in (book / "grades.csv").read_text().splitlines()[1]

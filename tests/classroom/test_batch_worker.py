@@ -42,14 +42,20 @@ UNREADABLE = {
     "empty": ("lab6.zip", zipped({}), "lab6.zip is empty"),
     "checksum": ("lab6.zip", damaged("a.urdf"), "a.urdf: Bad CRC-32"),
     "large": ("a.urdf", LARGE, "a.urdf is larger than 1 MiB, the limit for a URDF"),
-    "large-in-a-zip": ("lab6.zip", zipped({"a.urdf": LARGE}), "a.urdf is larger than 1 MiB, the limit for a"),
+    "large-in-a-zip": (
+        "lab6.zip",
+        zipped({"a.urdf": LARGE}),
+        "a.urdf is larger than 1 MiB, the limit for a",
+    ),
     "nested": ("lab6.zip", zipped({"b.zip": CUT}), "b.zip cannot be read as an archive"),
 }
 
 
 def graded(top: Path, *paths: str) -> StoredResult:
     """Return the result of a submission below a folder."""
-    (result,) = grade_all(ClassContext((str(top),), LAB6.data, str(LAB6.path)), [Task("ann", 0, paths)])
+    (result,) = grade_all(
+        ClassContext((str(top),), LAB6.data, str(LAB6.path)), [Task("ann", 0, paths)]
+    )
     return result
 
 
@@ -74,7 +80,11 @@ def test_each_unreadable_file_has_its_own_digest(tmp_path: Path) -> None:
     first = graded(tmp_path, "ann.zip")
     (tmp_path / "ann.zip").write_bytes(CUT + b" ")
     second = graded(tmp_path, "ann.zip")
-    assert (first.verdict, first.reason) == (second.verdict, second.reason) == ("unreadable", first.reason)
+    assert (
+        (first.verdict, first.reason)
+        == (second.verdict, second.reason)
+        == ("unreadable", first.reason)
+    )
     assert first.digest != second.digest
 
 
@@ -96,7 +106,8 @@ def test_a_folder_has_the_same_report(tmp_path: Path) -> None:
     assert sum(points for points, _ in found.values()) > 0
     assert (
         grade_all(
-            ClassContext((str(tmp_path),), LAB6.data, str(LAB6.path)), [Task("ann", 0, ("ann",), graded=result.digest)]
+            ClassContext((str(tmp_path),), LAB6.data, str(LAB6.path)),
+            [Task("ann", 0, ("ann",), graded=result.digest)],
         )[0].verdict
         == "unchanged"
     )
@@ -138,12 +149,13 @@ def test_a_submission_without_its_documents(tmp_path: Path) -> None:
     shutil.copytree(ROOT / "submissions/lab6/several-mistakes", tmp_path / "ann")
     context = ClassContext((str(tmp_path),), LAB6.data, str(LAB6.path))
     whole, without = (
-        grade_all(context, [Task("ann", 0, ("ann",), no_documents=why)])[0] for why in ("", "it took long")
+        grade_all(context, [Task("ann", 0, ("ann",), no_documents=why)])[0]
+        for why in ("", "it took long")
     )
     assert (without.verdict, without.no_documents, without.texts) == ("graded", "it took long", {})
-    assert {name: entry[0] for name, entry in without.results.items() if name != "evidence-webcam"} == {
-        name: entry[0] for name, entry in whole.results.items() if name != "evidence-webcam"
-    }
+    assert {
+        name: entry[0] for name, entry in without.results.items() if name != "evidence-webcam"
+    } == {name: entry[0] for name, entry in whole.results.items() if name != "evidence-webcam"}
     assert without.results["answer-launch-nodes"][:2] == (None, "pending")
 
 

@@ -27,7 +27,18 @@ pytestmark = pytest.mark.exhaustive
 STUDENTS, SECTIONS = 150, "ABC"
 DUE = datetime.fromisoformat("2026-11-20T23:59:59.999999+01:00")
 POLICY = Policy(DUE, timedelta(minutes=15), Decimal(10), Decimal(50))
-COLUMNS = ("id", "name", "email", "login", "section", "canvas id", "moodle id", "due", "submitted", "late")
+COLUMNS = (
+    "id",
+    "name",
+    "email",
+    "login",
+    "section",
+    "canvas id",
+    "moodle id",
+    "due",
+    "submitted",
+    "late",
+)
 
 
 class Class150:
@@ -61,11 +72,21 @@ class Class150:
             "name": who.name,
             "email": f"{who.login}@example.org",
         }
-        row |= {"login": who.login, "section": SECTIONS[number % 3], "canvas id": str(100_000 + who.number)}
-        row |= {"moodle id": str(5_000_000 + who.number), "late": dice.choice(["", "", "", "yes", "0", "2", "9"])}
+        row |= {
+            "login": who.login,
+            "section": SECTIONS[number % 3],
+            "canvas id": str(100_000 + who.number),
+        }
+        row |= {
+            "moodle id": str(5_000_000 + who.number),
+            "late": dice.choice(["", "", "", "yes", "0", "2", "9"]),
+        }
         if number % 4 == 0:
             late = timedelta(minutes=dice.choice([-600, -1, 0, 14, 16, 1500, 4000, 20_000]))
-            row |= {"submitted": (DUE.replace(second=0, microsecond=0) + late).isoformat(), "late": ""}
+            row |= {
+                "submitted": (DUE.replace(second=0, microsecond=0) + late).isoformat(),
+                "late": "",
+            }
         if number % 8 == 0:
             row["due"] = "2026-11-22T12:00:00+01:00"
         self.students.append(row)
@@ -76,8 +97,12 @@ class Class150:
             made_up.write(str(self.top / layout), item)
         alone = self.top / "alone" / f"S{number:03}"
         alone.mkdir(parents=True)
-        (alone / "my_robot.urdf").write_bytes(next(item.data for item in one.attempts[-1] if item.data))
-        code, data = report_in_process(alone, self.top / "report.json", "--rubric", str(self.rubric))
+        (alone / "my_robot.urdf").write_bytes(
+            next(item.data for item in one.attempts[-1] if item.data)
+        )
+        code, data = report_in_process(
+            alone, self.top / "report.json", "--rubric", str(self.rubric)
+        )
         assert code in (0, 1), data
         self.reports[row["id"]] = json.loads(data)
 
@@ -87,10 +112,13 @@ class Class150:
         for student, report in self.reports.items():
             worth = {one["id"]: Decimal(str(one["max_points"])) for one in report["results"]}
             open_ones = [one["id"] for one in report["results"] if one["status"] == "pending"]
-            chosen = [name for name in open_ones if dice.random() < 0.9] + dice.sample(sorted(worth), dice.randrange(3))
+            chosen = [name for name in open_ones if dice.random() < 0.9] + dice.sample(
+                sorted(worth), dice.randrange(3)
+            )
             for name in chosen:
                 points = second_program.plain(
-                    worth[name] * dice.choice([Decimal(0), Decimal(1), Decimal("0.5"), Decimal("0.25")])
+                    worth[name]
+                    * dice.choice([Decimal(0), Decimal(1), Decimal("0.5"), Decimal("0.25")])
                 )
                 rows.append({"student": student, "criterion": name, "points": points})
         for row in self.students:
@@ -101,7 +129,9 @@ class Class150:
                 when = "2026-11-23T08:00:00+01:00"
                 rows.append({"student": row["id"], "criterion": "deadline", "points": when})
         again = [{**row, "points": "-"} for row in rows if dice.random() < 0.05]
-        self.marks: list[Row] = [*{(row["student"], row["criterion"]): row for row in rows}.values()]
+        self.marks: list[Row] = [
+            *{(row["student"], row["criterion"]): row for row in rows}.values()
+        ]
         for part in (self.marks, again):
             text = "student,criterion,points\n" + "".join(
                 f"{one['student']},{one['criterion']},{one['points']}\n"
@@ -149,16 +179,25 @@ def test_each_cell_of_an_lms(made: Class150) -> None:
     (made.top / "canvas.csv").write_text(text.getvalue(), encoding="utf-8")
     done = grader("export", "canvas", "--gradebook", made.book, "--into", made.top / "canvas.csv")
     assert done.returncode == 0, done.stderr
-    found = {row["ID"]: row["Lab 6 (98765)"] for row in csv.DictReader(io.StringIO(done.stdout)) if row["ID"]}
+    found = {
+        row["ID"]: row["Lab 6 (98765)"]
+        for row in csv.DictReader(io.StringIO(done.stdout))
+        if row["ID"]
+    }
     ids = {row["id"]: row["canvas id"] for row in made.students}
-    wanted = {ids[one["id"]]: "EX" if one["status"] == "excused" else published(one) for one in made.expected()}
+    wanted = {
+        ids[one["id"]]: "EX" if one["status"] == "excused" else published(one)
+        for one in made.expected()
+    }
     assert found == {key: text for key, text in wanted.items() if text}
     assert {"EX", "99.99"} <= {*found.values()}
 
 
 def test_each_figure(made: Class150) -> None:
     """Mean and median of all and of each section, the tenths, and the students by status."""
-    data = json.loads(grader("stats", "--gradebook", made.book, "--format", "json").stdout)["statistics"]
+    data = json.loads(grader("stats", "--gradebook", made.book, "--format", "json").stdout)[
+        "statistics"
+    ]
     rows = [*made.expected()]
     counted = [row for row in rows if row["status"] == "graded" or "total" in row]
     for name in (None, *SECTIONS):
@@ -166,8 +205,10 @@ def test_each_figure(made: Class150) -> None:
         found = data["grades"] if name is None else data["sections"][name]
         mean, middle = second_program.summary(totals)
         assert (found["students"], found["mean"], found["median"]) == (
-            len(totals), pytest.approx(mean), pytest.approx(middle)
-        )  # fmt: skip
+            len(totals),
+            pytest.approx(mean),
+            pytest.approx(middle),
+        )
     tenths = [min(9, int(Decimal(row["total"]) // 10)) for row in counted]
     assert data["tenths"] == [tenths.count(tenth) for tenth in range(10)]
     statuses = [row["status"] for row in rows]

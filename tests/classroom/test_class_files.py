@@ -41,7 +41,9 @@ def package(top: Path) -> Path:
 
 
 CHANGES: dict[str, Callable[[Path], object]] = {
-    "byte": lambda folder: (folder / "urdf/my_robot.urdf").write_bytes(URDF.replace(b"'b'", b"'c'")),
+    "byte": lambda folder: (folder / "urdf/my_robot.urdf").write_bytes(
+        URDF.replace(b"'b'", b"'c'")
+    ),
     "name": lambda folder: (folder / "notes.txt").rename(folder / "notes.md"),
     "moved": lambda folder: (folder / "urdf/my_robot.urdf").rename(folder / "my_robot.urdf"),
     "more": lambda folder: (folder / "more.txt").touch(),
@@ -105,7 +107,9 @@ def test_a_symlink_that_replaces_a_file_is_not_followed(
     swapped: str, opens_in_folders: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """After a file is found, another student's file cannot be put in its place, with or without openat."""
-    monkeypatch.setattr(reading, "_OPENS_IN_FOLDERS", opens_in_folders and reading._OPENS_IN_FOLDERS)
+    monkeypatch.setattr(
+        reading, "_OPENS_IN_FOLDERS", opens_in_folders and reading._OPENS_IN_FOLDERS
+    )
     for name, text in (("ann", URDF), ("bob", b"secret")):
         (tmp_path / name / "urdf").mkdir(parents=True)
         (tmp_path / name / "urdf/my_robot.urdf").write_bytes(text)
@@ -115,10 +119,18 @@ def test_a_symlink_that_replaces_a_file_is_not_followed(
     place = tmp_path / swapped
     place.rename(tmp_path / "away")
     place.symlink_to(tmp_path / swapped.replace("ann", "bob", 1))
-    for file in found[: 1 if swapped == "ann" else 2]:  # a folder that is named on the command line is trusted
-        with pytest.raises(InputError, match=r"urdf/my_robot\.urdf is a symlink, and was not followed"):
+    for file in found[
+        : 1 if swapped == "ann" else 2
+    ]:  # a folder that is named on the command line is trusted
+        with pytest.raises(
+            InputError, match=r"urdf/my_robot\.urdf is a symlink, and was not followed"
+        ):
             file.read(1000)
-    with pytest.raises(InputError, match="is a symlink, and was not followed") if swapped == "ann" else nullcontext():
+    with (
+        pytest.raises(InputError, match="is a symlink, and was not followed")
+        if swapped == "ann"
+        else nullcontext()
+    ):
         outer_tree(tmp_path / "ann", str(tmp_path))
 
 
@@ -131,9 +143,15 @@ def test_nothing_outside_of_the_class_is_opened(tmp_path: Path) -> None:
 def test_a_fault_of_the_machine_is_none_of_the_submission(tmp_path: Path) -> None:
     """A folder that cannot be looked at says so, and has not changed."""
     package(tmp_path)
-    with patch.object(Path, "is_dir", side_effect=OSError(errno.EIO, "why")), pytest.raises(MachineError, match="why"):
+    with (
+        patch.object(Path, "is_dir", side_effect=OSError(errno.EIO, "why")),
+        pytest.raises(MachineError, match="why"),
+    ):
         digest(tmp_path, "ann")
-    with patch.object(Path, "is_dir", side_effect=[True, OSError(errno.EIO, "why")]), pytest.raises(MachineError):
+    with (
+        patch.object(Path, "is_dir", side_effect=[True, OSError(errno.EIO, "why")]),
+        pytest.raises(MachineError),
+    ):
         digest(tmp_path, "ann")
 
 
@@ -141,7 +159,9 @@ def test_a_fault_of_the_machine_is_none_of_the_submission(tmp_path: Path) -> Non
 def test_a_single_document_is_a_submission(name: str, tmp_path: Path) -> None:
     """Its file is the only one of the tree, in a folder and in a zip; a Word file is no archive."""
     data = docx("Task 1: Step 15") if name.endswith("docx") else b"text"
-    opened = [open_class_submission(str(top), (name,), (), "ann") for top in _both(tmp_path, {name: data})]
+    opened = [
+        open_class_submission(str(top), (name,), (), "ann") for top in _both(tmp_path, {name: data})
+    ]
     assert opened[0].digest == opened[1].digest
     for submission in opened:
         assert submission.tree is not None
@@ -186,7 +206,12 @@ def _both(top: Path, files: dict[str, bytes], *, entries: bool = False) -> tuple
 
 
 ROBOT = {"my_robot/urdf/my_robot.urdf": URDF, "my_robot/notes.txt": b"notes"}
-BUILT = {"build/my_robot/my_robot.urdf": URDF, "log/a.txt": b"", "__pycache__/a.pyc": b"", ".git/config": b""}
+BUILT = {
+    "build/my_robot/my_robot.urdf": URDF,
+    "log/a.txt": b"",
+    "__pycache__/a.pyc": b"",
+    ".git/config": b"",
+}
 
 
 @pytest.mark.parametrize("entries", [False, True])
@@ -202,7 +227,9 @@ BUILT = {"build/my_robot/my_robot.urdf": URDF, "log/a.txt": b"", "__pycache__/a.
     ],
     ids=["urdf", "xacro", "zip", "tar", "unnamed-zip", "folder"],
 )
-def test_a_zip_has_the_digests_of_its_folder(files: dict[str, bytes], entries: bool, tmp_path: Path) -> None:
+def test_a_zip_has_the_digests_of_its_folder(
+    files: dict[str, bytes], entries: bool, tmp_path: Path
+) -> None:
     """A folder and its zip have the same digests, so that nothing is graded again if one replaces the other."""
     name = next(iter(files)).partition("/")[0]
     folder, packed = _both(tmp_path, files, entries=entries)
@@ -213,7 +240,10 @@ def test_several_files_in_a_zip_equal_those_in_a_folder(tmp_path: Path) -> None:
     """Digests and files are the same: build folders and hidden files are ignored in both."""
     files = {"1": URDF, "2": b"notes", "3": URDF, "4": b"hidden"}
     names = ("my_robot.urdf", "onlinetext/notes.html", "build/my_robot.urdf", ".hidden")
-    opened = [open_class_submission(str(top), tuple(files), names, "ann") for top in _both(tmp_path, files)]
+    opened = [
+        open_class_submission(str(top), tuple(files), names, "ann")
+        for top in _both(tmp_path, files)
+    ]
     assert opened[0].digest == opened[1].digest
     for submission in opened:
         assert submission.tree is not None
@@ -226,19 +256,27 @@ def test_several_files_in_a_zip_equal_those_in_a_folder(tmp_path: Path) -> None:
 def test_what_is_refused_in_a_folder_is_refused_in_a_zip(name: str, tmp_path: Path) -> None:
     """The message is the same, with paths relative to the class."""
     output = set()
-    for top in _both(tmp_path, {f"lab/{name}": b"7z\xbc\xaf\x27\x1c" if name.endswith("7z") else b"text"}):
+    for top in _both(
+        tmp_path, {f"lab/{name}": b"7z\xbc\xaf\x27\x1c" if name.endswith("7z") else b"text"}
+    ):
         with pytest.raises(InputError) as caught:
             open_class_submission(str(top), (f"lab/{name}",), (), "ann")
         output.add(str(caught.value).replace(f"{top}/", ""))
     assert len(output) == 1
-    assert name != "ann.csv" or output == {"ann.csv is neither a URDF nor a folder, an archive or a document"}
+    assert name != "ann.csv" or output == {
+        "ann.csv is neither a URDF nor a folder, an archive or a document"
+    }
 
 
 def test_a_large_document_and_its_name(tmp_path: Path) -> None:
     """A PDF above the limit for a URDF is opened, also in a zip; its name, not the student's, is in the digest."""
     data = b"%PDF-1.4\n" + bytes(URDF_LIMIT)
     tops = _both(tmp_path, {"report.pdf": data})
-    digests = {open_class_submission(str(top), ("report.pdf",), (), key).digest for top in tops for key in ("a", "b")}
+    digests = {
+        open_class_submission(str(top), ("report.pdf",), (), key).digest
+        for top in tops
+        for key in ("a", "b")
+    }
     assert len(digests) == 1
 
 

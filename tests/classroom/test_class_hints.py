@@ -21,7 +21,9 @@ MIRRORED = REFERENCE.replace(_RIGHT, _RIGHT.replace("-1.57", "1.57"))
 BURIED = REFERENCE.replace('xyz="0.15 0 0.225"', 'xyz="0.15 0 0.2"')
 BOTH = MIRRORED.replace('xyz="0.15 0 0.225"', 'xyz="0.15 0 0.2"')
 BRIGHT = REFERENCE.replace('rgba="0 0.6 0 1"', 'rgba="0 1 0 1"')
-OTHER_LINES = MIRRORED.replace("<link", "<!-- mine -->\n\n  <link").replace('rpy="1.57 0 0"', 'rpy="1.570 0 0"')
+OTHER_LINES = MIRRORED.replace("<link", "<!-- mine -->\n\n  <link").replace(
+    'rpy="1.57 0 0"', 'rpy="1.570 0 0"'
+)
 CLASS = {
     "ash.urdf": MIRRORED,
     "birch.urdf": OTHER_LINES,
@@ -56,7 +58,9 @@ def batch(top: Path, *more: str | Path) -> Done:
 
 def reports(folder: Path, names: Iterable[str] = STUDENTS) -> dict[str, dict[str, Any]]:
     """Return the reports of students as JSON."""
-    return {name: json.loads((folder / f"{name}.json").read_text(encoding="utf-8")) for name in names}
+    return {
+        name: json.loads((folder / f"{name}.json").read_text(encoding="utf-8")) for name in names
+    }
 
 
 def hints(report: dict[str, Any]) -> list[dict[str, Any]]:
@@ -97,11 +101,17 @@ def test_reports_have_hints_for_the_students_own_text(top: Path) -> None:
 def test_the_rubric_says_how_much_reports_tell(tmp_path: Path, level: str) -> None:
     """Below the level edit reports have no edit."""
     shutil.copytree(LAB / "my_robot", tmp_path / "lab/my_robot")
-    text = (LAB / "rubric.toml").read_text(encoding="utf-8").replace('hints = "cause"', f'hints = "{level}"')
+    text = (
+        (LAB / "rubric.toml")
+        .read_text(encoding="utf-8")
+        .replace('hints = "cause"', f'hints = "{level}"')
+    )
     rubric = tmp_path / "lab/lab6.toml"
     rubric.write_text(text, encoding="utf-8")
     make(tmp_path / "class", {"ash.urdf": MIRRORED})
-    batch(tmp_path, "--rubric", rubric, "--reports", tmp_path / "reports", "--report-format", "json")
+    batch(
+        tmp_path, "--rubric", rubric, "--reports", tmp_path / "reports", "--report-format", "json"
+    )
     for hint in hints(reports(tmp_path / "reports", ["ash"])["ash"]):
         assert hint["edits"] == []
         assert "-1.57" not in hint["message"]
@@ -113,7 +123,9 @@ def test_a_manual_mark_replaces_a_hint(top: Path) -> None:
     """A person has decided the criterion: no hint promises its points."""
     assert grader("mark", "fir", "lidar-frame", "5", "--gradebook", top / "g").returncode == 0
     batch(top, "--reports", top / "reports", "--report-format", "json")
-    results = {result["id"]: result for result in reports(top / "reports", ["fir"])["fir"]["results"]}
+    results = {
+        result["id"]: result for result in reports(top / "reports", ["fir"])["fir"]["results"]
+    }
     assert results["lidar-frame"]["hints"] == []
     assert results["lidar-on-top"]["hints"]
 
@@ -122,18 +134,36 @@ def test_a_lost_search_costs_only_its_own_hints(tmp_path: Path) -> None:
     """A crash and a timeout while edits are tried: every report is written, and the others have hints."""
     names = {"ash": "dies_when_tried", "birch": "fine", "cedar": "hangs_when_tried"}
     body = '<link name="base"><visual><geometry><box size="1 1 2"/></geometry></visual></link>'
-    make(tmp_path / "class", {f"{key}.urdf": f'<robot name="{name}">{body}</robot>' for key, name in names.items()})
+    make(
+        tmp_path / "class",
+        {f"{key}.urdf": f'<robot name="{name}">{body}</robot>' for key, name in names.items()},
+    )
     text = (ROOT / "tests/classroom/hostile/hostile.toml").read_text(encoding="utf-8")
     box = 'check = "shows_box"\nwith = { link = "base", size = [1, 1, 1], tolerance = 0.001 }'
     rubric = tmp_path / "lab.toml"
-    (tmp_path / "correct.urdf").write_text(f'<robot name="r">{body.replace("1 1 2", "1 1 1")}</robot>')
+    (tmp_path / "correct.urdf").write_text(
+        f'<robot name="r">{body.replace("1 1 2", "1 1 1")}</robot>'
+    )
     rubric.write_text(
         f'reference = "correct.urdf"\n{text}\n[[criterion]]\nid = "box"\npart = "all"\ntitle = "Box"\npoints = 1\n{box}\n'
     )
     done = grader(
-        "batch", tmp_path / "class", "--gradebook", tmp_path / "g", "--rubric", rubric, "--timeout", "3",
-        "--reports", tmp_path / "reports", "--report-format", "json", "--jobs", "2", **WITH_HOSTILE,
-    )  # fmt: skip
+        "batch",
+        tmp_path / "class",
+        "--gradebook",
+        tmp_path / "g",
+        "--rubric",
+        rubric,
+        "--timeout",
+        "3",
+        "--reports",
+        tmp_path / "reports",
+        "--report-format",
+        "json",
+        "--jobs",
+        "2",
+        **WITH_HOSTILE,
+    )
     assert done.returncode == 0, done.stderr
     found = reports(tmp_path / "reports", names)
     assert {name: report["score"] for name, report in found.items()} == dict.fromkeys(names, 3)

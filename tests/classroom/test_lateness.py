@@ -22,9 +22,13 @@ def cost(score: str, days: float, policy: str = POLICY) -> Decimal:
     return lateness(lab(policy), Student("ann", days_late=days), Decimal(score)).points
 
 
-def days(submitted: str, rubric: Rubric = LAB, due: datetime | None = None, own: str = "", **more: Any) -> int:
+def days(
+    submitted: str, rubric: Rubric = LAB, due: datetime | None = None, own: str = "", **more: Any
+) -> int:
     """Return how many days late a submission is; `own` is the student's own deadline."""
-    return lateness(rubric, Student("ann", submitted=submitted, due=own, **more), Decimal(11), due).days
+    return lateness(
+        rubric, Student("ann", submitted=submitted, due=own, **more), Decimal(11), due
+    ).days
 
 
 PERCENT = st.decimals(0, 100, places=2)
@@ -49,4 +53,6 @@ def test_days_by_time(seconds: int, grace: int) -> None:
     """The number of days is the number begun after the grace period."""
     submitted = (read_time("2026-09-10T12:00:00+02:00") + timedelta(seconds=seconds)).isoformat()
     over = seconds - 60 * grace
-    assert days(submitted, lab(f"{DUE}{POLICY}grace_minutes = {grace}\n")) == (0 if over <= 0 else -(-over // 86_400))
+    assert days(submitted, lab(f"{DUE}{POLICY}grace_minutes = {grace}\n")) == (
+        0 if over <= 0 else -(-over // 86_400)
+    )

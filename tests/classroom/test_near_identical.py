@@ -15,7 +15,10 @@ PARTS = "the same links, joints and materials"
 
 def with_colours(urdf: str, colour: str) -> str:
     """Return a robot with Gazebo elements of a colour."""
-    links = (f'<gazebo reference="l{at}">\n  <material>{colour}</material>\n</gazebo>\n' for at in range(5))
+    links = (
+        f'<gazebo reference="l{at}">\n  <material>{colour}</material>\n</gazebo>\n'
+        for at in range(5)
+    )
     return urdf.replace("</robot>", f"{''.join(links)}</robot>")
 
 
@@ -24,15 +27,21 @@ def equal(top: Path, *more: object, **robots: str) -> list[tuple[str, str]]:
     (top / "class").mkdir(exist_ok=True)
     for name, urdf in robots.items():
         (top / f"class/{name}.urdf").write_text(urdf, encoding="utf-8")
-    done = grader("batch", top / "class", "--gradebook", top / "book", "--format", "json", "--jobs", 1, *more)
+    done = grader(
+        "batch", top / "class", "--gradebook", top / "book", "--format", "json", "--jobs", 1, *more
+    )
     assert done.returncode == 0, done.stderr
-    return [(" ".join(work["students"]), work["equal"]) for work in json.loads(done.stdout)["equal"]]
+    return [
+        (" ".join(work["students"]), work["equal"]) for work in json.loads(done.stdout)["equal"]
+    ]
 
 
 def test_white_space_and_five_colours(tmp_path: Path) -> None:
     """The list and `stats` say what is the same."""
     spaced = with_colours(OWN, "Gazebo/Blue").replace("  <", "\t<").replace("<!--", "<!-- mine")
-    assert equal(tmp_path, ann=with_colours(OWN, "Gazebo/Red"), bob=spaced, eve=URDF) == [("ann bob", PARTS)]
+    assert equal(tmp_path, ann=with_colours(OWN, "Gazebo/Red"), bob=spaced, eve=URDF) == [
+        ("ann bob", PARTS)
+    ]
     assert f"  ann and bob: {PARTS}\n" in grader("stats", "--gradebook", tmp_path / "book").stdout
 
 
@@ -44,7 +53,9 @@ def test_white_space_and_five_colours(tmp_path: Path) -> None:
         ('name="my_robot"', 'name="my_robot" version="1"', [("ann bob", PARTS)]),
     ],
 )
-def test_how_the_robot_is_written_counts(old: str, new: str, found: list[object], tmp_path: Path) -> None:
+def test_how_the_robot_is_written_counts(
+    old: str, new: str, found: list[object], tmp_path: Path
+) -> None:
     """Equal numbers alone are no equal work: students of one lab write the same numbers."""
     assert old in OWN
     other = with_colours(OWN.replace(old, new), "Gazebo/Blue")
@@ -57,8 +68,13 @@ def test_the_robot_that_was_handed_out(tmp_path: Path) -> None:
     (tmp_path / "start.urdf").write_text(handout, encoding="utf-8")
     given = {"ann": URDF, "bob": URDF, "eve": handout, "joe": handout}
     robots = {name: with_colours(urdf, f"Gazebo/{name}") for name, urdf in given.items()}
-    assert equal(tmp_path, **robots, kim=robots["bob"]) == [("bob kim", "the same file"), ("eve joe", PARTS)]
-    assert equal(tmp_path, "--ignore-file", tmp_path / "start.urdf") == [("bob kim", "the same file")]
+    assert equal(tmp_path, **robots, kim=robots["bob"]) == [
+        ("bob kim", "the same file"),
+        ("eve joe", PARTS),
+    ]
+    assert equal(tmp_path, "--ignore-file", tmp_path / "start.urdf") == [
+        ("bob kim", "the same file")
+    ]
 
 
 def test_what_many_share_was_handed_out(tmp_path: Path) -> None:

@@ -14,14 +14,29 @@ from grader.errors import GraderError, InputError, MachineError
 from tests.examples import examples
 
 TEXT = st.text(st.characters(codec="utf-8"), max_size=8)
-ENTRIES = st.dictionaries(TEXT, st.tuples(st.none() | st.sampled_from([0, 1, 2.5]), TEXT, TEXT, TEXT), max_size=2)
+ENTRIES = st.dictionaries(
+    TEXT, st.tuples(st.none() | st.sampled_from([0, 1, 2.5]), TEXT, TEXT, TEXT), max_size=2
+)
 GRADED = st.builds(
-    StoredResult, TEXT, st.integers(1, 3), st.sampled_from(["graded", "unreadable", "errored"]), TEXT, TEXT, TEXT,
-    paths=st.lists(TEXT, max_size=2).map(tuple), is_late=st.booleans(), results=ENTRIES,
-    person=st.dictionaries(st.sampled_from(["name", "canvas"]), TEXT), work=st.just({}), answers=st.dictionaries(TEXT, TEXT), texts=st.dictionaries(TEXT, TEXT, max_size=2),
-)  # fmt: skip
+    StoredResult,
+    TEXT,
+    st.integers(1, 3),
+    st.sampled_from(["graded", "unreadable", "errored"]),
+    TEXT,
+    TEXT,
+    TEXT,
+    paths=st.lists(TEXT, max_size=2).map(tuple),
+    is_late=st.booleans(),
+    results=ENTRIES,
+    person=st.dictionaries(st.sampled_from(["name", "canvas"]), TEXT),
+    work=st.just({}),
+    answers=st.dictionaries(TEXT, TEXT),
+    texts=st.dictionaries(TEXT, TEXT, max_size=2),
+)
 pytestmark = pytest.mark.usefixtures("unsynced")
-RUN = Run(1, "2026-11-23T15:00:00.000+00:00", "1.0.0", "rubric", "context", {"ann": "3", "ben": None})
+RUN = Run(
+    1, "2026-11-23T15:00:00.000+00:00", "1.0.0", "rubric", "context", {"ann": "3", "ben": None}
+)
 
 
 @pytest.fixture(scope="module")
@@ -47,27 +62,42 @@ def test_the_newest_line_of_each_student_is_read(
         writer.append(*(one.line for one in lines))
     newest = {one.student: one for one in lines}
     found = Results(file)
-    assert list(map(plain, found.all())) == [newest[key]._replace(texts={}) for key in sorted(newest)]
+    assert list(map(plain, found.all())) == [
+        newest[key]._replace(texts={}) for key in sorted(newest)
+    ]
     assert all(found.of(key) is not None for key in newest)
-    for one in newest.values():  # texts of an earlier result count as long as the submission is the same
+    for (
+        one
+    ) in newest.values():  # texts of an earlier result count as long as the submission is the same
         assert not one.texts or found.texts(one) == one.texts
         assert found.texts(one._replace(digest=f"{one.digest} ")) == {}
     assert found.of("\x00nobody") is None
 
 
-@pytest.mark.parametrize(("number", "kind"), [(errno.EIO, MachineError), (errno.EACCES, InputError)])
-def test_results_that_can_no_longer_be_read(number: int, kind: type[GraderError], tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("number", "kind"), [(errno.EIO, MachineError), (errno.EACCES, InputError)]
+)
+def test_results_that_can_no_longer_be_read(
+    number: int, kind: type[GraderError], tmp_path: Path
+) -> None:
     """A line has one message, whether the disk or the file is the cause."""
     with ResultsWriter(tmp_path / "results.jsonl", 0) as writer:
         writer.append(StoredResult("ann", 1, "graded", "d1").line)
     found, refused = Results(tmp_path / "results.jsonl"), OSError(number, "why")
-    with patch.object(Path, "open", side_effect=refused), pytest.raises(kind, match=r"^cannot read .*: why"):
+    with (
+        patch.object(Path, "open", side_effect=refused),
+        pytest.raises(kind, match=r"^cannot read .*: why"),
+    ):
         found.of("ann")
 
 
 def test_a_torn_last_line_is_ignored_and_cut(tmp_path: Path) -> None:
     """Of every prefix of the file the whole lines count, and the next line is written behind them."""
-    lines = [StoredResult("ann", 1, "graded", "d1").line, StoredResult("ben", 1, "graded", "d2").line, RUN.line]
+    lines = [
+        StoredResult("ann", 1, "graded", "d1").line,
+        StoredResult("ben", 1, "graded", "d2").line,
+        RUN.line,
+    ]
     whole = b"".join(lines)
     ends = [sum(map(len, lines[:number])) for number in range(len(lines) + 1)]
     file = tmp_path / "results.jsonl"
@@ -82,7 +112,12 @@ def test_a_torn_last_line_is_ignored_and_cut(tmp_path: Path) -> None:
         assert Results(file).students == [*["ann", "ben"][: min(kept, 2)], "cid"]
 
 
-@given(st.integers(0, 4), st.sampled_from(["lost", "cut", "hole", "changed"]), st.integers(1, 2000), st.booleans())
+@given(
+    st.integers(0, 4),
+    st.sampled_from(["lost", "cut", "hole", "changed"]),
+    st.integers(1, 2000),
+    st.booleans(),
+)
 @examples(60)
 def test_no_damage_brings_back_an_older_result(
     tmp_path_factory: pytest.TempPathFactory, number: int, damage: str, place: int, is_stopped: bool
@@ -121,7 +156,12 @@ def test_an_earlier_run_can_be_read(tmp_path: Path) -> None:
     """Up to a run, later lines do not count."""
     file = tmp_path / "results.jsonl"
     second = RUN._replace(run=2)
-    lines = [StoredResult("ann", 1, "graded", "d1"), RUN, StoredResult("ann", 2, "graded", "d2"), second]
+    lines = [
+        StoredResult("ann", 1, "graded", "d1"),
+        RUN,
+        StoredResult("ann", 2, "graded", "d2"),
+        second,
+    ]
     file.write_bytes(b"".join(one.line for one in lines))  # type: ignore[attr-defined]
     first, now = Results(file, 1), Results(file)
     assert [one.digest for one in first.all()] == ["d1"]

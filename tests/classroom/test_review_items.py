@@ -16,7 +16,14 @@ from tests.checks.submissions import jpeg
 from tests.classroom.gradebooks import PNG, batch, grader, lab_text, urdf, write_submission
 from tests.documents.files import docx, pdf
 
-ANSWERS = {"ash": "The roots.", "birch": "No.", "cedar": "The roots.  \n\n", "dogwood": "", "elm": "Long.", "fir": ""}
+ANSWERS = {
+    "ash": "The roots.",
+    "birch": "No.",
+    "cedar": "The roots.  \n\n",
+    "dogwood": "",
+    "elm": "Long.",
+    "fir": "",
+}
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +36,10 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
             (top / "class" / key / "answers.md").unlink()
             (top / "class" / key / "screen.png").unlink()
     write_submission(top / "class" / "team", answer="Ours [picture].")
-    rows = [f"{key},{key.title()},{('Lab A', 'Lab B')[number % 2]},{key}" for number, key in enumerate(ANSWERS)]
+    rows = [
+        f"{key},{key.title()},{('Lab A', 'Lab B')[number % 2]},{key}"
+        for number, key in enumerate(ANSWERS)
+    ]
     rows += ["gum,Gum,Lab A,team", "holly,Holly,Lab B,team"]
     (top / "roster.csv").write_text("id,name,section,team\n" + "\n".join(rows) + "\n")
     (top / "small.toml").write_text(lab_text())
@@ -75,9 +85,18 @@ def rows(book: Path, by: str = "kim") -> list[tuple[str, ...]]:
 def test_equal_answers_and_a_team_are_one_item(session: ReviewSession) -> None:
     """In the rubric's order, each criterion by student; those without an answer are its last item."""
     assert items(session) == [
-        "essay: ash cedar", "essay: birch", "essay: elm", "essay: gum holly", "essay: dogwood fir",
-        "picture: ash", "picture: birch", "picture: cedar", "picture: elm", "picture: gum holly", "picture: dogwood fir",
-    ]  # fmt: skip
+        "essay: ash cedar",
+        "essay: birch",
+        "essay: elm",
+        "essay: gum holly",
+        "essay: dogwood fir",
+        "picture: ash",
+        "picture: birch",
+        "picture: cedar",
+        "picture: elm",
+        "picture: gum holly",
+        "picture: dogwood fir",
+    ]
 
 
 def test_one_mark_is_a_row_for_each_student(session: ReviewSession, book: Path) -> None:
@@ -118,7 +137,10 @@ def test_sections(session: ReviewSession, book: Path) -> None:
     assert of_b.left == 4
     give(of_b, of_b.listed[1], "1")
     assert rows(book, "_-e3b0c44298fc1c14") == [("holly", "essay", "1")]
-    with pytest.raises(InputError, match=r"no student has the section 'C' in the roster; it has 'Lab A' and 'Lab B'"):
+    with pytest.raises(
+        InputError,
+        match=r"no student has the section 'C' in the roster; it has 'Lab A' and 'Lab B'",
+    ):
         session.show_only(ReviewFilter("", "C"))
     assert session.filter == ReviewFilter()
 
@@ -128,13 +150,21 @@ def test_who_has_no_items(book: Path) -> None:
     for words in (("ash", "total", "5"), ("elm", "total", "excused"), ("birch", "box", "1")):
         assert grader("mark", *words, "--gradebook", book).returncode == 0
     rubric = book / "rubric" / "small.toml"
-    rubric.write_text(rubric.read_text() + '\n[adjust.picture]\naction = "full"\nreason = "no camera"\n')
+    rubric.write_text(
+        rubric.read_text() + '\n[adjust.picture]\naction = "full"\nreason = "no camera"\n'
+    )
     opened = Gradebook(book)
     found = {
         f"{item.criterion.id}: {' '.join(one.student.key for one in item.members)}"
         for item in review_items(opened).values()
     }
-    assert found == {"box: birch", "essay: birch", "essay: cedar", "essay: gum holly", "essay: dogwood fir"}
+    assert found == {
+        "box: birch",
+        "essay: birch",
+        "essay: cedar",
+        "essay: gum holly",
+        "essay: dogwood fir",
+    }
 
 
 @pytest.fixture
@@ -158,7 +188,9 @@ def contents(tmp_path: Path) -> Callable[..., dict[str, list[str]]]:
     return grade
 
 
-def test_what_may_hold_an_answer_is_not_empty(contents: Callable[..., dict[str, list[str]]]) -> None:
+def test_what_may_hold_an_answer_is_not_empty(
+    contents: Callable[..., dict[str, list[str]]],
+) -> None:
     """An unread document, a PDF without text, a photo, a Word file, a template: each is an item of its own."""
     template = b"# Step 1\n\nWhy?\n"
     found = contents(
@@ -175,7 +207,9 @@ def test_what_may_hold_an_answer_is_not_empty(contents: Callable[..., dict[str, 
     assert found["no picture"] == ["elm fir"]
 
 
-def test_answers_that_are_not_all_there_is_are_not_equal(contents: Callable[..., dict[str, list[str]]]) -> None:
+def test_answers_that_are_not_all_there_is_are_not_equal(
+    contents: Callable[..., dict[str, list[str]]],
+) -> None:
     """A picture, a PDF or another case can make a difference; empty lines at the end cannot."""
     text = b"# Step 1\n\n"
     found = contents(
@@ -200,7 +234,9 @@ def test_a_team_with_several_files_is_one_item(tmp_path: Path) -> None:
         {"robot.urdf": urdf().encode(), "screen.png": PNG, "answers.md": b"x"}.items()
     ):
         (tmp_path / "class" / f"team1_101_{2000 + number}_{name}").write_bytes(data)
-    (tmp_path / "roster.csv").write_text("id,name,canvas,group\nash,Ash,101,team1\ngum,Gum,102,team1\n")
+    (tmp_path / "roster.csv").write_text(
+        "id,name,canvas,group\nash,Ash,101,team1\ngum,Gum,102,team1\n"
+    )
     (tmp_path / "small.toml").write_text(lab_text())
     done = batch(tmp_path)
     assert done.returncode == 0, done.stderr
@@ -208,7 +244,10 @@ def test_a_team_with_several_files_is_one_item(tmp_path: Path) -> None:
     assert sorted(book.keys, key=digest_of) == ["gum", "ash"]
     assert len({one.digest for one in book.results.all()}) == 2
     found = review_items(book).values()
-    assert {(one.criterion.id, *(member.student.key for member in one.members)) for one in found} == {
-        ("essay", "ash", "gum"), ("picture", "ash", "gum"),
-    }  # fmt: skip
+    assert {
+        (one.criterion.id, *(member.student.key for member in one.members)) for one in found
+    } == {
+        ("essay", "ash", "gum"),
+        ("picture", "ash", "gum"),
+    }
     assert review_items(book, is_anonymous=True).keys() == review_items(book).keys()

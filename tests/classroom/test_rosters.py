@@ -11,7 +11,9 @@ from hypothesis import strategies as st
 from grader.classroom.roster import Student, iso_time, plain, read_roster
 from grader.errors import InputError
 
-ROWS: list[dict[str, Any]] = tomllib.loads(Path(__file__).with_name("rosters.toml").read_text("utf-8"))["roster"]
+ROWS: list[dict[str, Any]] = tomllib.loads(
+    Path(__file__).with_name("rosters.toml").read_text("utf-8")
+)["roster"]
 
 
 def lines_of(data: bytes) -> list[str]:
@@ -21,7 +23,9 @@ def lines_of(data: bytes) -> list[str]:
     except InputError as error:
         return [f"error: {line}" for line in str(error).split("\n")]
     defaults = Student("")._asdict()
-    students = [{k: v for k, v in one._asdict().items() if v != defaults[k]} for one in roster.students]
+    students = [
+        {k: v for k, v in one._asdict().items() if v != defaults[k]} for one in roster.students
+    ]
     lines = [" ".join(f"{field}={value!r}" for field, value in one.items()) for one in students]
     return [*lines, *(f"note: {note}" for note in roster.notes)]
 
@@ -29,7 +33,10 @@ def lines_of(data: bytes) -> list[str]:
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row["about"])
 def test_a_roster_is_read(row: dict[str, Any]) -> None:
     """Every student or mistake of the table is found."""
-    assert lines_of(bytes.fromhex(row["hex"]) if "hex" in row else row["text"].encode()) == row["found"]
+    assert (
+        lines_of(bytes.fromhex(row["hex"]) if "hex" in row else row["text"].encode())
+        == row["found"]
+    )
 
 
 def test_of_many_mistakes_the_first_are_listed() -> None:

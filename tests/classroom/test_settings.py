@@ -22,14 +22,27 @@ from tests.examples import examples
 TEXT = st.text(st.characters(codec="utf-8"), max_size=8)
 TEXTS = st.lists(TEXT, max_size=3).map(tuple)
 SETTINGS = st.builds(
-    ClassSettings, submissions=TEXTS, layout=TEXT, assignment=TEXT, due=TEXT, parts=TEXTS, max_size=st.integers(1, 2**40),
-    rubric=TEXT, rubric_id=TEXT, rubric_hash=TEXT, roster_hash=TEXT, handed_out=TEXTS, arguments=st.dictionaries(TEXT, TEXT, max_size=2),
-)  # fmt: skip
+    ClassSettings,
+    submissions=TEXTS,
+    layout=TEXT,
+    assignment=TEXT,
+    due=TEXT,
+    parts=TEXTS,
+    max_size=st.integers(1, 2**40),
+    rubric=TEXT,
+    rubric_id=TEXT,
+    rubric_hash=TEXT,
+    roster_hash=TEXT,
+    handed_out=TEXTS,
+    arguments=st.dictionaries(TEXT, TEXT, max_size=2),
+)
 
 
 @given(SETTINGS)
 @examples(40)
-def test_what_is_written_is_read(tmp_path_factory: pytest.TempPathFactory, settings: ClassSettings) -> None:
+def test_what_is_written_is_read(
+    tmp_path_factory: pytest.TempPathFactory, settings: ClassSettings
+) -> None:
     """Whatever the texts are."""
     folder = tmp_path_factory.mktemp("book")
     (folder / CLASS_FILE).write_text(settings_text(settings), encoding="utf-8")
@@ -84,7 +97,11 @@ def test_only_an_empty_folder_becomes_a_gradebook(tmp_path: Path) -> None:
 
 def test_one_batch_at_a_time(tmp_path: Path) -> None:
     """A second one is refused while the first runs, and not after it."""
-    with batch_lock(tmp_path), pytest.raises(InputError, match="another `grader batch`"), batch_lock(tmp_path):
+    with (
+        batch_lock(tmp_path),
+        pytest.raises(InputError, match="another `grader batch`"),
+        batch_lock(tmp_path),
+    ):
         pass
     with batch_lock(tmp_path):
         pass

@@ -19,7 +19,9 @@ from tests.classroom.hostile_classes import try_classes
 from tests.examples import examples
 from tests.work import limited_work
 
-ROWS: list[dict[str, Any]] = tomllib.loads(Path(__file__).with_name("submissions.toml").read_text("utf-8"))["class"]
+ROWS: list[dict[str, Any]] = tomllib.loads(
+    Path(__file__).with_name("submissions.toml").read_text("utf-8")
+)["class"]
 
 
 def write_class(row: dict[str, Any], top: Path) -> list[Path]:
@@ -57,7 +59,11 @@ def lines_of(intake: Intake) -> list[str]:
             f"{path} as {name}" if not path.endswith(name) else path
             for path, name in zip(one.paths, names, strict=True)
         )
-        more = [*(["late"] if one.is_late else []), one.submitted, f"root {one.root}" if one.root else ""]
+        more = [
+            *(["late"] if one.is_late else []),
+            one.submitted,
+            f"root {one.root}" if one.root else "",
+        ]
         who = one.student.key if one.student.is_on_roster else f"{one.student.key} (visitor)"
         lines.append(f"{who} <- {' | '.join([paths, *filter(None, more)])}")
     lines += [f"unclear: {key}" for key in sorted(intake.unclear)]
@@ -85,10 +91,14 @@ def packed(folder: str, names: list[str]) -> Path:
     return Path(folder, "class.zip")
 
 
-WORDS = st.text(st.characters(categories=["L", "M", "Nd", "Pc", "Zs", "Po"]), min_size=1, max_size=12)
+WORDS = st.text(
+    st.characters(categories=["L", "M", "Nd", "Pc", "Zs", "Po"]), min_size=1, max_size=12
+)
 ORIGINAL = st.from_regex(r"[A-Za-z][A-Za-z0-9_ ]{0,9}\.(zip|png|urdf|tar\.gz)", fullmatch=True)
 IN_MOODLE = st.text(
-    st.characters(categories=["L", "M", "Nd", "Zs", "Po", "Pc", "Sm"], exclude_characters="&<>\"`|':\\/"),
+    st.characters(
+        categories=["L", "M", "Nd", "Zs", "Po", "Pc", "Sm"], exclude_characters="&<>\"`|':\\/"
+    ),
     min_size=1,
     max_size=15,
 )
@@ -98,18 +108,24 @@ IN_MOODLE = st.text(
 @given(
     st.dictionaries(
         st.integers(1, 10**15),
-        st.tuples(WORDS, st.booleans(), st.dictionaries(ORIGINAL, st.just(None), min_size=1, max_size=4)),
+        st.tuples(
+            WORDS, st.booleans(), st.dictionaries(ORIGINAL, st.just(None), min_size=1, max_size=4)
+        ),
         min_size=1,
         max_size=6,
     )
 )
-def test_any_download_of_canvas_is_grouped_again(people: dict[int, tuple[str, bool, dict[str, None]]]) -> None:
+def test_any_download_of_canvas_is_grouped_again(
+    people: dict[int, tuple[str, bool, dict[str, None]]],
+) -> None:
     """Whatever students and files are called, Canvas' names for them give the same submissions."""
     names, expected = list[str](), {}
     for user, (name, is_late, originals) in people.items():
         shown = re.sub(r"_\d+$", "", letters(name).partition("\n")[2]) or "x"
         for original in originals:
-            names.append(f"{shown}{'_LATE' if is_late else ''}_{user}_{1000 + len(names)}_{original}")
+            names.append(
+                f"{shown}{'_LATE' if is_late else ''}_{user}_{1000 + len(names)}_{original}"
+            )
         expected[str(user)] = (is_late, sorted(originals))
     with tempfile.TemporaryDirectory() as folder:
         found = read_class([packed(folder, names)], None, "canvas").submissions
@@ -120,7 +136,9 @@ def test_any_download_of_canvas_is_grouped_again(people: dict[int, tuple[str, bo
 @given(st.dictionaries(st.integers(0, 10**12), IN_MOODLE, min_size=2, max_size=6))
 def test_any_download_of_moodle_is_grouped_again(people: dict[int, str]) -> None:
     """Whatever participants are called, each is identified by number and name."""
-    names = {str(number): " ".join(name.split()).strip(".") or "x" for number, name in people.items()}
+    names = {
+        str(number): " ".join(name.split()).strip(".") or "x" for number, name in people.items()
+    }
     paths = [f"{name}_{number}_assignsubmission_file/a.zip" for number, name in names.items()]
     with tempfile.TemporaryDirectory() as folder:
         submissions = read_class([packed(folder, paths)], None).submissions
@@ -134,19 +152,31 @@ NAMES = st.lists(st.text(st.characters(codec="utf-8"), min_size=1, max_size=20),
 def test_any_names_are_accepted_and_can_be_assigned(names: list[str], is_twice: bool) -> None:
     """Keys are printable and unique, all paths are in the zip, and the roster can assign every submission to a student."""
     with tempfile.TemporaryDirectory() as folder:
-        members = {zipfile.ZipInfo(name).filename or "x" for name in ("ann.zip", "bea.zip", *names)}  # cut at a NUL
-        targets = [packed(f"{folder}/{root}", sorted(members - {"package.xml"})) for root in "ab"[: 1 + is_twice]]
+        members = {
+            zipfile.ZipInfo(name).filename or "x" for name in ("ann.zip", "bea.zip", *names)
+        }  # cut at a NUL
+        targets = [
+            packed(f"{folder}/{root}", sorted(members - {"package.xml"}))
+            for root in "ab"[: 1 + is_twice]
+        ]
         for roster in (None, Roster((Student("nobody"),))):
             found = read_class(targets, roster)
             keys = [one.student.key for one in found.submissions]
             assert keys == sorted(set(keys)) and all(map(str.isprintable, keys))
             assert len(found.unmatched) == (len(keys) if roster else 0)
-            assert all(line.isprintable() for line in (*found.unmatched, *found.notes, *found.ignored))
+            assert all(
+                line.isprintable() for line in (*found.unmatched, *found.notes, *found.ignored)
+            )
         for one in found.submissions:
             place = f"{'ab'[one.root]}/class.zip/{one.paths[0]}" if is_twice else one.paths[0]
             given = read_class(targets, Roster((Student("nobody", submission=place),)))
             own = next(it for it in given.submissions if it.student.is_on_roster)
-            assert (own.student.key, own.student.login, own.root, own.paths) == ("nobody", "", one.root, one.paths)
+            assert (own.student.key, own.student.login, own.root, own.paths) == (
+                "nobody",
+                "",
+                one.root,
+                one.paths,
+            )
 
 
 def test_names_that_are_not_utf_8_can_be_opened(tmp_path: Path) -> None:
@@ -154,7 +184,9 @@ def test_names_that_are_not_utf_8_can_be_opened(tmp_path: Path) -> None:
     for name in (b"caf\xe9", b"caf\xe8", b"line\nbreak", b"line\\x0abreak"):
         os.mkdir(os.fsencode(tmp_path) + b"/" + name)
     found = read_class([tmp_path], None).submissions
-    assert len({one.student.key for one in found}) == 4 and all(one.student.key.isprintable() for one in found)
+    assert len({one.student.key for one in found}) == 4 and all(
+        one.student.key.isprintable() for one in found
+    )
     assert all((tmp_path / one.paths[0]).is_dir() for one in found)
 
 
@@ -171,8 +203,12 @@ def test_symlinks_in_a_zip_are_not_followed(tmp_path: Path) -> None:
     assert [line.split()[0] for line in found.ignored] == ["../cal.zip", "ann.zip"]
 
 
-@pytest.mark.parametrize("limit", ["grader.files.class_source._MAX_MEMBERS", "grader.files.class_source._MAX_FOLDERS"])
-def test_a_zip_of_too_many_members_is_refused(limit: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    "limit", ["grader.files.class_source._MAX_MEMBERS", "grader.files.class_source._MAX_FOLDERS"]
+)
+def test_a_zip_of_too_many_members_is_refused(
+    limit: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The numbers of members and of folders are bounded."""
     monkeypatch.setattr(limit, 3)
     assert len(read_class([packed(str(tmp_path), ["a/a.zip", "b/b.zip"])], None).submissions) == 2
@@ -185,7 +221,11 @@ def test_the_list_of_ignored_files_is_bounded(tmp_path: Path) -> None:
     for name in ("ann.zip", *(f"note{index:05}.txt" for index in range(1000))):
         (tmp_path / name).touch()
     lines = read_class([tmp_path], None).ignored
-    assert (lines[0][:9], lines[-2][:9], lines[-1]) == ("note00000", "note00199", "... and 800 more")
+    assert (lines[0][:9], lines[-2][:9], lines[-1]) == (
+        "note00000",
+        "note00199",
+        "... and 800 more",
+    )
 
 
 def test_a_large_class_takes_linear_work(tmp_path: Path) -> None:
@@ -195,7 +235,9 @@ def test_a_large_class_takes_linear_work(tmp_path: Path) -> None:
     students = tuple(Student(f"Student{index:05}", group=f"g{index}") for index in range(2_000))
     with limited_work(6_000_000):
         assert len(read_class([tmp_path], Roster(students)).submissions) == 2_000
-    uploads = packed(f"{tmp_path}/zip", [f"doejane_101_{5000 + index}_{index}.png" for index in range(2_000)])
+    uploads = packed(
+        f"{tmp_path}/zip", [f"doejane_101_{5000 + index}_{index}.png" for index in range(2_000)]
+    )
     with limited_work(3_000_000):
         assert len(read_class([uploads], None, "canvas").submissions[0].paths) == 2_000
 

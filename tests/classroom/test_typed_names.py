@@ -23,8 +23,14 @@ ADVICE = "; advice"
 @pytest.mark.parametrize(
     ("student", "names"),
     [
-        (ASH, "Ann Marie Ash; Ash, Ann Marie; Ash, Ann; ann ash; ASH; Marie; aash; AASH; 101; ann.ash"),
-        (BIRCH, "Jörg Birch-Müller; Müller, Jörg; MÜLLER; jörg; birch; jm@Example.org; JM; 77; Jörg  müller"),
+        (
+            ASH,
+            "Ann Marie Ash; Ash, Ann Marie; Ash, Ann; ann ash; ASH; Marie; aash; AASH; 101; ann.ash",
+        ),
+        (
+            BIRCH,
+            "Jörg Birch-Müller; Müller, Jörg; MÜLLER; jörg; birch; jm@Example.org; JM; 77; Jörg  müller",
+        ),
         (CEDAR, "cedar; Ann Cedar; S3; cedar ann"),
         (DOGWOOD, "strauss; Strauß; søren; müller-S4"),
         (ELM, "bea; elm bea; elm bea_104"),
@@ -40,7 +46,10 @@ def test_the_only_student_who_fits(student: Student, names: str) -> None:
 @pytest.mark.parametrize(
     ("name", "why"),
     [
-        ("Ann", "'Ann' is ambiguous: it may be 's1' (Ash, Ann Marie) or 's3' (Ann Cedar); use one of these ids"),
+        (
+            "Ann",
+            "'Ann' is ambiguous: it may be 's1' (Ash, Ann Marie) or 's3' (Ann Cedar); use one of these ids",
+        ),
         (
             "Jorg Birch-Muller",
             "there is no student 'Jorg Birch-Muller' in the gradebook; did you mean 'Jörg Birch-Müller'?",
@@ -49,7 +58,10 @@ def test_the_only_student_who_fits(student: Student, names: str) -> None:
         ("102", "there is no student '102' in the gradebook; advice"),
         ("s5", "there is no student 's5' in the gradebook; advice"),
         ("MULLER-s5", "there is no student 'MULLER-s5' in the gradebook; advice"),
-        ("MULLER-s4", "there is no student 'MULLER-s4' in the gradebook; did you mean 'MÜLLER-s4'?"),
+        (
+            "MULLER-s4",
+            "there is no student 'MULLER-s4' in the gradebook; did you mean 'MÜLLER-s4'?",
+        ),
         ("Zelkova", "there is no student 'Zelkova' in the gradebook; advice"),
         ("", "there is no student '' in the gradebook; advice"),
         (",", "there is no student ',' in the gradebook; advice"),
@@ -65,14 +77,19 @@ def test_who_is_not_found(name: str, why: str) -> None:
 
 def test_an_identifier_of_one_and_the_name_of_another() -> None:
     """A login that is the surname of another student finds neither."""
-    with pytest.raises(InputError, match=r"it may be 's2' \(Jörg Birch-Müller\) or 's9' \(Zoe Zelkova\)"):
+    with pytest.raises(
+        InputError, match=r"it may be 's2' \(Jörg Birch-Müller\) or 's9' \(Zoe Zelkova\)"
+    ):
         find_typed((*CLASS, Student("s9", "Zoe Zelkova", login="birch")), "birch", ADVICE)
 
 
 def test_at_most_ten_are_listed() -> None:
     """The others are counted."""
     many = [Student(f"s{number:02}", f"Kim{number} Müller") for number in range(13)]
-    with pytest.raises(InputError, match=r"it may be 's00' \(Kim0 Müller\), .*'s09' \(Kim9 Müller\).* 3 more; use one"):
+    with pytest.raises(
+        InputError,
+        match=r"it may be 's00' \(Kim0 Müller\), .*'s09' \(Kim9 Müller\).* 3 more; use one",
+    ):
         find_typed(many, "Müller", ADVICE)
 
 
@@ -88,7 +105,11 @@ def test_any_text_is_points_or_refused(text: str) -> None:
     assert 0 <= points <= Decimal("4.25") and points * 10_000 % 1 == 0 and not points.is_signed()
 
 
-@given(st.integers(0, 10**12), st.integers(0, 3), st.sampled_from(("{}", "{}.0", "{},00", "{:.5E}", "{:.2E}")))
+@given(
+    st.integers(0, 10**12),
+    st.integers(0, 3),
+    st.sampled_from(("{}", "{}.0", "{},00", "{:.5E}", "{:.2E}")),
+)
 def test_ids_that_a_spreadsheet_changed(number: int, zeros: int, shown: str) -> None:
     """A number without its leading zeros, or rounded, may be that id; the id itself, and no other number, is none."""
     key = "0" * zeros + str(number)
@@ -98,5 +119,7 @@ def test_ids_that_a_spreadsheet_changed(number: int, zeros: int, shown: str) -> 
 
 def test_an_id_without_its_zeros_is_suggested() -> None:
     """It is no match."""
-    with pytest.raises(InputError, match=r"there is no student '12' in the gradebook; did you mean '0012'\?"):
+    with pytest.raises(
+        InputError, match=r"there is no student '12' in the gradebook; did you mean '0012'\?"
+    ):
         find_typed((*CLASS, Student("0012")), "12", ADVICE)

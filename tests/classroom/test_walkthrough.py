@@ -30,7 +30,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     generate = re.search(r"`python CHECKOUT/(benchmarks/class_generator.py [^`]+)`", SECTION)
     assert generate is not None
     script, *options = shlex.split(generate[1])
-    subprocess.run([sys.executable, ROOT / script, *options], check=True, cwd=folder, timeout=HANG_TIMEOUT)
+    subprocess.run(
+        [sys.executable, ROOT / script, *options], check=True, cwd=folder, timeout=HANG_TIMEOUT
+    )
     return folder
 
 
@@ -48,7 +50,9 @@ def test_every_command_works_as_shown(followed: tuple[str, list[Step]]) -> None:
     assert not [step.printed for step in steps if "there is no student" in step.printed]
 
 
-def test_canvas_gets_what_the_gradebook_holds(folder: Path, followed: tuple[str, list[Step]]) -> None:
+def test_canvas_gets_what_the_gradebook_holds(
+    folder: Path, followed: tuple[str, list[Step]]
+) -> None:
     """All marks are in the gradebook; each row of the upload has its student's total, or EX, and nothing else differs."""
     del followed
     grades = {grade.student.canvas: grade for grade in Gradebook(folder / "lab6-grades")}
@@ -63,7 +67,9 @@ def test_canvas_gets_what_the_gradebook_holds(folder: Path, followed: tuple[str,
     uploaded = {row[1] for row in after[2:]}
     assert "EX" in {row[-1] for row in after}
     for key, grade in grades.items():
-        is_final = grade.has_final or (grade.stored is not None and grade.stored.verdict == "graded")
+        is_final = grade.has_final or (
+            grade.stored is not None and grade.stored.verdict == "graded"
+        )
         assert (key in uploaded) == (is_final and key in rows), key
     assert len(uploaded) == 107
     assert grades["100064"].total == Decimal(0)

@@ -40,4 +40,6 @@ def unwatched(monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupt(_seconds: float) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("grader.commands.watch.time", SimpleNamespace(sleep=interrupt, monotonic=time.monotonic))
+    monkeypatch.setattr(
+        "grader.commands.watch.time", SimpleNamespace(sleep=interrupt, monotonic=time.monotonic)
+    )

@@ -35,7 +35,9 @@ def students(top: Path) -> dict[str, Any]:
 
 def scores(top: Path) -> dict[str, tuple[Any, Any, Any]]:
     """Return score, maximum and pending points by student."""
-    return {key: (one["score"], one["max_score"], one["pending"]) for key, one in students(top).items()}
+    return {
+        key: (one["score"], one["max_score"], one["pending"]) for key, one in students(top).items()
+    }
 
 
 @pytest.fixture
@@ -97,7 +99,9 @@ def test_a_part_that_was_not_submitted_stays_not_graded(top: Path) -> None:
 
 def test_review_does_not_ask(top: Path) -> None:
     """An adjusted question is no item."""
-    batch(top, rubric=rubric(top, adjusted(adjusted(lab_text(), "essay", "drop"), "picture", "full")))
+    batch(
+        top, rubric=rubric(top, adjusted(adjusted(lab_text(), "essay", "drop"), "picture", "full"))
+    )
     sheet = top / "sheet.csv"
     assert grader("review", "--gradebook", top / "book", "--sheet", sheet).returncode == 0
     assert "essay" not in sheet.read_text() and "picture" not in sheet.read_text()
@@ -108,7 +112,9 @@ def test_statistics(top: Path) -> None:
     text = with_bonus(adjusted(adjusted(lab_text(), "essay", "full"), "picture", "drop"), "box")
     text = text.replace('requires = ["box"]', "")
     batch(top, rubric=rubric(top, text))
-    data = json.loads(grader("stats", "--gradebook", top / "book", "--format", "json").stdout)["statistics"]
+    data = json.loads(grader("stats", "--gradebook", top / "book", "--format", "json").stdout)[
+        "statistics"
+    ]
     assert data["grades"] == {"students": 3, "mean": 9, "median": 10}
     assert data["tenths"] == [0, 0, 0, 0, 0, 0, 0, 0, 0, 3]
     rows = {row["id"]: row for row in data["criteria"]}
@@ -122,17 +128,26 @@ def test_final_marks_and_excuses_are_counted_in_words(top: Path) -> None:
     """How many students have one, also without a submission."""
     for key, points in (("anna", "excused"), ("dora", 0), ("emil", 10)):
         assert grader("mark", key, "total", points, "--gradebook", top / "book").returncode == 0
-    data = json.loads(grader("stats", "--gradebook", top / "book", "--format", "json").stdout)["statistics"]
+    data = json.loads(grader("stats", "--gradebook", top / "book", "--format", "json").stdout)[
+        "statistics"
+    ]
     assert (data["counts"], data["grades"]["students"]) == (
         {"excused": 1, "graded": 2, "missing": 1, "unreadable": 1},
         3,
     )
     assert sum(data["tenths"]) == 3
-    assert grader("export", "html", "--gradebook", top / "book", "--output", top / "pages").returncode == 0
+    assert (
+        grader("export", "html", "--gradebook", top / "book", "--output", top / "pages").returncode
+        == 0
+    )
     page = ClassPageReader(top / "pages" / "index.html")
     assert [(row["grade"], row["status"]) for row in page.table("students")] == [
-        ("", "excused"), ("0", "missing, final mark"), ("6", "graded"), ("10", "graded, final mark"), ("", "unreadable"),
-    ]  # fmt: skip
+        ("", "excused"),
+        ("0", "missing, final mark"),
+        ("6", "graded"),
+        ("10", "graded, final mark"),
+        ("", "unreadable"),
+    ]
 
 
 # --- Late penalties, rubrics, bundles --------------------------------------------------------------------------------------
@@ -166,13 +181,21 @@ def test_a_mutant_is_not_caught_by_an_adjusted_criterion(tmp_path: Path) -> None
 def test_a_class_with_a_faulty_check_that_is_dropped(tmp_path: Path) -> None:
     """The grader did not fail on anybody: the grade is final but for manual grading."""
     write_submission(tmp_path / "class" / "anna")
-    (tmp_path / "class" / "anna" / "robot.urdf").write_text(urdf().replace('name="r"', 'name="returns_text"'))
+    (tmp_path / "class" / "anna" / "robot.urdf").write_text(
+        urdf().replace('name="r"', 'name="returns_text"')
+    )
     text = lab_text(extra="1").replace(
-        'points = 1\npart = "robot"\ncheck = "urdf_loads"', 'points = 1\npart = "robot"\ncheck = "behaves"'
+        'points = 1\npart = "robot"\ncheck = "urdf_loads"',
+        'points = 1\npart = "robot"\ncheck = "behaves"',
     )
     lab = rubric(tmp_path, adjusted(text, "extra", "drop"))
     where = "--gradebook", tmp_path / "book", "--rubric", lab, "--jobs", 1, "--format", "json"
     done = grader("batch", tmp_path / "class", *where)
     data = json.loads(done.stdout)
     (anna,) = data["students"]
-    assert (anna["status"], anna["score"], anna["max_score"], data["run"]["errored"]) == ("graded", 6, 11, 0)
+    assert (anna["status"], anna["score"], anna["max_score"], data["run"]["errored"]) == (
+        "graded",
+        6,
+        11,
+        0,
+    )

@@ -15,7 +15,10 @@ def test_a_file_that_cannot_be_read(command: str, tmp_path: Path) -> None:
     """A named pipe that nobody writes to, and a file without read permission, which root may read all the same."""
     os.mkfifo(tmp_path / "pipe.urdf")
     (tmp_path / "secret.urdf").touch(mode=0o000)
-    for name, words in (("pipe.urdf", b"not a regular file"), ("secret.urdf", b"Permission denied")):
+    for name, words in (
+        ("pipe.urdf", b"not a regular file"),
+        ("secret.urdf", b"Permission denied"),
+    ):
         if name == "pipe.urdf" or os.geteuid() != 0:
             done = run((command, tmp_path / name))
             assert (done.returncode, done.stdout, done.stderr.count(b"\n")) == (2, b"", 1)
@@ -24,7 +27,11 @@ def test_a_file_that_cannot_be_read(command: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "data",
-    [bytes(range(256)) * 40, b"<robot name='a'>" + b"<a>" * 100_000, b"<robot>" + b"<a>" * 10**5 + b"</a>" * 10**5],
+    [
+        bytes(range(256)) * 40,
+        b"<robot name='a'>" + b"<a>" * 100_000,
+        b"<robot>" + b"<a>" * 10**5 + b"</a>" * 10**5,
+    ],
 )
 def test_a_hostile_file_gets_a_report(data: bytes, tmp_path: Path) -> None:
     """Bytes that are no text, and tags that are nested without end."""
@@ -39,7 +46,11 @@ def test_a_hostile_file_gets_a_report(data: bytes, tmp_path: Path) -> None:
 def test_closed_standard_output(form: str) -> None:
     """One line on standard error and exit code 2, whether it was closed before or during the output."""
     command = f'"{sys.executable}" -m grader grade submissions/lab6/reference --format {form}'
-    for redirected in (f"{command} >&-", f"({command}; echo $? >&2) | true", f"{command} > /dev/full"):
+    for redirected in (
+        f"{command} >&-",
+        f"({command}; echo $? >&2) | true",
+        f"{command} > /dev/full",
+    ):
         done = _in_bash(redirected, ROOT)
         assert b"standard output" in done.stderr or b"| true" in redirected.encode(), done.stderr
         assert b"Traceback" not in done.stderr
@@ -52,9 +63,14 @@ def test_a_deleted_current_folder(tmp_path: Path) -> None:
     """A report needs no current folder."""
     (tmp_path / "gone").mkdir()
     urdf = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
-    done = _in_bash(f"rmdir ../gone; '{sys.executable}' -m grader grade {urdf} --format github", tmp_path / "gone")
+    done = _in_bash(
+        f"rmdir ../gone; '{sys.executable}' -m grader grade {urdf} --format github",
+        tmp_path / "gone",
+    )
     assert (done.returncode, done.stderr) == (1, b"")
 
 
 def _in_bash(line: str, folder: Path) -> "subprocess.CompletedProcess[bytes]":
-    return subprocess.run(["bash", "-c", line], cwd=folder, capture_output=True, check=False, timeout=HANG_TIMEOUT)
+    return subprocess.run(
+        ["bash", "-c", line], cwd=folder, capture_output=True, check=False, timeout=HANG_TIMEOUT
+    )

@@ -58,8 +58,12 @@ def test_a_slow_document_needs_manual_grading(
 
 
 @pytest.mark.exhaustive
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, -15), (signal.SIGKILL, -9)])
-def test_no_converter_outlives_the_grader(number: signal.Signals, code: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, -15), (signal.SIGKILL, -9)]
+)
+def test_no_converter_outlives_the_grader(
+    number: signal.Signals, code: int, tmp_path: Path
+) -> None:
     """However the grader ends, its converter process ends, too."""
     with started("grade", write_submission(tmp_path / "alice")) as process:
         _stop_converter(process)
@@ -72,7 +76,9 @@ def test_no_converter_outlives_the_grader(number: signal.Signals, code: int, tmp
 def test_no_converter_outlives_a_killed_batch(tmp_path: Path) -> None:
     """A worker that is killed takes its converter with it."""
     write_submission(tmp_path / "class" / "alice")
-    with started("batch", tmp_path / "class", "--gradebook", tmp_path / "lab", "--jobs", "1") as process:
+    with started(
+        "batch", tmp_path / "class", "--gradebook", tmp_path / "lab", "--jobs", "1"
+    ) as process:
         _stop_converter(process)
         process.kill()
         assert eventually(lambda: not session_of(process))
@@ -89,7 +95,9 @@ def _converters(process: "subprocess.Popen[str]") -> list[int]:
     found = []
     for pid in session_of(process):
         with suppress(OSError):
-            if not re.search(r"Max cpu time +\S+ +unlimited", Path(f"/proc/{pid}/limits").read_text()):
+            if not re.search(
+                r"Max cpu time +\S+ +unlimited", Path(f"/proc/{pid}/limits").read_text()
+            ):
                 found.append(pid)
     return found
 
@@ -99,7 +107,9 @@ def test_a_converter_without_a_parent_ends_at_once() -> None:
     """A parent that ends before the kernel is told about it leaves no converter."""
     other = os.getppid()  # not the parent of what is started here
     done = subprocess.run(
-        [sys.executable, "-P", converter, "docx", "600", str(other)], timeout=HANG_TIMEOUT, check=False
+        [sys.executable, "-P", converter, "docx", "600", str(other)],
+        timeout=HANG_TIMEOUT,
+        check=False,
     )
     assert done.returncode == 1
 
@@ -110,13 +120,28 @@ def test_a_mark_never_depends_on_a_document(tmp_path: Path) -> None:
     write_submission(tmp_path / "class" / "alice")
     shutil.copytree(REFERENCE, tmp_path / "class" / "bob" / "my_robot")
     book = tmp_path / "lab"
-    done = grader("batch", tmp_path / "class", "--gradebook", book, "--timeout", "4", "--jobs", "2", cwd=str(ROOT))
+    done = grader(
+        "batch",
+        tmp_path / "class",
+        "--gradebook",
+        book,
+        "--timeout",
+        "4",
+        "--jobs",
+        "2",
+        cwd=str(ROOT),
+    )
     assert "2 graded, 0 unchanged" in done.stderr
     for line in newest(book).values():
         points = [entry[0] for entry in line["results"].values()]
         assert (line["verdict"], sum(filter(None, points)), points.count(None)) == ("graded", 90, 3)
-    again = grader("batch", tmp_path / "class", "--gradebook", book, "--reports", tmp_path / "reports")
+    again = grader(
+        "batch", tmp_path / "class", "--gradebook", book, "--reports", tmp_path / "reports"
+    )
     assert "0 graded, 2 unchanged" in again.stderr
     report = " ".join((tmp_path / "reports" / "alice.txt").read_text().split())
     reason = "grading it took longer than 4 s (--timeout raises the limit)"
-    assert f"answer-floating-link and answer-launch-nodes (8): the documents cannot be read: {reason}" in report
+    assert (
+        f"answer-floating-link and answer-launch-nodes (8): the documents cannot be read: {reason}"
+        in report
+    )

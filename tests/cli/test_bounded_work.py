@@ -114,16 +114,25 @@ def robot(body: str) -> str:
     return f'<robot name="r">{body}</robot>'
 
 
-LOADED = ("unknown attributes of one link", "a million ampersands", "ampersands and references")  # into one tree
+LOADED = (
+    "unknown attributes of one link",
+    "a million ampersands",
+    "ampersands and references",
+)  # into one tree
 _HALF = MIB // 2 - 300
 URDFS = {
     "unknown attributes": robot(filled(lambda n: f'<link name="a{n}" nme="b"/>')),
-    "unknown attributes of one link": robot("<link " + "".join(f'a{n}="" ' for n in range(80_000)) + 'name="a"/>'),
+    "unknown attributes of one link": robot(
+        "<link " + "".join(f'a{n}="" ' for n in range(80_000)) + 'name="a"/>'
+    ),
     "many links": robot(filled(lambda n: f'<link name="a{n}"/>')),
     "joints without links": robot(
         filled(lambda n: f'<link name="link{n}"/>', _HALF)
         + filled(
-            lambda n: f'<joint name="j{n}" type="fixed"><parent link="link{n}x"/><child link="l{n}"/></joint>', _HALF
+            lambda n: (
+                f'<joint name="j{n}" type="fixed"><parent link="link{n}x"/><child link="l{n}"/></joint>'
+            ),
+            _HALF,
         )
     ),
     "a million ampersands": robot('<link name="' + "&" * 1_000_000 + '"/>'),
@@ -145,7 +154,8 @@ RUBRICS = {
     "criteria": HEAD + "".join(ROW.format(n, "p", "urdf_loads") for n in range(10_000)),
     "requirements": HEAD
     + "".join(
-        f'{ROW.format(n, "p", "urdf_loads")}requires = ["c{n - 1}"]\n'.replace('["c-1"]', "[]") for n in range(9_000)
+        f'{ROW.format(n, "p", "urdf_loads")}requires = ["c{n - 1}"]\n'.replace('["c-1"]', "[]")
+        for n in range(9_000)
     ),
     "unknown parts": HEAD + "".join(ROW.format(n, "q", "urdf_loads") for n in range(9_000)),
     "unknown checks": HEAD + "".join(ROW.format(n, "p", "urdf_load") for n in range(9_000)),
@@ -199,7 +209,14 @@ def tarred(path: Path, files: dict[str, bytes], links: dict[str, str]) -> Path:
 
 
 @pytest.mark.parametrize(
-    "name", ["{0}.txt", "{0}/package.xml", "{0}.png", "{0}.urdf", "/".join("e" * 10 for _ in range(50)) + "/{0}"]
+    "name",
+    [
+        "{0}.txt",
+        "{0}/package.xml",
+        "{0}.png",
+        "{0}.urdf",
+        "/".join("e" * 10 for _ in range(50)) + "/{0}",
+    ],
 )
 def test_symlinks_to_one_folder(name: str, tmp_path: Path) -> None:
     """240 symlinks to a folder of 200 files take bounded work and memory."""
@@ -220,15 +237,21 @@ def test_archives_in_archives(tmp_path: Path) -> None:
     """Neither their sizes nor their number determines the memory used."""
     noise = random.Random(1).randbytes(60 * MIB)
     inner = zipped({"my_robot.urdf": URDF, "noise.bin": noise})
-    (tmp_path / "lab6.zip").write_bytes(zipped({f"{n}/in.zip": zipped({"in.zip": inner}) for n in range(3)}))
-    assert "0/in.zip/in.zip/my_robot.urdf" in bounded("grade", tmp_path / "lab6.zip", calls=_FEW_CALLS)
+    (tmp_path / "lab6.zip").write_bytes(
+        zipped({f"{n}/in.zip": zipped({"in.zip": inner}) for n in range(3)})
+    )
+    assert "0/in.zip/in.zip/my_robot.urdf" in bounded(
+        "grade", tmp_path / "lab6.zip", calls=_FEW_CALLS
+    )
 
 
 def test_a_class_zip_of_archives_is_read_in_chunks(tmp_path: Path) -> None:
     """A submission is never in memory as a whole."""
     noise = random.Random(1).randbytes(60 * MIB)
     (tmp_path / "class.zip").write_bytes(
-        zipped({"ann.zip": zipped({"my_robot.urdf": URDF, **{f"{n}.bin": noise for n in range(4)}})})
+        zipped(
+            {"ann.zip": zipped({"my_robot.urdf": URDF, **{f"{n}.bin": noise for n in range(4)}})}
+        )
     )
     code = (
         "import sys; from grader.classroom.class_files import open_class_submission\n"
@@ -276,7 +299,9 @@ def large_submission(kind: str, path: Path, size: int) -> Path:
 @pytest.mark.parametrize("kind", ["folder", "zip", "tar", "tar.gz"])
 def test_a_video_is_ignored_and_named(kind: str, tmp_path: Path) -> None:
     """The rest is graded, the report names the file with its size, and it counts as evidence all the same."""
-    size = 100_000_000 if kind == "tar.gz" else 600_000_000  # what is decompressed has to be written first
+    size = (
+        100_000_000 if kind == "tar.gz" else 600_000_000
+    )  # what is decompressed has to be written first
     path = large_submission(kind, tmp_path / f"lab6.{kind}", size)
     output = bounded("grade", path, "--part", "task1", "--part", "task3", calls=_FEW_CALLS, code=0)
     ignored = f"Task3_Step3.mp4 ({size // 1_000_000} MB) is larger than 64 MiB, the limit for one file, and was ignored"

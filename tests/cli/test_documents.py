@@ -10,7 +10,9 @@ from tests.command_line import run
 from tests.documents.files import PICTURE, docx
 
 
-def test_without_the_extra_one_line_says_what_was_not_searched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_extra_one_line_says_what_was_not_searched(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """If the packages for Word and PDF are not installed, a note names the document; its evidence is not called missing."""
     monkeypatch.setattr("grader.documents.converter.MISSING", 1)  # as a damaged document ends
     (tmp_path / "report.pdf").write_bytes(b"no document")
@@ -25,7 +27,14 @@ def test_a_record_keeps_evidence(tmp_path: Path) -> None:
     """A class report names the same evidence as `grade`."""
     (tmp_path / "class/Ash").mkdir(parents=True)
     (tmp_path / "class/Ash/report.docx").write_bytes(docx("Task 1: Step 8", PICTURE))
-    reports = ("--gradebook", tmp_path / "lab", "--reports", tmp_path / "reports", "--report-format", "json")
+    reports = (
+        "--gradebook",
+        tmp_path / "lab",
+        "--reports",
+        tmp_path / "reports",
+        "--report-format",
+        "json",
+    )
     assert grader("batch", tmp_path / "class", *reports).returncode == 0
     report, same = (
         json.loads(text)

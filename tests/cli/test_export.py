@@ -20,14 +20,23 @@ from tests.report.class_pages import ClassPageReader
 from tests.samples import ROOT
 
 
-@pytest.mark.parametrize("name", ["book/grades.csv", "../small/book/marks/kim.csv", "link.csv", "book/new.csv"])
+@pytest.mark.parametrize(
+    "name", ["book/grades.csv", "../small/book/marks/kim.csv", "link.csv", "book/new.csv"]
+)
 def test_the_gradebook_is_never_replaced(name: str, top: Path) -> None:
     """Nor gets it other files, under any name; it contains all manual marks."""
-    assert grader("mark", "anna", "essay", "3.5", "--by", "Kim", "--gradebook", top / "book").returncode == 0
+    assert (
+        grader(
+            "mark", "anna", "essay", "3.5", "--by", "Kim", "--gradebook", top / "book"
+        ).returncode
+        == 0
+    )
     (top / "link.csv").symlink_to("book/marks/kim.csv")
     before = {path: path.read_bytes() for path in top.rglob("*") if path.is_file()}
     done = grader("export", "csv", "--gradebook", top / "book", "--output", top / name)
-    assert refusal(done) == f"cannot write {top / name}: the gradebook is written by its own commands"
+    assert (
+        refusal(done) == f"cannot write {top / name}: the gradebook is written by its own commands"
+    )
     assert {path: path.read_bytes() for path in top.rglob("*") if path.is_file()} == before
 
 
@@ -36,13 +45,25 @@ def test_the_gradebook_is_never_replaced(name: str, top: Path) -> None:
 def test_standard_output_is_no_way_to_replace_the_file_of_the_lms(name: str, top: Path) -> None:
     """Nor is it appended to."""
     lms = top / "lms.csv"
-    lms.write_text("Student,ID,Section,A small lab (77)\n    Points Possible,,,11\nBen,102,S1,\nNobody,9,S1,\n")
+    lms.write_text(
+        "Student,ID,Section,A small lab (77)\n    Points Possible,,,11\nBen,102,S1,\nNobody,9,S1,\n"
+    )
     (top / "link.csv").symlink_to("lms.csv")
     (top / "hard.csv").hardlink_to(lms)
     before = lms.read_bytes()
     with lms.open("ab") as stdout:
-        command = [sys.executable, "-m", "grader", "export", "canvas", "--gradebook", str(top / "book")]
-        done = subprocess.run([*command, "--into", str(top / name)], cwd=ROOT, stdout=stdout, check=False)
+        command = [
+            sys.executable,
+            "-m",
+            "grader",
+            "export",
+            "canvas",
+            "--gradebook",
+            str(top / "book"),
+        ]
+        done = subprocess.run(
+            [*command, "--into", str(top / name)], cwd=ROOT, stdout=stdout, check=False
+        )
     assert done.returncode == 2
     assert lms.read_bytes() == before
 
@@ -75,14 +96,26 @@ def pages(error: Exception, top: Path, monkeypatch: pytest.MonkeyPatch) -> list[
 @pytest.mark.parametrize(
     ("error", "why"),
     [
-        (WorkerError("the process that graded it was killed"), "the process that graded it was killed"),
+        (
+            WorkerError("the process that graded it was killed"),
+            "the process that graded it was killed",
+        ),
         (OverflowError("inf"), "the grader itself failed: OverflowError: inf"),
     ],
 )
-def test_a_crash_costs_one_page(error: Exception, why: str, top: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_crash_costs_one_page(
+    error: Exception, why: str, top: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The others have theirs, the class's page has no link to it, and standard error says why."""
-    assert pages(error, top, monkeypatch) == [f"3 reports written to {top / 'pages'}", f"no report for ben: {why}"]
-    assert sorted(ClassPageReader(top / "pages/index.html").links()) == ["anna.html", "cleo.html", "emil.html"]
+    assert pages(error, top, monkeypatch) == [
+        f"3 reports written to {top / 'pages'}",
+        f"no report for ben: {why}",
+    ]
+    assert sorted(ClassPageReader(top / "pages/index.html").links()) == [
+        "anna.html",
+        "cleo.html",
+        "emil.html",
+    ]
 
 
 def test_a_full_disk_ends_the_command(top: Path, monkeypatch: pytest.MonkeyPatch) -> None:

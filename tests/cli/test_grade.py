@@ -27,7 +27,10 @@ def graded(path: Path) -> dict[str, Any]:
 
 def test_ids_and_paths_do_not_depend_on_the_machine(tmp_path: Path) -> None:
     """The same file in another folder gives the same report except for the submission's name."""
-    one, other = (graded(Path(shutil.copytree(PACKAGE / "urdf", tmp_path / name))) for name in ("alice", "bob"))
+    one, other = (
+        graded(Path(shutil.copytree(PACKAGE / "urdf", tmp_path / name)))
+        for name in ("alice", "bob")
+    )
     assert (one["submission"].pop("id"), other["submission"].pop("id")) == ("alice", "bob")
     assert one == other
     assert str(tmp_path) not in json.dumps(one)
@@ -39,7 +42,9 @@ def test_what_is_read_besides_counts_in_the_sha256(tmp_path: Path) -> None:
     path = path.rename(path.with_suffix(".urdf.xacro"))
     digests = [graded(path)["submission"]["sha256"]]
     for name in ("other.xacro", "wheel.xacro"):
-        (tmp_path / "urdf" / name).write_text((MACROS / "wheel.xacro").read_text(encoding="utf-8") + "\n")
+        (tmp_path / "urdf" / name).write_text(
+            (MACROS / "wheel.xacro").read_text(encoding="utf-8") + "\n"
+        )
         digests.append(graded(path)["submission"]["sha256"])
     assert digests[0] == digests[1] != digests[2]
 
@@ -49,11 +54,17 @@ def test_a_note_is_in_every_format(kind: Format, tmp_path: Path) -> None:
     """Another lab and another robot are named, in a terminal before all failures."""
     (tmp_path / "Lab7").mkdir()
     (tmp_path / "Lab7/box.urdf").write_text(BOX)
-    text = run(("grade", tmp_path, "--format", kind, "--hints", "none"), **CLASSROOM50).stdout.decode()
+    text = run(
+        ("grade", tmp_path, "--format", kind, "--hints", "none"), **CLASSROOM50
+    ).stdout.decode()
     words = " ".join(re.sub(r"<[^>]+>", " ", text).split())
     assert "his looks like another robot: it has none of the links of the rubric lab6" in words
-    if kind is not Format.SVG and kind.needs != "identity":  # a picture of the robot, and points for a platform
-        assert "no folder of this lab was found: Lab7, the folder of another lab, was graded" in words
+    if (
+        kind is not Format.SVG and kind.needs != "identity"
+    ):  # a picture of the robot, and points for a platform
+        assert (
+            "no folder of this lab was found: Lab7, the folder of another lab, was graded" in words
+        )
     if kind is Format.TERMINAL:
         assert words.index("another robot") < words.index("base-box")
 
@@ -73,7 +84,11 @@ def test_what_python_3_12_added_is_no_failure(path: str, code: str, tmp_path: Pa
     """ROS 2 Jazzy runs Python 3.12: where an older one grades, a person decides."""
     file = Path(shutil.copytree(PACKAGE, tmp_path / "my_robot")) / path
     file.write_text(file.read_text().replace("import os\n", f"import os\n{code}", 1))
-    found = {row["status"] for row in graded(tmp_path)["results"] if row["id"].startswith(("setup", "launch"))}
+    found = {
+        row["status"]
+        for row in graded(tmp_path)["results"]
+        if row["id"].startswith(("setup", "launch"))
+    }
     assert found == ({"passed"} if sys.version_info >= (3, 12) else {"passed", "pending"})
 
 
@@ -81,6 +96,8 @@ def test_the_next_command_runs_with_a_rubric_elsewhere(tmp_path: Path) -> None:
     """It has the path of the rubric as it was given, quoted for a shell."""
     rubric = copy_with_edits(tmp_path / "my labs")
     (tmp_path / "box.urdf").write_text(BOX, encoding="utf-8")
-    report = run(("grade", tmp_path / "box.urdf", "--rubric", rubric, "--hints", "none"), COLUMNS="500").stdout.decode()
+    report = run(
+        ("grade", tmp_path / "box.urdf", "--rubric", rubric, "--hints", "none"), COLUMNS="500"
+    ).stdout.decode()
     [command] = re.findall(r"^Next: grader (.*)", report, re.MULTILINE)
     assert run(shlex.split(command)).returncode == 0

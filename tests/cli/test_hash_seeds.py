@@ -31,7 +31,11 @@ def test_reports_are_the_same_with_every_hash_seed(tmp_path: Path) -> None:
         ("urdf/my_robot.urdf", "</robot>", f'<link name="${{xacro.fatal({SET})}}"/></robot>'),
         ("setup.py", "from setuptools", "names = list({'urdf/*', 'rviz/*'})[:1]\nfrom setuptools"),
         ("setup.py", "glob('urdf/*')", "glob(names[0])"),
-        ("launch/my_robot_rviz.launch.py", "share, 'my_robot.rviz'", "share, list({'my_robot.rviz', 'other.rviz'})[0]"),
+        (
+            "launch/my_robot_rviz.launch.py",
+            "share, 'my_robot.rviz'",
+            "share, list({'my_robot.rviz', 'other.rviz'})[0]",
+        ),
     ):
         path = folder / name
         assert old in path.read_text()
@@ -39,13 +43,20 @@ def test_reports_are_the_same_with_every_hash_seed(tmp_path: Path) -> None:
     saved = {}
     for seed, zone, locale in (("1", "UTC", "C"), ("2", "Asia/Tokyo", "C.UTF-8")):
         files = [tmp_path / f"{seed}.{kind}" for kind in ("html", "svg")]
-        words = "grade", str(folder), "--format=json", *(f"--save={file.suffix[1:]}={file}" for file in files)
+        words = (
+            "grade",
+            str(folder),
+            "--format=json",
+            *(f"--save={file.suffix[1:]}={file}" for file in files),
+        )
         done = run_process(words, variables={"PYTHONHASHSEED": seed, "TZ": zone, "LANG": locale})
         saved[seed] = (done.stdout, *(file.read_bytes() for file in files))
     assert saved["1"] == saved["2"]
     assert saved["1"][0] == run(("grade", folder, "--format", "json")).stdout
     statuses = {row["id"]: row["status"] for row in json.loads(saved["1"][0])["results"]}
-    assert [statuses[name] for name in ("base-green", "setup-installs-urdf", "launch-finds-files")] == ["pending"] * 3
+    assert [
+        statuses[name] for name in ("base-green", "setup-installs-urdf", "launch-finds-files")
+    ] == ["pending"] * 3
 
 
 @pytest.mark.exhaustive
@@ -55,7 +66,9 @@ def test_every_sample_has_one_report_over_two_hash_seeds() -> None:
     for seed in range(SEEDS):
         words = [sys.executable, "-m", "tests.report_digests", str(HINT_STEP)]
         environment = {**clean_environment(), "PYTHONHASHSEED": str(seed)}
-        done = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, check=True, timeout=HANG_TIMEOUT)
+        done = subprocess.run(
+            words, cwd=ROOT, env=environment, capture_output=True, check=True, timeout=HANG_TIMEOUT
+        )
         for line in done.stdout.decode().splitlines():
             name, _, digest = line.rpartition(" ")
             digests.setdefault(name, []).append(digest)

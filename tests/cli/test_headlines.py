@@ -21,7 +21,10 @@ def reports(top: Path, key: str, rubric: Path | None = None) -> Mapping[Format, 
     options = [option for kind in FORMATS for option in ("--report-format", kind)]
     done = batch(top, "--reports", top / "out", *options, rubric=rubric)
     assert done.returncode == 0, done.stderr
-    return {kind: " ".join((top / "out" / f"{key}.{kind.ending}").read_text("utf-8").split()) for kind in FORMATS}
+    return {
+        kind: " ".join((top / "out" / f"{key}.{kind.ending}").read_text("utf-8").split())
+        for kind in FORMATS
+    }
 
 
 def headline(kind: Format, text: str) -> str:
@@ -40,10 +43,15 @@ def headline(kind: Format, text: str) -> str:
     return re.sub(r" ?/ ?", " / ", found[1].replace("</strong>", ""))
 
 
-def assert_headlines(found: Mapping[Format, str], expected: str, how: str, score: float, grade: object) -> None:
+def assert_headlines(
+    found: Mapping[Format, str], expected: str, how: str, score: float, grade: object
+) -> None:
     """Check the headline of every format, the line below it, and the keys of the formats for programs."""
     decided = f"{score} of {DECIDED}"  # where there is no grade, a sentence has the points of what is decided
-    assert {headline(kind, found[kind]) for kind in WITH_HEADLINE} <= {expected, decided if grade is None else expected}
+    assert {headline(kind, found[kind]) for kind in WITH_HEADLINE} <= {
+        expected,
+        decided if grade is None else expected,
+    }
     for kind in WITH_HEADLINE if how else ():
         assert how in found[kind], kind
     data = json.loads(found[Format.JSON])
@@ -63,7 +71,9 @@ def test_a_final_mark_is_the_headline(top: Path) -> None:
     assert "5 points need manual grading" not in found[Format.MARKDOWN]
     assert grader("mark", "dora", "total", "2", "--gradebook", top / "book").returncode == 0
     expected = {"points": 2, "late": 0, "final": True}
-    assert_headlines(reports(top, "dora"), "2 / 11", "Final mark, instead of 0 automatic points.", 0, expected)
+    assert_headlines(
+        reports(top, "dora"), "2 / 11", "Final mark, instead of 0 automatic points.", 0, expected
+    )
 
 
 def test_manual_marks_are_in_the_headline(top: Path) -> None:
@@ -77,7 +87,9 @@ def test_manual_marks_are_in_the_headline(top: Path) -> None:
 
 def test_the_late_penalty_is_in_the_headline(top: Path) -> None:
     """The headline includes the late penalty, unlike the score of the criteria."""
-    (top / "late.toml").write_text(lab_text("due = 2020-01-01T00:00:00+00:00\npercent_per_day = 10", essay="4"))
+    (top / "late.toml").write_text(
+        lab_text("due = 2020-01-01T00:00:00+00:00\npercent_per_day = 10", essay="4")
+    )
     roster = (top / "roster.csv").read_text().splitlines()
     lines = [
         f"{line},{'late' if number == 0 else '2' if line.startswith('anna') else '0'}"
@@ -93,7 +105,13 @@ def test_an_excused_student_has_no_points_in_the_headline(top: Path) -> None:
     """The headline of an excused student has no points, whatever the criteria give."""
     assert grader("mark", "anna", "total", "excused", "--gradebook", top / "book").returncode == 0
     expected = {"points": None, "late": 0, "final": False}
-    assert_headlines(reports(top, "anna"), "Excused", "Excused; the criteria give 6 automatic points.", 6, expected)
+    assert_headlines(
+        reports(top, "anna"),
+        "Excused",
+        "Excused; the criteria give 6 automatic points.",
+        6,
+        expected,
+    )
 
 
 def test_points_that_need_manual_grading_are_a_dash(top: Path) -> None:
@@ -101,13 +119,27 @@ def test_points_that_need_manual_grading_are_a_dash(top: Path) -> None:
     found = reports(top, "anna")
     for kind in (Format.TERMINAL, Format.MARKDOWN, Format.HTML, Format.JUNIT, Format.GRADESCOPE):
         assert not re.search(r"\b0/[14]\b|\b0 / [14]\b", found[kind]), kind
-    assert "–/4" in found[Format.MARKDOWN] and "–/5" in found[Format.HTML] and "–/1" in found[Format.JUNIT]
-    shown = run(("grade", top / "class" / "anna", "--rubric", top / "small.toml", "--verbose")).stdout.decode()
+    assert (
+        "–/4" in found[Format.MARKDOWN]
+        and "–/5" in found[Format.HTML]
+        and "–/1" in found[Format.JUNIT]
+    )
+    shown = run(
+        ("grade", top / "class" / "anna", "--rubric", top / "small.toml", "--verbose")
+    ).stdout.decode()
     assert "essay  –/4" in shown and "picture  –/1" in shown and "Report  –/5" in shown
     worksheet = "Identifier,Full name,Email address,Grade,Maximum Grade,Feedback comments\nParticipant 7,Anna Ek,anna@example.org,,11,\n"
     (top / "sheet.csv").write_text(worksheet)
     done = grader(
-        "export", "moodle", "--gradebook", top / "book", "--into", top / "sheet.csv", "--output", top / "up.csv", "--pending-as-zero",
-    )  # fmt: skip
+        "export",
+        "moodle",
+        "--gradebook",
+        top / "book",
+        "--into",
+        top / "sheet.csv",
+        "--output",
+        top / "up.csv",
+        "--pending-as-zero",
+    )
     assert done.returncode == 0, done.stderr
     assert "<li>About essay: – of 4: " in (top / "up.csv").read_text("utf-8")

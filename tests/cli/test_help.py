@@ -86,13 +86,19 @@ def test_without_a_command_the_help_is_shown(words: tuple[str, ...]) -> None:
     assert done.stderr.decode().split() == run((*words, "--help")).stdout.decode().split()
 
 
-@pytest.mark.parametrize("words", [("--version",), ("-V",), ("--version", "grade"), ("-V", "--help")])
+@pytest.mark.parametrize(
+    "words", [("--version",), ("-V",), ("--version", "grade"), ("-V", "--help")]
+)
 def test_the_version(words: tuple[str, ...]) -> None:
     """Both spellings work, whatever follows them."""
     from grader import __version__
 
     done = run(words)
-    assert (done.returncode, done.stdout, done.stderr) == (0, f"grader {__version__}\n".encode(), b"")
+    assert (done.returncode, done.stdout, done.stderr) == (
+        0,
+        f"grader {__version__}\n".encode(),
+        b"",
+    )
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
@@ -107,6 +113,8 @@ def test_commands_in_the_documentation_are_valid(page: Any) -> None:
 def test_messages_name_commands_that_exist() -> None:
     """Every command in backticks in the corpus's messages is one of the grader, whatever its arguments are."""
     named = {
-        name for case in read_corpus() for name in re.findall(r"`grader ([a-z]+)", case.expected.get("stderr", ""))
+        name
+        for case in read_corpus()
+        for name in re.findall(r"`grader ([a-z]+)", case.expected.get("stderr", ""))
     }
     assert {"batch", "grade", "rubric"} <= named <= set(COMMANDS)

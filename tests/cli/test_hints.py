@@ -24,7 +24,9 @@ def graded(*arguments: object) -> dict[str, Any]:
 
 def hints(*arguments: object) -> dict[str, list[dict[str, Any]]]:
     """Return the hints of each criterion that has some."""
-    return {result["id"]: result["hints"] for result in graded(*arguments)["results"] if result["hints"]}
+    return {
+        result["id"]: result["hints"] for result in graded(*arguments)["results"] if result["hints"]
+    }
 
 
 def lab(folder: Path, level: str) -> Path:
@@ -32,7 +34,9 @@ def lab(folder: Path, level: str) -> Path:
     text = (ROOT / "rubrics/lab6/rubric.toml").read_text()
     assert 'hints = "cause"' in text
     text = text.replace('hints = "cause"', f'hints = "{level}"' if level else "")
-    text = text.replace('reference = "', f'reference = "{ROOT}/rubrics/lab6/').replace("answers =", "# answers =")
+    text = text.replace('reference = "', f'reference = "{ROOT}/rubrics/lab6/').replace(
+        "answers =", "# answers ="
+    )
     (folder / "lab.toml").write_text(text)
     return folder / "lab.toml"
 
@@ -80,7 +84,10 @@ def test_a_rubric_without_a_reference(tmp_path: Path) -> None:
     mirrored = tmp_path / "a.urdf"
     turned, text = 'rpy="-1.57 0 0"', REFERENCE.read_text()
     mirrored.write_text('rpy="1.57 0 0"'.join(text.rsplit(turned, 1)))
-    edits = {name: some[0]["edits"][0]["new"] for name, some in hints(mirrored, "--rubric", rubric).items()}
+    edits = {
+        name: some[0]["edits"][0]["new"]
+        for name, some in hints(mirrored, "--rubric", rubric).items()
+    }
     assert set(edits.values()) == {'rpy="-1.57 0 0"'}
 
 
@@ -90,8 +97,15 @@ def test_fix_writes_the_robot_with_all_edits(tmp_path: Path) -> None:
     assert done.returncode == 1
     assert b"43 -> 70 of 70 points" in done.stderr
     assert run(("grade", tmp_path / "fixed.urdf")).returncode == 0
-    before, after = MISTAKES.read_bytes().split(b"\n"), (tmp_path / "fixed.urdf").read_bytes().split(b"\n")
-    differing = [number for number, pair in enumerate(zip(before, after, strict=True), 1) if pair[0] != pair[1]]
+    before, after = (
+        MISTAKES.read_bytes().split(b"\n"),
+        (tmp_path / "fixed.urdf").read_bytes().split(b"\n"),
+    )
+    differing = [
+        number
+        for number, pair in enumerate(zip(before, after, strict=True), 1)
+        if pair[0] != pair[1]
+    ]
     assert differing == [6, 39, 65, 73, 99]
 
 
@@ -103,7 +117,11 @@ def test_fix_of_several_files_needs_a_folder(tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("mine")
     for name in ("fixed.urdf", "taken"):
         done = run(("grade", copy, "--fix", tmp_path / name))
-        assert (done.returncode, f"{name} names a file: " in done.stderr.decode(), done.stdout) == (2, True, b"")
+        assert (done.returncode, f"{name} names a file: " in done.stderr.decode(), done.stdout) == (
+            2,
+            True,
+            b"",
+        )
     assert (tmp_path / "taken").read_text() == "mine"
     out = tmp_path / "new/out"
     run(("grade", copy, "--fix", out))
@@ -147,7 +165,9 @@ def test_fix_of_nothing(tmp_path: Path) -> None:
     assert not (tmp_path / "fixed.urdf").exists()
 
 
-@pytest.mark.parametrize(("steps", "reserve", "written"), [(0, 20, False), (26, 20, True), (4, 0, False)])
+@pytest.mark.parametrize(
+    ("steps", "reserve", "written"), [(0, 20, False), (26, 20, True), (4, 0, False)]
+)
 def test_a_search_that_is_cut_off_is_reported(
     steps: int, reserve: int, written: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -159,15 +179,24 @@ def test_a_search_that_is_cut_off_is_reported(
     assert f"Note: {note}" in run(("grade", MISTAKES)).stdout.decode()
     done = run(("grade", MISTAKES, "--fix", tmp_path / "fixed.urdf"))
     assert (tmp_path / "fixed.urdf").exists() == written
-    words = "limit: there may be more" if written else "the search for edits ended at its limit before it found one"
+    words = (
+        "limit: there may be more"
+        if written
+        else "the search for edits ended at its limit before it found one"
+    )
     assert done.stderr.decode().endswith(f"{words}\n")
 
 
 def test_a_submission_that_is_too_large_has_its_own_sentence(tmp_path: Path) -> None:
     """Nothing was searched then, and `--fix` says so."""
-    (tmp_path / "big.urdf").write_text(MISTAKES.read_text().replace("</robot>", " " * 300_000 + "</robot>"))
+    (tmp_path / "big.urdf").write_text(
+        MISTAKES.read_text().replace("</robot>", " " * 300_000 + "</robot>")
+    )
     done = run(("grade", tmp_path / "big.urdf", "--fix", tmp_path / "fixed.urdf"))
-    assert done.stderr == b"grader: --fix: nothing was written: the submission is too large to search for edits\n"
+    assert (
+        done.stderr
+        == b"grader: --fix: nothing was written: the submission is too large to search for edits\n"
+    )
 
 
 def _fail(*_: object, **__: object) -> None:
@@ -185,7 +214,10 @@ def test_a_search_that_failed_has_its_own_sentence(
     """`--fix` does not say that there is nothing to fix."""
     monkeypatch.setattr(place, failing)
     done = run(("grade", MISTAKES, "--fix", tmp_path / "fixed.urdf"))
-    assert done.stderr.decode().splitlines()[-1] == "grader: --fix: nothing was written: the search for edits failed"
+    assert (
+        done.stderr.decode().splitlines()[-1]
+        == "grader: --fix: nothing was written: the search for edits failed"
+    )
 
 
 def test_one_of_several_equal_texts_of_a_line_is_named(tmp_path: Path) -> None:
@@ -211,7 +243,18 @@ def test_fix_needs_edits(arguments: tuple[str, ...], tmp_path: Path) -> None:
 
 def test_a_rubric_that_shows_no_edits_writes_no_fix(tmp_path: Path) -> None:
     """The level of the rubric counts, whatever --hints says."""
-    done = run(("grade", MISTAKES, "--rubric", lab(tmp_path, "cause"), "--fix", tmp_path / "f.urdf", "--hints", "edit"))
+    done = run(
+        (
+            "grade",
+            MISTAKES,
+            "--rubric",
+            lab(tmp_path, "cause"),
+            "--fix",
+            tmp_path / "f.urdf",
+            "--hints",
+            "edit",
+        )
+    )
     assert done.returncode == 2
     assert b"the rubric lab6 allows cause" in done.stderr
 

@@ -22,10 +22,25 @@ print(*(name for name in loaded if name not in before), file=sys.stderr)
 """
 # Each of these takes some 1 to 50 % of a grading to import, and a URDF without mistakes needs none of them.
 UNUSED = {
-    "grader.authoring", "grader.classroom", "grader.documents", "grader.hints", "grader.markup", "grader.report.svg",
-    "grader.xacro", "hashlib", "jinja2", "multiprocessing", "numpy", "pebble", "rich.progress", "rich.table", "sqlite3",
-    "tempfile", "yaml", "zipfile",
-}  # fmt: skip
+    "grader.authoring",
+    "grader.classroom",
+    "grader.documents",
+    "grader.hints",
+    "grader.markup",
+    "grader.report.svg",
+    "grader.xacro",
+    "hashlib",
+    "jinja2",
+    "multiprocessing",
+    "numpy",
+    "pebble",
+    "rich.progress",
+    "rich.table",
+    "sqlite3",
+    "tempfile",
+    "yaml",
+    "zipfile",
+}
 
 
 @pytest.mark.parametrize(
@@ -36,11 +51,17 @@ UNUSED = {
 def test_a_cold_grading_imports_few_modules(options: list[str], more: set[str]) -> None:
     """A single URDF without mistakes is graded without what only others need."""
     variables = {
-        name: text for name, text in os.environ.items() if not name.startswith(("COV_", "COVERAGE", "GITHUB_"))
+        name: text
+        for name, text in os.environ.items()
+        if not name.startswith(("COV_", "COVERAGE", "GITHUB_"))
     }
     done = subprocess.run(
         [sys.executable, "-P", "-c", _PROGRAM, "grade", URDF, *options],
-        cwd=ROOT, check=True, capture_output=True, text=True, env={**variables, "PYTHONPATH": str(ROOT)},
-    )  # fmt: skip
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+        text=True,
+        env={**variables, "PYTHONPATH": str(ROOT)},
+    )
     modules = done.stderr.split()
     assert not [name for name in UNUSED | more if name in modules]

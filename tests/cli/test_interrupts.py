@@ -25,7 +25,10 @@ except KeyboardInterrupt:
 def ran(body: str) -> tuple[str, str]:
     """Return what a script prints on standard output and error."""
     done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", SCRIPT.format(body=body)], check=False, capture_output=True, text=True
+        [sys.executable, "-W", "error", "-c", SCRIPT.format(body=body)],
+        check=False,
+        capture_output=True,
+        text=True,
     )
     return done.stdout, done.stderr
 
@@ -66,9 +69,17 @@ def test_an_ignored_interrupt_stays_ignored() -> None:
     """After nohup or `trap '' INT` Ctrl-C does nothing."""
     before = "signal.signal(signal.SIGINT, signal.SIG_IGN)"
     done = subprocess.run(
-        [sys.executable, "-c", SCRIPT.format(body="signal.raise_signal(2); print('ended')").replace("try:\n", f"{before}\ntry:\n", 1)],
-        check=False, capture_output=True, text=True,
-    )  # fmt: skip
+        [
+            sys.executable,
+            "-c",
+            SCRIPT.format(body="signal.raise_signal(2); print('ended')").replace(
+                "try:\n", f"{before}\ntry:\n", 1
+            ),
+        ],
+        check=False,
+        capture_output=True,
+        text=True,
+    )
     assert (done.stdout, done.stderr) == ("ended\n", "")
 
 

@@ -17,7 +17,10 @@ from tests.samples import ROOT
 def scores(book: Path) -> dict[str, Any]:
     """Return the status, score and finality of each student."""
     students = json.loads(grader("export", "json", "--gradebook", book).stdout)["students"]
-    return {one["id"]: (one["status"], one["score"], not one.get("not_final_because")) for one in students}
+    return {
+        one["id"]: (one["status"], one["score"], not one.get("not_final_because"))
+        for one in students
+    }
 
 
 @pytest.mark.usefixtures("hostile_checks")
@@ -27,7 +30,10 @@ def test_a_mark_on_an_errored_criterion(tmp_path: Path) -> None:
     (tmp_path / "class" / "anna.urdf").write_text(urdf().replace('name="r"', 'name="raises"'))
     (tmp_path / "roster.csv").write_text("id\nanna\n")
     book = ("--gradebook", tmp_path / "book")
-    assert grader("batch", tmp_path / "class", "--rubric", HOSTILE / "hostile.toml", *book).returncode == 0
+    assert (
+        grader("batch", tmp_path / "class", "--rubric", HOSTILE / "hostile.toml", *book).returncode
+        == 0
+    )
     assert scores(tmp_path / "book") == {"anna": ("errored", 1, False)}
     done = grader("mark", "anna", "behaves", "1.5", *book)
     assert (done.returncode, done.stdout) == (0, "anna: 2.5 of 3 points\n")
@@ -37,7 +43,12 @@ def test_a_mark_on_an_errored_criterion(tmp_path: Path) -> None:
 def test_undecodable_bytes(top: Path) -> None:
     """A comment in another encoding is kept as far as it can be read."""
     book = ("--gradebook", top / "book")
-    assert grader("mark", "anna", "essay", "1", "--comment", b"gr\xfcn", "--by", b"\xff", *book).returncode == 0
+    assert (
+        grader(
+            "mark", "anna", "essay", "1", "--comment", b"gr\xfcn", "--by", b"\xff", *book
+        ).returncode
+        == 0
+    )
     (file,) = (top / "book/marks").iterdir()
     assert "anna,essay,1,gr\\xdcfcn" in file.read_text() and "\\xdcff" in file.read_text()
 
@@ -45,7 +56,9 @@ def test_undecodable_bytes(top: Path) -> None:
 @pytest.mark.exhaustive
 def test_concurrent_marks(top: Path) -> None:
     """Several graders, and a batch that grades everything meanwhile: nothing is lost."""
-    expected = [(key, name) for key in ("anna", "emil") for name in ("essay", "picture", "box", "loads")]
+    expected = [
+        (key, name) for key in ("anna", "emil") for name in ("essay", "picture", "box", "loads")
+    ]
     command = [sys.executable, "-m", "grader", "mark"]
     started = [
         subprocess.Popen(
@@ -67,21 +80,32 @@ def test_concurrent_marks(top: Path) -> None:
 def test_no_report_names_an_account(top: Path) -> None:
     """Without `--by` no report, table or feedback names an author; with it, that name."""
     book, account = ("--gradebook", top / "book"), {"LOGNAME": "jdoe47"}
-    assert grader("mark", "anna", "essay", "3", "--comment", "fine", *book, **account).returncode == 0
+    assert (
+        grader("mark", "anna", "essay", "3", "--comment", "fine", *book, **account).returncode == 0
+    )
     assert grader("mark", "emil", "essay", "3", "--by", "Kim", *book, **account).returncode == 0
-    formats = [part for kind in Format if kind.needs != "identity" for part in ("--report-format", kind)]
+    formats = [
+        part for kind in Format if kind.needs != "identity" for part in ("--report-format", kind)
+    ]
     done = batch(top, "--reports", top / "out", *formats)
     assert done.returncode == 0, done.stderr
     (top / "moodle.csv").write_text(
         "Identifier,Email address,Grade,Maximum Grade,Feedback comments\nParticipant 1,anna@example.org,-,11.00,\n"
     )
     output = [done.stdout, done.stderr]
-    for arguments in (("csv",), ("json",), ("moodle", "--into", top / "moodle.csv", "--pending-as-zero")):
+    for arguments in (
+        ("csv",),
+        ("json",),
+        ("moodle", "--into", top / "moodle.csv", "--pending-as-zero"),
+    ):
         shown = grader("export", *arguments, *book)
         assert shown.returncode == 0, shown.stderr
         output.append(shown.stdout + shown.stderr)
     assert "fine" in output[-1]
-    files = [path.read_text(encoding="utf-8") for path in (*(top / "out").iterdir(), top / "book/grades.csv")]
+    files = [
+        path.read_text(encoding="utf-8")
+        for path in (*(top / "out").iterdir(), top / "book/grades.csv")
+    ]
     assert len(files) > len(Format)
     assert all("jdoe47" not in text for text in (*files, *output))
     assert "Marked manually: fine." in (top / "out/anna.md").read_text(encoding="utf-8")

@@ -31,7 +31,9 @@ class GithubJob:
             "GITHUB_WORKSPACE": str(self.checkout),
             "GITHUB_STEP_SUMMARY": str(self.summary),
         }
-        return run_with_input((*arguments, "--hints", "none"), b"", {**job, **around}, self.checkout)
+        return run_with_input(
+            (*arguments, "--hints", "none"), b"", {**job, **around}, self.checkout
+        )
 
 
 @pytest.fixture
@@ -47,9 +49,13 @@ def test_a_job_gets_annotations_and_a_summary(job: GithubJob, form: str) -> None
     elsewhere = job.run("grade", "my_robot.urdf", "--format", form, around=ELSEWHERE)
     assert (done.stdout, done.returncode) == (elsewhere.stdout, elsewhere.returncode)
     assert elsewhere.stderr == b""
-    assert done.stderr == job.run("grade", "my_robot.urdf", "--format", "github", around=ELSEWHERE).stdout
     assert (
-        job.summary.read_bytes() == job.run("grade", "my_robot.urdf", "--format", "markdown", around=ELSEWHERE).stdout
+        done.stderr
+        == job.run("grade", "my_robot.urdf", "--format", "github", around=ELSEWHERE).stdout
+    )
+    assert (
+        job.summary.read_bytes()
+        == job.run("grade", "my_robot.urdf", "--format", "markdown", around=ELSEWHERE).stdout
     )
     assert commands(done.stdout.decode()) == []
 

@@ -32,7 +32,12 @@ def elsewhere(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     """Run the command line as on a system without POSIX functions."""
     command = [sys.executable, "-W", "error", "-c", _WITHOUT, *map(str, arguments)]
     return subprocess.run(
-        command, capture_output=True, text=True, check=False, timeout=60, env={**os.environ, "COLUMNS": "80"}
+        command,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+        env={**os.environ, "COLUMNS": "80"},
     )
 
 
@@ -64,7 +69,9 @@ def test_no_symlink_is_followed(tmp_path: Path) -> None:
     (tmp_path / "sub/my_robot.urdf").symlink_to("../secret.urdf")
     done = elsewhere("grade", tmp_path / "sub")
     assert "my_robot.urdf is a symlink, and was not followed" in done.stderr
-    (tmp_path / "sub/inner.urdf").write_bytes((ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_bytes())
+    (tmp_path / "sub/inner.urdf").write_bytes(
+        (ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_bytes()
+    )
     done = elsewhere("grade", tmp_path / "sub")
     assert "lab6: inner.urdf" in done.stdout
     assert "70/100" in done.stdout

@@ -37,12 +37,16 @@ def fill_memory(*_: object, **__: object) -> bytes:
 @pytest.mark.parametrize(
     ("what", "said"),
     [
-        pytest.param(hang, b"this takes more than 1 s of processor time", marks=pytest.mark.exhaustive),
+        pytest.param(
+            hang, b"this takes more than 1 s of processor time", marks=pytest.mark.exhaustive
+        ),
         (fill_memory, b"this needs more than 512 MiB of memory"),
     ],
 )
 @pytest.mark.parametrize("command", ["grade", "inspect"])
-def test_reading_ends(command: str, what: Callable[..., object], said: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_reading_ends(
+    command: str, what: Callable[..., object], said: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """One line says which limit it was, and nothing was graded: exit code 2."""
     monkeypatch.setattr(ending, "_SECONDS", 1 if what is hang else 60)
     monkeypatch.setattr(ending, "_MEMORY", 512 * 1024**2)
@@ -56,7 +60,10 @@ def test_a_check_that_hangs_is_no_faulty_check(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(ending, "_SECONDS", 1)
     monkeypatch.setattr(grader.grading.subjects.Subjects, "of", hang)
     done = run(("grade", URDF))
-    assert (done.returncode, done.stderr) == (2, b"grader: this takes more than 1 s of processor time\n")
+    assert (done.returncode, done.stderr) == (
+        2,
+        b"grader: this takes more than 1 s of processor time\n",
+    )
 
 
 @pytest.mark.parametrize("fault", [OutOfTime, ZeroDivisionError])
@@ -101,6 +108,9 @@ def test_what_ignores_the_limit_is_ended(tmp_path: Path) -> None:
         "    sum(range(10**12))\n"
     )
     done = subprocess.run(
-        [sys.executable, program], check=False, capture_output=True, env={**os.environ, "PYTHONPATH": str(ROOT)}
+        [sys.executable, program],
+        check=False,
+        capture_output=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
     )
     assert done.returncode < 0

@@ -17,24 +17,58 @@ XACRO, PLAIN = "equivalent-xacro-command", "equivalent-f-strings-and-pathlib"
 
 # A sample, a file of it, a text, what a student writes instead, and the old and the new text of each edit.
 MISTAKES = {
-    "default value of a path": (XACRO, LAUNCH, "my_robot.urdf", "my_robto.urdf", [("my_robto.urdf", "my_robot.urdf")]),
-    "fixed frame": (PLAIN, RVIZ, "Fixed Frame: base_footprint", "Fixed Frame: odom", [("odom", "base_footprint")]),
+    "default value of a path": (
+        XACRO,
+        LAUNCH,
+        "my_robot.urdf",
+        "my_robto.urdf",
+        [("my_robto.urdf", "my_robot.urdf")],
+    ),
+    "fixed frame": (
+        PLAIN,
+        RVIZ,
+        "Fixed Frame: base_footprint",
+        "Fixed Frame: odom",
+        [("odom", "base_footprint")],
+    ),
     "two paths": (
-        PLAIN, LAUNCH, "my_robot.", "my-robot.",
+        PLAIN,
+        LAUNCH,
+        "my_robot.",
+        "my-robot.",
         [("my-robot.urdf", "my_robot.urdf"), ("my-robot.rviz", "my_robot.rviz")],
     ),
     "import of glob": (
-        "equivalent-nested-install-paths", SETUP, "from glob import glob", "import glob",
+        "equivalent-nested-install-paths",
+        SETUP,
+        "from glob import glob",
+        "import glob",
         [("import glob", "from glob import glob")],
     ),
     "space after xacro": (XACRO, LAUNCH, "'xacro '", "'xacro'", [("", " ")]),
-    "name that is not defined": (XACRO, LAUNCH, "([model, gui])", "([model_file, gui])", [("model_file", "model")]),
-    "name of a tag": (PLAIN, "package.xml", "name>", "nme>", [("nme", "name")] * 2),
-    "substitution of ROS 1": (FRONTEND, XML, "$(find-pkg-share", "$(find", [("find", "find-pkg-share")] * 2),
-    "name of the package in its paths": (
-        "equivalent-literal-lists", SETUP, "share/my_robot", "share/my-robot", [("my-robot", "my_robot")] * 2,
+    "name that is not defined": (
+        XACRO,
+        LAUNCH,
+        "([model, gui])",
+        "([model_file, gui])",
+        [("model_file", "model")],
     ),
-}  # fmt: skip
+    "name of a tag": (PLAIN, "package.xml", "name>", "nme>", [("nme", "name")] * 2),
+    "substitution of ROS 1": (
+        FRONTEND,
+        XML,
+        "$(find-pkg-share",
+        "$(find",
+        [("find", "find-pkg-share")] * 2,
+    ),
+    "name of the package in its paths": (
+        "equivalent-literal-lists",
+        SETUP,
+        "share/my_robot",
+        "share/my-robot",
+        [("my-robot", "my_robot")] * 2,
+    ),
+}
 
 
 def graded(folder: Path, *options: str) -> dict[str, Any]:
@@ -45,7 +79,11 @@ def graded(folder: Path, *options: str) -> dict[str, Any]:
 
 def with_mistake(folder: Path, sample: str, name: str, old: str, new: str) -> Path:
     """Return a copy of a sample with another text in the file that a pattern names."""
-    shutil.copytree(ROOT / "submissions/lab6" / sample, folder / "lab", ignore=shutil.ignore_patterns("expected.toml"))
+    shutil.copytree(
+        ROOT / "submissions/lab6" / sample,
+        folder / "lab",
+        ignore=shutil.ignore_patterns("expected.toml"),
+    )
     [path] = (folder / "lab").rglob(name)
     text = path.read_text(encoding="utf-8")
     assert old in text
@@ -89,7 +127,9 @@ def test_the_cause_gives_no_answer_away(name: str, tmp_path: Path) -> None:
 
 def test_the_reference_is_not_pasted_over_the_student(tmp_path: Path) -> None:
     """A launch file that is written in another way keeps its calls: only the path is replaced."""
-    shutil.copytree(ROOT / "submissions/sensors/launch-home-path/sensor_robot", tmp_path / "sensor_robot")
+    shutil.copytree(
+        ROOT / "submissions/sensors/launch-home-path/sensor_robot", tmp_path / "sensor_robot"
+    )
     shutil.copytree(ROOT / "rubrics/sensors", tmp_path / "lab")
     rubric = tmp_path / "lab/rubric.toml"
     rubric.write_text(f'hints = "edit"\n{rubric.read_text(encoding="utf-8")}', encoding="utf-8")
@@ -111,7 +151,13 @@ def test_the_student_s_own_node_is_not_taken_for_a_missing_one(tmp_path: Path) -
     """A node that the reference does not start stays as it is when another one is missing."""
     node = "package='rviz2', executable='rviz2'"
     text = "Node(package='turtlesim', executable='turtlesim_node', output='screen'),"
-    folder = with_mistake(tmp_path, "reference", LAUNCH, "        Node(\n            package='rviz2',\n            executable='rviz2',\n            arguments=['-d', os.path.join(share, 'my_robot.rviz')],\n        ),\n", f"        {text}\n")  # fmt: skip
+    folder = with_mistake(
+        tmp_path,
+        "reference",
+        LAUNCH,
+        "        Node(\n            package='rviz2',\n            executable='rviz2',\n            arguments=['-d', os.path.join(share, 'my_robot.rviz')],\n        ),\n",
+        f"        {text}\n",
+    )
     [hint] = hints(graded(folder))
     [edit] = hint["edits"]
     assert edit["old"] == ""

@@ -61,7 +61,9 @@ INVALID = {
 def test_an_invalid_check_is_a_mistake_of_the_rubric(tmp_path: Path, check: str) -> None:
     """The message has the rubric's line, and names package, function and argument; nothing is graded."""
     lab = tmp_path / "lab.toml"
-    lab.write_text(Path(HOSTILE_RUBRIC).read_text().replace('check = "behaves"', f'check = "{check}"'))
+    lab.write_text(
+        Path(HOSTILE_RUBRIC).read_text().replace('check = "behaves"', f'check = "{check}"')
+    )
     for command in (("grade", robot(tmp_path, "fine"), "--rubric", lab), ("rubric", "check", lab)):
         done = run(command)
         assert (done.returncode, done.stdout, done.stderr.count(b"\n")) == (2, b"", 1)
@@ -73,7 +75,10 @@ def test_the_list_of_checks_names_the_faulty_ones() -> None:
     """They hide none of the others."""
     done = run(("rubric", "checks"))
     assert done.returncode == 0
-    assert b"without_annotation\n  the check without_annotation of the package hostile-checks" in done.stdout
+    assert (
+        b"without_annotation\n  the check without_annotation of the package hostile-checks"
+        in done.stdout
+    )
     assert b"shows_box" in done.stdout
     assert b"\nbehaves (hostile-checks)\n" in done.stdout
 

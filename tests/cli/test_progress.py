@@ -25,7 +25,9 @@ def on_terminal(*arguments: object) -> str:
     if child == 0:
         os.chdir(ROOT)
         os.execve(
-            sys.executable, [sys.executable, "-m", "grader", *map(str, arguments)], {**ENVIRONMENT, "TERM": "xterm"}
+            sys.executable,
+            [sys.executable, "-m", "grader", *map(str, arguments)],
+            {**ENVIRONMENT, "TERM": "xterm"},
         )
     fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
     written = b""
@@ -70,6 +72,8 @@ def test_a_large_class_fits(work: str, monkeypatch: pytest.MonkeyPatch) -> None:
         show(State(12345))
         show(State(12345, 7000, 4000, 120, 12))
     *_, line, blank, end = screen.getvalue().split("\r")
-    assert re.fullmatch(rf"{work}: 11000 of 12345, \d+/s, \d+ s left \(12 errored, 120 unreadable\)", line)
+    assert re.fullmatch(
+        rf"{work}: 11000 of 12345, \d+/s, \d+ s left \(12 errored, 120 unreadable\)", line
+    )
     assert len(line) < 80
     assert (blank, end) == (" " * len(line), "")

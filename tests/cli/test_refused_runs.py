@@ -32,8 +32,20 @@ REFUSALS = {
     "a report in a folder that does not exist": ("a.urdf", "--save", "json=none/r.json"),
     "a report over the submission": ("a.urdf", "--save", "json=a.urdf"),
     "a report over the rubric": ("a.urdf", "--rubric", "lab.toml", "--save", "json=lab.toml"),
-    "a report over the reference": ("a.urdf", "--rubric", "lab.toml", "--save", "json=solution/my_robot/setup.py"),
-    "a report over the model answers": ("a.urdf", "--rubric", "lab.toml", "--save", "json=lab.answers.toml"),
+    "a report over the reference": (
+        "a.urdf",
+        "--rubric",
+        "lab.toml",
+        "--save",
+        "json=solution/my_robot/setup.py",
+    ),
+    "a report over the model answers": (
+        "a.urdf",
+        "--rubric",
+        "lab.toml",
+        "--save",
+        "json=lab.answers.toml",
+    ),
     "a report through a symlink": ("a.urdf", "--save", "json=link.json"),
     "a size of nothing": ("a.urdf", "--max-size", "0"),
     "a size that is no number": ("a.urdf", "--max-size", "1 MiB"),
@@ -52,9 +64,27 @@ REFUSALS = {
     "a fix over the submission": ("a.urdf", "--fix", "a.urdf"),
     "a fix over a symlink to the submission": ("a.urdf", "--fix", "mine.urdf"),
     "a fix over the rubric": ("a.urdf", "--rubric", "./lab.toml", "--fix", "lab.toml"),
-    "a fix over a hard link to the rubric": ("a.urdf", "--rubric", "lab.toml", "--fix", "hard.toml"),
-    "a fix over the reference": ("a.urdf", "--rubric", "lab.toml", "--fix", "solution/my_robot/setup.py"),
-    "a fix over the model answers": ("a.urdf", "--rubric", "lab.toml", "--fix", "x/../lab.answers.toml"),
+    "a fix over a hard link to the rubric": (
+        "a.urdf",
+        "--rubric",
+        "lab.toml",
+        "--fix",
+        "hard.toml",
+    ),
+    "a fix over the reference": (
+        "a.urdf",
+        "--rubric",
+        "lab.toml",
+        "--fix",
+        "solution/my_robot/setup.py",
+    ),
+    "a fix over the model answers": (
+        "a.urdf",
+        "--rubric",
+        "lab.toml",
+        "--fix",
+        "x/../lab.answers.toml",
+    ),
     "a fix over a report": ("a.urdf", "--fix", "./r.json"),
     "a fix in a folder that does not exist": ("a.urdf", "--fix", "none/f.urdf"),
     "a fix that cannot be written": ("a.urdf", "--fix", "/dev/full"),
@@ -93,7 +123,11 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def files(place: Path) -> dict[str, bytes]:
     """Return the content of every file in a folder."""
-    return {str(path.relative_to(place)): path.read_bytes() for path in place.rglob("*") if path.is_file()}
+    return {
+        str(path.relative_to(place)): path.read_bytes()
+        for path in place.rglob("*")
+        if path.is_file()
+    }
 
 
 @pytest.mark.parametrize("is_first", [True, False])
@@ -102,7 +136,9 @@ def test_a_refused_run_changes_nothing(place: Path, why: str, is_first: bool) ->
     """Whatever is wrong and wherever `--save` stands, an old report stays as it was, as does every other file."""
     before = files(place)
     words = [*(() if "grade" in REFUSALS[why] else ("grade",)), *REFUSALS[why]]
-    at = words.index("grade") + 1 if is_first or words[-1] == "--part" else len(words)  # that takes the next word
+    at = (
+        words.index("grade") + 1 if is_first or words[-1] == "--part" else len(words)
+    )  # that takes the next word
     words[at:at] = "--save", "json=r.json"
     done = run_with_input(words, b"", folder=place)
     assert (done.returncode, done.stdout) == (2, b""), done.stderr
@@ -115,15 +151,24 @@ def test_a_report_that_cannot_be_printed_is_not_saved(place: Path) -> None:
     """Nor is the first of two reports written if the second cannot be written beside its place."""
     before = files(place)
     with Path("/dev/full").open("wb") as full:
-        done = subprocess.run([*GRADER, "grade", "a.urdf", "--save", "json=r.json"], stdout=full, check=False)
+        done = subprocess.run(
+            [*GRADER, "grade", "a.urdf", "--save", "json=r.json"], stdout=full, check=False
+        )
     assert (done.returncode, files(place)) == (2, before), done.stderr
-    done = run_with_input(["grade", "a.urdf", "--save", "json=r.json", "--save", "svg=none/r.svg"], b"", folder=place)
+    done = run_with_input(
+        ["grade", "a.urdf", "--save", "json=r.json", "--save", "svg=none/r.svg"], b"", folder=place
+    )
     assert (done.returncode, files(place)) == (2, before), done.stderr
 
 
 @pytest.mark.parametrize("target", ["r.json", "solution/new.urdf", "f.urdf"])
 def test_other_files_are_written(place: Path, target: str) -> None:
     """A fix may replace any other file, and a file that is not there yet may be beside what is read."""
-    done = run_with_input(["grade", "a.urdf", "--rubric", "lab.toml", "--fix", target], b"", folder=place)
-    assert (done.returncode, b"wrote my_robot.urdf" in done.stderr or b"wrote a.urdf" in done.stderr) == (1, True)
+    done = run_with_input(
+        ["grade", "a.urdf", "--rubric", "lab.toml", "--fix", target], b"", folder=place
+    )
+    assert (
+        done.returncode,
+        b"wrote my_robot.urdf" in done.stderr or b"wrote a.urdf" in done.stderr,
+    ) == (1, True)
     assert Path(target).read_text().startswith("<?xml")

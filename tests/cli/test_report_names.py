@@ -8,7 +8,9 @@ from hypothesis import strategies as st
 
 from grader.commands.class_reports import file_names
 
-AWKWARD = st.text(st.sampled_from('aA.-/\\:*?"<>| \u202e\u00e9e\u0301שß測😀\tcon01'), min_size=1, max_size=300)
+AWKWARD = st.text(
+    st.sampled_from('aA.-/\\:*?"<>| \u202e\u00e9e\u0301שß測😀\tcon01'), min_size=1, max_size=300
+)
 
 
 @given(st.lists(AWKWARD, max_size=8, unique=True))
@@ -16,7 +18,9 @@ def test_names_are_safe_and_distinct(keys: list[str]) -> None:
     """Names that differ in case or Unicode composition stay distinct."""
     names = file_names(keys)
     assert list(names) == keys
-    assert len({unicodedata.normalize("NFC", name).casefold() for name in names.values()}) == len(keys)
+    assert len({unicodedata.normalize("NFC", name).casefold() for name in names.values()}) == len(
+        keys
+    )
     for name in names.values():
         assert not set(name) & set('/\\:*?"<>|\t\n')
         assert name[0] not in "-. "
@@ -24,7 +28,9 @@ def test_names_are_safe_and_distinct(keys: list[str]) -> None:
         assert 0 < len(name.encode()) < 200
 
 
-@pytest.mark.parametrize("key", ["alice", "Alice Ash", "S700123", "O'Hara", "müller", "שלום", "a.b", "x(1)", "=1"])
+@pytest.mark.parametrize(
+    "key", ["alice", "Alice Ash", "S700123", "O'Hara", "müller", "שלום", "a.b", "x(1)", "=1"]
+)
 def test_plain_names_stay_as_they_are(key: str) -> None:
     """Only unsafe characters are replaced; a space is kept."""
     name = file_names([key])[key]
@@ -37,7 +43,9 @@ def test_names_of_devices_are_avoided(key: str) -> None:
     assert file_names([key])[key].partition(".")[0] not in (key, key.partition(".")[0])
 
 
-@pytest.mark.parametrize("key", ["index", "INDEX", " Index.", "\u0131ndex", "\u0130NDEX", "ind\u200cex", "in\u00addex"])
+@pytest.mark.parametrize(
+    "key", ["index", "INDEX", " Index.", "\u0131ndex", "\u0130NDEX", "ind\u200cex", "in\u00addex"]
+)
 def test_no_report_is_the_class_page(key: str) -> None:
     """Also where a file system ignores case, marks that are not seen, or spaces and dots at the end."""
     name = file_names([key])[key]

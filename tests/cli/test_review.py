@@ -19,7 +19,9 @@ ROSTER = "id,name,section\nu7701,Zebulon Ash,Lab A\nu7702,Wilhelmina Birch,Lab B
 @pytest.fixture
 def book(tmp_path: Path) -> Path:
     """Return the gradebook of a class of three in two sections; the names of their files contain their names."""
-    for (key, name), words in zip(NAMES.items(), ("The red roots.", "=1+1", "The red roots."), strict=True):
+    for (key, name), words in zip(
+        NAMES.items(), ("The red roots.", "=1+1", "The red roots."), strict=True
+    ):
         folder = tmp_path / "class" / key
         write_submission(folder, answer=words)
         (folder / "answers.md").rename(folder / f"answers {name}.md")
@@ -46,7 +48,9 @@ def test_a_class_is_marked_by_a_sheet(tmp_path: Path) -> None:
     """121 students, 40 with answers: a row for each answer, which `mark --import` gives to all who have it."""
     make_desk_class(tmp_path)
     book, sheet = tmp_path / "book", tmp_path / "sheet.csv"
-    done = grader("batch", tmp_path / "class", "--gradebook", book, "--roster", tmp_path / "roster.csv")
+    done = grader(
+        "batch", tmp_path / "class", "--gradebook", book, "--roster", tmp_path / "roster.csv"
+    )
     assert done.returncode == 0, done.stderr
     written = grader("review", "--gradebook", book, "--sheet", sheet).stdout
     assert written.startswith(f"87 items written for {3 * STUDENTS} marks")
@@ -57,14 +61,23 @@ def test_a_class_is_marked_by_a_sheet(tmp_path: Path) -> None:
         writer.writeheader()
         for row in rows:
             most = 2 if row["criterion"] == "evidence-webcam" else 4
-            writer.writerow({**row, "points": "0" if row["text"].startswith("No ") else f"{most},0", "comment": "read"})
+            writer.writerow(
+                {
+                    **row,
+                    "points": "0" if row["text"].startswith("No ") else f"{most},0",
+                    "comment": "read",
+                }
+            )
     done = grader("mark", "--import", sheet, "--gradebook", book, "--by", "Kim")
     assert done.stdout == f"{sheet}: {3 * STUDENTS} recorded, 0 the same as before\n"
     assert Counter((criterion, points) for _, criterion, points, _ in marks_in(book)) == {
-        ("answer-floating-link", "0"): STUDENTS - ANSWERS, ("answer-floating-link", "4"): ANSWERS,
-        ("answer-launch-nodes", "0"): STUDENTS - ANSWERS, ("answer-launch-nodes", "4"): ANSWERS,
-        ("evidence-webcam", "0"): STUDENTS - PICTURES, ("evidence-webcam", "2"): PICTURES,
-    }  # fmt: skip
+        ("answer-floating-link", "0"): STUDENTS - ANSWERS,
+        ("answer-floating-link", "4"): ANSWERS,
+        ("answer-launch-nodes", "0"): STUDENTS - ANSWERS,
+        ("answer-launch-nodes", "4"): ANSWERS,
+        ("evidence-webcam", "0"): STUDENTS - PICTURES,
+        ("evidence-webcam", "2"): PICTURES,
+    }
     assert sheet_of(book) == []
 
 
@@ -82,7 +95,9 @@ def test_the_sheet_has_what_there_is_to_read(book: Path) -> None:
     assert "'=1+1" in formula["text"]
     assert [row["text"].count(" in u770") for row in pictures] == [2, 2, 2]
     assert str(book.parent) not in str((first, formula, *pictures))
-    assert [row["students"] for row in sheet_of(book, "--section", "lab b", "--criterion", "essay")] == ["u7702"]
+    assert [
+        row["students"] for row in sheet_of(book, "--section", "lab b", "--criterion", "essay")
+    ] == ["u7702"]
     assert grader("mark", "u7702", "essay", "1", "--gradebook", book).returncode == 0
     assert [row["students"] for row in sheet_of(book, "--criterion", "essay")] == ["u7701; u7703"]
 
@@ -95,7 +110,10 @@ def test_a_sheet_marks_those_whom_it_names(book: Path) -> None:
     assert grader("mark", "u7701", "essay", "4", "--gradebook", book, "--by", "Lee").returncode == 0
     [row] = sheet_of(book, "--section", "Lab A", "--criterion", "essay")
     file = book.parent / "filled.csv"
-    assert grader("mark", "u7703", "total", "excused", "--gradebook", book, "--by", "Mo").returncode == 0
+    assert (
+        grader("mark", "u7703", "total", "excused", "--gradebook", book, "--by", "Mo").returncode
+        == 0
+    )
     for students, points in ((row["students"], "4"), ("", "2")):
         file.write_text(f"criterion,answer,points,students\nessay,{row['answer']},2,{students}\n")
         assert grader("mark", "--import", file, "--gradebook", book).returncode == 0
@@ -139,14 +157,18 @@ def test_model_answers(book: Path) -> None:
     with running(book) as served:
         assert "Because of the roots." in served.get("1").text
     text = (book / "rubric" / "small.toml").read_text()
-    (book / "rubric" / "small.toml").write_text(text.replace('answer = "Because of the roots.", ', ""))
+    (book / "rubric" / "small.toml").write_text(
+        text.replace('answer = "Because of the roots.", ', "")
+    )
     (book.parent / "answers.toml").write_text('essay = "Model roots."\n')
     with running(book) as served:
         assert "Because of the roots." not in served.get("1").text
     with running(book, answers=book.parent / "answers.toml") as served:
         assert "Model roots." in served.get("1").text
     (book.parent / "answers.toml").write_text('esay = "Model roots."\n')
-    refused = refusal(grader("review", "--gradebook", book, "--answers", book.parent / "answers.toml"))
+    refused = refusal(
+        grader("review", "--gradebook", book, "--answers", book.parent / "answers.toml")
+    )
     assert "has no question 'esay'; did you mean 'essay'" in refused
 
 

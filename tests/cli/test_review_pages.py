@@ -65,11 +65,22 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     }
     for key, change in changes.items():
         package = Path(shutil.copytree(PACKAGE, top / "class" / key / "my_robot"))
-        (package.parent / "answers.md").write_text(f"# Task 1 Step 15\n\nOf {key}\n\n# Task 2 Step 2\n\nOf {key}\n")
+        (package.parent / "answers.md").write_text(
+            f"# Task 1 Step 15\n\nOf {key}\n\n# Task 2 Step 2\n\nOf {key}\n"
+        )
         change(package)
     rows = [f"{key},{name},{number}\n" for number, (key, name) in enumerate(NAMES.items(), 100)]
     (top / "roster.csv").write_text("".join(["id,name,moodle id\n", *rows]))
-    done = grader("batch", top / "class", "--roster", top / "roster.csv", "--gradebook", top / "book", "--jobs", 2)
+    done = grader(
+        "batch",
+        top / "class",
+        "--roster",
+        top / "roster.csv",
+        "--gradebook",
+        top / "book",
+        "--jobs",
+        2,
+    )
     assert done.returncode == 0, done.stderr
     return top
 
@@ -99,7 +110,9 @@ def addresses(review: Review) -> dict[tuple[str, str], str]:
 
 def who(page: str) -> str:
     """Return the student of a page, of several the first."""
-    names = re.findall(r'(?s)<ul class="members">\n<li>(.*?)</li>', page) or re.findall(r"<h1>(.*)</h1>", page)
+    names = re.findall(r'(?s)<ul class="members">\n<li>(.*?)</li>', page) or re.findall(
+        r"<h1>(.*)</h1>", page
+    )
     return str(names[0]).partition(" ")[0]
 
 
@@ -112,14 +125,22 @@ def test_criteria_that_are_open_for_one_reason_are_one_item(review: Review) -> N
     """Of one student, as those that need the size, the build or the package; each question is an item of its own."""
     shown = {key for key in addresses(review) if not key[1].startswith(("answer", "evidence"))}
     assert shown >= {("Ada", "urdf-loads"), ("Ben", "setup-imports"), ("Zebulon", "package-found")}
-    assert [name for name, _ in shown].count("Ada") == [name for name, _ in shown].count("Zebulon") == 1
+    assert (
+        [name for name, _ in shown].count("Ada")
+        == [name for name, _ in shown].count("Zebulon")
+        == 1
+    )
 
 
 def test_a_robot_is_seen_with_the_lines_that_decide(review: Review) -> None:
     """The three views, the message, the file around the place: of the URDF, of setup.py; without a file, the pictures."""
     found = addresses(review)
     size = review.get(found["Ada", "urdf-loads"]).text
-    for text in ("The environment variable SIDE is known only at run time", "side (from -y)", "my_robot.urdf.xacro:"):
+    for text in (
+        "The environment variable SIDE is known only at run time",
+        "side (from -y)",
+        "my_robot.urdf.xacro:",
+    ):
         assert text in size, text
     assert re.search(r"<mark>size=&#34;\$\(env SIDE\) 0\.4 0\.2&#34;</mark>", size)
     build = review.get(found["Ben", "setup-imports"]).text
@@ -138,12 +159,15 @@ def test_a_mark_of_an_item_gives_each_criterion_its_points(review: Review, book:
     assert f"0 to {sum(int(value) for _, value in most)} for all {len(most)} criteria" in page
     for wrong in ("7", "", " ".join(["1"] * (len(most) + 1))):
         assert "points are missing" in review.mark(address, wrong)["error"]
-    assert "is worth 0 to" in review.mark(address, " ".join(["1"] * (len(most) - 1) + ["9"]))["error"]
+    assert (
+        "is worth 0 to" in review.mark(address, " ".join(["1"] * (len(most) - 1) + ["9"]))["error"]
+    )
     assert rows_of(book) == []
     given = ["0", *(value for _, value in most[1:])]
     assert "go" in review.mark(address, " ".join(given), "seen in the lab")
     assert sorted(marks_in(book)) == sorted(
-        ("birch", name, points, "seen in the lab") for (name, _), points in zip(most, given, strict=True)
+        ("birch", name, points, "seen in the lab")
+        for (name, _), points in zip(most, given, strict=True)
     )
     total = sum(map(int, given))
     assert f"<strong>Marked:</strong> {total} points by Kim" in review.get(address).text
@@ -157,11 +181,18 @@ def test_an_item_is_marked_as_it_was_shown(review: Review, book: Path) -> None:
     address = addresses(review)["Ben", "setup-imports"]
     seen, page = review.seen(address), review.get(address).text
     names = re.findall(r'<input id="each-([\w-]+)"', page)
-    assert grader("mark", "birch", names[-1], "0", "--gradebook", book, "--by", "Lee").returncode == 0
+    assert (
+        grader("mark", "birch", names[-1], "0", "--gradebook", book, "--by", "Lee").returncode == 0
+    )
     assert "has changed" in review.mark(address, " ".join(["1"] * len(names)), **seen)["error"]
     assert rows_of(book) == []
     assert re.findall(r'<input id="each-([\w-]+)"', review.get(address).text) == names[:-1]
-    assert review.post("end", {"do": "filter", "criterion": names[-1], "section": "", "state": ""}).status == 200
+    assert (
+        review.post(
+            "end", {"do": "filter", "criterion": names[-1], "section": "", "state": ""}
+        ).status
+        == 200
+    )
     all_marked = review.get(addresses(review)["Ben", names[-1]]).text
     assert 'class="each"' not in all_marked
 
@@ -170,11 +201,14 @@ def test_documents_are_shown_where_no_answer_was_found(review: Review) -> None:
     """An answer without the expected heading is read on the page, not searched for in a zip."""
     found = addresses(review)
     page = next(
-        review.get(at).text for (name, question), at in found.items() if name == "Zebulon" and "answer" in question
+        review.get(at).text
+        for (name, question), at in found.items()
+        if name == "Zebulon" and "answer" in question
     )
     assert "<h2>Documents</h2>" in page
     assert (
-        "<p>[answers.txt: without a heading of this question]</p>" in page and "<p>The link lidar vanishes.</p>" in page
+        "<p>[answers.txt: without a heading of this question]</p>" in page
+        and "<p>The link lidar vanishes.</p>" in page
     )
 
 
@@ -182,14 +216,23 @@ def test_the_list_of_students(review: Review, book: Path) -> None:
     """Each with what is left and the address of an item, of the same question where there is one; of a question only its students."""
     found = addresses(review)
     address = found["Ben", "setup-imports"]
-    people = {label: (left, to) for label, left, to in review.get(f"{address}/people").json["people"]}
-    assert list(people) == [f"{name} ({key})" for key, name in sorted(NAMES.items(), key=lambda item: item[1])]
+    people = {
+        label: (left, to) for label, left, to in review.get(f"{address}/people").json["people"]
+    }
+    assert list(people) == [
+        f"{name} ({key})" for key, name in sorted(NAMES.items(), key=lambda item: item[1])
+    ]
     assert people["Ben Birch (birch)"][1] == address
     assert people["Zebulon Cedar (cedar)"][0] > people["Dan Dogwood (dogwood)"][0]
-    assert review.post(address, {"do": "go", "to": people["Ada Ash (ash)"][1]}).json["go"] == found["Ada", "urdf-loads"]
+    assert (
+        review.post(address, {"do": "go", "to": people["Ada Ash (ash)"][1]}).json["go"]
+        == found["Ada", "urdf-loads"]
+    )
     assert review.post(address, {"do": "go", "to": "99999"}).status == 400
     assert review.get("99999/people").status == 404
-    mark = " ".join(["0"] * len(re.findall("data-most", review.get(address).text.partition("<script")[0])))
+    mark = " ".join(
+        ["0"] * len(re.findall("data-most", review.get(address).text.partition("<script")[0]))
+    )
     review.mark(address, mark)
     after = {label: left for label, left, _ in review.get("end/people").json["people"]}
     assert after["Ben Birch (birch)"] == people["Ben Birch (birch)"][0] - len(mark.split())
@@ -246,7 +289,9 @@ class _Browser(webbrowser.BaseBrowser):
         return True
 
 
-def test_no_process_has_the_secret_as_argument(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_process_has_the_secret_as_argument(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The browser gets a private file that leads to the address, and that goes with the review."""
     browser, file = _Browser(), tmp_path / "open-review.html"
     monkeypatch.setattr(webbrowser, "get", lambda *_: browser)
@@ -259,7 +304,9 @@ def test_no_process_has_the_secret_as_argument(tmp_path: Path, monkeypatch: pyte
     assert not file.exists()
 
 
-@pytest.mark.parametrize("found", [webbrowser.GenericBrowser("w3m"), webbrowser.Error("no browser")])
+@pytest.mark.parametrize(
+    "found", [webbrowser.GenericBrowser("w3m"), webbrowser.Error("no browser")]
+)
 def test_a_browser_of_the_terminal_is_not_opened(
     found: object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -15,7 +15,15 @@ import pytest
 from grader.classroom.gradebook import Gradebook
 from grader.commands import review_server
 from grader.commands.review_server import HOST, MAX_BODY
-from tests.classroom.gradebooks import ENVIRONMENT, PNG, batch, grader, lab_text, refusal, write_submission
+from tests.classroom.gradebooks import (
+    ENVIRONMENT,
+    PNG,
+    batch,
+    grader,
+    lab_text,
+    refusal,
+    write_submission,
+)
 from tests.command_line import HANG_TIMEOUT
 from tests.documents.files import pdf
 from tests.review_server import Review, marks_in, rows_of, running
@@ -42,9 +50,16 @@ def test_an_item(review: Review, book: Path) -> None:
     found = review.get("1")
     assert (found.status, found.headers["content-type"]) == (200, "text/html; charset=utf-8")
     for text in (
-        "1 of 6", "Anna Ek (anna)", "About essay", "0 to 4", "The roots of anna.", "Because of the roots.",
-        "In <code>answers.md, line 1 in anna</code>", "The answer in answers.md", "6 of 11 points so far; 5 left to grade",
-    ):  # fmt: skip
+        "1 of 6",
+        "Anna Ek (anna)",
+        "About essay",
+        "0 to 4",
+        "The roots of anna.",
+        "Because of the roots.",
+        "In <code>answers.md, line 1 in anna</code>",
+        "The answer in answers.md",
+        "6 of 11 points so far; 5 left to grade",
+    ):
         assert text in found.text, text
     assert str(book.parent) not in found.text
     hostile = review.get("2").text
@@ -70,9 +85,11 @@ def test_every_mark_is_in_its_file_at_once(review: Review, book: Path) -> None:
     digest = Gradebook(book).grade("anna").stored.digest  # type: ignore[union-attr]
     assert last.endswith(f",Kim,anna,essay,3.5,the roots are missing,{digest}")
     for points, why in (
-        ("5", "essay is worth 0 to 4 points, not 5"), ("x", "points are a number"), (" ", "points are missing"),
+        ("5", "essay is worth 0 to 4 points, not 5"),
+        ("x", "points are a number"),
+        (" ", "points are missing"),
         ("excused", "points are a number"),
-    ):  # fmt: skip
+    ):
         assert why in review.mark("2", points)["error"]
     assert rows_of(book) == ["3.5"]
 
@@ -98,7 +115,9 @@ def test_a_mark_of_another_person_is_replaced_only_if_asked(book: Path) -> None:
     """Whether the page has shown it or not; the answer has the mark, and is the same for a later one."""
 
     def mark(points: str, by: str) -> None:
-        done = grader("mark", "anna", "essay", points, "--gradebook", book, "--by", by, "--comment", "no")
+        done = grader(
+            "mark", "anna", "essay", points, "--gradebook", book, "--by", by, "--comment", "no"
+        )
         assert done.returncode == 0
 
     with running(book) as review:
@@ -143,7 +162,9 @@ def test_states(review: Review, book: Path) -> None:
         "student,criterion,points,comment,submission\nemil,essay,1,wrong,d0\nemil,box,1,,\n"
     )
     for state in ("unmarked", "marked", "older", ""):
-        address = review.post("end", {"do": "filter", "criterion": "", "section": "", "state": state}).json["go"]
+        address = review.post(
+            "end", {"do": "filter", "criterion": "", "section": "", "state": state}
+        ).json["go"]
         shown[state] = []
         while address != "end":
             page = review.get(address).text
@@ -167,9 +188,15 @@ def test_marks_at_once_and_the_end(review: Review, book: Path) -> None:
     assert [list(answer) for answer in answers] == [["go"]] * ITEMS
     assert len(marks_in(book)) == ITEMS
     page = review.get("end").text
-    for text in ("<h1>Manual grading complete</h1>", "6 marks given", "the grade file that Canvas has exported"):
+    for text in (
+        "<h1>Manual grading complete</h1>",
+        "6 marks given",
+        "the grade file that Canvas has exported",
+    ):
         assert text in page
-    assert f"grader export canvas --gradebook {book} --into EXPORTED.csv --output upload.csv" in page
+    assert (
+        f"grader export canvas --gradebook {book} --into EXPORTED.csv --output upload.csv" in page
+    )
 
 
 def test_a_submission_that_has_moved_or_changed_is_not_marked(review: Review, book: Path) -> None:
@@ -190,30 +217,56 @@ def test_a_submission_that_has_moved_or_changed_is_not_marked(review: Review, bo
 
 
 PATHS = {
-    404: ["GET /", "GET /TOKEN/", "GET /1", "GET /TOKE/1", "GET /TOKEN", "GET /TOKEN/0", "GET /TOKEN/7", "GET /TOKEN/1/picture/../../x",
-          "GET /TOKEN/4/picture/..%2f..%2fclass.toml", f"GET /TOKEN/4/picture/{'9' * 20}", "GET /TOKEN/../TOKEN/1", "GET /TOKEN/%d9%a1"],
+    404: [
+        "GET /",
+        "GET /TOKEN/",
+        "GET /1",
+        "GET /TOKE/1",
+        "GET /TOKEN",
+        "GET /TOKEN/0",
+        "GET /TOKEN/7",
+        "GET /TOKEN/1/picture/../../x",
+        "GET /TOKEN/4/picture/..%2f..%2fclass.toml",
+        f"GET /TOKEN/4/picture/{'9' * 20}",
+        "GET /TOKEN/../TOKEN/1",
+        "GET /TOKEN/%d9%a1",
+    ],
     200: ["GET /TOKEN/1"],
     204: ["GET /favicon.ico"],
     501: [f"{method} /TOKEN/1" for method in ("HEAD", "PUT", "DELETE", "OPTIONS", "TRACE", "BREW")],
-}  # fmt: skip
+}
 
 
 def test_what_there_is_and_what_not(review: Review, book: Path) -> None:
     """Only numbers of items and pictures lead anywhere, and only with the secret; every answer has the same headers."""
-    for request, status in ((request, status) for status, requests in PATHS.items() for request in requests):
+    for request, status in (
+        (request, status) for status, requests in PATHS.items() for request in requests
+    ):
         method, path = request.replace("TOKEN", review.token).split()
         found = review.ask(method, path)
         assert found.status == status, request
         assert method != "HEAD" or found.body == b""
         assert status == 200 or str(book).encode() not in found.body
-        wanted = {"x-content-type-options": "nosniff", "referrer-policy": "no-referrer", "cache-control": "no-store"}
+        wanted = {
+            "x-content-type-options": "nosniff",
+            "referrer-policy": "no-referrer",
+            "cache-control": "no-store",
+        }
         assert found.headers.items() >= wanted.items()
         assert "content-security-policy" in found.headers
 
 
 def test_another_host_name_is_refused(review: Review) -> None:
     """A site whose name leads to this machine (DNS rebinding) cannot read or send anything, even with the secret."""
-    for host in ("evil.example", "evil.example:PORT", "127.0.0.1", "localhost:1", "[::1]:PORT", "127.0.0.1:PORT@x", ""):
+    for host in (
+        "evil.example",
+        "evil.example:PORT",
+        "127.0.0.1",
+        "localhost:1",
+        "[::1]:PORT",
+        "127.0.0.1:PORT@x",
+        "",
+    ):
         name = host.replace("PORT", str(review.port))
         assert review.get("1", Host=name).status == 421
         assert review.post("1", {"do": "next"}, Host=name, Origin=f"http://{name}").status == 421
@@ -224,12 +277,19 @@ def test_only_the_page_itself_can_mark(review: Review, book: Path) -> None:
     """Another origin, a form, and a body that is too large are refused before anything is read."""
     sent = {"do": "mark", "points": "4", "comment": "", **review.seen("1")}
     for name, value, status in (
-        ("Origin", "http://evil.example", 403), ("Origin", "null", 403), ("Origin", "http://127.0.0.1", 403),
-        ("Sec_Fetch_Site", "cross-site", 403), ("Sec_Fetch_Site", "same-site", 403),
-        ("Content_Type", "text/plain", 415), ("Content_Type", "application/x-www-form-urlencoded", 415),
-        ("Content_Length", "-1", 411), ("Content_Length", "x", 411), ("Transfer_Encoding", "chunked", 411),
-        ("Content_Length", str(MAX_BODY + 1), 413), ("Content_Length", "9" * 5000, 413),
-    ):  # fmt: skip
+        ("Origin", "http://evil.example", 403),
+        ("Origin", "null", 403),
+        ("Origin", "http://127.0.0.1", 403),
+        ("Sec_Fetch_Site", "cross-site", 403),
+        ("Sec_Fetch_Site", "same-site", 403),
+        ("Content_Type", "text/plain", 415),
+        ("Content_Type", "application/x-www-form-urlencoded", 415),
+        ("Content_Length", "-1", 411),
+        ("Content_Length", "x", 411),
+        ("Transfer_Encoding", "chunked", 411),
+        ("Content_Length", str(MAX_BODY + 1), 413),
+        ("Content_Length", "9" * 5000, 413),
+    ):
         assert review.post("1", sent, **{name: value}).status == status
     assert marks_in(book) == []
     assert review.post("1", sent, Sec_Fetch_Site="same-origin").status == 200
@@ -240,11 +300,27 @@ def test_a_body_of_another_form_is_refused(review: Review, book: Path) -> None:
     """It marks nothing, and is no error of the server."""
     mark: dict[str, object] = {"do": "mark", "points": "4", "comment": "", "shown": ""}
     some = {"do": "filter", "criterion": "", "section": "", "state": "other"}
-    wrong = (mark | {"points": 4}, mark | {"comment": None}, mark | {"shown": 0}, some, {"do": "filter", "state": ""})
-    others: tuple[object, ...] = (None, [], "mark", {}, {"do": "delete"}, {"do": ["mark"]}, {"do": "mark"})
+    wrong = (
+        mark | {"points": 4},
+        mark | {"comment": None},
+        mark | {"shown": 0},
+        some,
+        {"do": "filter", "state": ""},
+    )
+    others: tuple[object, ...] = (
+        None,
+        [],
+        "mark",
+        {},
+        {"do": "delete"},
+        {"do": ["mark"]},
+        {"do": "mark"},
+    )
     for sent in (*others, *wrong):
         assert review.post("1", sent).status == 400
-    assert review.post("end", {"do": "mark", "points": "1", "comment": "", "shown": ""}).status == 400
+    assert (
+        review.post("end", {"do": "mark", "points": "1", "comment": "", "shown": ""}).status == 400
+    )
     own = {"Content-Type": "application/json", "Origin": f"http://{HOST}:{review.port}"}
     assert review.ask("POST", f"/{review.token}/1", own, b"[" * 60_000).status == 400
     assert marks_in(book) == []
@@ -255,7 +331,11 @@ def test_faults_are_messages(review: Review, book: Path, monkeypatch: pytest.Mon
     (book / "marks" / "lee.csv").write_text("student,criterion,points\nanna,essay,x\n")
     assert "marks/lee.csv:2: points are a number" in review.mark("1", "3", shown="")["error"]
     found = review.get("1")
-    assert (found.status, "marks/lee.csv:2" in found.text, 'href="2"' in found.text) == (503, True, True)
+    assert (found.status, "marks/lee.csv:2" in found.text, 'href="2"' in found.text) == (
+        503,
+        True,
+        True,
+    )
     assert 'href="end"' in review.get(str(ITEMS)).text
     (book / "marks" / "lee.csv").unlink()
     with monkeypatch.context() as patched:
@@ -269,7 +349,10 @@ def test_faults_are_messages(review: Review, book: Path, monkeypatch: pytest.Mon
 def test_a_request_without_end_is_disconnected(book: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The limit of time is that of the whole request, not of each part that arrives; others are answered meanwhile."""
     monkeypatch.setattr(review_server, "_PATIENCE", 0.5)
-    with running(book) as review, socket.create_connection((HOST, review.port), timeout=0.01) as slow:
+    with (
+        running(book) as review,
+        socket.create_connection((HOST, review.port), timeout=0.01) as slow,
+    ):
         assert review.get("1").status == 200
         for _ in range(3000):
             try:
@@ -291,8 +374,13 @@ def test_the_command(book: Path, ending: signal.Signals) -> None:
     options = ("--gradebook", str(book), "--criterion", "picture", "--by", "Kim")
     command = [sys.executable, "-m", "grader", "review", *options]
     with subprocess.Popen(
-        command, cwd=ROOT, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as process:  # fmt: skip
+        command,
+        cwd=ROOT,
+        env=ENVIRONMENT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
         assert process.stdout is not None
         url = process.stdout.readline().strip()
         with urlopen(url, timeout=HANG_TIMEOUT) as page:
@@ -328,5 +416,7 @@ def test_a_pdf_is_served_to_the_viewer(tmp_path: Path) -> None:
         assert 'data-src="1/picture/1#page=2&amp;navpanes=0"' in review.get("1").text
         found = review.get("1/picture/1")
         assert (found.body, found.headers["content-type"]) == (data, "application/pdf")
-        assert found.headers["content-security-policy"] == "default-src 'none'; frame-ancestors 'self'"
+        assert (
+            found.headers["content-security-policy"] == "default-src 'none'; frame-ancestors 'self'"
+        )
         assert review.get("2/picture/1").headers["content-type"] == "image/png"  # by its bytes

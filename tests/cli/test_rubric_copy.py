@@ -20,17 +20,31 @@ def test_a_copy_works_as_it_is(name: str, tmp_path: Path) -> None:
     assert grader("rubric", "check", copy).stdout.endswith("its reference gets full marks\n")
     answers = sorted(file.name for file in tmp_path.glob("*.answers.toml"))
     assert answers == sorted(file.name for file in (ROOT / "rubrics").glob(f"{name}.answers.toml"))
-    sample = next(sample for sample in SAMPLES.values() if sample.expected.rubric == name and sample.expected.lost)
-    for words in (("rubric", "show"), ("grade", ROOT / sample.path, "--format", "json", "--rubric")):
-        one, other = (grader(*words, rubric).stdout.splitlines()[words[0] == "rubric" :] for rubric in (name, copy))
+    sample = next(
+        sample
+        for sample in SAMPLES.values()
+        if sample.expected.rubric == name and sample.expected.lost
+    )
+    for words in (
+        ("rubric", "show"),
+        ("grade", ROOT / sample.path, "--format", "json", "--rubric"),
+    ):
+        one, other = (
+            grader(*words, rubric).stdout.splitlines()[words[0] == "rubric" :]
+            for rubric in (name, copy)
+        )
         assert one == other != []
 
 
-def test_without_the_answers_no_line_names_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_answers_no_line_names_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Students have the package without the model answers: a copy is checked without a warning."""
     shutil.copytree(ROOT / "rubrics/lab6", tmp_path / "lab6")
     (tmp_path / "lab6/answers.toml").unlink()
-    monkeypatch.setattr("grader.grading.rubric.shipped_rubrics", lambda: {"lab6": tmp_path / "lab6/rubric.toml"})
+    monkeypatch.setattr(
+        "grader.grading.rubric.shipped_rubrics", lambda: {"lab6": tmp_path / "lab6/rubric.toml"}
+    )
     assert "answers.toml" not in rubrics.copy("lab6", tmp_path / "copy")
     checked = grader("rubric", "check", tmp_path / "copy/lab6/rubric.toml")
     assert (checked.returncode, checked.stderr) == (0, "")

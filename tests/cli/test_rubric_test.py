@@ -46,7 +46,12 @@ def data(*arguments: object) -> dict[str, Any]:
 def test_a_shipped_rubric_catches_every_mutant(name: str) -> None:
     """Or says in the rubric why not; no criterion is idle, no pattern unused, no correct robot loses points, no sample differs."""
     found = data(name, f"submissions/{name}")
-    assert (found["score"], found["survivors"], found["idle"], found["unused_patterns"]) == (100, [], [], [])
+    assert (found["score"], found["survivors"], found["idle"], found["unused_patterns"]) == (
+        100,
+        [],
+        [],
+        [],
+    )
     assert found["equivalents"]["lost"] == found["reference"]["lost"] == []
     assert len(found["equivalents"]["tried"]) >= 6
     assert found["mutants"]["caught"] > 5 * len(found["ignored"])
@@ -68,38 +73,54 @@ def test_survivors_are_listed_with_their_diff(tmp_path: Path) -> None:
     listed = {row["id"]: row for row in arm["survivors"]}
     row = listed["number x10: joint base_plate/origin xyz.z"]
     assert (
-        '-    <origin xyz="0 0 0.11" rpy="0 0 3.14159"/>\n+    <origin xyz="0 0 1.1" rpy="0 0 3.14159"/>' in row["diff"]
+        '-    <origin xyz="0 0 0.11" rpy="0 0 3.14159"/>\n+    <origin xyz="0 0 1.1" rpy="0 0 3.14159"/>'
+        in row["diff"]
     )
     assert (row["path"], row["line"]) == ("birch.urdf", 25)
     assert "number x10: joint tool_joint/origin xyz.z" not in listed  # tool-frame catches it
     assert "number negated: joint tool_joint/origin xyz.x" not in listed  # -0 is the same robot
     counts = arm["mutants"]
-    assert counts["tried"] == counts["caught"] + counts["same_robot"] + counts["ignored"] + counts["survived"]
-    assert arm["score"] == pytest.approx(100 * counts["caught"] / (counts["caught"] + counts["survived"]), abs=1e-6)
+    assert (
+        counts["tried"]
+        == counts["caught"] + counts["same_robot"] + counts["ignored"] + counts["survived"]
+    )
+    assert arm["score"] == pytest.approx(
+        100 * counts["caught"] / (counts["caught"] + counts["survived"]), abs=1e-6
+    )
 
 
-def test_an_equivalent_that_loses_points_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_equivalent_that_loses_points_fails(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A check that looks at the numbers of a file, not at the robot, is found out."""
 
     def is_written(robot: Configuration, *, link: str, **_: Any) -> Outcome:
         joint = robot.parent_joints.get(link)
-        rpy = joint.origin.rpy if joint is not None and joint.origin is not None else (0.0, 0.0, 0.0)
+        rpy = (
+            joint.origin.rpy if joint is not None and joint.origin is not None else (0.0, 0.0, 0.0)
+        )
         return judged(rpy == (0.1, 0.2, 0.3), f"the rpy is {rpy[0]:.2f}")
 
     frame_at = find_check("frame_at")
     assert frame_at is not None
     textual = frame_at._replace(function=is_written)
     monkeypatch.setattr(
-        "grader.grading.validation.find_check", lambda name: textual if name == "frame_at" else find_check(name)
+        "grader.grading.validation.find_check",
+        lambda name: textual if name == "frame_at" else find_check(name),
     )
     done = command(write_rubric(tmp_path, TOP + EXACT, SMALL))
     assert done.returncode == 1
     text = done.stdout.decode()
-    assert "These equivalents of the reference lose points:\n\n  fixed joints split\n    frame: the rpy is" in text
+    assert (
+        "These equivalents of the reference lose points:\n\n  fixed joints split\n    frame: the rpy is"
+        in text
+    )
     assert '-    <origin xyz="1 2 3" rpy="0.1 0.2 0.3"/>' in text
 
 
-def test_a_check_that_is_faulty_on_a_mutant_is_not_a_catch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_check_that_is_faulty_on_a_mutant_is_not_a_catch(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """It is named with the mutant, and the exit code is 3."""
 
     def divides(robot: Configuration, *, link: str, **_: Any) -> Outcome:
@@ -111,11 +132,14 @@ def test_a_check_that_is_faulty_on_a_mutant_is_not_a_catch(tmp_path: Path, monke
     assert frame_at is not None
     plain = frame_at._replace(function=divides)
     monkeypatch.setattr(
-        "grader.grading.validation.find_check", lambda name: plain if name == "frame_at" else find_check(name)
+        "grader.grading.validation.find_check",
+        lambda name: plain if name == "frame_at" else find_check(name),
     )
     found = data(write_rubric(tmp_path, TOP + EXACT, SMALL))
     assert "number zero: joint j/origin xyz.x" in [row["name"] for row in found["faults"]]
-    assert all(row["criteria"]["frame"].startswith("the grader itself failed") for row in found["faults"])
+    assert all(
+        row["criteria"]["frame"].startswith("the grader itself failed") for row in found["faults"]
+    )
     counts = found["mutants"]
     others = counts["caught"] + counts["same_robot"] + counts["ignored"] + counts["survived"]
     assert counts["tried"] == others + len(found["faults"])
@@ -132,7 +156,9 @@ def test_a_check_that_is_faulty_on_a_mutant_is_not_a_catch(tmp_path: Path, monke
         ('check = "setup_imports"', {"robot.urdf", "package.xml", "setup.py"}),
     ],
 )
-def test_a_package_is_changed_as_far_as_criteria_look(tmp_path: Path, check: str, changed: set[str]) -> None:
+def test_a_package_is_changed_as_far_as_criteria_look(
+    tmp_path: Path, check: str, changed: set[str]
+) -> None:
     """A rubric of the robot is not tested with mistakes in setup.py, and one that wants the package's name only with that."""
     package = tmp_path / "ash"
     package.mkdir()
@@ -145,7 +171,9 @@ def test_a_package_is_changed_as_far_as_criteria_look(tmp_path: Path, check: str
         'title = "An arm"', 'title = "An arm"\npackage = "ash"\nurdf = "robot.urdf"'
     )
     text = f'{top}[[criterion]]\nid = "other"\npart = "model"\ntitle = "Another"\npoints = 1\n{check}\n'
-    found = data(write_rubric(tmp_path, text + '[[test.ignore]]\nmutants = ["*"]\nreason = "All."\n'))
+    found = data(
+        write_rubric(tmp_path, text + '[[test.ignore]]\nmutants = ["*"]\nreason = "All."\n')
+    )
     assert found["reference"]["lost"] == []
     assert {row["path"] for row in found["ignored"]} <= changed
     without = data(write_rubric(tmp_path, top))["mutants"]["total"]

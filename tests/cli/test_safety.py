@@ -48,13 +48,17 @@ def trapped(tmp_path: Path) -> Path:
 
 _EVERYWHERE = [
     pytest.param(".", ["-m", "grader"], marks=pytest.mark.exhaustive),
-    pytest.param(".", ["-P", "-c", "from grader.__main__ import main; main()"], marks=pytest.mark.exhaustive),
+    pytest.param(
+        ".", ["-P", "-c", "from grader.__main__ import main; main()"], marks=pytest.mark.exhaustive
+    ),
     ("roscourse_sim_ws/src/my_robot", ["-m", "grader"]),
 ]
 
 
 @pytest.mark.parametrize(("start", "command"), _EVERYWHERE)
-def test_nothing_of_a_submission_is_imported_or_run(trapped: Path, start: str, command: list[str]) -> None:
+def test_nothing_of_a_submission_is_imported_or_run(
+    trapped: Path, start: str, command: list[str]
+) -> None:
     """Even if the grader starts in the student's folder, which Python searches for modules first."""
     done = subprocess.run(
         [sys.executable, *command, "grade", str(trapped), "--format", "json"],
@@ -65,7 +69,9 @@ def test_nothing_of_a_submission_is_imported_or_run(trapped: Path, start: str, c
         timeout=HANG_TIMEOUT,
     )
     assert done.returncode == 1  # what setup.py does in the end cannot be determined statically
-    assert done.stderr.startswith(b"grader: exit code 1: cannot be determined, and needs manual grading: ")
+    assert done.stderr.startswith(
+        b"grader: exit code 1: cannot be determined, and needs manual grading: "
+    )
     assert done.stderr.count(b"\n") == 1
     assert not (trapped.parent / "ran").exists()
 

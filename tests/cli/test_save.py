@@ -21,12 +21,16 @@ def test_every_format_can_be_saved_at_once(tmp_path: Path) -> None:
     """Each file equals the output of that format and has its own ending; nothing else is in the folder."""
     names = {kind: f"report.{kind.ending}" for kind in Format}
     assert len(set(names.values())) == len(Format)
-    saves = [word for kind, name in names.items() for word in ("--save", f"{kind}={tmp_path / name}")]
+    saves = [
+        word for kind, name in names.items() for word in ("--save", f"{kind}={tmp_path / name}")
+    ]
     done = run(("grade", MISTAKEN, *saves), **CLASSROOM50)
     assert (done.returncode, done.stderr) == (1, b"")
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(names.values())
     for kind, name in names.items():
-        text = re.sub(rb"!\[.*\n\n", b"", (tmp_path / name).read_bytes())  # Markdown shows the SVG beside it
+        text = re.sub(
+            rb"!\[.*\n\n", b"", (tmp_path / name).read_bytes()
+        )  # Markdown shows the SVG beside it
         assert text == run(("grade", MISTAKEN, "--format", kind), **CLASSROOM50).stdout
 
 
@@ -48,7 +52,12 @@ def test_what_a_killed_writer_left_is_removed(tmp_path: Path) -> None:
     ended = subprocess.Popen([sys.executable, "-c", ""])
     ended.wait(HANG_TIMEOUT)
     stray = [f".{'0f' * 8}.tmp", f".{'1f' * 8}-{ended.pid}.tmp", f".{'2f' * 8}-{10**30}.tmp"]
-    others = [f".{'3f' * 8}-{os.getpid()}.tmp", f".{'4f' * 8}-1.tmp", ".notes.tmp", f"{'5f' * 8}.tmp"]
+    others = [
+        f".{'3f' * 8}-{os.getpid()}.tmp",
+        f".{'4f' * 8}-1.tmp",
+        ".notes.tmp",
+        f"{'5f' * 8}.tmp",
+    ]
     for name in (*stray, *others):
         (tmp_path / name).touch()
     save(tmp_path / "plain.md", "text")

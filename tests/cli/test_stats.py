@@ -23,7 +23,9 @@ def as_json(schema: str, *command: object) -> dict[str, Any]:
 def book(tmp_path: Path) -> Path:
     """Return the gradebook of a class of five, of whom two are late and one has submitted nothing."""
     make_class(tmp_path, late="percent_per_day = 10")
-    roster = "id,name,section,late\nanna,Anna Ek,A,2\nben,Ben Oh,A,\ncleo,,B,\ndora,,B,\nemil,,B,1\n"
+    roster = (
+        "id,name,section,late\nanna,Anna Ek,A,2\nben,Ben Oh,A,\ncleo,,B,\ndora,,B,\nemil,,B,1\n"
+    )
     (tmp_path / "roster.csv").write_text(roster)
     assert batch(tmp_path).returncode == 0
     return tmp_path / "book"
@@ -32,7 +34,12 @@ def book(tmp_path: Path) -> Path:
 def test_a_grade_is_what_is_published(book: Path) -> None:
     """In mean, bars, sections and late ones: with marks and penalties; without excuses, the missing and visitors."""
     write_submission(book.parent / "class" / "visitor")
-    for words in (("anna", "essay", "4"), ("ben", "total", "11"), ("emil", "total", "excused"), ("dora", "total", "1")):
+    for words in (
+        ("anna", "essay", "4"),
+        ("ben", "total", "11"),
+        ("emil", "total", "excused"),
+        ("dora", "total", "1"),
+    ):
         assert grader("mark", *words, "--gradebook", book).returncode == 0
     assert batch(book.parent).returncode == 0
     data = as_json("class", "stats", "--gradebook", book)
@@ -43,7 +50,10 @@ def test_a_grade_is_what_is_published(book: Path) -> None:
     assert (found["late"], found["open"], found["tenths"]) == (1, 1, [1, 0, 0, 0, 0, 0, 0, 1, 0, 1])
     assert found["counts"] == {"excused": 1, "graded": 2, "missing": 1, "unreadable": 1}
     assert {name: one["mean"] for name, one in found["sections"].items()} == {"A": 9.4, "B": 1}
-    assert [one["id"] for group in data["attention"] for one in group["students"]] == ["cleo", "visitor"]
+    assert [one["id"] for group in data["attention"] for one in group["students"]] == [
+        "cleo",
+        "visitor",
+    ]
 
 
 def test_a_class_without_a_grade(tmp_path: Path) -> None:
@@ -53,7 +63,10 @@ def test_a_class_without_a_grade(tmp_path: Path) -> None:
     (tmp_path / "class").mkdir()
     (tmp_path / "class" / "cleo.zip").write_bytes(b"PK\x03\x04 broken")
     assert batch(tmp_path).returncode == 0
-    assert as_json("class", "stats", "--gradebook", tmp_path / "book")["statistics"]["grades"]["mean"] is None
+    assert (
+        as_json("class", "stats", "--gradebook", tmp_path / "book")["statistics"]["grades"]["mean"]
+        is None
+    )
     assert "mean" not in grader("stats", "--gradebook", tmp_path / "book").stdout
 
 

@@ -41,7 +41,10 @@ def watch(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Rounds]:
     """Return a function that watches while files change, one change after the other, and presses Ctrl-C then."""
 
     def run_watch(arguments: Sequence[object], *edits: Callable[[], object]) -> Rounds:
-        waiting, looks = iter(edits), cycle(range(3))  # a change is seen at the first look, and graded at the second
+        waiting, looks = (
+            iter(edits),
+            cycle(range(3)),
+        )  # a change is seen at the first look, and graded at the second
 
         def sleep(_seconds: float) -> None:
             if next(looks) == 0:
@@ -54,7 +57,9 @@ def watch(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Rounds]:
                     raise KeyboardInterrupt
                 edit()
 
-        clock = SimpleNamespace(sleep=sleep, monotonic=time.monotonic, strftime=lambda _: "12:00:00")
+        clock = SimpleNamespace(
+            sleep=sleep, monotonic=time.monotonic, strftime=lambda _: "12:00:00"
+        )
         monkeypatch.setattr("grader.commands.watch.time", clock)
         done = run(("grade", "--watch", *map(str, arguments)))
         out, err = (stream.decode().split(NEXT) for stream in (done.stdout, done.stderr))
@@ -88,7 +93,9 @@ def test_each_round_ends_with_the_changes(robot: Path, watch: Watch) -> None:
     sources: tuple[Path | bytes, ...] = (URDF, SHORT, SHORT, changed, URDF)
     done = watch([robot], *(partial(put, source, robot) for source in sources))
     first, better, worse, same, other, last = done.out
-    assert first.encode() == run(("grade", str(SHORT))).stdout.replace(str(SHORT).encode(), str(robot).encode())
+    assert first.encode() == run(("grade", str(SHORT))).stdout.replace(
+        str(SHORT).encode(), str(robot).encode()
+    )
     rule = "-- 12:00:00 " + "-" * 68 + "\nlab6: "
     assert (better.startswith(rule), better.partition(BETTER)[1:]) == (True, (BETTER, ""))
     assert (worse.startswith(rule), worse.partition(WORSE)[1:]) == (True, (WORSE, ""))
@@ -109,7 +116,9 @@ def test_unreadable_states_are_waited_out(robot: Path, watch: Watch) -> None:
 
     robot.unlink()
     first = partial(put, SHORT, robot)
-    done = watch([robot], first, robot.unlink, replace_folder, partial(put, URDF, robot), robot.unlink)
+    done = watch(
+        [robot], first, robot.unlink, replace_folder, partial(put, URDF, robot), robot.unlink
+    )
     gone = f"grader: {robot} does not exist\n"
     assert done.err[0].endswith(gone)
     assert (done.err[1], done.err[2], done.err[4], done.err[5]) == ("", gone, "", gone)
@@ -128,11 +137,20 @@ def test_a_folder_with_saved_reports_in_it(tmp_path: Path, watch: Watch) -> None
     (folder / "out").mkdir()
     (tmp_path / "link").symlink_to(folder / "out")
     launch = urdf.parent.parent / "launch"
-    saves = [f"--save=json={folder / 'report.json'}", f"--save=markdown={tmp_path / 'link' / 'report.md'}"]
-    edits = partial(put, SHORT, urdf), partial(put, URDF, urdf), partial(launch.rename, launch.with_name("nothing"))
+    saves = [
+        f"--save=json={folder / 'report.json'}",
+        f"--save=markdown={tmp_path / 'link' / 'report.md'}",
+    ]
+    edits = (
+        partial(put, SHORT, urdf),
+        partial(put, URDF, urdf),
+        partial(launch.rename, launch.with_name("nothing")),
+    )
     done = watch([folder, *saves], *edits)
     for shown, news in zip(
-        done.out[1:], ("now failed: lidar-frame (", "now passed: lidar-frame (", "now failed: "), strict=True
+        done.out[1:],
+        ("now failed: lidar-frame (", "now passed: lidar-frame (", "now failed: "),
+        strict=True,
     ):
         assert news in shown
     assert "launch" in done.out[-1].partition("now failed: ")[2]

@@ -16,14 +16,17 @@ Change = Callable[[Result], Result]
 
 def with_status(status: Status, message: str = "so it is") -> Change:
     """Return a change that gives a criterion another status."""
-    return lambda result: result._replace(outcome=result.outcome._replace(status=status, message=message))
+    return lambda result: result._replace(
+        outcome=result.outcome._replace(status=status, message=message)
+    )
 
 
 def changed(report: Report, **changes: Change) -> Report:
     """Return a report with other results for some criteria; underscores in keywords stand for hyphens."""
     known = {name.replace("_", "-"): change for name, change in changes.items()}
     results = [
-        known[result.criterion.id](result) if result.criterion.id in known else result for result in report.results
+        known[result.criterion.id](result) if result.criterion.id in known else result
+        for result in report.results
     ]
     return report._replace(results=tuple(results))
 
@@ -31,7 +34,10 @@ def changed(report: Report, **changes: Change) -> Report:
 def test_score_passes_and_failures() -> None:
     """New passes precede new failures, each with its points."""
     after = changed(
-        SHORT, lidar_frame=with_status("passed"), base_green=with_status("failed"), base_box=with_status("failed")
+        SHORT,
+        lidar_frame=with_status("passed"),
+        base_green=with_status("failed"),
+        base_box=with_status("failed"),
     )
     assert comparison_lines(SHORT, after) == [
         "64 -> 62 of 70 points (-2)",
@@ -42,7 +48,11 @@ def test_score_passes_and_failures() -> None:
 
 @pytest.mark.parametrize(
     ("status", "words"),
-    [("skipped", "now skipped"), ("pending", "now needs manual grading"), ("errored", "now errored")],
+    [
+        ("skipped", "now skipped"),
+        ("pending", "now needs manual grading"),
+        ("errored", "now errored"),
+    ],
 )
 def test_every_status_is_described(status: Status, words: str) -> None:
     """Points are named only if they change."""

@@ -24,7 +24,9 @@ def write(case: Case, found: Expected) -> None:
         return
     head, *rows = case.path.read_text(encoding="utf-8").split(_ROW)
     given = _GENERATED.split(rows[case.index])[0].rstrip("\n")
-    rows[case.index] = f"{given}\n{''.join(_generated(found))}" + "\n" * (case.index < len(rows) - 1)
+    rows[case.index] = f"{given}\n{''.join(_generated(found))}" + "\n" * (
+        case.index < len(rows) - 1
+    )
     case.path.write_text(_ROW.join((head, *rows)), encoding="utf-8")
 
 
@@ -33,7 +35,11 @@ def _generated(found: Expected) -> Iterator[str]:
     for key, text in found.items():
         if not key.startswith("files/"):
             yield f"{key} = {text if text.isdigit() and key == 'exit' else _quoted(text)}\n"
-    written = [f"{_basic(key[6:])} = {_quoted(text)}" for key, text in found.items() if key.startswith("files/")]
+    written = [
+        f"{_basic(key[6:])} = {_quoted(text)}"
+        for key, text in found.items()
+        if key.startswith("files/")
+    ]
     if written:
         yield f"written = {{ {', '.join(written)} }}\n"
 
@@ -49,7 +55,11 @@ def _quoted(text: str) -> str:
 
 def _basic(text: str) -> str:
     escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\r", "\\r")
-    return '"' + re.sub(r"[\x00-\x1f\x7f-\x9f]", lambda match: f"\\u{ord(match[0]):04x}", escaped) + '"'
+    return (
+        '"'
+        + re.sub(r"[\x00-\x1f\x7f-\x9f]", lambda match: f"\\u{ord(match[0]):04x}", escaped)
+        + '"'
+    )
 
 
 def _changes(before: Expected, now: Expected) -> Iterator[str]:

@@ -51,16 +51,24 @@ class Case:
     expected: Expected
     about: str
     commands: tuple[str, ...]
-    setup: tuple[str, ...] = ()  # commands before them, which succeed and whose output is not compared
+    setup: tuple[
+        str, ...
+    ] = ()  # commands before them, which succeed and whose output is not compared
     copies: Mapping[str, str] = field(default_factory=dict)  # path here: path in the project
     removed: tuple[str, ...] = ()
-    edits: tuple[tuple[str, str, str], ...] = ()  # path, a text that stands there, the text that replaces it everywhere
+    edits: tuple[
+        tuple[str, str, str], ...
+    ] = ()  # path, a text that stands there, the text that replaces it everywhere
     empty: tuple[str, ...] = ()  # files without content; a path that ends in a slash is a folder
     files: Mapping[str, str] = field(default_factory=dict)
     hex: Mapping[str, str] = field(default_factory=dict)  # files that are no text
-    sizes: Mapping[str, int] = field(default_factory=dict)  # files that spaces follow up to this size
+    sizes: Mapping[str, int] = field(
+        default_factory=dict
+    )  # files that spaces follow up to this size
     links: Mapping[str, str] = field(default_factory=dict)  # path of a symlink: where it leads
-    zips: Mapping[str, str] = field(default_factory=dict)  # path of an archive: the folder that moves into it
+    zips: Mapping[str, str] = field(
+        default_factory=dict
+    )  # path of an archive: the folder that moves into it
     variables: Mapping[str, str] = field(default_factory=dict)
     stdin: str = ""
     folder: str = ""  # where the commands run
@@ -87,7 +95,11 @@ class Case:
             if step in STEPS:
                 known = contents(here)
                 STEPS[step](here, *words)
-                before |= {path: content for path, content in contents(here).items() if known.get(path) != content}
+                before |= {
+                    path: content
+                    for path, content in contents(here).items()
+                    if known.get(path) != content
+                }
                 continue
             done = self._run(command, here)
             heading = f"$ {' '.join(command.split()[:2])}\n" if len(self.commands) > 1 else ""
@@ -104,7 +116,10 @@ class Case:
     def _run(self, command: str, here: Path) -> Done:
         words = shlex.split(_with_places(command, here))
         own = dict(word.split("=", 1) for word in takewhile(lambda word: "=" in word, words))
-        variables = {name: text.replace("HERE", str(here)) for name, text in {**self.variables, **own}.items()}
+        variables = {
+            name: text.replace("HERE", str(here))
+            for name, text in {**self.variables, **own}.items()
+        }
         return run_with_input(words[len(own) :], self.stdin.encode(), variables, here / self.folder)
 
     def _prepare(self, here: Path) -> None:
@@ -113,7 +128,11 @@ class Case:
         data = {path: b"" for path in self.empty if not path.endswith("/")}
         data |= {path: text.encode() for path, text in self.files.items()}
         data |= {path: bytes.fromhex(digits) for path, digits in self.hex.items()}
-        for path in (*data, *self.links, *(f"{folder}x" for folder in self.empty if folder.endswith("/"))):
+        for path in (
+            *data,
+            *self.links,
+            *(f"{folder}x" for folder in self.empty if folder.endswith("/")),
+        ):
             (here / path).parent.mkdir(parents=True, exist_ok=True)
         for path, source in self.copies.items():
             copy(here, str(ROOT / source), path)
@@ -131,12 +150,19 @@ class Case:
             with zipfile.ZipFile(here / path, "w") as archive:
                 for file in sorted((here / folder).rglob("*")):
                     member = zipfile.ZipInfo.from_file(file, file.relative_to(here / folder))
-                    member.date_time, member.external_attr = (2026, 1, 1, 0, 0, 0), 0  # the same bytes everywhere
+                    member.date_time, member.external_attr = (
+                        (2026, 1, 1, 0, 0, 0),
+                        0,
+                    )  # the same bytes everywhere
                     archive.writestr(member, b"" if file.is_dir() else file.read_bytes())
             shutil.rmtree(here / folder)
 
     def _shown(self, done: Done) -> str:
-        report = json.loads(done.stdout) if self.view == "results" and done.stdout.startswith(b"{") else {}
+        report = (
+            json.loads(done.stdout)
+            if self.view == "results" and done.stdout.startswith(b"{")
+            else {}
+        )
         if "results" in report or "attention" in report:
             return "".join(f"{line}\n" for line in results(report, self.shown))
         return done.stdout.decode(errors="backslashreplace")
@@ -145,7 +171,9 @@ class Case:
 def read_corpus() -> Iterator[Case]:
     """Yield every case, by table and by folder."""
     for path in sorted(CORPUS.rglob("*.toml")):
-        for index, row in enumerate(tomllib.loads(path.read_text(encoding="utf-8")).get("case", [])):
+        for index, row in enumerate(
+            tomllib.loads(path.read_text(encoding="utf-8")).get("case", [])
+        ):
             found = {key: str(row.pop(key)) for key in ("exit", "stdout", "stderr") if key in row}
             found |= {f"files/{name}": text for name, text in row.pop("written", {}).items()}
             yield _case(path, index, found, row)
@@ -153,12 +181,23 @@ def read_corpus() -> Iterator[Case]:
         folder, settings = path.parent / "expected", path.parent / "case.toml"
         files = [file for file in sorted(folder.rglob("*")) if file.is_file()]
         found = {file.relative_to(folder).as_posix(): file.read_bytes().decode() for file in files}
-        row = tomllib.loads(settings.read_text(encoding="utf-8")) if settings.exists() else {"about": path.parent.name}
-        yield _case(path.parent, 0, found, {**row, "commands": path.read_text(encoding="utf-8").splitlines()})
+        row = (
+            tomllib.loads(settings.read_text(encoding="utf-8"))
+            if settings.exists()
+            else {"about": path.parent.name}
+        )
+        yield _case(
+            path.parent,
+            0,
+            found,
+            {**row, "commands": path.read_text(encoding="utf-8").splitlines()},
+        )
 
 
 def _case(path: Path, index: int, expected: Expected, row: dict[str, Any]) -> Case:
     if "command" in row:
         row["commands"] = [row.pop("command")]
-    given: dict[str, Any] = {key: tuple(value) if isinstance(value, list) else value for key, value in row.items()}
+    given: dict[str, Any] = {
+        key: tuple(value) if isinstance(value, list) else value for key, value in row.items()
+    }
     return Case(path, index, expected, **given)

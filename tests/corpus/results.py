@@ -8,7 +8,9 @@ def results(report: Mapping[str, Any], shown: tuple[str, ...] = ()) -> Iterator[
     """Yield the lines of a class, or the score of a report, its notes, what did not pass or is to be shown, and the problems."""
     if "attention" in report:
         yield from map(_student, report["students"])
-        yield from (f"{group['reason']}: {_ids(group['students'])}" for group in report["attention"])
+        yield from (
+            f"{group['reason']}: {_ids(group['students'])}" for group in report["attention"]
+        )
         return
     yield f"{report['score']:g} of {report['max_score']:g}, {report['pending']:g} pending"
     yield from (f"note: {note}" for note in report["notes"])
@@ -33,7 +35,9 @@ def _student(row: Mapping[str, Any]) -> str:
     late = row["late"]
     is_unread = row["status"] == "unreadable" and not row["manual_marks"]
     parts = (
-        f"{row['score']:g}/{row['max_score']:g}" if row["score"] is not None and not is_unread else "",
+        f"{row['score']:g}/{row['max_score']:g}"
+        if row["score"] is not None and not is_unread
+        else "",
         f"{row['pending']:g} pending" if row["pending"] and not is_unread else "",
         f"late {late['days']:g}: {late['points']:g}" if late["days"] else "",
         late["reason"],
@@ -48,8 +52,13 @@ def _student(row: Mapping[str, Any]) -> str:
 
 
 def _ids(students: list[Mapping[str, str]]) -> str:
-    details = {row["id"]: row["detail"] for row in students if len(students) < 3}  # few, so that a table can be read
-    return ", ".join(f"{row['id']} ({details[row['id']]})" if details.get(row["id"]) else row["id"] for row in students)
+    details = {
+        row["id"]: row["detail"] for row in students if len(students) < 3
+    }  # few, so that a table can be read
+    return ", ".join(
+        f"{row['id']} ({details[row['id']]})" if details.get(row["id"]) else row["id"]
+        for row in students
+    )
 
 
 def _result(row: Mapping[str, Any], is_shown: bool) -> str:
@@ -57,15 +66,21 @@ def _result(row: Mapping[str, Any], is_shown: bool) -> str:
 
     Of pictures and answers that need manual grading, as they do in most cases, there are the ids only.
     """
-    if row["status"] == "pending" and row["id"].startswith(("evidence-", "answer-")) and not is_shown:
+    if (
+        row["status"] == "pending"
+        and row["id"].startswith(("evidence-", "answer-"))
+        and not is_shown
+    ):
         return "pending IDS"
     carried = " (carried)" if row["carried"] else ""
     answer = row["measured"] if is_shown and isinstance(row["measured"], str) else ""
-    return "\n".join((
-        f"{row['status']}{carried} IDS{_place(row['location'])}: {row['message']}",
-        *(f"  | {line}" for line in answer.splitlines()),
-        *(f"  hint: {hint['message']}" for hint in row["hints"]),
-    ))  # fmt: skip
+    return "\n".join(
+        (
+            f"{row['status']}{carried} IDS{_place(row['location'])}: {row['message']}",
+            *(f"  | {line}" for line in answer.splitlines()),
+            *(f"  hint: {hint['message']}" for hint in row["hints"]),
+        )
+    )
 
 
 def _found(file: Mapping[str, Any]) -> str:

@@ -24,5 +24,9 @@ def test_the_case_is_as_expected(case: Case, tmp_path: Path) -> None:
 
 def test_every_sample_has_a_row() -> None:
     """With its results, in the table of its rubric."""
-    found = {case.about for case in read_corpus() if case.path.parent.name == "samples" and case.path.stem != "hints"}
+    found = {
+        case.about
+        for case in read_corpus()
+        if case.path.parent.name == "samples" and case.path.stem != "hints"
+    }
     assert found == set(SAMPLES)

@@ -24,10 +24,15 @@ def compared_part(oracle: str, seeds: range) -> list[Compared]:
     return list(compare(seeds))
 
 
-def compared_all(oracle: str, number: int, first: int = 0, processes: int = 2) -> Iterator[Compared]:
+def compared_all(
+    oracle: str, number: int, first: int = 0, processes: int = 2
+) -> Iterator[Compared]:
     """Yield the comparisons of so many seeds."""
     step = ORACLES[oracle][1]
-    parts = [range(start, min(start + step, first + number)) for start in range(first, first + number, step)]
+    parts = [
+        range(start, min(start + step, first + number))
+        for start in range(first, first + number, step)
+    ]
     with Pool(processes) as pool:
         for part in pool.imap_unordered(partial(compared_part, oracle), parts):
             yield from part

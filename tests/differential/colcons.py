@@ -53,14 +53,26 @@ def difference(build: Build, reported: Installation, ignored: str = "") -> str |
     foretold += [] if reported.is_called else ["no call of setup()"]
     if build.error:
         last = build.error.strip()[-300:]
-        return None if foretold or reported.doubt else f"colcon fails, the grader does not say so: {last}"
+        return (
+            None
+            if foretold or reported.doubt
+            else f"colcon fails, the grader does not say so: {last}"
+        )
     if foretold:
         return f"colcon succeeds, the grader says that it fails: {foretold[0]}"
     if reported.doubt:
         return None
-    stated = {target: it for target, it in reported.installed().items() if not target.startswith(("lib/", *IMPLIED))}
+    stated = {
+        target: it
+        for target, it in reported.installed().items()
+        if not target.startswith(("lib/", *IMPLIED))
+    }
     wrong = stated.items() - build.installed.items()
     if wrong:
         return f"the grader says that {min(wrong)} is installed; colcon installs {sorted(build.installed.items())[:4]}"
     missing = build.installed.items() - stated.items()
-    return f"colcon installs {min(missing)}, the grader does not say so" if missing and not reported.unknown else None
+    return (
+        f"colcon installs {min(missing)}, the grader does not say so"
+        if missing and not reported.unknown
+        else None
+    )

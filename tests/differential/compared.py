@@ -19,6 +19,12 @@ def summary(results: Iterable[Compared]) -> list[str]:
     """Return how many inputs agree, how many there are of each kind, and the first that differ."""
     listed = sorted(results)
     different = [result for result in listed if result.difference is not None]
-    kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(Counter(result.kind for result in listed).items()))
+    kinds = ", ".join(
+        f"{count} {kind}"
+        for kind, count in sorted(Counter(result.kind for result in listed).items())
+    )
     counted = f"{len(listed)} inputs ({kinds}): {len(listed) - len(different)} agree, {len(different)} differ"
-    return [counted, *(f"seed {result.seed}: {result.difference}" for result in different[:MAX_SHOWN])]
+    return [
+        counted,
+        *(f"seed {result.seed}: {result.difference}" for result in different[:MAX_SHOWN]),
+    ]

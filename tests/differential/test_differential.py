@@ -8,16 +8,27 @@ from tests.differential.compared import Compared, summary
 from tests.oracles import colcon_builds, urdfdom
 from tests.robot.edge_cases import EDGE_CASES
 
-needs_urdfdom = pytest.mark.skipif(not urdfdom.is_available(), reason="needs Linux on x86-64, and urdfdom: .[test]")
+needs_urdfdom = pytest.mark.skipif(
+    not urdfdom.is_available(), reason="needs Linux on x86-64, and urdfdom: .[test]"
+)
 
-needs_colcon = pytest.mark.skipif(not colcon_builds.is_available(), reason="needs colcon: see CONTRIBUTING.md")
+needs_colcon = pytest.mark.skipif(
+    not colcon_builds.is_available(), reason="needs colcon: see CONTRIBUTING.md"
+)
 _NEEDS = {"check_urdf": needs_urdfdom, "colcon": needs_colcon}
-_COUNTS = {"check_urdf": 2000, "pinocchio": 1000, "colcon": 60, "xacro": 800}  # a build takes a second
+_COUNTS = {
+    "check_urdf": 2000,
+    "pinocchio": 1000,
+    "colcon": 60,
+    "xacro": 800,
+}  # a build takes a second
 
 
 def test_summary() -> None:
     """Differences are counted, and shown with their seeds in order."""
-    assert summary([Compared(2, "accepted"), Compared(1, "accepted", "b"), Compared(0, "refused", "a")]) == [
+    assert summary(
+        [Compared(2, "accepted"), Compared(1, "accepted", "b"), Compared(0, "refused", "a")]
+    ) == [
         "3 inputs (2 accepted, 1 refused): 1 agree, 2 differ",
         "seed 0: a",
         "seed 1: b",
@@ -33,7 +44,9 @@ def test_the_library_gives_the_verdicts_of_the_program() -> None:
     """
     cases = [case for case in EDGE_CASES if b"%n" not in case.text]
     found = urdfdom.verdicts([case.text for case in cases])
-    wrong = [case.name for case, verdict in zip(cases, found, strict=True) if case.verdict != verdict]
+    wrong = [
+        case.name for case, verdict in zip(cases, found, strict=True) if case.verdict != verdict
+    ]
     assert wrong == []
 
 
@@ -48,7 +61,9 @@ def test_mutated_urdfs() -> None:
 
 
 @pytest.mark.exhaustive
-@pytest.mark.parametrize("oracle", [pytest.param(name, marks=_NEEDS.get(name, ())) for name in ORACLES])
+@pytest.mark.parametrize(
+    "oracle", [pytest.param(name, marks=_NEEDS.get(name, ())) for name in ORACLES]
+)
 def test_each_oracle(oracle: str) -> None:
     """Inputs of another range of seeds agree; `pinocchio` needs the group `oracle`."""
     assert summary(compared_part(oracle, range(5_000_000, 5_000_000 + _COUNTS[oracle])))[1:] == []

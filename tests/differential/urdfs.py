@@ -18,22 +18,138 @@ from tests.robot.edge_cases import EDGE_CASES
 _SAMPLES = Path(__file__).parents[2] / "submissions"
 _MAX_SIZE = 12_000  # bytes: longer files take longer, and are mutated in the same ways
 _NUMBERS = (
-    b"0", b"1", b"-1", b"+1", b"1.", b".5", b"-.5e1", b"007", b"1e3", b"1E-400", b"1e400", b"1e", b"nan", b"inf", b"0x10", b"1_0", b"1,5",
-    b"1.0f", b" 1", b"1 ", b"\t1", b"1\t", b"\n", b"", b"-", b".", b"1 2", b"1 2 3 4", b"\xc2\xa01", b"\xe2\x88\x921", b"${pi}", b"%s%n", b"1..2",
-    b"&#49;", b"1\r\n", b"- 1", b"--1", b"9" * 400, b"1e-5 ", b"1.0 0", b"0 0 1.2", b"0.5 0.5 0.5 1", b"0 0 0 0",
-)  # fmt: skip
+    b"0",
+    b"1",
+    b"-1",
+    b"+1",
+    b"1.",
+    b".5",
+    b"-.5e1",
+    b"007",
+    b"1e3",
+    b"1E-400",
+    b"1e400",
+    b"1e",
+    b"nan",
+    b"inf",
+    b"0x10",
+    b"1_0",
+    b"1,5",
+    b"1.0f",
+    b" 1",
+    b"1 ",
+    b"\t1",
+    b"1\t",
+    b"\n",
+    b"",
+    b"-",
+    b".",
+    b"1 2",
+    b"1 2 3 4",
+    b"\xc2\xa01",
+    b"\xe2\x88\x921",
+    b"${pi}",
+    b"%s%n",
+    b"1..2",
+    b"&#49;",
+    b"1\r\n",
+    b"- 1",
+    b"--1",
+    b"9" * 400,
+    b"1e-5 ",
+    b"1.0 0",
+    b"0 0 1.2",
+    b"0.5 0.5 0.5 1",
+    b"0 0 0 0",
+)
 _PIECES = (
-    b"<", b">", b"/>", b"</", b'"', b"'", b"&", b"&amp;", b"&lt;", b"&bad;", b"&#0;", b"&#x41;", b"<!--", b"-->", b"<!-- -- -->", b"<![CDATA[", b"]]>",
-    b"<?pi?>", b'<?xml version="1.0"?>', b"<!DOCTYPE robot>", b"\0", b"\xff", b"\xef\xbb\xbf", b"\r", b"\r\n", b"\n", b"\t", b" ", b"=", b"x", b":", b"/",
-    b"<robot>", b"</robot>", b"<link/>", b'<link name="x"/>', b'<joint name="x" type="fixed"/>', b"<visual/>", b"<axis/>", b"<limit/>",
-    b'<limit effort="1" velocity="1"/>', b"<dynamics/>", b'<mimic joint="x"/>', b"<origin/>", b"<geometry/>", b"<material/>", b'<material name="x"/>',
-    b'<material name="x"><color rgba="0 0 0 1"/></material>', b"<inertial/>", b"<collision/>", b"<safety_controller/>", b"<calibration/>",
-    b'<safety_controller k_velocity="1"/>', b"<xacro:x/>", b'xmlns="u"', b'xmlns:x="u"', b' version="1.0"', b' version="2.0"', b' name=""',
-)  # fmt: skip
+    b"<",
+    b">",
+    b"/>",
+    b"</",
+    b'"',
+    b"'",
+    b"&",
+    b"&amp;",
+    b"&lt;",
+    b"&bad;",
+    b"&#0;",
+    b"&#x41;",
+    b"<!--",
+    b"-->",
+    b"<!-- -- -->",
+    b"<![CDATA[",
+    b"]]>",
+    b"<?pi?>",
+    b'<?xml version="1.0"?>',
+    b"<!DOCTYPE robot>",
+    b"\0",
+    b"\xff",
+    b"\xef\xbb\xbf",
+    b"\r",
+    b"\r\n",
+    b"\n",
+    b"\t",
+    b" ",
+    b"=",
+    b"x",
+    b":",
+    b"/",
+    b"<robot>",
+    b"</robot>",
+    b"<link/>",
+    b'<link name="x"/>',
+    b'<joint name="x" type="fixed"/>',
+    b"<visual/>",
+    b"<axis/>",
+    b"<limit/>",
+    b'<limit effort="1" velocity="1"/>',
+    b"<dynamics/>",
+    b'<mimic joint="x"/>',
+    b"<origin/>",
+    b"<geometry/>",
+    b"<material/>",
+    b'<material name="x"/>',
+    b'<material name="x"><color rgba="0 0 0 1"/></material>',
+    b"<inertial/>",
+    b"<collision/>",
+    b"<safety_controller/>",
+    b"<calibration/>",
+    b'<safety_controller k_velocity="1"/>',
+    b"<xacro:x/>",
+    b'xmlns="u"',
+    b'xmlns:x="u"',
+    b' version="1.0"',
+    b' version="2.0"',
+    b' name=""',
+)
 _WORDS = (
-    b"fixed", b"revolute", b"continuous", b"prismatic", b"planar", b"floating", b"Fixed", b"base_link", b"lidar", b"", b"x", b"box", b"cylinder",
-    b"sphere", b"mesh", b"link", b"joint", b"robot", b"visual", b"origin", b"name", b"type", b"xyz", b"rpy", b"a b",
-)  # fmt: skip
+    b"fixed",
+    b"revolute",
+    b"continuous",
+    b"prismatic",
+    b"planar",
+    b"floating",
+    b"Fixed",
+    b"base_link",
+    b"lidar",
+    b"",
+    b"x",
+    b"box",
+    b"cylinder",
+    b"sphere",
+    b"mesh",
+    b"link",
+    b"joint",
+    b"robot",
+    b"visual",
+    b"origin",
+    b"name",
+    b"type",
+    b"xyz",
+    b"rpy",
+    b"a b",
+)
 _ATTRIBUTE = re.compile(rb"""\s[\w:]+\s*=\s*("[^"]*"|'[^']*')""")
 _VALUE = re.compile(rb"""(?<==["'])[^"'<>]*(?=["'])""")
 _NUMBER = re.compile(rb"[-+]?\d*\.?\d+(?:[eE][-+]?\d+)?")
@@ -49,7 +165,11 @@ def seeds() -> tuple[bytes, ...]:
     samples = sorted(text for text in found if len(text) <= _MAX_SIZE)
     cases = [case for case in EDGE_CASES if len(case.text) <= _MAX_SIZE and case.oracle == "agrees"]
     loading = [case.text for case in cases if case.verdict != "rejected"]
-    return (*samples, *loading * 2, *(case.text for case in cases[::3] if case.verdict == "rejected"))
+    return (
+        *samples,
+        *loading * 2,
+        *(case.text for case in cases[::3] if case.verdict == "rejected"),
+    )
 
 
 def mutant(seed: int) -> bytes:
@@ -70,7 +190,9 @@ def _spot(random: Random, pattern: re.Pattern[bytes], text: bytes) -> tuple[int,
 
 def _byte(random: Random, text: bytes) -> bytes:
     at = random.randrange(len(text) + 1)
-    new = bytes((random.randrange(256),)) if random.random() < 0.3 else random.choice((b"", *_PIECES))
+    new = (
+        bytes((random.randrange(256),)) if random.random() < 0.3 else random.choice((b"", *_PIECES))
+    )
     return text[:at] + new + text[at + random.randint(0, 2) :]
 
 
@@ -81,7 +203,9 @@ def _piece(random: Random, text: bytes) -> bytes:
     return text[:at] + random.choice(_PIECES) + text[at:]
 
 
-def _replaced(pattern: re.Pattern[bytes], pieces: tuple[bytes, ...]) -> Callable[[Random, bytes], bytes]:
+def _replaced(
+    pattern: re.Pattern[bytes], pieces: tuple[bytes, ...]
+) -> Callable[[Random, bytes], bytes]:
     def change(random: Random, text: bytes) -> bytes:
         start, end = _spot(random, pattern, text)
         return text[:start] + random.choice(pieces) + text[end:]
@@ -93,7 +217,10 @@ def _moved(pattern: re.Pattern[bytes]) -> Callable[[Random, bytes], bytes]:
     """Remove a match, double it, or exchange it for another."""
 
     def change(random: Random, text: bytes) -> bytes:
-        (start, end), (other, other_end) = _spot(random, pattern, text), _spot(random, pattern, text)
+        (start, end), (other, other_end) = (
+            _spot(random, pattern, text),
+            _spot(random, pattern, text),
+        )
         taken = text[start:end]
         return random.choice(
             (
@@ -120,9 +247,23 @@ def _joined(random: Random, text: bytes) -> bytes:
 
 
 _CHANGES = (
-    _byte, _byte, _piece, _piece, _replaced(_NUMBER, _NUMBERS), _replaced(_NUMBER, _NUMBERS), _replaced(_VALUE, _NUMBERS + _WORDS),
-    _replaced(_WORD, _WORDS), _moved(_ATTRIBUTE), _moved(_ELEMENT), _moved(_ELEMENT), _moved(_TAG), _moved(_VALUE), _moved(_VALUE), _cut, _joined,
-)  # fmt: skip
+    _byte,
+    _byte,
+    _piece,
+    _piece,
+    _replaced(_NUMBER, _NUMBERS),
+    _replaced(_NUMBER, _NUMBERS),
+    _replaced(_VALUE, _NUMBERS + _WORDS),
+    _replaced(_WORD, _WORDS),
+    _moved(_ATTRIBUTE),
+    _moved(_ELEMENT),
+    _moved(_ELEMENT),
+    _moved(_TAG),
+    _moved(_VALUE),
+    _moved(_VALUE),
+    _cut,
+    _joined,
+)
 
 
 def compare(numbers: range) -> Iterator[Compared]:
@@ -132,6 +273,12 @@ def compare(numbers: range) -> Iterator[Compared]:
         reading = read_urdf(text, "robot.urdf")
         found = reading.verdict
         if any(problem.kind is FORMAT_DIRECTIVE for problem in reading.problems):
-            yield Compared(seed, "undefined", None if found == "rejected" else f"it can crash ROS 2, grader: {found}")
+            yield Compared(
+                seed,
+                "undefined",
+                None if found == "rejected" else f"it can crash ROS 2, grader: {found}",
+            )
         else:
-            yield Compared(seed, expected, None if found == expected else f"ROS 2: {expected}, grader: {found}")
+            yield Compared(
+                seed, expected, None if found == expected else f"ROS 2: {expected}, grader: {found}"
+            )

@@ -18,4 +18,6 @@ def compare(numbers: range) -> Iterator[Compared]:
             text = difference(document, expected)
         except Exception as error:  # noqa: BLE001 - an expansion never raises, so this is a difference
             text = f"{type(error).__name__}: {error}"
-        yield Compared(number, "accepted" if isinstance(expected, oracle.Accepted) else "refused", text)
+        yield Compared(
+            number, "accepted" if isinstance(expected, oracle.Accepted) else "refused", text
+        )

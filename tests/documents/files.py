@@ -11,7 +11,12 @@ PICTURE = "[picture]"  # a line that stands for a picture
 
 def pdf(*pages: Sequence[str], by_word: bool = False) -> bytes:
     """Return a PDF with a page for each list of lines; each word has a place of its own, as Google Docs writes it, or each line."""
-    objects = ["<</Type/Catalog/Pages 2 0 R>>", "", "<</Type/Font/Subtype/Type1/BaseFont/Courier>>", _IMAGE]
+    objects = [
+        "<</Type/Catalog/Pages 2 0 R>>",
+        "",
+        "<</Type/Font/Subtype/Type1/BaseFont/Courier>>",
+        _IMAGE,
+    ]
     kids = []
     for lines in pages:
         resources = "/Font<</F1 3 0 R>>" + ("/XObject<</Im1 4 0 R>>" if PICTURE in lines else "")
@@ -67,7 +72,9 @@ def _content(lines: Sequence[str]) -> str:
         text = line.replace("\\", "\\\\").replace("(", "\\(").replace(")", "\\)")
         is_picture = line == PICTURE
         shown.append(
-            f"q 100 0 0 10 50 {height} cm /Im1 Do Q" if is_picture else f"BT /F1 12 Tf 50 {height} Td ({text}) Tj ET"
+            f"q 100 0 0 10 50 {height} cm /Im1 Do Q"
+            if is_picture
+            else f"BT /F1 12 Tf 50 {height} Td ({text}) Tj ET"
         )
     return "\n".join(shown)
 

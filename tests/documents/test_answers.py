@@ -14,18 +14,28 @@ from tests.documents.files import PICTURE, docx, pdf
 from tests.examples import spread
 from tests.work import limited_work
 
-VANISHES, NODES = "It vanishes, as it has two roots.", "robot_state_publisher publishes the transforms."
+VANISHES, NODES = (
+    "It vanishes, as it has two roots.",
+    "robot_state_publisher publishes the transforms.",
+)
 FIRST = (
     "What happens if you start it now, and why?",
     ["task 1 step 15", "step 15", "required question 1 of 2", "question 1 of 2"],
 )
-SECOND = ("Name some nodes, and what they do.", ["task 2 step 2", "required question 2 of 2", "question 2 of 2"])
+SECOND = (
+    "Name some nodes, and what they do.",
+    ["task 2 step 2", "required question 2 of 2", "question 2 of 2"],
+)
 Files = Mapping[str, str | bytes]
 Question = tuple[str, list[str]]
 ROBOT = Submitted({URDF: REFERENCE.files[URDF]})
 
 # Pages in Markdown with two headings and their answers, which are cases of the corpus.
-PAGES = [case.files["work/report.md"] for case in read_corpus() if "documents/answers: the heading" in case.name]
+PAGES = [
+    case.files["work/report.md"]
+    for case in read_corpus()
+    if "documents/answers: the heading" in case.name
+]
 
 
 def ask(files: Files, question: Question) -> Outcome:
@@ -53,15 +63,31 @@ def is_certain(outcome: Outcome) -> bool:
 
 @pytest.mark.parametrize(
     ("kind", "page"),
-    [(kind, page) for kind, step in {"txt": 2, "docx": 4, "pdf": 3, "google.pdf": 2}.items() for page in PAGES[::step]],
+    [
+        (kind, page)
+        for kind, step in {"txt": 2, "docx": 4, "pdf": 3, "google.pdf": 2}.items()
+        for page in PAGES[::step]
+    ],
 )
 def test_headings_in_every_kind_of_document(kind: str, page: str) -> None:
     """What is a heading in Markdown is one in text, Word and PDF, also of Google Docs; its answer ends at the next heading."""
     lines = (page if kind == "txt" else re.sub(r"[#*]|__", "", page)).splitlines()
-    made = {"pdf": lambda: pdf(lines), "google.pdf": lambda: pdf(lines, by_word=True), "docx": lambda: docx(*lines)}
+    made = {
+        "pdf": lambda: pdf(lines),
+        "google.pdf": lambda: pdf(lines, by_word=True),
+        "docx": lambda: docx(*lines),
+    }
     one, two = both({f"report.{kind}": made.get(kind, page.encode)()})
-    assert (is_certain(one), VANISHES in str(one.measured), NODES in str(one.measured)) == (True, True, False), one
-    assert (is_certain(two), VANISHES in str(two.measured), NODES in str(two.measured)) == (True, False, True), two
+    assert (is_certain(one), VANISHES in str(one.measured), NODES in str(one.measured)) == (
+        True,
+        True,
+        False,
+    ), one
+    assert (is_certain(two), VANISHES in str(two.measured), NODES in str(two.measured)) == (
+        True,
+        False,
+        True,
+    ), two
 
 
 @pytest.mark.parametrize("by_word", [False, True])
@@ -77,8 +103,10 @@ def test_a_pdf_has_the_lines_that_it_shows(by_word: bool) -> None:
     ]
     shown = str(ask({"report.pdf": pdf(lines, ["and", "more"], by_word=by_word)}, FIRST).measured)
     assert [" ".join(line.split()) for line in shown.splitlines() if line] == [
-        *(" ".join(line.split()) for line in lines), "and", "more",
-    ]  # fmt: skip
+        *(" ".join(line.split()) for line in lines),
+        "and",
+        "more",
+    ]
 
 
 @pytest.mark.slow
@@ -86,15 +114,23 @@ def test_a_pdf_has_the_lines_that_it_shows(by_word: bool) -> None:
     "content",
     [
         " ".join(f"BT /F1 12 Tf 1 0 0 -1 0 0 Tm {x} {-x} Td (w) Tj ET" for x in (1, 10**9, 10**30)),
-        " ".join(f"BT /F1 12 Tf 1 0 0 -1 0 0 Tm {x} 9 Td (w) Tj ET" for x in range(0, 10**12, 10**8)),
-        "q " * 5000 + "BT /F1 12 Tf 1 0 0 -1 0 0 Tm 1 1 Td (w) Tj 1 0 0 -1 0 0 Tm 9 20 Td (w) Tj ET",
-        "BT /F1 12 Tf " + " ".join(f"1 0 0 -1 0 0 Tm 1 {y} Td (w) Tj" for y in range(12_000)) + " ET",
+        " ".join(
+            f"BT /F1 12 Tf 1 0 0 -1 0 0 Tm {x} 9 Td (w) Tj ET" for x in range(0, 10**12, 10**8)
+        ),
+        "q " * 5000
+        + "BT /F1 12 Tf 1 0 0 -1 0 0 Tm 1 1 Td (w) Tj 1 0 0 -1 0 0 Tm 9 20 Td (w) Tj ET",
+        "BT /F1 12 Tf "
+        + " ".join(f"1 0 0 -1 0 0 Tm 1 {y} Td (w) Tj" for y in range(12_000))
+        + " ET",
     ],
 )
-def test_a_crafted_page_is_read_within_limits(content: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_crafted_page_is_read_within_limits(
+    content: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Words that are very far apart or very many take bounded time and memory, and the text is there."""
     monkeypatch.setattr(
-        "tests.documents.files._placed", lambda _: f"BT /F1 12 Tf 50 800 Td (Task 1: Step 15) Tj ET {content}"
+        "tests.documents.files._placed",
+        lambda _: f"BT /F1 12 Tf 50 800 Td (Task 1: Step 15) Tj ET {content}",
     )
     outcome = ask({"report.pdf": pdf([""], by_word=True)}, FIRST)
     assert "w" in str(outcome.measured)
@@ -112,8 +148,14 @@ def test_the_page_of_an_answer_is_named() -> None:
 
 def test_an_answer_across_pages_is_whole() -> None:
     """An answer that begins on one page continues on the next one; its page is that of its heading."""
-    one = ask({"report.pdf": pdf(["Task 1: Step 15", VANISHES], ["So it does.", "Task 2: Step 2"])}, FIRST)
-    assert [line for line in str(one.measured).splitlines() if line] == ["Task 1: Step 15", VANISHES, "So it does."]
+    one = ask(
+        {"report.pdf": pdf(["Task 1: Step 15", VANISHES], ["So it does.", "Task 2: Step 2"])}, FIRST
+    )
+    assert [line for line in str(one.measured).splitlines() if line] == [
+        "Task 1: Step 15",
+        VANISHES,
+        "So it does.",
+    ]
     assert "on page 1 of report.pdf" in one.message
 
 
@@ -121,7 +163,8 @@ def test_the_heading_or_page_in_a_word_file_is_named() -> None:
     """A Word file that Word has saved knows its pages; else the heading is named."""
     plain = docx("Task 1: Step 15", VANISHES)
     assert (
-        ask({"a.docx": plain}, FIRST).message == 'The answer in a.docx, below "Task 1: Step 15", needs manual grading'
+        ask({"a.docx": plain}, FIRST).message
+        == 'The answer in a.docx, below "Task 1: Step 15", needs manual grading'
     )
     paged = docx("Lab 6", "\fTask 1: Step 15", VANISHES, "\fTask 2: Step 2", NODES)
     one, two = both({"a.docx": paged})
@@ -148,7 +191,15 @@ def test_long_documents_are_cut_with_a_note() -> None:
 @pytest.mark.parametrize(
     "line",
     spread(
-        ["Step 15", "# Step 15", "we did then the step 15 of it and more", "REQUIRED Question:", "2. x", "a1 " * 160], 2
+        [
+            "Step 15",
+            "# Step 15",
+            "we did then the step 15 of it and more",
+            "REQUIRED Question:",
+            "2. x",
+            "a1 " * 160,
+        ],
+        2,
     ),
 )
 def test_documents_of_headings_are_bounded(line: str) -> None:

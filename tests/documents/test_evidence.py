@@ -25,13 +25,25 @@ def words(files: Files, names: list[str]) -> tuple[list[str], list[str]]:
 
 def test_a_heading_in_a_pdf_is_named_with_its_page() -> None:
     """A heading with a picture on its pages is found; the file and the page are named."""
-    data = pdf(["Lab 6"], ["Task 1: Step 8", PICTURE, "Task 1: Step 18"], [PICTURE, "Task 3 - Step 3", PICTURE])
+    data = pdf(
+        ["Lab 6"],
+        ["Task 1: Step 8", PICTURE, "Task 1: Step 18"],
+        [PICTURE, "Task 3 - Step 3", PICTURE],
+    )
     assert words({"report.pdf": data}, STEP_8) == (["Task 1: Step 8, page 2 of report.pdf"], [])
-    assert words({"report.pdf": data}, ["task 1 step 18"]) == (["Task 1: Step 18, page 2 of report.pdf"], [])
+    assert words({"report.pdf": data}, ["task 1 step 18"]) == (
+        ["Task 1: Step 18, page 2 of report.pdf"],
+        [],
+    )
     assert words({"report.pdf": data}, WEBCAM) == (["Task 3 - Step 3, page 3 of report.pdf"], [])
     assert words({"report.pdf": data}, ["task 1 step 36"]) == ([], [])
     (file,) = find({"report.pdf": data}, STEP_8).files
-    assert (file.path, file.size, file.heading, file.page) == ("report.pdf", len(data), "Task 1: Step 8", 2)
+    assert (file.path, file.size, file.heading, file.page) == (
+        "report.pdf",
+        len(data),
+        "Task 1: Step 8",
+        2,
+    )
 
 
 def test_a_heading_in_a_word_file_is_named() -> None:
@@ -54,15 +66,24 @@ def test_a_heading_of_a_prelab_is_perhaps_meant() -> None:
 
 def test_a_heading_without_a_picture_is_perhaps_meant() -> None:
     """A heading without a picture below it may be a table of contents or an answer, and a plain number one of the handout."""
-    assert words({"a.docx": docx("Task 1: Step 8", "See below.", "Task 1: Step 18", PICTURE)}, STEP_8) == (
+    assert words(
+        {"a.docx": docx("Task 1: Step 8", "See below.", "Task 1: Step 18", PICTURE)}, STEP_8
+    ) == (
         [],
         ["Task 1: Step 8 in a.docx"],
     )
-    contents = pdf(["Task 1: Step 8 ..... 2", "Task 1: Step 18 ..... 3"], ["Task 1: Step 8", PICTURE])
+    contents = pdf(
+        ["Task 1: Step 8 ..... 2", "Task 1: Step 18 ..... 3"], ["Task 1: Step 8", PICTURE]
+    )
     assert words({"a.pdf": contents}, STEP_8) == (["Task 1: Step 8, page 2 of a.pdf"], [])
     handout = pdf(["Task 1", "18. Put the lidar on the box.", PICTURE])
-    assert words({"a.pdf": handout}, ["task 1 step 18"]) == ([], ["18. Put the lidar on the box., page 1 of a.pdf"])
-    mentioned = pdf(["As you can see in the picture of task 1 step 8 it stands.", PICTURE, "Task 1: Step 18"])
+    assert words({"a.pdf": handout}, ["task 1 step 18"]) == (
+        [],
+        ["18. Put the lidar on the box., page 1 of a.pdf"],
+    )
+    mentioned = pdf(
+        ["As you can see in the picture of task 1 step 8 it stands.", PICTURE, "Task 1: Step 18"]
+    )
     assert words({"a.pdf": mentioned}, STEP_8) == ([], [])
 
 
@@ -88,19 +109,28 @@ STEPS = [["task 1 step 8"], ["task 1 step 18"], ["task 2 step 6"], WEBCAM]
 def offered(files: Files, names: list[list[str]] = STEPS) -> list[tuple[list[str], list[str]]]:
     """Return for each piece of evidence the files that are found, and those that are perhaps meant."""
     submission = Submitted({URDF: REFERENCE.files[URDF], **files}).submission
-    found = [find_evidence(submission.labelled_files, one, submission.readable_documents) for one in names]
+    found = [
+        find_evidence(submission.labelled_files, one, submission.readable_documents)
+        for one in names
+    ]
     return [([it.path for it in one.files], [it.path for it in one.possible]) for one in found]
 
 
 def test_a_file_may_be_meant_for_several_pieces() -> None:
     """A document of pictures for every piece, that of the prelab for none, and a picture for those of its step."""
     scan = pdf([PICTURE], [PICTURE])
-    assert offered({"report.pdf": scan, "prelab.pdf": scan, "Lab6 Pre-Lab.pdf": scan}) == [([], ["report.pdf"])] * 4
+    assert (
+        offered({"report.pdf": scan, "prelab.pdf": scan, "Lab6 Pre-Lab.pdf": scan})
+        == [([], ["report.pdf"])] * 4
+    )
     assert offered({"report.pdf": scan, "Task1_Step8.png": png()})[:2] == [
         (["Task1_Step8.png"], []),
         ([], ["report.pdf"]),
     ]
-    assert offered({"step8.png": png()}, [["task 1 step 8"], ["task 2 step 8"]]) == [([], ["step8.png"])] * 2
+    assert (
+        offered({"step8.png": png()}, [["task 1 step 8"], ["task 2 step 8"]])
+        == [([], ["step8.png"])] * 2
+    )
 
 
 def test_a_file_whose_headings_name_several_steps_is_offered_for_each() -> None:

@@ -10,9 +10,12 @@ from grader.errors import FileError
 from grader.files.tree import File
 
 SHOWN = {
-    "PNG": b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", "JPEG": b"\xff\xd8\xff\xe0", "GIF": b"GIF89a\x80\2\xe0\1",
-    "WebP": b"RIFF\0\0\0\0WEBPVP8 ", "BMP": b"BM" + bytes(12) + (40).to_bytes(4, "little"),
-}  # fmt: skip
+    "PNG": b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR",
+    "JPEG": b"\xff\xd8\xff\xe0",
+    "GIF": b"GIF89a\x80\2\xe0\1",
+    "WebP": b"RIFF\0\0\0\0WEBPVP8 ",
+    "BMP": b"BM" + bytes(12) + (40).to_bytes(4, "little"),
+}
 SCRIPT = b"<script>alert(1)</script>"
 NOT_SHOWN = {
     "HTML": b"<!DOCTYPE html><html>" + SCRIPT,

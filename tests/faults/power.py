@@ -43,7 +43,14 @@ def calls_of(record: Path) -> list[Call]:
     while at < len(data):
         kind, offset, length, size = _HEAD.unpack_from(data, at)
         at += _HEAD.size
-        found.append(Call(KINDS[kind], data[at : at + length].decode(), offset, data[at + length : at + length + size]))
+        found.append(
+            Call(
+                KINDS[kind],
+                data[at : at + length].decode(),
+                offset,
+                data[at + length : at + length + size],
+            )
+        )
         at += length + size
     return found
 
@@ -186,7 +193,9 @@ def _write(files: dict[str, bytes], top: Path) -> None:
         Path(path).write_bytes(data)
 
 
-def _complaints(state: dict[str, bytes], states: list[dict[str, bytes]], *, is_done: bool) -> Iterator[str]:
+def _complaints(
+    state: dict[str, bytes], states: list[dict[str, bytes]], *, is_done: bool
+) -> Iterator[str]:
     """Yield what is wrong with a disk: each file is as before or after the last command, and all marks are there."""
     before, after = states[-2:]
     for name in sorted(before.keys() | after.keys()):
@@ -198,7 +207,9 @@ def _complaints(state: dict[str, bytes], states: list[dict[str, bytes]], *, is_d
             known = {line for one in (before, after) for line in one.get(name, b"").splitlines()}
             if lost := [line for line in (found or b"").splitlines() if line not in known]:
                 yield f"{name} has other results: {lost}"
-        elif name.endswith("/grades.csv"):  # it can be an older one, and is written again by each command
+        elif name.endswith(
+            "/grades.csv"
+        ):  # it can be an older one, and is written again by each command
             if found not in [None, *(one.get(name) for one in states)]:
                 yield f"{name} is none of those that were written"
         elif allowed[0] != allowed[1] and found not in (*allowed, None):

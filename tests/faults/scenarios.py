@@ -26,7 +26,9 @@ Last modified (grade),Feedback comments
 Participant 501,Anna Ek,anna@example.org,Submitted for grading,,11.00,Yes,-,-,
 Participant 503,Cleo Ray,cleo@example.org,Submitted for grading,,11.00,Yes,-,-,
 """
-_MARKS = "student,criterion,points,comment\nanna,essay,3,good\nemil,essay,1,short\nben,total,5,late\n"
+_MARKS = (
+    "student,criterion,points,comment\nanna,essay,3,good\nemil,essay,1,short\nben,total,5,late\n"
+)
 
 Fault = AbstractContextManager[object]  # armed while the command runs
 
@@ -57,7 +59,11 @@ class Scenario(NamedTuple):
 def prepare(top: Path) -> None:
     """Make a class, its gradebook, and the files that commands read."""
     make_class(top)
-    shutil.copytree(ROOT / "submissions/lab6/reference", top / "lab6", ignore=shutil.ignore_patterns("expected.toml"))
+    shutil.copytree(
+        ROOT / "submissions/lab6/reference",
+        top / "lab6",
+        ignore=shutil.ignore_patterns("expected.toml"),
+    )
     (urdf,) = (top / "lab6").rglob("*.urdf")
     (top / "robot.urdf").write_text(urdf.read_text().replace("0.15 0 0.225", "0.15 0 0.2"))
     write_submission(top / "zipped" / "finn")
@@ -69,7 +75,12 @@ def prepare(top: Path) -> None:
     (top / "marks.csv").write_text(_MARKS)
     (top / "report.json").write_text("old")
     copy_with_edits(top / "edits")
-    assert grader("mark", "anna", "picture", "1", "--gradebook", top / "book", "--by", "Kim").returncode == 0
+    assert (
+        grader(
+            "mark", "anna", "picture", "1", "--gradebook", top / "book", "--by", "Kim"
+        ).returncode
+        == 0
+    )
 
 
 def _mark_on_the_page(top: Path, fault: Fault) -> Done:
@@ -91,8 +102,12 @@ _FEEDBACK = ("--feedback", "feedback.zip")
 _OUTPUT = ("--reports", "reports")
 
 SCENARIOS = (
-    Scenario("grade", ("grade", "lab6", "--save", "json=report.json", "--save", "html=report.html")),
-    Scenario("grade-fix", ("grade", "robot.urdf", "--rubric", "edits/rubric.toml", "--fix", "fixed.urdf")),
+    Scenario(
+        "grade", ("grade", "lab6", "--save", "json=report.json", "--save", "html=report.html")
+    ),
+    Scenario(
+        "grade-fix", ("grade", "robot.urdf", "--rubric", "edits/rubric.toml", "--fix", "fixed.urdf")
+    ),
     Scenario("batch", (*_BATCH, "--gradebook", "new", *_OUTPUT)),
     Scenario("batch-again", (*_BATCH, *_BOOK, "--force")),
     Scenario("mark", ("mark", "anna", "essay", "3.5", "--comment", "good", *_BOOK)),
@@ -101,10 +116,14 @@ SCENARIOS = (
     Scenario("review", act=_mark_on_the_page),
     Scenario("review-sheet", ("review", *_BOOK, "--sheet", "sheet.csv")),
     Scenario("export-csv", ("export", "csv", *_BOOK, "--output", "grades.csv")),
-    Scenario("export-into", ("export", "canvas", *_BOOK, "--into", "canvas.csv", "--output", "upload.csv")),
+    Scenario(
+        "export-into",
+        ("export", "canvas", *_BOOK, "--into", "canvas.csv", "--output", "upload.csv"),
+    ),
     Scenario("export-html", ("export", "html", *_BOOK, "--output", "pages")),
     Scenario(
-        "export-feedback", ("export", "moodle", *_BOOK, "--into", "moodle.csv", "--output", "filled.csv", *_FEEDBACK)
+        "export-feedback",
+        ("export", "moodle", *_BOOK, "--into", "moodle.csv", "--output", "filled.csv", *_FEEDBACK),
     ),
     Scenario("batch-workers", (*_BATCH, "--gradebook", "new", *_OUTPUT), is_process=True),
     Scenario("pages-workers", ("export", "html", *_BOOK, "--output", "pages"), is_process=True),

@@ -52,7 +52,10 @@ class _Control(ctypes.Structure):
     """The mapped file, as shim.c declares it."""
 
     _fields_ = (
-        *((name, ctypes.c_int) for name in ("is_on", "kind", "first", "last", "error", "is_recorded")),
+        *(
+            (name, ctypes.c_int)
+            for name in ("is_on", "kind", "first", "last", "error", "is_recorded")
+        ),
         ("counts", ctypes.c_int * len(KINDS)),
         ("root", ctypes.c_char * 1024),
         ("record", ctypes.c_char * 1024),
@@ -66,7 +69,9 @@ def run_preloaded(module: str, arguments: Sequence[str]) -> int:
     memory = Path("/dev/shm")
     with TemporaryDirectory(prefix="faults-", dir=memory if memory.is_dir() else None) as folder:
         library, control = Path(folder, "shim.so"), Path(folder, "control")
-        subprocess.run([COMPILER, "-shared", "-fPIC", "-O2", "-o", library, SOURCE, "-ldl"], check=True)
+        subprocess.run(
+            [COMPILER, "-shared", "-fPIC", "-O2", "-o", library, SOURCE, "-ldl"], check=True
+        )
         control.write_bytes(bytes(ctypes.sizeof(_Control)))
         (top := Path(folder, "tmp")).mkdir()
         own = {"LD_PRELOAD": str(library), "FAULT_CONTROL": str(control), "TMPDIR": str(top)}
@@ -101,7 +106,9 @@ class Shim:
         self._control.is_on = self._control.is_recorded = 0
 
     @contextmanager
-    def armed(self, kind: str = "", first: int = 0, last: int = 0, error: int = 0) -> Iterator[None]:
+    def armed(
+        self, kind: str = "", first: int = 0, last: int = 0, error: int = 0
+    ) -> Iterator[None]:
         """Fail calls inside."""
         self.arm(kind, first, last, error)
         try:

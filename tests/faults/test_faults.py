@@ -22,7 +22,9 @@ from tests.classroom.gradebooks import batch, grader, make_class
 from tests.command_line import HANG_TIMEOUT, ROOT
 from tests.faults.shim import COMPILER
 
-needs_shim = pytest.mark.skipif(sys.platform != "linux" or COMPILER is None, reason="needs Linux and a C compiler")
+needs_shim = pytest.mark.skipif(
+    sys.platform != "linux" or COMPILER is None, reason="needs Linux and a C compiler"
+)
 STUDENTS = ("anna", "ben", "cleo", "dora", "emil")
 _THREE_MARKS = """
 import sys
@@ -38,8 +40,12 @@ def found(module: str, *arguments: str) -> str:
     """Run a harness; return what it has printed if it has findings, else nothing."""
     done = subprocess.run(
         [sys.executable, "-m", module, *arguments],
-        cwd=ROOT, check=False, capture_output=True, text=True, timeout=4 * HANG_TIMEOUT,
-    )  # fmt: skip
+        cwd=ROOT,
+        check=False,
+        capture_output=True,
+        text=True,
+        timeout=4 * HANG_TIMEOUT,
+    )
     return f"{done.stdout}{done.stderr}" if done.returncode else ""
 
 
@@ -65,12 +71,19 @@ def test_a_hundred_processes_mark_at_once(tmp_path: Path) -> None:
     book = tmp_path / "book"
     command = (sys.executable, "-W", "error", "-c", _THREE_MARKS, str(book))
     processes = [
-        subprocess.Popen([*command, STUDENTS[number % 5]], cwd=ROOT, stdout=subprocess.DEVNULL) for number in range(100)
+        subprocess.Popen([*command, STUDENTS[number % 5]], cwd=ROOT, stdout=subprocess.DEVNULL)
+        for number in range(100)
     ]
     assert [process.wait(HANG_TIMEOUT) for process in processes] == [0] * 100
-    rows = [row for file in (book / "marks").iterdir() for row in csv.DictReader(file.read_text().splitlines())]
+    rows = [
+        row
+        for file in (book / "marks").iterdir()
+        for row in csv.DictReader(file.read_text().splitlines())
+    ]
     assert Counter((row["by"], row["student"], row["points"]) for row in rows) == {
-        (f"grader-{student}", student, str(number)): 20 for student in STUDENTS for number in range(3)
+        (f"grader-{student}", student, str(number)): 20
+        for student in STUDENTS
+        for number in range(3)
     }
 
 
@@ -92,9 +105,13 @@ def changed_before_reading(path: Path, data: bytes | None) -> Iterator[None]:
     path.write_bytes(before)
 
 
-@pytest.mark.parametrize("data", [None, b"", b'<robot name="r">', b"PK\x03\x04"], ids=["gone", "empty", "cut", "other"])
+@pytest.mark.parametrize(
+    "data", [None, b"", b'<robot name="r">', b"PK\x03\x04"], ids=["gone", "empty", "cut", "other"]
+)
 @pytest.mark.parametrize("name", ["ben.urdf", "anna/robot.urdf", "anna/answers.md"])
-def test_a_file_that_changes_while_it_is_read(tmp_path: Path, name: str, data: bytes | None) -> None:
+def test_a_file_that_changes_while_it_is_read(
+    tmp_path: Path, name: str, data: bytes | None
+) -> None:
     """The run ends as usual, and the next one grades what is there then."""
     make_class(tmp_path)
     assert batch(tmp_path).returncode == 0
@@ -123,7 +140,9 @@ def test_reports_that_cannot_be_written(tmp_path: Path) -> None:
     make_class(tmp_path)
     assert batch(tmp_path).returncode == 0
     (tmp_path / "file").touch()
-    done = grader("export", "html", "--gradebook", tmp_path / "book", "--output", tmp_path / "file/pages")
+    done = grader(
+        "export", "html", "--gradebook", tmp_path / "book", "--output", tmp_path / "file/pages"
+    )
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
     shutil.rmtree(tmp_path / "class")
     assert grader("export", "csv", "--gradebook", tmp_path / "book").returncode == 0

@@ -30,8 +30,14 @@ class Ran(NamedTuple):
 
 _CLASS_PAGE = "/index.html"
 RESULTS, _GRADES = "/results.jsonl", "/grades.csv"
-_OF_ONE_RUN = {"run": 0, "crc32": 0, "written": []}  # in a line of results: another run may leave other values
-_REMOVED = ("report.json",)  # what `--save` names is removed first: a run that is refused leaves no old report
+_OF_ONE_RUN = {
+    "run": 0,
+    "crc32": 0,
+    "written": [],
+}  # in a line of results: another run may leave other values
+_REMOVED = (
+    "report.json",
+)  # what `--save` names is removed first: a run that is refused leaves no old report
 
 
 class Bench:
@@ -46,7 +52,9 @@ class Bench:
         shutil.rmtree(self.top, ignore_errors=True)
         shutil.copytree(self._template, self.top, symlinks=True)
 
-    def run(self, scenario: Scenario, kind: str = "", first: int = 0, last: int = 0, error: int = 0) -> Ran:
+    def run(
+        self, scenario: Scenario, kind: str = "", first: int = 0, last: int = 0, error: int = 0
+    ) -> Ran:
         """Run a scenario in a fork of this process, which has all modules loaded, with a fault."""
         reader, writer = os.pipe()
         child = os.fork()
@@ -66,7 +74,9 @@ class Bench:
             signal.setitimer(signal.ITIMER_REAL, 0)
         os.waitpid(child, 0)
         self._shim.disarm()
-        found: Ran = pickle.loads(data) if data else Ran(-1, b"", "it hung or crashed", self._shim.counts)
+        found: Ran = (
+            pickle.loads(data) if data else Ran(-1, b"", "it hung or crashed", self._shim.counts)
+        )
         return found
 
     def _report(self, writer: int, scenario: Scenario, fault: tuple[str, int, int, int]) -> None:
@@ -92,7 +102,11 @@ class Bench:
         (folder := self.top / "tmp").mkdir(exist_ok=True)
         before, tempfile.tempdir = tempfile.tempdir, str(folder)
         try:
-            with self._shim.armed(*fault) if self.record is None else self._shim.recording(self.record):
+            with (
+                self._shim.armed(*fault)
+                if self.record is None
+                else self._shim.recording(self.record)
+            ):
                 yield
         finally:
             tempfile.tempdir = before
@@ -114,7 +128,9 @@ def _normal(name: str, data: bytes) -> bytes:
     """Return the newest results of a gradebook, its different marks, and other files as they are."""
     if name.endswith(RESULTS):
         whole = data[: data.rfind(b"\n") + 1].splitlines()
-        lines = (json.loads(line) for line in whole if b"\0" not in line)  # a power failure leaves holes
+        lines = (
+            json.loads(line) for line in whole if b"\0" not in line
+        )  # a power failure leaves holes
         newest = {line.get("student", ""): {**line, **_OF_ONE_RUN} for line in lines}
         return b"".join(json.dumps(newest[key]).encode() + b"\n" for key in sorted(newest))
     return b"".join(dict.fromkeys(data.splitlines(keepends=True))) if "/marks/" in name else data
@@ -128,7 +144,9 @@ class Expected(NamedTuple):
     ran: Ran
 
 
-def complaints(bench: Bench, scenario: Scenario, expected: Expected, ran: Ran, kind: str) -> Iterator[str]:
+def complaints(
+    bench: Bench, scenario: Scenario, expected: Expected, ran: Ran, kind: str
+) -> Iterator[str]:
     """Yield what does not hold after a scenario ran with a fault; run it without, unless it is complete."""
     state = bench.state()
     new = [line for line in ran.err.splitlines() if line not in expected.ran.err.splitlines()]
@@ -145,7 +163,9 @@ def complaints(bench: Bench, scenario: Scenario, expected: Expected, ran: Ran, k
     if again.code != expected.ran.code:
         yield f"rerunning ends with {again.code}: {again.err.strip()}"
     for name in sorted(expected.after.keys() | final.keys()):
-        if final.get(name) != expected.after.get(name) and not (kind == "unlink" and name not in expected.after):
+        if final.get(name) != expected.after.get(name) and not (
+            kind == "unlink" and name not in expected.after
+        ):
             yield f"rerunning: {name} {_difference(final.get(name), expected.after.get(name))}"
 
 
@@ -167,23 +187,39 @@ def _of_files(
     before, after = expected.before, expected.after
     for name in sorted(state.keys() | before.keys() | after.keys()):
         found = state.get(name)
-        is_other = has_warned or state.get(name.replace(_GRADES, RESULTS)) != after.get(name.replace(_GRADES, RESULTS))
-        if name.endswith(RESULTS) or found == after.get(name) or (name.endswith(_GRADES) and is_other):
+        is_other = has_warned or state.get(name.replace(_GRADES, RESULTS)) != after.get(
+            name.replace(_GRADES, RESULTS)
+        )
+        if (
+            name.endswith(RESULTS)
+            or found == after.get(name)
+            or (name.endswith(_GRADES) and is_other)
+        ):
             continue
         if name.endswith(_CLASS_PAGE) and found is not None and found.endswith(b"</html>\n"):
             continue  # a picture of a robot on it may be missing
         if name not in before and name not in after:
             if kind != "unlink":
                 yield f"{name} is left behind"
-        elif not (found is None and name in _REMOVED if not is_done else has_warned) and found != before.get(name):
+        elif not (
+            found is None and name in _REMOVED if not is_done else has_warned
+        ) and found != before.get(name):
             yield f"{name} {_difference(found, after.get(name))}"
 
 
 def _of_results(name: str, data: bytes, expected: Expected, *, is_done: bool) -> Iterator[str]:
     """Yield what is wrong with results: students who are graded otherwise, or lost."""
-    known = {line for state in (expected.before, expected.after) for line in state.get(name, b"").splitlines()}
+    known = {
+        line
+        for state in (expected.before, expected.after)
+        for line in state.get(name, b"").splitlines()
+    }
     lines = data.splitlines()
-    yield from (f"{name}: {line!r}" for line in lines if line not in known and b'"verdict": "graded"' in line)
+    yield from (
+        f"{name}: {line!r}"
+        for line in lines
+        if line not in known and b'"verdict": "graded"' in line
+    )
     if is_done and len(lines) != len(expected.after[name].splitlines()):
         yield f"{name} lacks students"
 
@@ -192,5 +228,8 @@ def _difference(found: bytes | None, expected: bytes | None) -> str:
     """Return how two states of a file differ."""
     if found is None or expected is None:
         return "is not there" if found is None else "should not be there"
-    at = next((at for at, (one, other) in enumerate(zip(found, expected, strict=False)) if one != other), -1)
+    at = next(
+        (at for at, (one, other) in enumerate(zip(found, expected, strict=False)) if one != other),
+        -1,
+    )
     return f"differs ({len(found)} of {len(expected)} bytes, from {at}): {found[max(0, at - 30) : at + 60]!r}"

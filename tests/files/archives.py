@@ -26,7 +26,9 @@ class LinkMember(NamedTuple):
 
 
 def make_zip(
-    files: Mapping[str, bytes | None] = FILES, links: Iterable[LinkMember] = (), compression: int = zipfile.ZIP_DEFLATED
+    files: Mapping[str, bytes | None] = FILES,
+    links: Iterable[LinkMember] = (),
+    compression: int = zipfile.ZIP_DEFLATED,
 ) -> bytes:
     """Make a zip with these files; a name that ends in a slash is a folder."""
     data = io.BytesIO()
@@ -44,7 +46,9 @@ def make_zip(
 def make_named_zip(names: Mapping[bytes, bytes], flags: int = 0) -> bytes:
     """Make a zip whose members have names of these bytes, declared as UTF-8 only by `flags`."""
     stand_ins = {f"{index:06}".ljust(len(name), "_"): name for index, name in enumerate(names)}
-    data = make_zip({name: names[real] for name, real in stand_ins.items()}, compression=zipfile.ZIP_STORED)
+    data = make_zip(
+        {name: names[real] for name, real in stand_ins.items()}, compression=zipfile.ZIP_STORED
+    )
     for stand_in, name in stand_ins.items():
         data = data.replace(stand_in.encode(), name)
     return set_flags(data, flags) if flags else data
@@ -81,7 +85,10 @@ def make_tar(
             archive.addfile(info, io.BytesIO(content or b""))
         for link in links:
             info = tarfile.TarInfo(link.name)
-            info.type, info.linkname = (tarfile.LNKTYPE if link.is_hard else tarfile.SYMTYPE), link.target
+            info.type, info.linkname = (
+                (tarfile.LNKTYPE if link.is_hard else tarfile.SYMTYPE),
+                link.target,
+            )
             archive.addfile(info)
     return data.getvalue()
 

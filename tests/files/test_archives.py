@@ -44,7 +44,9 @@ EVERY = list(MAKERS)
 
 
 @pytest.fixture(autouse=True)
-def temporary(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+def temporary(
+    tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[Path]:
     """Yield a folder for temporary files, which must be empty at the end."""
     place = tmp_path_factory.mktemp("temporary")
     monkeypatch.setattr(tempfile, "tempdir", str(place))
@@ -120,7 +122,10 @@ def test_small_files_are_read_once(tmp_path: Path) -> None:
     for name, size in (("small", 4_095), ("large", 4_096)):
         (tmp_path / name).write_bytes(bytes(size))
     files = read_folder(tmp_path).files
-    assert [len(files[name].read(9_000, first=True)) for name in ("small", "large")] == [4_095, 4_096]
+    assert [len(files[name].read(9_000, first=True)) for name in ("small", "large")] == [
+        4_095,
+        4_096,
+    ]
     for name in files:
         (tmp_path / name).unlink()
     assert files["small"].read(9_000) == bytes(4_095)
@@ -132,7 +137,10 @@ def test_only_a_urdfs_limit_can_be_raised(tmp_path: Path) -> None:
     """The advice to raise the limit is given only if it helps."""
     (tmp_path / "a.urdf").write_bytes(b"12345")
     (tmp_path / "a.rviz").write_bytes(b"12345")
-    for tree in (read_folder(tmp_path), tree_of(make_zip({"a.urdf": b"12345", "a.rviz": b"12345"}))):
+    for tree in (
+        read_folder(tmp_path),
+        tree_of(make_zip({"a.urdf": b"12345", "a.rviz": b"12345"})),
+    ):
         with pytest.raises(InputError, match=r"--max-size raises it"):
             tree.files["a.urdf"].read(4)
         with pytest.raises(InputError, match=r"a.rviz is larger than 4 bytes, the limit$"):
@@ -173,20 +181,40 @@ def test_a_refused_archive_is_closed() -> None:
 @pytest.mark.parametrize("ending", EVERY)
 def test_litter_is_ignored(ending: str) -> None:
     """Files of macOS, Windows, editors and builds are ignored; URDFs made by a build are named."""
-    tree = tree_of(MAKERS[ending]({
-        "__MACOSX/my_robot/._package.xml": b"", "my_robot/.DS_Store": b"", "Thumbs.db": b"", ".git/config": b"",
-        "my_robot/.vscode/settings.json": b"", "my_robot/a.urdf": b"", "node_modules/b/b.urdf": b"",
-        "build/my_robot/a.urdf": b"", "install/my_robot/share/my_robot/urdf/A.URDF": b"", "log/x.txt": b"",
-        "venv/pyvenv.cfg": b"", "venv/a.py": b"", "my_env/pyvenv.cfg": b"", "my_env/lib/b.urdf": b"", "my_robot/__pycache__/a.pyc": b"",
-    }))  # fmt: skip
+    tree = tree_of(
+        MAKERS[ending](
+            {
+                "__MACOSX/my_robot/._package.xml": b"",
+                "my_robot/.DS_Store": b"",
+                "Thumbs.db": b"",
+                ".git/config": b"",
+                "my_robot/.vscode/settings.json": b"",
+                "my_robot/a.urdf": b"",
+                "node_modules/b/b.urdf": b"",
+                "build/my_robot/a.urdf": b"",
+                "install/my_robot/share/my_robot/urdf/A.URDF": b"",
+                "log/x.txt": b"",
+                "venv/pyvenv.cfg": b"",
+                "venv/a.py": b"",
+                "my_env/pyvenv.cfg": b"",
+                "my_env/lib/b.urdf": b"",
+                "my_robot/__pycache__/a.pyc": b"",
+            }
+        )
+    )
     assert list(tree.files) == ["my_robot/a.urdf"]
-    assert tree.generated == ("build/my_robot/a.urdf", "install/my_robot/share/my_robot/urdf/A.URDF")
+    assert tree.generated == (
+        "build/my_robot/a.urdf",
+        "install/my_robot/share/my_robot/urdf/A.URDF",
+    )
     assert tree.ignored == ()
 
 
 def test_windows_separators() -> None:
     """Zips of old Windows programs have backslashes in their names."""
-    tree = tree_of(make_named_zip({b"my_robot\\urdf\\my_robot.urdf": ROBOT, b"my_robot\\meshes\\": b""}))
+    tree = tree_of(
+        make_named_zip({b"my_robot\\urdf\\my_robot.urdf": ROBOT, b"my_robot\\meshes\\": b""})
+    )
     assert list(tree.files) == [URDF]
     assert tree.folders == {"my_robot", "my_robot/urdf", "my_robot/meshes"}
     assert text(tree) == ROBOT
@@ -212,7 +240,9 @@ def test_names_in_zips(name: bytes, flags: int, expected: str) -> None:
 
 def test_names_wrongly_declared_as_utf8() -> None:
     """Python refuses such a zip as a whole, which gives one line."""
-    assert "cannot be read as an archive" in refusal(make_named_zip({"ö.urdf".encode("cp1252"): ROBOT}, 0x800))
+    assert "cannot be read as an archive" in refusal(
+        make_named_zip({"ö.urdf".encode("cp1252"): ROBOT}, 0x800)
+    )
 
 
 @pytest.mark.parametrize("style", [tarfile.GNU_FORMAT, tarfile.PAX_FORMAT, tarfile.USTAR_FORMAT])
@@ -231,23 +261,39 @@ def test_duplicate_members() -> None:
 
 @pytest.mark.parametrize("ending", EVERY)
 @pytest.mark.parametrize(
-    "name", ["/etc/a.urdf", "../a.urdf", "a/../../b.urdf", "a/..", "C:/a.urdf", "c:a.urdf", "..\\a.urdf", "\\\\host\\a"]
+    "name",
+    [
+        "/etc/a.urdf",
+        "../a.urdf",
+        "a/../../b.urdf",
+        "a/..",
+        "C:/a.urdf",
+        "c:a.urdf",
+        "..\\a.urdf",
+        "\\\\host\\a",
+    ],
 )
 def test_names_that_lead_out(ending: str, name: str) -> None:
     """A member whose name leads out is ignored and named; the others are kept."""
     tree = tree_of(MAKERS[ending]({name: b"evil", "b.urdf": ROBOT}))
     assert list(tree.files) == ["b.urdf"]
-    assert tuple(map(str, tree.ignored)) == (f"{name} has a name that leads out of the archive, and was not read",)
+    assert tuple(map(str, tree.ignored)) == (
+        f"{name} has a name that leads out of the archive, and was not read",
+    )
 
 
 def test_harmless_dots() -> None:
     """Dots that lead nowhere and repeated slashes do not count; a name that begins with a dot is hidden."""
-    tree = tree_of(make_tar({"./a.urdf": b"a", "x/./y//b.urdf": b"b", "./": None, "...": b"c", "x/..y": b"d"}))
+    tree = tree_of(
+        make_tar({"./a.urdf": b"a", "x/./y//b.urdf": b"b", "./": None, "...": b"c", "x/..y": b"d"})
+    )
     assert list(tree.files) == ["a.urdf", "x/y/b.urdf"]
 
 
 @pytest.mark.parametrize("ending", EVERY)
-@pytest.mark.parametrize("target", ["/etc/passwd", "../other", URDF, "nothing.urdf", "link", "", "x" * 5000])
+@pytest.mark.parametrize(
+    "target", ["/etc/passwd", "../other", URDF, "nothing.urdf", "link", "", "x" * 5000]
+)
 def test_links_are_not_followed(ending: str, target: str) -> None:
     """A link is ignored and named, and may hide what is to be graded; nothing else is lost."""
     tree = tree_of(MAKERS[ending](FILES, [LinkMember("link", target)]))
@@ -278,7 +324,13 @@ def test_devices_in_zips() -> None:
     """A member that a zip declares as a device is ignored."""
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w") as archive:
-        for name, mode in (("fifo", 0o010644), ("device", 0o020644), ("plain", 0o100644), ("none", 0), ("bits", 0o644)):
+        for name, mode in (
+            ("fifo", 0o010644),
+            ("device", 0o020644),
+            ("plain", 0o100644),
+            ("none", 0),
+            ("bits", 0o644),
+        ):
             info = zipfile.ZipInfo(name)
             info.external_attr = mode << 16
             archive.writestr(info, b"a")
@@ -304,21 +356,27 @@ def test_unsupported_compressions(method: int) -> None:
     known = method in (zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA)
     data = make_zip({"a.urdf": ROBOT}, compression=method if known else zipfile.ZIP_STORED)
     if not known:
-        data = data.replace(b"PK\1\2\x14\3\x14\0\0\0\0\0", b"PK\1\2\x14\3\x14\0\0\0" + struct.pack("<H", method))
+        data = data.replace(
+            b"PK\1\2\x14\3\x14\0\0\0\0\0", b"PK\1\2\x14\3\x14\0\0\0" + struct.pack("<H", method)
+        )
     tree = tree_of(data)
     assert tree.files == {}
-    assert tuple(map(str, tree.ignored)) == ("a.urdf is compressed with a method other than deflate, and was not read",)
+    assert tuple(map(str, tree.ignored)) == (
+        "a.urdf is compressed with a method other than deflate, and was not read",
+    )
 
 
 @pytest.mark.parametrize(
-    ("start", "kind"), [(b"7z\xbc\xaf\x27\x1c", "7z"), (b"Rar!\x1a\7\0", "rar"), (b"Rar!\x1a\7\1\0", "rar")]
+    ("start", "kind"),
+    [(b"7z\xbc\xaf\x27\x1c", "7z"), (b"Rar!\x1a\7\0", "rar"), (b"Rar!\x1a\7\1\0", "rar")],
 )
 def test_other_archives(start: bytes, kind: str, tmp_path: Path) -> None:
     """7z and rar are refused in one line that says what to submit."""
     path = tmp_path / f"lab6.{kind}"
     path.write_bytes(start + bytes(100))
     with pytest.raises(
-        InputError, match=f"lab6.{kind} is a {kind} archive, which is not supported: submit a .zip or .tar.gz"
+        InputError,
+        match=f"lab6.{kind} is a {kind} archive, which is not supported: submit a .zip or .tar.gz",
     ):
         open_tree(path)
 
@@ -329,7 +387,12 @@ def test_files_that_are_no_archive(tmp_path: Path) -> None:
         (tmp_path / name).write_bytes(b"something else")
         with pytest.raises(InputError, match="is not a readable archive"):
             open_tree(tmp_path / name)
-    for name, data in (("a.urdf", make_zip()), ("a.txt", ROBOT), ("a", b""), ("a.xacro", b"PK\3\4")):
+    for name, data in (
+        ("a.urdf", make_zip()),
+        ("a.txt", ROBOT),
+        ("a", b""),
+        ("a.xacro", b"PK\3\4"),
+    ):
         (tmp_path / name).write_bytes(data)
         assert open_tree(tmp_path / name) is None
     (tmp_path / "upload").write_bytes(make_zip())
@@ -372,7 +435,9 @@ def test_a_member_without_a_name() -> None:
     """A member with an empty name is ignored."""
     data = bytearray(make_zip({"a.urdf": ROBOT, "b.urdf": ROBOT}))
     central = data.index(b"PK\1\2")
-    data[central + 28 : central + 34] = struct.pack("<3H", 0, 0, 6)  # its name has become its comment
+    data[central + 28 : central + 34] = struct.pack(
+        "<3H", 0, 0, 6
+    )  # its name has become its comment
     assert list(tree_of(bytes(data)).files) == ["b.urdf"]
 
 
@@ -396,14 +461,29 @@ def test_limits_of_size(ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.undo()
     monkeypatch.setattr(limits, "MAX_UNPACKED_SIZE", 20_000)
     assert set(tree_of(data).files) == {"a", "b"}
-    assert "would unpack to more than 20000 bytes, the limit" in refusal(MAKERS[ending]({"a": bytes(30_000)}))
+    assert "would unpack to more than 20000 bytes, the limit" in refusal(
+        MAKERS[ending]({"a": bytes(30_000)})
+    )
 
 
 def test_a_bomb_of_overlapping_members() -> None:
     """Members that share the same bytes are refused by their number, their sizes, or when they are read."""
     body = zlib.compress(bytes(1_000_000), 9)[2:-4]
     local = (
-        struct.pack("<4s5H3I2H", b"PK\3\4", 20, 0, 8, 0, 0, zlib.crc32(bytes(1_000_000)), len(body), 1_000_000, 1, 0)
+        struct.pack(
+            "<4s5H3I2H",
+            b"PK\3\4",
+            20,
+            0,
+            8,
+            0,
+            0,
+            zlib.crc32(bytes(1_000_000)),
+            len(body),
+            1_000_000,
+            1,
+            0,
+        )
         + b"a"
     )
     central = b"".join(
@@ -434,7 +514,9 @@ def test_a_bomb_of_overlapping_members() -> None:
         local
         + body
         + central
-        + struct.pack("<4s4H2IH", b"PK\5\6", 0, 0, 2000, 2000, len(central), len(local) + len(body), 0)
+        + struct.pack(
+            "<4s4H2IH", b"PK\5\6", 0, 0, 2000, 2000, len(central), len(local) + len(body), 0
+        )
     )
     with limited_work(400_000):
         assert "would unpack to more than 32 MiB" in refusal(data)
@@ -444,7 +526,9 @@ def test_a_bomb_of_overlapping_members() -> None:
 def test_wrong_sizes(claimed: int) -> None:
     """A zip member with a wrong size is never unpacked beyond it, and causes no internal error."""
     real = bytes(1_000_000)
-    data = make_zip({"a.urdf": real}).replace(struct.pack("<I", len(real)), struct.pack("<I", claimed))
+    data = make_zip({"a.urdf": real}).replace(
+        struct.pack("<I", len(real)), struct.pack("<I", claimed)
+    )
     tree = tree_of(data)
     with pytest.raises(InputError), limited_work(400_000):
         tree.files["a.urdf"].read(500)
@@ -494,11 +578,23 @@ def header(name: bytes, size: bytes, kind: bytes = b"0") -> bytes:
 
 @pytest.mark.parametrize(
     "size",
-    [b"\xff" * 12, b"\x80" + b"\xff" * 11, b"\xff" * 8 + b"\0\0\2\0", b"77777777777", b"-1", b"\x80" + b"\x7f" * 11],
+    [
+        b"\xff" * 12,
+        b"\x80" + b"\xff" * 11,
+        b"\xff" * 8 + b"\0\0\2\0",
+        b"77777777777",
+        b"-1",
+        b"\x80" + b"\x7f" * 11,
+    ],
 )
 def test_sizes_in_tars(size: bytes) -> None:
     """Negative sizes and sizes beyond the end give one line, not an endless loop."""
-    data = header(b"a.urdf", b"00000000001") + b"a".ljust(512, b"\0") + header(b"b.urdf", size) + bytes(2048)
+    data = (
+        header(b"a.urdf", b"00000000001")
+        + b"a".ljust(512, b"\0")
+        + header(b"b.urdf", size)
+        + bytes(2048)
+    )
     with limited_work(3_000):
         try:
             read_all(tree_of(data))
@@ -510,7 +606,9 @@ def test_long_names_in_tars() -> None:
     """A name of a hundred thousand characters is ignored; chains of long names end."""
     tree = tree_of(make_tar({"a" * 100_000: b"", "b.urdf": ROBOT}))
     assert list(tree.files) == ["b.urdf"]
-    assert tuple(map(str, tree.ignored)) == (f"{'a' * 40}... has a name that is too long, and was not read",)
+    assert tuple(map(str, tree.ignored)) == (
+        f"{'a' * 40}... has a name that is too long, and was not read",
+    )
     names = header(b"././@LongLink", b"00000000001", b"L") + b"a".ljust(512, b"\0")
     with limited_work(300_000):
         assert "cannot be read as an archive" in refusal(names * 5000 + bytes(1024))
@@ -571,7 +669,9 @@ def test_archives_nested_too_deep(tmp_path: Path) -> None:
     """Beyond three levels an archive is ignored and named."""
     tree = opened(tmp_path / "lab6.zip", nested(4, make_zip()))
     assert not any(path.endswith(".urdf") for path in tree.files)
-    assert str(tree.ignored[0]).endswith("is an archive inside an archive, nested too deep to be opened")
+    assert str(tree.ignored[0]).endswith(
+        "is an archive inside an archive, nested too deep to be opened"
+    )
 
 
 def test_an_archive_beside_a_package(tmp_path: Path) -> None:
@@ -614,7 +714,13 @@ def test_damaged_archives_in_a_folder(tmp_path: Path) -> None:
     tree = open_tree(tmp_path)
     assert tree is not None
     assert f"d.tar.gz/{URDF}" in tree.files
-    assert [line.split()[0] for line in map(str, tree.ignored)] == ["a.zip", "b.rar", "c.zip", "e.zip", "f.csv.gz"]
+    assert [line.split()[0] for line in map(str, tree.ignored)] == [
+        "a.zip",
+        "b.rar",
+        "c.zip",
+        "e.zip",
+        "f.csv.gz",
+    ]
     assert all("\n" not in line for line in map(str, tree.ignored))
 
 
@@ -658,18 +764,32 @@ def test_a_folder(home: Path) -> None:
     tree = read_folder(home)
     assert list(tree.files) == [URDF]
     assert tree.folders == {"my_robot", "my_robot/urdf", "my_robot/meshes"}
-    assert (tree.name, text(tree), tree.files[URDF].size, tree.ignored) == ("lab6", ROBOT, len(ROBOT), ())
+    assert (tree.name, text(tree), tree.files[URDF].size, tree.ignored) == (
+        "lab6",
+        ROBOT,
+        len(ROBOT),
+        (),
+    )
     assert (tree.files[URDF].name, tree.files[URDF].suffix) == ("my_robot.urdf", ".urdf")
 
 
 def test_symlinks_in_folders(home: Path) -> None:
     """No symlink is followed; each is named, and may hide what is to be graded."""
-    links = {"a": URDF, "b": "my_robot", "c": "../secret.urdf", "d": "/etc", "e": "nothing", "f": "f"}
+    links = {
+        "a": URDF,
+        "b": "my_robot",
+        "c": "../secret.urdf",
+        "d": "/etc",
+        "e": "nothing",
+        "f": "f",
+    }
     for name, target in links.items():
         (home / name).symlink_to(target)
     tree = read_folder(home)
     assert list(tree.files) == [URDF]
-    assert tuple(map(str, tree.unopened)) == tuple(f"{name} is a symlink, and was not followed" for name in links)
+    assert tuple(map(str, tree.unopened)) == tuple(
+        f"{name} is a symlink, and was not followed" for name in links
+    )
     assert links.keys() <= tree.unseen
 
 
@@ -688,17 +808,34 @@ def test_special_files(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_litter_in_folders(home: Path) -> None:
     """Builds, tools, virtual environments and hidden files are ignored; URDFs copied by a build are named."""
-    for path in (".git/config", "build/my_robot/b.urdf", "install/my_robot/share/my_robot/urdf/my_robot.urdf", "install/x.txt",
-                 "log/latest/c.urdf", "my_robot/.hidden.urdf", "my_robot/__pycache__/a.pyc", "mine/pyvenv.cfg", "mine/lib/d.urdf",
-                 "venv/pyvenv.cfg", "venv/e.urdf", "node_modules/f/f.urdf", ".DS_Store", "Thumbs.db", "my_robot/build/deep/g.urdf"):  # fmt: skip
+    for path in (
+        ".git/config",
+        "build/my_robot/b.urdf",
+        "install/my_robot/share/my_robot/urdf/my_robot.urdf",
+        "install/x.txt",
+        "log/latest/c.urdf",
+        "my_robot/.hidden.urdf",
+        "my_robot/__pycache__/a.pyc",
+        "mine/pyvenv.cfg",
+        "mine/lib/d.urdf",
+        "venv/pyvenv.cfg",
+        "venv/e.urdf",
+        "node_modules/f/f.urdf",
+        ".DS_Store",
+        "Thumbs.db",
+        "my_robot/build/deep/g.urdf",
+    ):
         (home / path).parent.mkdir(parents=True, exist_ok=True)
         (home / path).write_bytes(b"")
     tree = read_folder(home)
     assert list(tree.files) == [URDF]
     assert tree.ignored == ()
     assert tree.generated == (
-        "build/my_robot/b.urdf", "install/my_robot/share/my_robot/urdf/my_robot.urdf", "log/latest/c.urdf", "my_robot/build/deep/g.urdf",
-    )  # fmt: skip
+        "build/my_robot/b.urdf",
+        "install/my_robot/share/my_robot/urdf/my_robot.urdf",
+        "log/latest/c.urdf",
+        "my_robot/build/deep/g.urdf",
+    )
 
 
 def test_a_symlinked_build_folder(home: Path) -> None:
@@ -720,7 +857,9 @@ def test_folders_that_cannot_be_opened(home: Path, monkeypatch: pytest.MonkeyPat
     closed = ["meshes"]
     tree = read_folder(home)
     assert list(tree.files) == [URDF]
-    assert tuple(map(str, tree.ignored)) == ("my_robot/meshes is a folder that cannot be opened: Permission denied",)
+    assert tuple(map(str, tree.ignored)) == (
+        "my_robot/meshes is a folder that cannot be opened: Permission denied",
+    )
     closed = ["lab6"]
     with pytest.raises(InputError, match=r"cannot read .*lab6: Permission denied"):
         read_folder(home)
@@ -775,7 +914,9 @@ def test_too_many_files_in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPa
             (tmp_path / f"d{n}/{m}").write_bytes(b"")
     assert len(read_folder(tmp_path).files) == 16
     (tmp_path / "one_more").write_bytes(b"")
-    with pytest.raises(InputError, match="contains more than 20 files: name the package or the URDF"):
+    with pytest.raises(
+        InputError, match="contains more than 20 files: name the package or the URDF"
+    ):
         read_folder(tmp_path)
 
 
@@ -794,5 +935,7 @@ def test_a_folder_and_its_zip_are_equal(home: Path) -> None:
     """The file trees are the same."""
     packed = tree_of(make_zip({URDF: ROBOT, "my_robot/meshes/": None}))
     plain = read_folder(home)
-    assert [file[:2] for file in packed.files.values()] == [file[:2] for file in plain.files.values()]
+    assert [file[:2] for file in packed.files.values()] == [
+        file[:2] for file in plain.files.values()
+    ]
     assert packed.folders == plain.folders

@@ -17,7 +17,9 @@ from grader.files.tree import Tree
 from tests.classroom.class_runs import Item, bomb, tarred
 
 NAMES = st.lists(
-    st.text(st.sampled_from("ab./\\ é"), min_size=1, max_size=12).filter(lambda name: not name.endswith(("/", "\\"))),
+    st.text(st.sampled_from("ab./\\ é"), min_size=1, max_size=12).filter(
+        lambda name: not name.endswith(("/", "\\"))
+    ),
     max_size=6,
     unique=True,
 )
@@ -48,10 +50,16 @@ def contents_of(tree: Tree) -> tuple[object, ...]:
 def test_a_folder_in_a_class_zip_equals_its_own_zip(names: list[str]) -> None:
     """Files, folders and refusals are the same, whatever the names."""
     members = {name: f"{number}".encode() for number, name in enumerate(names)}
-    inside = {f"ann/{name}": data for name, data in members.items() if not name.startswith(("/", "\\"))}
-    alone = read_archive(io.BytesIO(pack({name.removeprefix("ann/"): inside[name] for name in inside})), "zip", "ann")
+    inside = {
+        f"ann/{name}": data for name, data in members.items() if not name.startswith(("/", "\\"))
+    }
+    alone = read_archive(
+        io.BytesIO(pack({name.removeprefix("ann/"): inside[name] for name in inside})), "zip", "ann"
+    )
     with tempfile.TemporaryDirectory() as target:
-        found = bulk(Path(target), pack({"ann/": b"", **inside, "bea/x.urdf": b"bea"})).folder("ann")
+        found = bulk(Path(target), pack({"ann/": b"", **inside, "bea/x.urdf": b"bea"})).folder(
+            "ann"
+        )
         files, *rest = contents_of(found)
         assert (files, rest[0]) == contents_of(alone)[:2]
         assert not any("bea" in path for path in found.files)
@@ -59,9 +67,14 @@ def test_a_folder_in_a_class_zip_equals_its_own_zip(names: list[str]) -> None:
 
 def test_an_archive_in_a_class_zip_equals_one_alone(tmp_path: Path) -> None:
     """A zip or a tar in the zip of the class, and a single file."""
-    inner = pack({"my_robot/urdf/my_robot.urdf": b"<robot/>", "my_robot/build/x.urdf": b"", "../out": b"no"})
+    inner = pack(
+        {"my_robot/urdf/my_robot.urdf": b"<robot/>", "my_robot/build/x.urdf": b"", "../out": b"no"}
+    )
     tar = tarred([Item("my_robot/a.urdf", b"<robot/>")])
-    opened = bulk(tmp_path, pack({"ann.zip": inner, "bea.tar.gz": tar, "cal.urdf": b"<robot/>", "dan.zip": b"nothing"}))
+    opened = bulk(
+        tmp_path,
+        pack({"ann.zip": inner, "bea.tar.gz": tar, "cal.urdf": b"<robot/>", "dan.zip": b"nothing"}),
+    )
     for name, data, kind in (("ann.zip", inner, "zip"), ("bea.tar.gz", tar, "gz")):
         digest = sha256()
         found = opened.archive(name, digest)
@@ -86,7 +99,9 @@ def test_several_files_keep_their_names(tmp_path: Path) -> None:
     assert tree.name == "ann"
 
 
-@pytest.mark.parametrize("name", ["../out.urdf", "/out.urdf", "C:\\out.urdf", "ann/../../out.urdf", "..\\out.urdf"])
+@pytest.mark.parametrize(
+    "name", ["../out.urdf", "/out.urdf", "C:\\out.urdf", "ann/../../out.urdf", "..\\out.urdf"]
+)
 def test_names_that_lead_out_are_unassigned(name: str, tmp_path: Path) -> None:
     """No path leads to them, and the other files are read."""
     opened = bulk(tmp_path, pack({name: b"out", "ann/a.urdf": b"a"}))
@@ -112,8 +127,13 @@ def test_an_encrypted_member_is_ignored(tmp_path: Path) -> None:
 def test_a_zip_bomb_affects_its_student_only(tmp_path: Path) -> None:
     """A member that would unpack to more than the limit is refused before it is unpacked."""
     zeros = bytes(64 * 1024 * 1024)
-    opened = bulk(tmp_path, pack({"ann/b.zip": bomb(), "bea.zip": bomb(), "cal/a.urdf": b"a", "dan/zeros.urdf": zeros}))
-    with pytest.raises(InputError, match=r"would unpack to more than [0-9]+ MiB, the limit for an archive"):
+    opened = bulk(
+        tmp_path,
+        pack({"ann/b.zip": bomb(), "bea.zip": bomb(), "cal/a.urdf": b"a", "dan/zeros.urdf": zeros}),
+    )
+    with pytest.raises(
+        InputError, match=r"would unpack to more than [0-9]+ MiB, the limit for an archive"
+    ):
         opened.archive("bea.zip", sha256())
     assert set(opened.folder("ann").files) == {"b.zip"}
     assert opened.read("cal/a.urdf", 100) == b"a"

@@ -40,12 +40,28 @@ def search(name: str, out: Path, seconds: int, runs: int) -> dict[str, Any]:
         (folder / "seeds" / str(number)).write_bytes(data[: harness.size])
     (folder / "words").write_text("".join(f'"{_escaped(word)}"\n' for word in harness.words))
     start, done, states, ends = time.monotonic(), 0, [], 0
-    while ends < _MOST_ENDS and (left := seconds - (time.monotonic() - start)) > 1 and (not runs or done < runs):
-        flags = [f"-max_total_time={int(left)}", f"-runs={runs - done if runs else -1}", f"-max_len={harness.size}"]
-        flags += [*_LIMITS, f"-dict={folder / 'words'}", f"-artifact_prefix={folder}/", f"-seed={ends + 1}"]
+    while (
+        ends < _MOST_ENDS
+        and (left := seconds - (time.monotonic() - start)) > 1
+        and (not runs or done < runs)
+    ):
+        flags = [
+            f"-max_total_time={int(left)}",
+            f"-runs={runs - done if runs else -1}",
+            f"-max_len={harness.size}",
+        ]
+        flags += [
+            *_LIMITS,
+            f"-dict={folder / 'words'}",
+            f"-artifact_prefix={folder}/",
+            f"-seed={ends + 1}",
+        ]
         command = [sys.executable, "-m", "tests.fuzz.worker", name, str(folder), *flags]
         ended = subprocess.run(
-            [*command, str(folder / "corpus"), str(folder / "seeds")], cwd=ROOT, capture_output=True, check=False
+            [*command, str(folder / "corpus"), str(folder / "seeds")],
+            cwd=ROOT,
+            capture_output=True,
+            check=False,
         )
         log = ended.stderr.decode("utf-8", "replace")
         (folder / f"log-{ends}").write_text(log)
@@ -65,9 +81,15 @@ def search(name: str, out: Path, seconds: int, runs: int) -> dict[str, Any]:
     ends -= len(_found(folder, "oom", "timeout"))  # those of libFuzzer that have a reason
     slowest = folder / "slowest.txt"
     return {
-        "harness": name, "inputs": done, "seconds": round(spent), "coverage": max(edges), "new": max(edges) - first,
-        "slowest": float(slowest.read_text()) if slowest.exists() else 0.0, "findings": findings, "failures": max(0, ends),
-    }  # fmt: skip
+        "harness": name,
+        "inputs": done,
+        "seconds": round(spent),
+        "coverage": max(edges),
+        "new": max(edges) - first,
+        "slowest": float(slowest.read_text()) if slowest.exists() else 0.0,
+        "findings": findings,
+        "failures": max(0, ends),
+    }
 
 
 def _found(folder: Path, *kinds: str) -> list[Path]:
@@ -78,7 +100,9 @@ def is_too_slow(name: str, path: Path) -> bool:
     """Return whether an input takes more than the allowed processor time without counters of coverage."""
     command = [sys.executable, "-m", "tests.fuzz", name, "--input", str(path)]
     try:
-        done = subprocess.run(command, cwd=ROOT, capture_output=True, check=False, timeout=20 * MAX_SECONDS)
+        done = subprocess.run(
+            command, cwd=ROOT, capture_output=True, check=False, timeout=20 * MAX_SECONDS
+        )
     except subprocess.TimeoutExpired:
         return True
     return float(done.stdout or MAX_SECONDS) >= MAX_SECONDS
@@ -98,11 +122,18 @@ def run_once(name: str, path: Path) -> float:
 def _described(folder: Path) -> Iterator[str]:
     """Yield each traceback and its input, for a log that is all that is left of a machine."""
     for path in _found(folder, "crash"):
-        yield path.read_text() if path.suffix == ".txt" else f"{path.name}: {b64encode(path.read_bytes()).decode()}"
+        yield (
+            path.read_text()
+            if path.suffix == ".txt"
+            else f"{path.name}: {b64encode(path.read_bytes()).decode()}"
+        )
 
 
 def _escaped(word: str) -> str:
-    return "".join(chr(byte) if 32 <= byte < 127 and byte not in b'"\\' else f"\\x{byte:02X}" for byte in word.encode())
+    return "".join(
+        chr(byte) if 32 <= byte < 127 and byte not in b'"\\' else f"\\x{byte:02X}"
+        for byte in word.encode()
+    )
 
 
 def line(row: Mapping[str, Any]) -> str:
@@ -122,12 +153,24 @@ def main() -> int:
     parser.add_argument("--all", action="store_true", help="run every harness")
     parser.add_argument("--seconds", type=int, default=60, help="of each harness (default: 60)")
     parser.add_argument(
-        "--runs", type=int, default=0, help="inputs of each harness (default: as many as there is time for)"
+        "--runs",
+        type=int,
+        default=0,
+        help="inputs of each harness (default: as many as there is time for)",
     )
     parser.add_argument("--jobs", type=int, default=1, help="harnesses at once (default: 1)")
-    parser.add_argument("--out", type=Path, default=ROOT / "build" / "fuzz", help="what is found (default: build/fuzz)")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=ROOT / "build" / "fuzz",
+        help="what is found (default: build/fuzz)",
+    )
     parser.add_argument("--json", type=Path, help="a file to which the figures are added")
-    parser.add_argument("--input", type=Path, help="run this input only, without atheris, and print its processor time")
+    parser.add_argument(
+        "--input",
+        type=Path,
+        help="run this input only, without atheris, and print its processor time",
+    )
     options = parser.parse_args()
     if options.input is not None:
         print(f"{run_once(options.names[0], options.input):.2f}")
@@ -150,7 +193,9 @@ def main() -> int:
             if options.json is not None:
                 with options.json.open("a") as file:
                     file.write(json.dumps(rows[-1]) + "\n")
-    print(f"{sum(row['inputs'] for row in rows)} inputs, {sum(len(row['findings']) for row in rows)} findings")
+    print(
+        f"{sum(row['inputs'] for row in rows)} inputs, {sum(len(row['findings']) for row in rows)} findings"
+    )
     return 1 if any(row["findings"] or row["failures"] for row in rows) else 0
 
 

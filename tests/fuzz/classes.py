@@ -20,7 +20,13 @@ from grader.errors import RubricError
 from grader.grading.grade import grade
 from grader.grading.rubric import read_rubric
 from tests.classroom.gradebooks import ROSTER, batch, lab_text, make_class
-from tests.classroom.lms.lms_class import CLASS, blackboard_file, brightspace_file, canvas_file, moodle_file
+from tests.classroom.lms.lms_class import (
+    CLASS,
+    blackboard_file,
+    brightspace_file,
+    canvas_file,
+    moodle_file,
+)
 from tests.fuzz.harness import GUARD, check_message, user_errors
 from tests.samples import LAB6, reference
 
@@ -81,8 +87,15 @@ def lms(data: bytes, name: str) -> None:
     with user_errors():
         table = read_table(data, "lms.csv")
         assert table.encoded() == data
-        filled = fill(data, _SOME, FORMS[name], FillOptions(_OUT_OF, ("A small lab", "small"), shown="lms.csv"))
-        text = filled.data.removeprefix(table.bom).decode(table.encoding)  # as what it was read, whatever is left of it
+        filled = fill(
+            data,
+            _SOME,
+            FORMS[name],
+            FillOptions(_OUT_OF, ("A small lab", "small"), shown="lms.csv"),
+        )
+        text = filled.data.removeprefix(table.bom).decode(
+            table.encoding
+        )  # as what it was read, whatever is left of it
         _check_filled(table, _split_rows(text, table.delimiter, "lms.csv"))
         for line in filled.lines:
             assert line.isprintable(), line
@@ -91,12 +104,17 @@ def lms(data: bytes, name: str) -> None:
 def _check_filled(before: Table, after: Sequence[TableRow]) -> None:
     """Assert that the rows are some of those before, in their order; two columns may differ, for grade and feedback."""
     columns = range(max(len(row.cells) for row in before.rows))
-    assert any(_are_some(before, after, {*two}) for two in [(), *combinations(columns, 1), *combinations(columns, 2)])
+    assert any(
+        _are_some(before, after, {*two})
+        for two in [(), *combinations(columns, 1), *combinations(columns, 2)]
+    )
 
 
 def _are_some(before: Table, after: Sequence[TableRow], changed: set[int]) -> bool:
     """Return whether rows are some of a table's, in their order, but for these columns."""
-    kept, rest = ([_without(row, changed) for row in rows if row.cells] for rows in (after, before.rows))
+    kept, rest = (
+        [_without(row, changed) for row in rows if row.cells] for rows in (after, before.rows)
+    )
     rows = iter(rest)
     return all(any(row == old for old in rows) for row in kept)
 
@@ -109,7 +127,10 @@ _CELLS = {one.student.key: ("", "1.00", "")[number % 3] for number, one in enume
 LMS_SEEDS: dict[str, Callable[[], list[bytes]]] = {
     "canvas": lambda: [canvas_file(_CELLS), canvas_file(_CELLS, only=True)],
     "moodle": lambda: [moodle_file(_CELLS, {one.student.key: "<p>kept</p>" for one in _SOME[:2]})],
-    "blackboard": lambda: [blackboard_file(_CELLS), blackboard_file(_CELLS).decode("utf-16").encode()],
+    "blackboard": lambda: [
+        blackboard_file(_CELLS),
+        blackboard_file(_CELLS).decode("utf-16").encode(),
+    ],
     "brightspace": lambda: [brightspace_file(_CELLS)],
 }
 LMS = {name: partial(lms, name=name) for name in LMS_SEEDS}

@@ -27,7 +27,12 @@ _QUESTIONS = (
     ),
     ("Name some nodes, and what they do.", ["task 2 step 2", "question 2 of 2", "nodes"]),
 )
-_EVIDENCE = (["task 1 step 8"], ["task 1 step 18"], ["task 2 step 6"], ["task 3 step 3", "task 3", "webcam", "camera"])
+_EVIDENCE = (
+    ["task 1 step 8"],
+    ["task 1 step 18"],
+    ["task 2 step 6"],
+    ["task 3 step 3", "task 3", "webcam", "camera"],
+)
 
 
 def archive(data: bytes) -> None:
@@ -83,8 +88,15 @@ def classes() -> Iterator[bytes]:
     urdf = b"<robot name='r'><link name='a'/></robot>"
     names = (
         ("ash/robot.urdf", "birch/robot.urdf"),
-        ("ashann_101_9001_robot.urdf", "birchbo_LATE_102_9002_robot-1.urdf", "ashann_101_9003_answers.md"),
-        ("Ann Ash_5001_assignsubmission_file_/robot.urdf", "Bo Birch_5002_assignsubmission_file_/robot.urdf"),
+        (
+            "ashann_101_9001_robot.urdf",
+            "birchbo_LATE_102_9002_robot-1.urdf",
+            "ashann_101_9003_answers.md",
+        ),
+        (
+            "Ann Ash_5001_assignsubmission_file_/robot.urdf",
+            "Bo Birch_5002_assignsubmission_file_/robot.urdf",
+        ),
         ("submitted/ash/lab6/robot.urdf", "submitted/birch/lab6/robot.urdf"),
         ("team-1/ash/robot.urdf", "team-1/birch/robot.urdf", "team-2/cedar/robot.urdf"),
     )
@@ -100,7 +112,9 @@ def answers(data: bytes) -> None:
     document = documents.document(file)
     lines = document.lines if isinstance(document, TextDocument) else []
     for question, places in _QUESTIONS:
-        found = find_answer(documents, ("*.md", "*.txt", "*.docx", "*.pdf"), places, question).passage
+        found = find_answer(
+            documents, ("*.md", "*.txt", "*.docx", "*.pdf"), places, question
+        ).passage
         if found is not None:
             check_message(found.where)
             check_location(found.location, {path: "\n".join(lines)})
@@ -126,7 +140,9 @@ def documents() -> Iterator[bytes]:
             ("Answer to required question 1:", "Answer 2:"),
         ),
     ):
-        yield b"\0" + f"{first}\n\nIt has two roots.\n\n{second}\n\nrviz2 shows the robot.\n".encode()
+        yield (
+            b"\0" + f"{first}\n\nIt has two roots.\n\n{second}\n\nrviz2 shows the robot.\n".encode()
+        )
     yield b"\3Task 1 Step 15\nIt has two roots.\n\xef\xbf\xbc\n\x0c\nTask 2 Step 2\nrviz2.\n\xef\xbf\xbc\n"
 
 
@@ -159,8 +175,18 @@ def picture(data: bytes) -> None:
 
 def pictures() -> Iterator[bytes]:
     """Yield the beginnings of pictures of every format."""
-    yield from (png(), gif(), jpeg(), b"%PDF-1.4\n", b"BM" + bytes(12) + b"\x28\0\0\0\2\0\0\0\2\0\0\0" + bytes(30))
-    yield jpeg()[:2] + b"\xff\xe1\x00\x1aExif\0\0MM\0*\0\0\0\x08\0\1\1\x12\0\3\0\0\0\1\0\6\0\0" + jpeg()[2:]
+    yield from (
+        png(),
+        gif(),
+        jpeg(),
+        b"%PDF-1.4\n",
+        b"BM" + bytes(12) + b"\x28\0\0\0\2\0\0\0\2\0\0\0" + bytes(30),
+    )
+    yield (
+        jpeg()[:2]
+        + b"\xff\xe1\x00\x1aExif\0\0MM\0*\0\0\0\x08\0\1\1\x12\0\3\0\0\0\1\0\6\0\0"
+        + jpeg()[2:]
+    )
     yield b"II*\0\x08\0\0\0\2\0\0\1\3\0\1\0\0\0\5\0\0\0\1\1\3\0\1\0\0\0\7\0\0\0"
     for chunk in (b"VP8 ", b"VP8L", b"VP8X"):
         yield b"RIFF\x20\0\0\0WEBP" + chunk + b"\x10\0\0\0" + bytes(range(1, 20))

@@ -84,16 +84,29 @@ class Harness(NamedTuple):
     def inputs(self, name: str) -> list[bytes]:
         """Return the seeds, without those that are too large, and the inputs that once failed."""
         found = [path for pattern in self.seeds for path in sorted(ROOT.glob(pattern))]
-        own = [path for kind in ("corpus", "crashes") for path in sorted((FOLDER / kind / name).glob("*"))]
+        own = [
+            path
+            for kind in ("corpus", "crashes")
+            for path in sorted((FOLDER / kind / name).glob("*"))
+        ]
         texts = (packed(path) if path.is_dir() else path.read_bytes() for path in (*found, *own))
         made = [text for text in dict.fromkeys(self.made()) if len(text) <= MAX_SEED]
-        return [*made[:: 1 + len(made) // _MAX_MADE], *(text for text in texts if len(text) <= MAX_SEED)]
+        return [
+            *made[:: 1 + len(made) // _MAX_MADE],
+            *(text for text in texts if len(text) <= MAX_SEED),
+        ]
 
 
 def packed(folder: Path) -> bytes:
     """Return the files of a folder as one input, the inverse of `files_of`."""
-    files = [path for path in sorted(folder.rglob("*")) if path.is_file() and path.name != "expected.toml"]
-    return b"\n".join(b"=== %b\n%b" % (os.fsencode(path.relative_to(folder)), path.read_bytes()) for path in files)
+    files = [
+        path
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and path.name != "expected.toml"
+    ]
+    return b"\n".join(
+        b"=== %b\n%b" % (os.fsencode(path.relative_to(folder)), path.read_bytes()) for path in files
+    )
 
 
 def files_of(data: bytes) -> dict[str, bytes]:
@@ -123,11 +136,17 @@ def mutated(data: bytes, chance: Random, words: tuple[str, ...], size: int) -> b
                 tokens[start : start + 1] = [bytes([chance.randrange(256)])]
             case 5:
                 lines = b"".join(tokens).split(b"\n")
-                lines.insert(chance.randrange(len(lines) + 1), lines.pop(chance.randrange(len(lines))))
+                lines.insert(
+                    chance.randrange(len(lines) + 1), lines.pop(chance.randrange(len(lines)))
+                )
                 tokens = _TOKEN.findall(b"\n".join(lines))
             case _:
-                at = next((at for at in range(start, len(tokens)) if tokens[at][-1:].isdigit()), start)
-                tokens[at : at + 1] = [_other_number(tokens[at] if at < len(tokens) else b"", chance)]
+                at = next(
+                    (at for at in range(start, len(tokens)) if tokens[at][-1:].isdigit()), start
+                )
+                tokens[at : at + 1] = [
+                    _other_number(tokens[at] if at < len(tokens) else b"", chance)
+                ]
     return b"".join(tokens)[:size]
 
 
@@ -136,7 +155,10 @@ def _other_number(token: bytes, chance: Random) -> bytes:
         value = float(token)
     except ValueError:
         return chance.choice(_NUMBERS)
-    near = (value * chance.choice((-1, 2, 0.5, 10, 1000, 57.29578)), value + chance.choice((0.001, -0.02, 1)))
+    near = (
+        value * chance.choice((-1, 2, 0.5, 10, 1000, 57.29578)),
+        value + chance.choice((0.001, -0.02, 1)),
+    )
     return chance.choice((*(f"{number:g}".encode() for number in near), chance.choice(_NUMBERS)))
 
 
@@ -199,7 +221,9 @@ class Guard:
         if isinstance(path, int) or path is None:
             return True
         text = os.fsdecode(path) if isinstance(path, str | bytes | os.PathLike) else ""
-        return bool(self.folder) and os.path.realpath(text).startswith(os.path.realpath(self.folder))
+        return bool(self.folder) and os.path.realpath(text).startswith(
+            os.path.realpath(self.folder)
+        )
 
     @contextmanager
     def watching(self, *, is_active: bool = True) -> Iterator[None]:

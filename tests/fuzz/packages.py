@@ -17,7 +17,9 @@ from tests.fuzz.harness import check_location, check_message, decoded
 from tests.package.launch_samples import Installed
 from tests.package.my_robot import FILES
 
-_TREE = make_tree("my_robot", [file_of(path, text.format(path).encode()) for path, text in FILES.items()], ())
+_TREE = make_tree(
+    "my_robot", [file_of(path, text.format(path).encode()) for path, text in FILES.items()], ()
+)
 _LAUNCHES = {
     "share/my_robot/launch/other.launch.py": b"from launch import LaunchDescription\n"
     b"def generate_launch_description():\n    return LaunchDescription([])\n",

@@ -52,7 +52,9 @@ def urdf(data: bytes) -> None:
         robot = Configuration(reading.robot)
         for link in reading.robot.links:
             with suppress(MissingElement, NotDecided):
-                assert all(abs(turned) <= 1.001 for turned in robot.pose(link.name).rotate((0.6, 0.8, 0.0)))
+                assert all(
+                    abs(turned) <= 1.001 for turned in robot.pose(link.name).rotate((0.6, 0.8, 0.0))
+                )
 
 
 def check_reading(reading: Reading) -> None:
@@ -71,7 +73,10 @@ def inspection(data: bytes) -> None:
     robot = Configuration(reading.robot) if reading.robot is not None else None
     shown = Inspection("a.urdf", reading, robot, main_root(robot) if robot is not None else None)
     for kind in InspectFormat:
-        is_harmless(render_inspection(shown, kind, _SCREEN), Format.GITHUB if kind is InspectFormat.GITHUB else None)
+        is_harmless(
+            render_inspection(shown, kind, _SCREEN),
+            Format.GITHUB if kind is InspectFormat.GITHUB else None,
+        )
 
 
 def tinyxml2(data: bytes) -> None:
@@ -103,13 +108,21 @@ def xacro(data: bytes) -> None:
     etree.tostring(found.root)
     for index, element in islice(enumerate(found.root.iter()), crc32(data) % 7, _MAX_WAYS):
         for name in islice(element.keys(), 2):
-            ways = ExpandedEdits(found.source).rewrites(name, {index: (element.get(name), "0.5 0.25")})
+            ways = ExpandedEdits(found.source).rewrites(
+                name, {index: (element.get(name), "0.5 0.25")}
+            )
             for way in islice(ways, _MAX_WAYS):
                 for path in {edit.path for edit in way}:
-                    assert edited(texts[path], path, [edit for edit in way if edit.path == path]) is not None, way
+                    assert (
+                        edited(texts[path], path, [edit for edit in way if edit.path == path])
+                        is not None
+                    ), way
     for correction in islice(ExpandedEdits(found.source).corrections(("base_link",)), _MAX_WAYS):
         for path in {edit.path for edit in correction.edits}:
-            assert edited(texts[path], path, [edit for edit in correction.edits if edit.path == path]) is not None
+            assert (
+                edited(texts[path], path, [edit for edit in correction.edits if edit.path == path])
+                is not None
+            )
 
 
 def expressions(data: bytes) -> None:

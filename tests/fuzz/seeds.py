@@ -15,7 +15,10 @@ _EXPRESSION = re.compile(r"\$\{([^{}]+)\}")
 
 def urdfs() -> Iterator[bytes]:
     """Yield a small URDF for each problem, and those whose verdict is compared with ROS 2's."""
-    yield from (_bytes(text) for text in (*(case.text for case in EDGE_CASES), *(sample.data for sample in SAMPLES)))
+    yield from (
+        _bytes(text)
+        for text in (*(case.text for case in EDGE_CASES), *(sample.data for sample in SAMPLES))
+    )
 
 
 def broken() -> Iterator[bytes]:
@@ -25,7 +28,9 @@ def broken() -> Iterator[bytes]:
 
 def xacro() -> Iterator[bytes]:
     """Yield the documents on which the grader and xacro agree, and hostile ones, each with its files."""
-    yield from (joined({document.path: document.text, **document.files}) for document in _documents())
+    yield from (
+        joined({document.path: document.text, **document.files}) for document in _documents()
+    )
 
 
 def expressions() -> Iterator[bytes]:
@@ -47,7 +52,9 @@ def _documents() -> Iterator[Document]:
 
 def joined(files: Mapping[str, str | bytes]) -> bytes:
     """Return files as one input that holds several."""
-    return b"\n".join(b"=== %b\n%b" % (path.encode(), _bytes(content)) for path, content in files.items())
+    return b"\n".join(
+        b"=== %b\n%b" % (path.encode(), _bytes(content)) for path, content in files.items()
+    )
 
 
 def _bytes(text: str | bytes) -> bytes:

@@ -27,15 +27,23 @@ from tests.samples import RUBRICS
 
 def urdf(data: bytes, rubric: str) -> None:
     """A URDF is graded; its hints gain what they promise and lose nothing, and `--fix` writes what they make of it."""
-    check_graded(RUBRICS[rubric], read_submission(data, identity="student", path="my_robot.urdf"), "my_robot.urdf")
+    check_graded(
+        RUBRICS[rubric],
+        read_submission(data, identity="student", path="my_robot.urdf"),
+        "my_robot.urdf",
+    )
 
 
 def package(data: bytes, rubric: str) -> None:
     """A folder of files is graded, its hints hold, and `--fix` writes what they make of it."""
     files = files_of(data)
-    tree = make_tree("student", [file_of(printable(path), content) for path, content in files.items()], ())
+    tree = make_tree(
+        "student", [file_of(printable(path), content) for path, content in files.items()], ()
+    )
     with user_errors():
-        check_graded(RUBRICS[rubric], submission_of(tree, "student", RUBRICS[rubric].lab), "student")
+        check_graded(
+            RUBRICS[rubric], submission_of(tree, "student", RUBRICS[rubric].lab), "student"
+        )
 
 
 def check_graded(rubric: Rubric, submission: Submission, path: str) -> None:
@@ -49,7 +57,9 @@ def check_graded(rubric: Rubric, submission: Submission, path: str) -> None:
     assert [(it.criterion, it.outcome.status, it.points) for it in hinted.results] == [
         (it.criterion, it.outcome.status, it.points) for it in report.results
     ]
-    by_criterion = {result.criterion.id: result.hint for result in hinted.results if result.hint is not None}
+    by_criterion = {
+        result.criterion.id: result.hint for result in hinted.results if result.hint is not None
+    }
     promised = {name for hint in by_criterion.values() for name in hint.gains}
     for hint in {hint.edits: hint for hint in by_criterion.values()}.values():
         check_message(hint.message)
@@ -69,7 +79,9 @@ def _check_report(report: Report, submission: Submission) -> None:
     assert not report.fault, [result.traceback for result in report.results if result.traceback]
     assert 0 <= report.score <= report.max_score + report.bonus
     assert report.score + report.pending <= report.max_score + report.bonus
-    texts = {path: decoded(file.read(1 << 20)) for path, file in submission.whole_tree.files.items()}
+    texts = {
+        path: decoded(file.read(1 << 20)) for path, file in submission.whole_tree.files.items()
+    }
     if submission.path is not None:
         source = submission.source(submission.path)
         others = {} if submission.is_single else texts
@@ -82,7 +94,9 @@ def _check_report(report: Report, submission: Submission) -> None:
         check_location(problem.location, texts)
 
 
-def _check_hint(report: Report, submission: Submission, earlier: list[Hint], hint: Hint, promised: set[str]) -> None:
+def _check_hint(
+    report: Report, submission: Submission, earlier: list[Hint], hint: Hint, promised: set[str]
+) -> None:
     """Assert that edits, applied by other code, make the promised criteria pass, and cost none its points.
 
     A hint that names `earlier` ones promises what it gains after their edits; what needs both is promised by neither.
@@ -97,4 +111,6 @@ def _check_hint(report: Report, submission: Submission, earlier: list[Hint], hin
 
 
 def _graded(report: Report, submission: Submission, edits: list[Edit]) -> dict[str, Result]:
-    return {it.criterion.id: it for it in grade(report.rubric, with_edits(submission, edits)).results}
+    return {
+        it.criterion.id: it for it in grade(report.rubric, with_edits(submission, edits)).results
+    }

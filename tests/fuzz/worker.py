@@ -31,7 +31,10 @@ def signature(error: BaseException) -> str:
         for frame in frames
         if "/site-packages/" not in frame.filename
     ]
-    return f"{type(error).__name__}-" + hashlib.sha256("\n".join(places[-3:]).encode()).hexdigest()[:12]
+    return (
+        f"{type(error).__name__}-"
+        + hashlib.sha256("\n".join(places[-3:]).encode()).hexdigest()[:12]
+    )
 
 
 def main() -> None:

@@ -24,7 +24,9 @@ part = "a"
 title = "It moves"
 points = 4
 """
-EXAMPLES = re.findall(r"```toml\n(.*?)```", (ROOT / "docs/checks.md").read_text(encoding="utf-8"), re.DOTALL)
+EXAMPLES = re.findall(
+    r"```toml\n(.*?)```", (ROOT / "docs/checks.md").read_text(encoding="utf-8"), re.DOTALL
+)
 CHECK = 'check = "kinematics_match_reference"\nwith = { links = ["@tip"] }\n'
 
 
@@ -34,7 +36,10 @@ def lab(tmp_path: Path) -> Path:
     text = REFERENCE.read_text()
     (tmp_path / "arm.toml").write_text(HEAD + CHECK)
     (tmp_path / "arm.urdf").write_text(text)
-    for name, robot in (("ash", text.replace("0.2", ".2")), ("birch", re.sub('axis xyz="0 1', 'axis xyz="0 -1', text))):
+    for name, robot in (
+        ("ash", text.replace("0.2", ".2")),
+        ("birch", re.sub('axis xyz="0 1', 'axis xyz="0 -1', text)),
+    ):
         (tmp_path / "class" / name).mkdir(parents=True)
         (tmp_path / "class" / name / "robot.urdf").write_text(robot)
     return tmp_path
@@ -53,7 +58,9 @@ def test_a_class(lab: Path) -> None:
 def test_the_bundle_contains_the_reference(lab: Path, check: str, is_needed: bool) -> None:
     """Also where hints, for which it is needed otherwise, are off; without such a check they decide."""
     (lab / "arm.toml").write_text(HEAD + check)
-    assert run(("bundle", "gradescope", lab / "out.zip", "--rubric", lab / "arm.toml")).returncode == 0
+    assert (
+        run(("bundle", "gradescope", lab / "out.zip", "--rubric", lab / "arm.toml")).returncode == 0
+    )
     with zipfile.ZipFile(lab / "out.zip") as archive:
         assert ("arm.urdf" in archive.namelist()) == is_needed
 

@@ -42,4 +42,6 @@ def test_a_material_in_a_wrong_place_explains_a_missing_colour_of_its_link_only(
     reading = read_urdf(STRAY.encode(), "my_robot.urdf")
     outcome = failed("it is wrong", Location("my_robot.urdf", 2, column))
     explained = explain(outcome, reading.problems, reading.source, looks_at, part, "x")
-    assert explained.location == (Location("my_robot.urdf", 2, 25) if is_explained else outcome.location)
+    assert explained.location == (
+        Location("my_robot.urdf", 2, 25) if is_explained else outcome.location
+    )

@@ -58,12 +58,16 @@ def ask(
     **more: Any,
 ) -> Criterion:
     """Return a criterion."""
-    return Criterion(name, name.title(), part, Decimal(points), describe(check), {}, tuple(requires))._replace(**more)
+    return Criterion(
+        name, name.title(), part, Decimal(points), describe(check), {}, tuple(requires)
+    )._replace(**more)
 
 
 def run(*criteria: Criterion, parts: Sequence[str] = ()) -> Report:
     """Return the report on a robot under a rubric with these criteria, in parts a and b."""
-    rubric = Rubric("r", "R", (Part("a", "A"), Part("b", "B")), criteria, "robot.urdf", "", b"", Path("r.toml"))
+    rubric = Rubric(
+        "r", "R", (Part("a", "A"), Part("b", "B")), criteria, "robot.urdf", "", b"", Path("r.toml")
+    )
     robot = b'<robot name="r"><link name="base"/></robot>'
     return grade(rubric, read_submission(robot, identity="me", path="robot.urdf"), parts)
 
@@ -87,17 +91,38 @@ def test_an_exception_in_a_check_is_an_error_of_the_grader() -> None:
 def test_an_errored_criterion_affects_no_other() -> None:
     """Earlier and later criteria are graded as usual; one that requires it is not said to be skipped by a mistake."""
     report = run(
-        ask("one"), ask("two", breaks), ask("three", requires=["two"]), ask("four", fails_), ask("five", pends)
+        ask("one"),
+        ask("two", breaks),
+        ask("three", requires=["two"]),
+        ask("four", fails_),
+        ask("five", pends),
     )
-    assert [*statuses(report)[:2], *statuses(report)[3:]] == ["passed", "errored", "failed", "pending"]
-    assert [bool(result.traceback) for result in report.results] == [False, True, False, False, False]
+    assert [*statuses(report)[:2], *statuses(report)[3:]] == [
+        "passed",
+        "errored",
+        "failed",
+        "pending",
+    ]
+    assert [bool(result.traceback) for result in report.results] == [
+        False,
+        True,
+        False,
+        False,
+        False,
+    ]
     after = report.results[2]
-    assert after.outcome.status == "passed" or (after.because, "failed" in after.outcome.message) == ("two", False)
+    assert after.outcome.status == "passed" or (
+        after.because,
+        "failed" in after.outcome.message,
+    ) == ("two", False)
 
 
 def test_a_skipped_check_is_not_run() -> None:
     """An error in a check that is skipped does not occur."""
-    assert statuses(run(ask("one", fails_), ask("two", breaks, requires=["one"]))) == ["failed", "skipped"]
+    assert statuses(run(ask("one", fails_), ask("two", breaks, requires=["one"]))) == [
+        "failed",
+        "skipped",
+    ]
 
 
 def test_a_faulty_fact_is_a_fault_of_the_grader() -> None:
@@ -121,7 +146,14 @@ def test_the_outcome_does_not_decide_a_corrected_criterion(check: Callable[..., 
 
 @pytest.mark.parametrize(
     "error",
-    [KeyError("x"), LookupError("x"), ValueError("x"), RecursionError("x"), AssertionError("x"), MemoryError("x")],
+    [
+        KeyError("x"),
+        LookupError("x"),
+        ValueError("x"),
+        RecursionError("x"),
+        AssertionError("x"),
+        MemoryError("x"),
+    ],
 )
 def test_every_exception_of_a_check_is_caught(error: Exception) -> None:
     """Whatever a check raises unexpectedly, the run continues."""
@@ -145,7 +177,11 @@ def test_an_interrupt_is_not_caught() -> None:
 @examples(20)
 @given(
     rows=st.lists(
-        st.tuples(st.sampled_from([passes_, fails_, pends, breaks]), st.integers(0, 1000), st.sampled_from("ab")),
+        st.tuples(
+            st.sampled_from([passes_, fails_, pends, breaks]),
+            st.integers(0, 1000),
+            st.sampled_from("ab"),
+        ),
         max_size=12,
     )
 )

@@ -6,8 +6,19 @@ from grader.grading.grade import grade
 from grader.submission.opening import read_submission
 from tests.samples import LAB6, ROOT
 
-SAMPLES = ("lidar-buried", "right-wheel-mirrored", "wheel-joint-fixed", "wheels-rolling-sideways", "lidar-turning")
-JOINTS = ("base_lidar_joint", "base_left_wheel_joint", "base_right_wheel_joint", "base_caster_wheel_joint")
+SAMPLES = (
+    "lidar-buried",
+    "right-wheel-mirrored",
+    "wheel-joint-fixed",
+    "wheels-rolling-sideways",
+    "lidar-turning",
+)
+JOINTS = (
+    "base_lidar_joint",
+    "base_left_wheel_joint",
+    "base_right_wheel_joint",
+    "base_caster_wheel_joint",
+)
 
 
 def mistakes(text: str) -> dict[str, str]:
@@ -15,7 +26,9 @@ def mistakes(text: str) -> dict[str, str]:
     report = grade(LAB6, read_submission(text.encode(), identity="student", path="my_robot.urdf"))
     outcomes = {result.criterion.id: result.outcome for result in report.results}
     return {
-        name: outcome.mistake or outcome.message for name, outcome in outcomes.items() if outcome.status == "failed"
+        name: outcome.mistake or outcome.message
+        for name, outcome in outcomes.items()
+        if outcome.status == "failed"
     }
 
 

@@ -62,7 +62,9 @@ def word(*paragraphs: str | bytes) -> bytes:
     return data.getvalue()
 
 
-def image(width: int, samples: bytes, colours: str, more: str = "/Filter/FlateDecode", bits: int = 8) -> bytes:
+def image(
+    width: int, samples: bytes, colours: str, more: str = "/Filter/FlateDecode", bits: int = 8
+) -> bytes:
     """Return the object of an image of one row in a PDF."""
     head = f"<</Type/XObject/Subtype/Image/Width {width}/Height 1/ColorSpace{colours}/BitsPerComponent {bits}{more}"
     return f"{head}/Length {len(samples)}>>\nstream\n".encode() + samples + b"\nendstream"
@@ -70,14 +72,16 @@ def image(width: int, samples: bytes, colours: str, more: str = "/Filter/FlateDe
 
 def pages(*images: bytes, texts: tuple[str, ...] = ()) -> bytes:
     """Return a PDF with a page for each image; each has a text above it."""
-    objects = [b"<</Type/Catalog/Pages 2 0 R>>", b"", b"<</Type/Font/Subtype/Type1/BaseFont/Helvetica>>"]
+    objects = [
+        b"<</Type/Catalog/Pages 2 0 R>>",
+        b"",
+        b"<</Type/Font/Subtype/Type1/BaseFont/Helvetica>>",
+    ]
     kids = []
     for number, data in enumerate(images):
         at = len(objects) + 1
         kids.append(f"{at} 0 R")
-        content = (
-            f"BT /F1 12 Tf 50 800 Td ({texts[number] if texts else 'Page'}) Tj ET q 9 0 0 9 9 9 cm /Im1 Do Q".encode()
-        )
+        content = f"BT /F1 12 Tf 50 800 Td ({texts[number] if texts else 'Page'}) Tj ET q 9 0 0 9 9 9 cm /Im1 Do Q".encode()
         resources = f"/Font<</F1 3 0 R>>/XObject<</Im1 {at + 2} 0 R>>"
         page = f"<</Type/Page/Parent 2 0 R/MediaBox[0 0 595 842]/Resources<<{resources}>>/Contents {at + 1} 0 R>>"
         stream = f"<</Length {len(content)}>>\nstream\n".encode() + content + b"\nendstream"
@@ -94,7 +98,11 @@ def pages(*images: bytes, texts: tuple[str, ...] = ()) -> bytes:
 
 def test_files_with_the_label() -> None:
     """Every file that the outcome names; one that is no picture is named with the reason."""
-    files = {"Task1_Step8.png": STEP_8, "Task1_Step8 (1).gif": gif(32, 24), "Task1_Step8.jpg": b"<svg onload='x'/>"}
+    files = {
+        "Task1_Step8.png": STEP_8,
+        "Task1_Step8 (1).gif": gif(32, 24),
+        "Task1_Step8.jpg": b"<svg onload='x'/>",
+    }
     assert shown({**files, "Task1_Step18.png": STEP_18}, ["task 1 step 8"]) == [
         "Task1_Step8 (1).gif",
         "Task1_Step8.jpg: it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF: open it yourself, with care",
@@ -114,14 +122,20 @@ def test_pictures_in_an_answer() -> None:
     """A written answer with a screenshot shows the pictures of the document."""
     report = word("# Step 15", "It vanishes:", STEP_8, "# Step 18", "text")
     assert in_answer({"lab.docx": report}, "step 15") == ["image1.png in lab.docx"]
-    assert in_answer({"lab.docx": word("# Step 15", "Two roots.", "# Step 18", STEP_18)}, "step 15") == []
+    assert (
+        in_answer({"lab.docx": word("# Step 15", "Two roots.", "# Step 18", STEP_18)}, "step 15")
+        == []
+    )
     assert in_answer({"lab.md": b"# Step 15\n\nIt [picture] vanishes.\n"}, "step 15") == []
 
 
 def test_a_pdf_opens_on_the_page_of_its_heading() -> None:
     """It is shown as a whole, by the browser's own viewer."""
     pytest.importorskip("pypdf")
-    report = pages(*[image(1, b"a", "/DeviceGray", "")] * 3, texts=("Task 1: Step 8", "Task 1: Step 18", "Task 3"))
+    report = pages(
+        *[image(1, b"a", "/DeviceGray", "")] * 3,
+        texts=("Task 1: Step 8", "Task 1: Step 18", "Task 3"),
+    )
     submission = Submitted({"lab.pdf": report}).submission
     names = ["task 1 step 18"]
     criterion = Criterion("it", "It", "task1", Decimal(1), CHECKS[evidence_shown], {"names": names})
@@ -161,10 +175,14 @@ def test_limits_of_one_criterion() -> None:
 
 def test_without_a_name_all_pictures_are_shown() -> None:
     """Where no file is named for the evidence, the person sees all pictures; for another criterion none."""
-    submission = Submitted({"a.png": STEP_8, "b.gif": gif(3, 4), "answers.md": b"# Step 1\n\nNo.\n"}).submission
+    submission = Submitted(
+        {"a.png": STEP_8, "b.gif": gif(3, 4), "answers.md": b"# Step 1\n\nNo.\n"}
+    ).submission
     assert shown({"a.png": STEP_8, "b.gif": gif(3, 4)}, ["webcam"]) == ["a.png", "b.gif"]
     criterion = Criterion("it", "It", "task1", Decimal(1), CHECKS[answered], {})
-    result = Result(criterion, Outcome("pending", "?", "No.", location=Location("answers.md", 1, 1)))
+    result = Result(
+        criterion, Outcome("pending", "?", "No.", location=Location("answers.md", 1, 1))
+    )
     assert not may_have_pictures(result)
     assert pictures_of(result, submission) == ()
 

@@ -33,7 +33,12 @@ def test_arguments_have_the_types_of_their_checks(tmp_path: Path) -> None:
     """Integers are accepted as floats; lists become tuples if the check has one."""
     given = 'with = { link = "w", base = "b", forward = [1, 0, 0], tolerance = 1 }'
     (criterion,) = loaded(tmp_path, SMALL.replace("urdf_loads", "rolls_forward") + given).criteria
-    assert criterion.arguments == {"link": "w", "base": "b", "forward": (1.0, 0.0, 0.0), "tolerance": 1.0}
+    assert criterion.arguments == {
+        "link": "w",
+        "base": "b",
+        "forward": (1.0, 0.0, 0.0),
+        "tolerance": 1.0,
+    }
     assert isinstance(criterion.arguments["forward"], tuple)
     assert isinstance(criterion.arguments["tolerance"], float)
 
@@ -57,19 +62,28 @@ def test_shipped_rubrics_load(name: str) -> None:
 
 def test_a_late_policy_is_read(tmp_path: Path) -> None:
     """Missing values have their defaults; the deadline keeps its offset."""
-    late = loaded(tmp_path, SMALL + "[late]\ndue = 2026-11-20T23:59:00+01:00\npercent_per_day = 10.5\n").late
+    late = loaded(
+        tmp_path, SMALL + "[late]\ndue = 2026-11-20T23:59:00+01:00\npercent_per_day = 10.5\n"
+    ).late
     assert late is not None
     assert late.due is not None
     assert late.due.isoformat() == "2026-11-20T23:59:00+01:00"
-    assert [late.grace_minutes, late.percent_per_day, late.floor_percent] == [Decimal(0), Decimal("10.5"), Decimal(0)]
+    assert [late.grace_minutes, late.percent_per_day, late.floor_percent] == [
+        Decimal(0),
+        Decimal("10.5"),
+        Decimal(0),
+    ]
 
 
 def worth(points: list[str], total: str) -> str:
     """Return a rubric with criteria of these points, whose totals are declared."""
     head, _, criterion = SMALL.partition("[[criterion]]")
-    head = head.replace("[[part]]", f"points = {total}\n[[part]]").replace('"Part A"', f'"Part A"\npoints = {total}')
+    head = head.replace("[[part]]", f"points = {total}\n[[part]]").replace(
+        '"Part A"', f'"Part A"\npoints = {total}'
+    )
     rows = (
-        criterion.replace("loads", f"c{index}", 1).replace("= 1\n", f"= {one}\n") for index, one in enumerate(points)
+        criterion.replace("loads", f"c{index}", 1).replace("= 1\n", f"= {one}\n")
+        for index, one in enumerate(points)
     )
     return head + "".join(f"[[criterion]]{row}" for row in rows)
 
@@ -90,12 +104,16 @@ def test_points_are_exact(tmp_path: Path, points: list[str], total: str) -> None
     """Points add up as on paper, not as floats do."""
     rubric = loaded(tmp_path, worth(points, total))
     assert rubric.points == Decimal(total)
-    assert [criterion.points for criterion in rubric.criteria] == [Decimal(value) for value in points]
+    assert [criterion.points for criterion in rubric.criteria] == [
+        Decimal(value) for value in points
+    ]
 
 
 @examples(10)
 @given(cents=st.lists(st.integers(0, 10_000), min_size=1, max_size=20))
-def test_any_points_in_hundredths_add_up(tmp_path_factory: pytest.TempPathFactory, cents: list[int]) -> None:
+def test_any_points_in_hundredths_add_up(
+    tmp_path_factory: pytest.TempPathFactory, cents: list[int]
+) -> None:
     """However many criteria share the points, the declared total is their exact sum, and one cent more is refused."""
     folder = tmp_path_factory.getbasetemp()
     points = [f"{cent // 100}.{cent % 100:02d}" for cent in cents]

@@ -10,15 +10,33 @@ import jsonschema
 import pytest
 
 from grader.checks.registry import check_names, own_checks
-from grader.grading.keys import ADJUSTMENT, CARRIED, CRITERION, DEFAULTS, EVIDENCE, IGNORE, LATE, PART, RUBRIC, TEST
+from grader.grading.keys import (
+    ADJUSTMENT,
+    CARRIED,
+    CRITERION,
+    DEFAULTS,
+    EVIDENCE,
+    IGNORE,
+    LATE,
+    PART,
+    RUBRIC,
+    TEST,
+)
 from grader.grading.rubric import load_rubric, shipped_rubrics
 from tests.command_line import ROOT, run
 from tests.corpus.cases import CORPUS, read_corpus
 
 SCHEMA = json.loads(run(("schema", "rubric")).stdout)
 VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
-EVERY_KEY, WITH_DEFAULTS = (CORPUS / "rubrics" / name for name in ("every-key.toml", "with-defaults.toml"))
-RUBRICS = [EVERY_KEY, WITH_DEFAULTS, *shipped_rubrics().values(), *(ROOT / "docs").rglob("*_lab.toml")]
+EVERY_KEY, WITH_DEFAULTS = (
+    CORPUS / "rubrics" / name for name in ("every-key.toml", "with-defaults.toml")
+)
+RUBRICS = [
+    EVERY_KEY,
+    WITH_DEFAULTS,
+    *shipped_rubrics().values(),
+    *(ROOT / "docs").rglob("*_lab.toml"),
+]
 MISTAKES = [case for case in read_corpus() if case.path == CORPUS / "rubrics/schema.toml"]
 
 
@@ -37,7 +55,11 @@ def keys_without_description(schema: Any, path: str = "") -> Iterator[str]:
             yield from keys_without_description(item, f"{path}/{index}")
     elif isinstance(schema, dict):
         described = schema.get("properties", {}) if schema.get("type") == "object" else {}
-        without = [name for name, value in described.items() if "description" not in value and "$ref" not in value]
+        without = [
+            name
+            for name, value in described.items()
+            if "description" not in value and "$ref" not in value
+        ]
         yield from (f"{path}/{name}" for name in without)
         for name, value in schema.items():
             yield from keys_without_description(value, f"{path}/{name}")
@@ -50,7 +72,11 @@ def test_every_key_has_a_description() -> None:
         described = SCHEMA["$defs"][check.name]["properties"]
         meanings = {name: argument["description"] for name, argument in described.items()}
         assert meanings == check.documentation.arguments
-        assert {name: argument["default"] for name, argument in described.items() if "default" in argument} == {
+        assert {
+            name: argument["default"]
+            for name, argument in described.items()
+            if "default" in argument
+        } == {
             name: json.loads(json.dumps(parameter.default))
             for name, parameter in check.parameters.items()
             if parameter.default is not None
@@ -75,13 +101,19 @@ def test_rubrics_are_valid(path: Path) -> None:
 
 def test_every_key_is_there() -> None:
     """The two rubrics together have every key of every table, and load."""
-    every, defaults = (read(path.read_text(encoding="utf-8")) for path in (EVERY_KEY, WITH_DEFAULTS))
+    every, defaults = (
+        read(path.read_text(encoding="utf-8")) for path in (EVERY_KEY, WITH_DEFAULTS)
+    )
     assert (load_rubric(str(EVERY_KEY)).id, load_rubric(str(WITH_DEFAULTS)).id) == ("lab0", "lab0")
     frame = every["criterion"][1]
     used = [(RUBRIC, every), (PART, every["part"][0]), (CRITERION, every["criterion"][0] | frame)]
     used += [(CARRIED, frame["carried"]), (EVIDENCE, every["evidence"][0]), (LATE, every["late"])]
     used += [(ADJUSTMENT, every["adjust"]["box"])]
-    used += [(TEST, every["test"]), (IGNORE, every["test"]["ignore"][0]), (DEFAULTS, defaults["defaults"])]
+    used += [
+        (TEST, every["test"]),
+        (IGNORE, every["test"]["ignore"][0]),
+        (DEFAULTS, defaults["defaults"]),
+    ]
     for table, row in used:
         assert set(row) == set(table.keys) - ({"defaults"} if table is RUBRIC else set())
 

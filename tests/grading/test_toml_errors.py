@@ -15,7 +15,13 @@ SHIPPED = next(iter(shipped_rubrics().values())).read_text(encoding="utf-8")[:30
 
 
 @pytest.mark.parametrize(
-    "text", ["a = " + "b" * 1_000_000, "b" * 1_000_000 + " c", "a = [" + "1 " * 500_000, 'a = "' + "b" * 1_000_000]
+    "text",
+    [
+        "a = " + "b" * 1_000_000,
+        "b" * 1_000_000 + " c",
+        "a = [" + "1 " * 500_000,
+        'a = "' + "b" * 1_000_000,
+    ],
 )
 def test_long_lines_are_cut(text: str) -> None:
     """Only the text around the mistake is looked at and shown."""
@@ -27,7 +33,11 @@ def test_long_lines_are_cut(text: str) -> None:
 
 
 @examples(20)
-@given(st.integers(0, len(SHIPPED)), st.integers(0, 3), st.text("\"'[]{}=,.\n\r#\\ aT1“\0\u00a0", max_size=3))
+@given(
+    st.integers(0, len(SHIPPED)),
+    st.integers(0, 3),
+    st.text("\"'[]{}=,.\n\r#\\ aT1“\0\u00a0", max_size=3),
+)
 def test_no_text_is_a_crash(at: int, deleted: int, inserted: str) -> None:
     """Whatever a typing error does to a rubric, it is TOML, or there is one complaint with a place."""
     text = SHIPPED[:at] + inserted + SHIPPED[at + deleted :]

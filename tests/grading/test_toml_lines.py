@@ -16,7 +16,13 @@ from tests.examples import examples
 def test_a_missing_key_has_the_line_of_its_table() -> None:
     """A missing key has the line of its table, or the first line of the file, which an empty one has too."""
     lines = key_lines("[[part]]\nid = 1\nwith = { deep = [] }\n[[part]]\n")
-    paths: tuple[Path, ...] = (("part", 0, "points"), ("part", 0, "with", "deep", 3), ("part", 1, "title"), ("no",), ())
+    paths: tuple[Path, ...] = (
+        ("part", 0, "points"),
+        ("part", 0, "with", "deep", 3),
+        ("part", 1, "title"),
+        ("no",),
+        (),
+    )
     assert [line_of(lines, path) for path in paths] == [1, 3, 4, 1, 1]
     for text in ("", "\n", "# x", "\n\n# [a]\n"):
         assert key_lines(text) == {(): 1}
@@ -25,12 +31,28 @@ def test_a_missing_key_has_the_line_of_its_table() -> None:
 @pytest.mark.parametrize(
     "value",
     [
-        "'''\n[a]\nb = 1\n'''", '"""\n[a]\n\\""" b = 1 \\\\"""', '"""\\\n   joined \\\n   """', "[\n1, # ]\n2,\n\n]",
-        '[ [ "]" ], [ \'[\' ],\n[ "#" ] ]', '{ a = 1, b = [ { c = "}" } ] }', '"\\"#"', "1979-05-27T07:32:00-08:00",
-        "''''''", '""""""', '"\\\\"', "'\\'", "'a\"b' # \"", "\"it's\" # it's",
-        '"""a"""" # " \'', '"""a"""""', "'''a''''", "'''a'''''", '["""a"""", "["]', "['''a'''', '[']",
+        "'''\n[a]\nb = 1\n'''",
+        '"""\n[a]\n\\""" b = 1 \\\\"""',
+        '"""\\\n   joined \\\n   """',
+        "[\n1, # ]\n2,\n\n]",
+        '[ [ "]" ], [ \'[\' ],\n[ "#" ] ]',
+        '{ a = 1, b = [ { c = "}" } ] }',
+        '"\\"#"',
+        "1979-05-27T07:32:00-08:00",
+        "''''''",
+        '""""""',
+        '"\\\\"',
+        "'\\'",
+        "'a\"b' # \"",
+        "\"it's\" # it's",
+        '"""a"""" # " \'',
+        '"""a"""""',
+        "'''a''''",
+        "'''a'''''",
+        '["""a"""", "["]',
+        "['''a'''', '[']",
     ],
-)  # fmt: skip
+)
 def test_keys_after_a_value_have_their_lines(value: str) -> None:
     """However a value is written, the next key and the next table have their own lines."""
     text = f"x = {value}\ny = 1\n\n[z]\nw = {value}\nv = 1\n"
@@ -46,9 +68,18 @@ _TROUBLE = "ab \t\n\r\"'#[]{}=,.\\-1\u00e9\u2028\U0001f916"
 _texts = st.text(_TROUBLE, max_size=12)
 _comments = st.sampled_from(["", "", " # a comment", '\t# [x] = \' """ {', "#'''", "  "])
 _bare = st.text("abcXYZ019_-", min_size=1, max_size=6)
-_numbers = st.sampled_from(["0", "-1", "+7", "1_000", "0xff", "0o7", "0b1", "1.5", "-2e-3", "6.5E+2", "inf", "-nan"])
+_numbers = st.sampled_from(
+    ["0", "-1", "+7", "1_000", "0xff", "0o7", "0b1", "1.5", "-2e-3", "6.5E+2", "inf", "-nan"]
+)
 _others = st.sampled_from(
-    ["true", "false", "1979-05-27", "07:32:00.5", "1979-05-27T07:32:00Z", "1979-05-27 07:32:00-08:00"]
+    [
+        "true",
+        "false",
+        "1979-05-27",
+        "07:32:00.5",
+        "1979-05-27T07:32:00Z",
+        "1979-05-27 07:32:00-08:00",
+    ]
 )
 
 
@@ -90,7 +121,9 @@ def inline_tables(draw: st.DrawFn, inner: st.SearchStrategy[str]) -> str:
     return "{" + ", ".join(f" k{index} = {value}" for index, value in enumerate(values)) + " }"
 
 
-_values = st.recursive(_simple, lambda inner: st.one_of(arrays(inner), inline_tables(inner)), max_leaves=6)
+_values = st.recursive(
+    _simple, lambda inner: st.one_of(arrays(inner), inline_tables(inner)), max_leaves=6
+)
 
 
 @st.composite
@@ -103,7 +136,9 @@ def documents(draw: st.DrawFn) -> tuple[str, dict[Path, int]]:
 
     def put(line: str, path: Path) -> None:
         nonlocal text
-        text += "".join(draw(st.lists(st.sampled_from(["\n", "  \n", "# [c]\n", "\t# 'x\n"]), max_size=2)))
+        text += "".join(
+            draw(st.lists(st.sampled_from(["\n", "  \n", "# [c]\n", "\t# 'x\n"]), max_size=2))
+        )
         text += draw(st.sampled_from(["", "  ", "\t"]))
         written[path] = text.count("\n") + 1
         text += line + draw(_comments) + "\n"

@@ -27,14 +27,22 @@ def behaviour(submission: Submission) -> Behaviour:
             pose = robot.pose(link.name, relative_to="base_link")
         except (MissingElement, NotDecided):
             continue
-        for index, visual in enumerate(shown for shown in link.visuals if not is_empty(shown.geometry)):
+        for index, visual in enumerate(
+            shown for shown in link.visuals if not is_empty(shown.geometry)
+        ):
             shape = visual.geometry
             placed = placed_by(pose, visual.origin)
             if isinstance(shape, Box | Cylinder | Sphere):
                 extent = tuple(half_width(shape, placed.unrotate(axis)) for axis in _AXES)
                 found[f"{link.name} {index}"] = (*placed.translation, *extent, *_colour(visual))
         joint = robot.parent_joints.get(link.name)
-        if joint is not None and joint.type in ("continuous", "revolute", "prismatic", "planar", "floating"):
+        if joint is not None and joint.type in (
+            "continuous",
+            "revolute",
+            "prismatic",
+            "planar",
+            "floating",
+        ):
             axis = unit(pose.rotate(joint.axis)) if joint.axis is not None else ()
             found[f"joint of {link.name}"] = (joint.type, *(axis or ()))
         if link.name in ("lidar", "base_footprint"):
@@ -49,7 +57,11 @@ def _colour(visual: Visual) -> tuple[object, ...]:
 
 def differences(one: Behaviour, other: Behaviour) -> list[str]:
     """Return what differs between two robots."""
-    return [name for name in dict.fromkeys((*one, *other)) if not _is_same(one.get(name, ()), other.get(name, ()))]
+    return [
+        name
+        for name in dict.fromkeys((*one, *other))
+        if not _is_same(one.get(name, ()), other.get(name, ()))
+    ]
 
 
 def _is_same(one: tuple[object, ...], other: tuple[object, ...]) -> bool:

@@ -6,7 +6,9 @@ from typing import NamedTuple
 
 from tests.samples import LAB6, ROOT
 
-REFERENCE = (ROOT / "rubrics" / LAB6.id / "my_robot" / "urdf" / "my_robot.urdf").read_text(encoding="utf-8")
+REFERENCE = (ROOT / "rubrics" / LAB6.id / "my_robot" / "urdf" / "my_robot.urdf").read_text(
+    encoding="utf-8"
+)
 
 
 class Broken(NamedTuple):
@@ -24,4 +26,7 @@ class Broken(NamedTuple):
         return REFERENCE.replace(self.right, self.wrong, -1 if self.everywhere else 1)
 
 
-BROKEN = [Broken(**row) for row in tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))["broken"]]
+BROKEN = [
+    Broken(**row)
+    for row in tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))["broken"]
+]

@@ -46,12 +46,20 @@ class Verdict(NamedTuple):
         """What the hints achieve, from little to much."""
         full = self.hints.is_full
         lines = {(edit.path, edit.line) for found in self.hints.found for edit in found.edits}
-        return Marks(bool(self.hints.found), full, full and not self.differs, self.is_undo, self.place in lines)
+        return Marks(
+            bool(self.hints.found),
+            full,
+            full and not self.differs,
+            self.is_undo,
+            self.place in lines,
+        )
 
     @property
     def told(self) -> str:
         """The hints in lines."""
-        lines = [f"{self.family} | {self.label} | lost {len(self.hints.lost)}: {' '.join(self.hints.lost[:4])}"]
+        lines = [
+            f"{self.family} | {self.label} | lost {len(self.hints.lost)}: {' '.join(self.hints.lost[:4])}"
+        ]
         for found in self.hints.found:
             lines.append(f"     + {message(found, 'edit', self.hints.submission, ())}")
             lines.append(f"       {found.proposal.cause}")
@@ -94,7 +102,14 @@ def of_students() -> Iterator[Verdict]:
         milliseconds = (perf_counter() - start) * 1e3
         differs = differences(behaviour(mistake.base.submission), behaviour(hints.fixed))
         is_undo = hints.is_full and text_after(mistake.base, hints) == mistake.base.text
-        yield Verdict("student", f"{mistake.name} | {mistake.teacher}", hints, is_undo, tuple(differs), milliseconds)
+        yield Verdict(
+            "student",
+            f"{mistake.name} | {mistake.teacher}",
+            hints,
+            is_undo,
+            tuple(differs),
+            milliseconds,
+        )
 
 
 def table(found: Iterable[Verdict]) -> Iterator[str]:
@@ -104,8 +119,12 @@ def table(found: Iterable[Verdict]) -> Iterator[str]:
         families.setdefault(verdict.family, []).append(verdict)
         families.setdefault("all", []).append(verdict)
     yield f"{'family':22}{'count':>7}{'hint':>8}{'full':>8}{'same':>8}{'undo':>8}{'there':>8}{'steps':>8}{'ms':>8}"
-    for family, those in sorted(families.items(), key=lambda pair: mean(found.marks.is_full for found in pair[1])):
-        shares = "".join(f"{100 * mean(found.marks[index] for found in those):8.1f}" for index in range(5))
+    for family, those in sorted(
+        families.items(), key=lambda pair: mean(found.marks.is_full for found in pair[1])
+    ):
+        shares = "".join(
+            f"{100 * mean(found.marks[index] for found in those):8.1f}" for index in range(5)
+        )
         steps, time = (
             mean(found.hints.steps for found in those),
             mean(found.milliseconds for found in those),
@@ -121,13 +140,17 @@ def main() -> None:
     parser.add_argument("--students", action="store_true")
     parser.add_argument("--count", type=int, help="mutants of each base (default: all)")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--bad", action="store_true", help="show those without full marks or another robot")
+    parser.add_argument(
+        "--bad", action="store_true", help="show those without full marks or another robot"
+    )
     parser.add_argument("--all", action="store_true", help="show every hint")
     options = parser.parse_args()
     random = Random(options.seed)
     chosen = (base for base in BASES.values() if not options.names or base.name in options.names)
     mutated = (verdict for base in chosen for verdict in verdicts(base, options.count, random))
-    found = list(of_samples() if options.samples else of_students() if options.students else mutated)
+    found = list(
+        of_samples() if options.samples else of_students() if options.students else mutated
+    )
     for verdict in found:
         if options.all or (options.bad and not (verdict.marks.is_full and not verdict.differs)):
             print(verdict.told)

@@ -38,7 +38,9 @@ def _scaled(text: str, factor: float) -> str:
         numbers = " ".join(f"{float(piece) * factor:g}" for piece in found[2].split())
         return f'{found[1]}="{numbers}"'
 
-    return "\n".join(line if "<axis" in line else _LENGTH.sub(scaled, line) for line in text.split("\n"))
+    return "\n".join(
+        line if "<axis" in line else _LENGTH.sub(scaled, line) for line in text.split("\n")
+    )
 
 
 def _read() -> dict[str, Mistake]:

@@ -35,8 +35,12 @@ def _with(added: str, text: str = LOST) -> str:
 
 
 _LIDAR_PARENT = '<parent link="base_link"/>\n    <child link="lidar"/>'
-_MATERIALS = "".join(f'<material name="m{i}"><color rgba="0 0 0 1"/></material>\n' for i in range(MANY))
-_JOINTS = "".join(f'<joint name="q{i}"><parent link="b{i}"/><child link="lidr{i}"/></joint>' for i in range(MANY))
+_MATERIALS = "".join(
+    f'<material name="m{i}"><color rgba="0 0 0 1"/></material>\n' for i in range(MANY)
+)
+_JOINTS = "".join(
+    f'<joint name="q{i}"><parent link="b{i}"/><child link="lidr{i}"/></joint>' for i in range(MANY)
+)
 
 HOSTILE = {
     "links apart": _with(_chain("base_link", MANY)),
@@ -46,10 +50,13 @@ HOSTILE = {
     "materials": _with(_MATERIALS).replace('<material name="white"/>', '<material name="whte"/>'),
     "joints of unknown links": _with(_JOINTS),
     "visuals": LOST.replace(
-        "</visual>", "</visual>" + '<visual><geometry><sphere radius="10"/></geometry></visual>' * MANY
+        "</visual>",
+        "</visual>" + '<visual><geometry><sphere radius="10"/></geometry></visual>' * MANY,
     ),
     "numbers": LOST.replace('0.15 0 0.2"', f'0.15 0 0.2{" 0" * 100 * MANY}"'),
-    "misspelt attributes": LOST.replace("<visual>", "<visual>" + '<orign xz="1 2 3" ryp="0 0 0"/>' * MANY, 1),
+    "misspelt attributes": LOST.replace(
+        "<visual>", "<visual>" + '<orign xz="1 2 3" ryp="0 0 0"/>' * MANY, 1
+    ),
     "nested": _with("<link><visual>" * 200 + "</visual></link>" * 200),
     "long names": LOST.replace('"lidar"', f'"{"lidar" * 10 * MANY}"'),
     "commas": REFERENCE.replace('xyz="', 'xyz="0,') + "<!-- -->" * MANY,
@@ -80,7 +87,9 @@ def _arm_with_other_joints() -> str:
 @pytest.mark.exhaustive
 def test_a_check_at_many_positions_is_searched_with_bounded_work() -> None:
     """An arm whose links all move in another way takes no more work than the gradings of its budget."""
-    submission = read_submission(_arm_with_other_joints().encode(), identity="student", path="arm.urdf")
+    submission = read_submission(
+        _arm_with_other_joints().encode(), identity="student", path="arm.urdf"
+    )
     results = graded(submission, RUBRICS["arm"])
     with limited_work(2_000_000) as once:
         graded(submission, RUBRICS["arm"])

@@ -71,14 +71,26 @@ def hints_of(folder: Path, robot: str, name: str = "robot.urdf") -> list[dict[st
         (' type="camera"', "", ("<sensor", '<sensor type="camera"'), "sensor"),
         ("<rate>30</rate>\n", "", ("", "\n<rate>30</rate>"), "sensor"),
         ("<width>640</width>", "", ("", "<width>640</width>"), "sensor"),
-        ("<camera><image><width>640</width></image></camera>", "", ("", "<camera><image><width>640</width></image></camera>"), "sensor"),
-        ('reference="camera_link"', 'reference="camera"', ('reference="camera"', 'reference="camera_link"'), "sensor"),
+        (
+            "<camera><image><width>640</width></image></camera>",
+            "",
+            ("", "<camera><image><width>640</width></image></camera>"),
+            "sensor",
+        ),
+        (
+            'reference="camera_link"',
+            'reference="camera"',
+            ('reference="camera"', 'reference="camera_link"'),
+            "sensor",
+        ),
         (SENSOR, "", ("", SENSOR), "sensor"),
         ('<command name="velocity"/>', "", ("", '<command name="velocity"/>'), "control"),
         ('"velocity"', '"effort"', ('name="effort"', 'name="velocity"'), "control"),
     ],
-)  # fmt: skip
-def test_a_mistake_is_undone(tmp_path: Path, old: str, new: str, edit: tuple[str, str], criterion: str) -> None:
+)
+def test_a_mistake_is_undone(
+    tmp_path: Path, old: str, new: str, edit: tuple[str, str], criterion: str
+) -> None:
     """The hint changes exactly what is wrong, and is verified."""
     assert ROBOT.count(old) == 1
     (hint,) = hints_of(tmp_path, ROBOT.replace(old, new))
@@ -97,12 +109,17 @@ def test_no_text_is_written_into_an_empty_element(tmp_path: Path) -> None:
 def test_several_values_are_corrected_together(tmp_path: Path) -> None:
     """One hint corrects all values that a criterion needs."""
     (hint,) = hints_of(tmp_path, ROBOT.replace("<rate>30<", "<rate>5<").replace("640", "320"))
-    assert [(found["old"], found["new"]) for found in hint["edits"]] == [("5", "30"), ("320", "640")]
+    assert [(found["old"], found["new"]) for found in hint["edits"]] == [
+        ("5", "30"),
+        ("320", "640"),
+    ]
 
 
 def test_no_second_sensor_is_added(tmp_path: Path) -> None:
     """A sensor at another link, with another rate, is corrected where it is."""
-    robot = ROBOT.replace('reference="camera_link"', 'reference="base"').replace("<rate>30<", "<rate>10<")
+    robot = ROBOT.replace('reference="camera_link"', 'reference="base"').replace(
+        "<rate>30<", "<rate>10<"
+    )
     (hint,) = hints_of(tmp_path, robot)
     assert [found["new"] for found in hint["edits"]] == ['reference="camera_link"', "30"]
 

@@ -35,9 +35,15 @@ def _names(text: str, criterion: str) -> bool:
 @pytest.mark.parametrize(("break_", "place"), [("\n      ", "after line 17"), ("", "in line 17")])
 def test_an_addition_says_whether_more_of_the_line_follows(break_: str, place: str) -> None:
     """If more of the line follows, "after line 17" would be outside of the visual, where ROS 2 ignores an origin."""
-    before, origin, after = BASES["reference"].text.partition('\n      <origin xyz="0 0 0.1" rpy="0 0 0"/>\n      ')
-    submission = read_submission((before + break_ + after).encode(), identity="test", path="robot.urdf")
-    hints = (result.hint for result in hinted(grade(LAB6, submission), submission, "edit").report.results)
+    before, origin, after = BASES["reference"].text.partition(
+        '\n      <origin xyz="0 0 0.1" rpy="0 0 0"/>\n      '
+    )
+    submission = read_submission(
+        (before + break_ + after).encode(), identity="test", path="robot.urdf"
+    )
+    hints = (
+        result.hint for result in hinted(grade(LAB6, submission), submission, "edit").report.results
+    )
     messages = [hint.message for hint in hints if hint is not None]
     assert origin
     assert f'Add `<origin xyz="0 0 0.1"/>` {place}.' in messages

@@ -15,8 +15,13 @@ from tests.samples import LAB6
 REFERENCE = BASES["reference"].text
 BOX, LIDAR = 'size="0.6 0.4 0.2"', 'xyz="0.15 0 0.225"'
 LEFT, RIGHT = 'xyz="-0.15 0.2 0" rpy="-1.57 0 0"', 'xyz="-0.15 -0.2 0" rpy="-1.57 0 0"'
-WHITE_CYLINDER = '<cylinder radius="0.1" length="0.05"/>\n      </geometry>\n      <material name="white"/>'
-OUTWARD = ('xyz="0 0 0.025"', 'xyz="0 0 0"'), ('xyz="0 0 -0.025"', 'xyz="0 0 0"')  # the frames are at the centres
+WHITE_CYLINDER = (
+    '<cylinder radius="0.1" length="0.05"/>\n      </geometry>\n      <material name="white"/>'
+)
+OUTWARD = (
+    ('xyz="0 0 0.025"', 'xyz="0 0 0"'),
+    ('xyz="0 0 -0.025"', 'xyz="0 0 0"'),
+)  # the frames are at the centres
 
 Changes = tuple[tuple[str, str], ...]
 
@@ -29,8 +34,12 @@ def robot(*changes: tuple[str, str], defined: str = "") -> Submission:
         text = text.replace(old, new)
     if defined:
         head = '<robot name="my_robot">'
-        text = text.replace(head, f'{head[:-1]} xmlns:xacro="http://www.ros.org/wiki/xacro">{defined}')
-    return read_submission(text.encode(), identity="robot", path=f"my_robot.urdf{'.xacro' if defined else ''}")
+        text = text.replace(
+            head, f'{head[:-1]} xmlns:xacro="http://www.ros.org/wiki/xacro">{defined}'
+        )
+    return read_submission(
+        text.encode(), identity="robot", path=f"my_robot.urdf{'.xacro' if defined else ''}"
+    )
 
 
 def properties(**values: str) -> str:
@@ -52,7 +61,11 @@ TURNED: Changes = (
     [
         pytest.param(
             properties(wheel_x="0.15"),
-            (*OUTWARD, (LEFT, LEFT.replace("-0.15 0.2", "${wheel_x} 0.225")), (RIGHT, RIGHT.replace("-0.15 -0.2", "${wheel_x} -0.225"))),
+            (
+                *OUTWARD,
+                (LEFT, LEFT.replace("-0.15 0.2", "${wheel_x} 0.225")),
+                (RIGHT, RIGHT.replace("-0.15 -0.2", "${wheel_x} -0.225")),
+            ),
             [('value="0.15"', 'value="-0.15"')],
             id="the sign of a coordinate where it is defined",
         ),
@@ -64,14 +77,20 @@ TURNED: Changes = (
         ),
         pytest.param(
             properties(r="0.1", t="0.05"),
-            ((WHITE_CYLINDER, WHITE_CYLINDER.replace("0.1", "${t}").replace("0.05", "${r}")), ('xyz="0 0 0.1"', 'xyz="0 0 ${r}"')),
+            (
+                (WHITE_CYLINDER, WHITE_CYLINDER.replace("0.1", "${t}").replace("0.05", "${r}")),
+                ('xyz="0 0 0.1"', 'xyz="0 0 ${r}"'),
+            ),
             [('radius="${t}"', 'radius="${r}"'), ('length="${r}"', 'length="${t}"')],
             id="the names of two values that are exchanged",
         ),
         pytest.param(
             properties(base="0.4", track="0.3")
             + '<xacro:macro name="at" params="side"><origin xyz="${-base/2} ${side*track/2} 0" rpy="-1.57 0 0"/></xacro:macro>',
-            ((f"<origin {LEFT}/>", '<xacro:at side="1"/>'), (f"<origin {RIGHT}/>", '<xacro:at side="-1"/>')),
+            (
+                (f"<origin {LEFT}/>", '<xacro:at side="1"/>'),
+                (f"<origin {RIGHT}/>", '<xacro:at side="-1"/>'),
+            ),
             [('value="0.4"', 'value="0.3"'), ('value="0.3"', 'value="0.4"')],
             id="two definitions that are exchanged",
         ),
@@ -83,7 +102,10 @@ TURNED: Changes = (
         ),
         pytest.param(
             '<xacro:macro name="paint" params="name:=gray"><material name="${name}"/></xacro:macro>',
-            (('<material name="gray"/>', "<xacro:paint/>"), ('<material name="white"/>', "<xacro:paint/>")),
+            (
+                ('<material name="gray"/>', "<xacro:paint/>"),
+                ('<material name="white"/>', "<xacro:paint/>"),
+            ),
             [("<xacro:paint", '<xacro:paint name="white"')],
             id="a parameter that a call of a macro does not give",
         ),
@@ -95,23 +117,35 @@ TURNED: Changes = (
         ),
         pytest.param(
             "",
-            ((LEFT, LEFT.replace("0.2", "0.25")), (RIGHT, RIGHT.replace("-0.2", "-0.25")), ('xyz="0 0 -0.025"', 'xyz="0 0 0.025"')),
+            (
+                (LEFT, LEFT.replace("0.2", "0.25")),
+                (RIGHT, RIGHT.replace("-0.2", "-0.25")),
+                ('xyz="0 0 -0.025"', 'xyz="0 0 0.025"'),
+            ),
             [('xyz="0 0 0.025"', 'xyz="0 0 -0.025"')],
             id="the side that is built unlike the other one, not a turn that drives backward",
         ),
         pytest.param(
-            "", (('<material name="white"/>', "<material name=‘white’/>"),), [("<material name=‘white’/>", '<material name="white"/>')],
+            "",
+            (('<material name="white"/>', "<material name=‘white’/>"),),
+            [("<material name=‘white’/>", '<material name="white"/>')],
             id="single quotes of a word processor",
         ),
         pytest.param(
             "",
-            ((RIGHT, RIGHT.replace("-1.57", "1.57")), ('xyz="0 0 -0.025"', 'xyz="0 0 0.025"'), ('xyz="0 0 1"', 'xyz="0 0 0.5"')),
+            (
+                (RIGHT, RIGHT.replace("-1.57", "1.57")),
+                ('xyz="0 0 -0.025"', 'xyz="0 0 0.025"'),
+                ('xyz="0 0 1"', 'xyz="0 0 0.5"'),
+            ),
             [('xyz="0 0 0.025"', 'xyz="0 0 -0.025"'), ('rpy="1.57 0 0"', 'rpy="-1.57 0 0"')],
             id="a mirrored wheel whose axis is of another length",
         ),
     ],
-)  # fmt: skip
-def test_what_is_meant_is_written(defined: str, changes: Changes, expected: list[tuple[str, str]]) -> None:
+)
+def test_what_is_meant_is_written(
+    defined: str, changes: Changes, expected: list[tuple[str, str]]
+) -> None:
     """One hint corrects everything, and changes no more than the mistake."""
     hints = hints_for(robot(*changes, defined=defined))
     assert hints.is_full
@@ -122,7 +156,9 @@ def test_what_is_meant_is_written(defined: str, changes: Changes, expected: list
 def test_an_end_tag_is_replaced_in_its_place() -> None:
     """A wrong end tag becomes the right one, without another line."""
     text = re.sub(r"(<child link=\"lidar\"/>.*?)</joint>", r"\1</link>", REFERENCE, flags=re.DOTALL)
-    (found,) = hints_for(read_submission(text.encode(), identity="robot", path="my_robot.urdf")).found
+    (found,) = hints_for(
+        read_submission(text.encode(), identity="robot", path="my_robot.urdf")
+    ).found
     assert [(edit.old, edit.new) for edit in found.edits] == [("</link>", "</joint>")]
 
 
@@ -148,7 +184,8 @@ def test_an_edit_gains_nothing_by_a_word_that_is_undone() -> None:
     left = '<joint name="base_left_wheel_joint" type="continuous">'
     hints = hints_for(
         robot(
-            (left, left.replace("continuous", "revolute")), ('<link name="right_wheel">', '<link name="rigth_wheel">')
+            (left, left.replace("continuous", "revolute")),
+            ('<link name="right_wheel">', '<link name="rigth_wheel">'),
         )
     )
     assert hints.is_full
@@ -167,4 +204,8 @@ def test_nothing_is_missing_where_xacro_refuses_something() -> None:
     submission = robot((joint[0], call), defined=defined)
     results = hinted(grade(LAB6, submission), submission, "edit").report.results
     assert any(result.is_lost for result in results)
-    assert not [result.hint for result in results if result.hint is not None and result.hint.message.startswith("Add")]
+    assert not [
+        result.hint
+        for result in results
+        if result.hint is not None and result.hint.message.startswith("Add")
+    ]

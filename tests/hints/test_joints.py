@@ -47,26 +47,86 @@ MISTAKES = {
         "the lower of the joint limit of 'upper' is missing",
         ['<limit lower="-1.5708"'],
     ),
-    "effort": (SHOULDER, SHOULDER.replace("10", "100"), "the effort of the joint limit of 'upper'", ['effort="10"']),
-    "unchecked-numbers-stay": (ELBOW + ' effort="5"', 'lower="-2" upper="1" effort="7"', "the upper of the joint limit of 'lower'", ['upper="2"']),
-    "above-a-fixed-joint": (ELBOW, 'lower="2" upper="2"', "the sign of the lower of the joint limit of 'lower'", ['lower="-2"']),
-    "axis": ('<axis xyz="0 1 0"/>\n    <limit lower="-2"', '<axis xyz="0 -1 0"/>\n    <limit lower="-2"', "the sign of y of the joint axis of 'lower'", ['xyz="0 1 0"']),
-    "through": ('xyz="0.3 0 0"', 'xyz="0.2 0 0"', "x of the joint origin of 'lower'", ['xyz="0.3 0 0"']),
-    "friction": (DYNAMICS, DYNAMICS.replace("0.1", "1"), "the friction of the joint dynamics of 'upper'", ['friction="0.1"']),
+    "effort": (
+        SHOULDER,
+        SHOULDER.replace("10", "100"),
+        "the effort of the joint limit of 'upper'",
+        ['effort="10"'],
+    ),
+    "unchecked-numbers-stay": (
+        ELBOW + ' effort="5"',
+        'lower="-2" upper="1" effort="7"',
+        "the upper of the joint limit of 'lower'",
+        ['upper="2"'],
+    ),
+    "above-a-fixed-joint": (
+        ELBOW,
+        'lower="2" upper="2"',
+        "the sign of the lower of the joint limit of 'lower'",
+        ['lower="-2"'],
+    ),
+    "axis": (
+        '<axis xyz="0 1 0"/>\n    <limit lower="-2"',
+        '<axis xyz="0 -1 0"/>\n    <limit lower="-2"',
+        "the sign of y of the joint axis of 'lower'",
+        ['xyz="0 1 0"'],
+    ),
+    "through": (
+        'xyz="0.3 0 0"',
+        'xyz="0.2 0 0"',
+        "x of the joint origin of 'lower'",
+        ['xyz="0.3 0 0"'],
+    ),
+    "friction": (
+        DYNAMICS,
+        DYNAMICS.replace("0.1", "1"),
+        "the friction of the joint dynamics of 'upper'",
+        ['friction="0.1"'],
+    ),
     "swapped-dynamics": (
         DYNAMICS,
         '<dynamics damping="0.1" friction="0.7"/>',
         "the damping and the friction of the joint dynamics of 'upper' are exchanged",
         ['damping="0.7"', 'friction="0.1"'],
     ),
-    "no-dynamics": (DYNAMICS, "", "the <dynamics> of the joint of 'upper' is missing", ["\n    " + DYNAMICS]),
-    "multiplier": (MIMIC, MIMIC.replace("-1", "1"), "the sign of the multiplier of the joint mimic of 'right'", ['multiplier="-1"']),
-    "no-multiplier": (MIMIC, '<mimic joint="left_finger"/>', "the multiplier of the joint mimic of 'right' is missing", ['<mimic multiplier="-1"']),
-    "offset": (MIMIC, '<mimic joint="left_finger" multiplier="-1" offset="0.1"/>', "the offset of the joint mimic of 'right'", ['offset="0"']),
-    "leader": (MIMIC, MIMIC.replace("left_finger", "elbow"), "the joint of the joint mimic of 'right'", ['joint="left_finger"']),
-    "leader-and-multiplier": (MIMIC, '<mimic joint="elbow"/>', "the joint and multiplier of the joint mimic of 'right'", ['<mimic multiplier="-1"', 'joint="left_finger"']),
+    "no-dynamics": (
+        DYNAMICS,
+        "",
+        "the <dynamics> of the joint of 'upper' is missing",
+        ["\n    " + DYNAMICS],
+    ),
+    "multiplier": (
+        MIMIC,
+        MIMIC.replace("-1", "1"),
+        "the sign of the multiplier of the joint mimic of 'right'",
+        ['multiplier="-1"'],
+    ),
+    "no-multiplier": (
+        MIMIC,
+        '<mimic joint="left_finger"/>',
+        "the multiplier of the joint mimic of 'right' is missing",
+        ['<mimic multiplier="-1"'],
+    ),
+    "offset": (
+        MIMIC,
+        '<mimic joint="left_finger" multiplier="-1" offset="0.1"/>',
+        "the offset of the joint mimic of 'right'",
+        ['offset="0"'],
+    ),
+    "leader": (
+        MIMIC,
+        MIMIC.replace("left_finger", "elbow"),
+        "the joint of the joint mimic of 'right'",
+        ['joint="left_finger"'],
+    ),
+    "leader-and-multiplier": (
+        MIMIC,
+        '<mimic joint="elbow"/>',
+        "the joint and multiplier of the joint mimic of 'right'",
+        ['<mimic multiplier="-1"', 'joint="left_finger"'],
+    ),
     "no-mimic": (MIMIC, "", "the <mimic> of the joint of 'right' is missing", ["\n    " + MIMIC]),
-}  # fmt: skip
+}
 
 
 def graded(path: Path, *options: str) -> dict[str, Any]:
@@ -88,7 +148,9 @@ def test_a_mistake_is_undone(name: str, tmp_path: Path) -> None:
     assert report["score"] == 8
     assert ([edit["new"] for edit in hint["edits"]], sum(hint["gains"].values())) == (edits, 2)
     assert graded(fixed)["score"] == 10
-    [told] = [hint for result in graded(path, "--hints", "cause")["results"] for hint in result["hints"]]
+    [told] = [
+        hint for result in graded(path, "--hints", "cause")["results"] for hint in result["hints"]
+    ]
     assert told["message"].endswith(f": {cause}.")
 
 
@@ -98,4 +160,6 @@ def test_joints_with_other_names(tmp_path: Path) -> None:
     text = REFERENCE.replace(MIMIC, "").replace("left_finger", "l&amp;1")
     path.write_text(text)
     [hint] = [hint for result in graded(path)["results"] for hint in result["hints"]]
-    assert [edit["new"].strip() for edit in hint["edits"]] == ['<mimic joint="l&amp;1" multiplier="-1"/>']
+    assert [edit["new"].strip() for edit in hint["edits"]] == [
+        '<mimic joint="l&amp;1" multiplier="-1"/>'
+    ]

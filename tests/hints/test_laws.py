@@ -40,14 +40,18 @@ def _texts(submission: Submission) -> Iterator[str]:
             yield (content(submission, path) or b"").decode("utf-8", "replace")
     root = submission.urdf.reading.elements
     if root is not None:  # what xacro makes of expressions
-        yield " ".join(value for element in root.iter() for value in map(str, element.attrib.values()))
+        yield " ".join(
+            value for element in root.iter() for value in map(str, element.attrib.values())
+        )
 
 
 def meant(submission: Submission, rubric: Rubric) -> list[float]:
     """Return the numbers that a hint may write: those of the reference, and the student's, also in another unit."""
     own = [value for text in _texts(submission) for value in numbers_in(text)]
     like = [value for text in _texts(reference(rubric)) for value in numbers_in(text)]
-    return [abs(value) for value in like] + [abs(value) * factor for value in own for factor in _FACTORS]
+    return [abs(value) for value in like] + [
+        abs(value) * factor for value in own for factor in _FACTORS
+    ]
 
 
 def strange(edits: Iterable[Edit], submission: Submission, rubric: Rubric) -> list[str]:
@@ -61,26 +65,38 @@ def strange(edits: Iterable[Edit], submission: Submission, rubric: Rubric) -> li
                 found.append(f"{edit.old} -> {edit.new}: {value}")
         built = set(_EXPRESSION.findall(edit.new)) - set(_EXPRESSION.findall(edit.old))
         text = "".join(_texts(submission))
-        found += [f"{edit.old} -> {edit.new}: {one}" for one in built if one not in text and not _is_respelt(one, text)]
+        found += [
+            f"{edit.old} -> {edit.new}: {one}"
+            for one in built
+            if one not in text and not _is_respelt(one, text)
+        ]
     return found
 
 
 def _is_respelt(expression: str, text: str) -> bool:
     """Return whether each word of an expression is one of the text: a name that is corrected."""
-    return all(word in text for word in re.findall(r"[^\W\d]\w*", expression)) and len(expression) < 80
+    return (
+        all(word in text for word in re.findall(r"[^\W\d]\w*", expression)) and len(expression) < 80
+    )
 
 
 def hold(submission: Submission, rubric: Rubric) -> Report:
     """Check the laws of a submission's hints, and return its report."""
     report = grade(rubric, submission)
     found = hinted(report, submission, "edit")
-    hints = {id(result.hint): result.hint for result in found.report.results if result.hint is not None}
+    hints = {
+        id(result.hint): result.hint for result in found.report.results if result.hint is not None
+    }
     assert not found.faults
     places = [(edit.path, edit.line, edit.column) for edit in found.edits if edit.old]
     assert len(places) == len(set(places))
     fix = fixed(found, submission)
     is_robot = isinstance(submission.urdf, Read)
-    robots = [edit for edit in found.edits if edit.path.endswith((".urdf", ".xacro"))] if is_robot else []
+    robots = (
+        [edit for edit in found.edits if edit.path.endswith((".urdf", ".xacro"))]
+        if is_robot
+        else []
+    )
     assert strange(robots, submission, rubric) == []
     shown = {hint.shown_by: hint for hint in hints.values()}
     promised = sum(sum(hint.gains.values()) for hint in shown.values())

@@ -18,15 +18,28 @@ from tests.samples import LAB6_SAMPLES, SAMPLES, opened
 REJECTED = [
     name
     for name, sample in LAB6_SAMPLES.items()
-    if sample.expected.verdict in ("rejected", "degraded") and "xacro" not in name and name != "empty-urdf"
+    if sample.expected.verdict in ("rejected", "degraded")
+    and "xacro" not in name
+    and name != "empty-urdf"
 ]
-_LACKING = {"footprint-without-joint", "lidar-without-joint", "links-without-joints", "truncated-file"}
+_LACKING = {
+    "footprint-without-joint",
+    "lidar-without-joint",
+    "links-without-joints",
+    "truncated-file",
+}
 # Mistakes after which it is not certain which tag was meant, or that ROS 2 does not see as an error.
 _NOT_UNDONE = {
-    "tag-glued-to-its-attribute", "no-start-of-a-tag", "no-start-of-a-link",
-    "no-start-of-a-joint", "robot-twice", "robot-ends-early", "no-robot", "comment-not-closed",
+    "tag-glued-to-its-attribute",
+    "no-start-of-a-tag",
+    "no-start-of-a-link",
+    "no-start-of-a-joint",
+    "robot-twice",
+    "robot-ends-early",
+    "no-robot",
+    "comment-not-closed",
     "declaration-opened-badly",
-}  # fmt: skip
+}
 
 
 def searched(submission: Submission) -> HintSearch:
@@ -74,9 +87,15 @@ def test_samples_that_ros_rejects_are_loaded_or_lack_a_part(name: str) -> None:
 
 def test_one_mistake_in_many_places(tmp_path: Path) -> None:
     """Commas in every vector are corrected in each."""
-    text = REFERENCE.replace('xyz="0 0 0.1"', 'xyz="0, 0, 0.1"').replace('xyz="0 0 0.025"', 'xyz="0, 0, 0.025"')
+    text = REFERENCE.replace('xyz="0 0 0.1"', 'xyz="0, 0, 0.1"').replace(
+        'xyz="0 0 0.025"', 'xyz="0, 0, 0.025"'
+    )
     search = searched(written(tmp_path, text))
-    assert sorted(edit.new for edit in search.edits) == ['xyz="0 0 0.025"', 'xyz="0 0 0.1"', 'xyz="0 0 0.1"']
+    assert sorted(edit.new for edit in search.edits) == [
+        'xyz="0 0 0.025"',
+        'xyz="0 0 0.1"',
+        'xyz="0 0 0.1"',
+    ]
 
 
 @pytest.mark.parametrize("text", [b"", b"\n", "robot".encode("utf-16"), b"this is no robot"])
@@ -89,7 +108,11 @@ def test_no_hint_where_too_much_is_missing(text: bytes, tmp_path: Path) -> None:
 
 def test_xacro_in_a_urdf_is_not_repaired_number_by_number() -> None:
     """Where the xacro of a .urdf is what is wrong, no expression is replaced by its value."""
-    assert not any("${" in edit.old for found in searched(SAMPLES["raw-xacro"].open()).found for edit in found.edits)
+    assert not any(
+        "${" in edit.old
+        for found in searched(SAMPLES["raw-xacro"].open()).found
+        for edit in found.edits
+    )
 
 
 def test_no_hint_loses_a_point(tmp_path: Path) -> None:
@@ -99,7 +122,11 @@ def test_no_hint_loses_a_point(tmp_path: Path) -> None:
         text = REFERENCE
         for _ in range(random.randint(1, 3)):
             at = random.randrange(len(text))
-            text = text[:at] + random.choice(("", "", '"', "<", ">", "/", "=", ",", "</link>")) + text[at + 1 :]
+            text = (
+                text[:at]
+                + random.choice(("", "", '"', "<", ">", "/", "=", ",", "</link>"))
+                + text[at + 1 :]
+            )
         submission = written(tmp_path, text)
         before = graded(submission)
         for found in searched(submission).found:

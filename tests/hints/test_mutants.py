@@ -43,12 +43,22 @@ def test_sample_mistakes_get_hints_that_lead_to_full_marks() -> None:
             "lidar-without-joint",
             "links-without-joints",
         ),
-        *("right-wheel-missing", "arm/world-missing", "sensors/imu-commented-out", "sensors/macro-never-called"),
+        *(
+            "right-wheel-missing",
+            "arm/world-missing",
+            "sensors/imu-commented-out",
+            "sensors/macro-never-called",
+        ),
         *("sensors/no-xacro", "sensors/nothing-included", "sensors/properties-unused"),
     }
     # Names of which several places would have to change, or that are written nowhere.
     of_names = {
-        *("dependency-forgotten", "velocities-unstamped", "program-misspelt", "config-not-installed"),
+        *(
+            "dependency-forgotten",
+            "velocities-unstamped",
+            "program-misspelt",
+            "config-not-installed",
+        ),
         *("remapping-forgotten", "interface-of-position"),
     }
     assert left == without_a_file | without_a_part | {f"diffdrive/{name}" for name in of_names}
@@ -69,12 +79,22 @@ def test_a_link_without_name_gets_its_name() -> None:
     """The name that a joint uses is added to the link; the link is not copied."""
     changed = REFERENCE.text.replace('<link name="lidar">', "<link>")
     hints = hints_for(REFERENCE.changed(changed))
-    assert [(edit.old, edit.new) for found in hints.found for edit in found.edits] == [("<link", '<link name="lidar"')]
+    assert [(edit.old, edit.new) for found in hints.found for edit in found.edits] == [
+        ("<link", '<link name="lidar"')
+    ]
     assert hints.is_full
 
 
 @pytest.mark.parametrize(
-    "written", ['xyz="0.15 0 0.225 0"', 'xyz="0.15 0"', 'xyz=""', 'rpy="0 0 0 0 0"', 'rpy="1"', 'xyz="0.15, 0, 0.225"']
+    "written",
+    [
+        'xyz="0.15 0 0.225 0"',
+        'xyz="0.15 0"',
+        'xyz=""',
+        'rpy="0 0 0 0 0"',
+        'rpy="1"',
+        'xyz="0.15, 0, 0.225"',
+    ],
 )
 def test_a_wrong_count_of_numbers_is_corrected(written: str) -> None:
     """A vector with too many or too few numbers, or none, is replaced."""
@@ -100,7 +120,9 @@ def test_a_wrong_count_of_numbers_is_corrected(written: str) -> None:
         ("mount-of-the-wheel-turned", ('rpy="1.57 0 0"', 'rpy="-1.57 0 0"')),
     ],
 )
-def test_the_mistake_is_corrected_and_not_hidden_by_another(name: str, change: tuple[str, str]) -> None:
+def test_the_mistake_is_corrected_and_not_hidden_by_another(
+    name: str, change: tuple[str, str]
+) -> None:
     """A frame in the wrong place is corrected there, not by a picture far from it or by the next joint."""
     mistake = MISTAKES[name]
     hints = hints_for(mistake.base.changed(mistake.text))
@@ -116,7 +138,9 @@ def test_a_number_near_the_expected_one_becomes_the_expected_one(written: str) -
     assert [[edit.new for edit in found.edits] for found in hints.found] == [['xyz="0 0 0.025"']]
 
 
-@pytest.mark.parametrize(("name", "link"), [("arm/diameter-for-radius", "shoulder"), ("arm/box-lying", "forearm")])
+@pytest.mark.parametrize(
+    ("name", "link"), [("arm/diameter-for-radius", "shoulder"), ("arm/box-lying", "forearm")]
+)
 def test_an_inertia_is_not_fitted_to_a_wrong_shape(name: str, link: str) -> None:
     """The only hint corrects the shape, with which the inertia is correct."""
     hints = hints_for(SAMPLES[name].open(), SAMPLES[name].rubric)

@@ -16,7 +16,16 @@ from tests.hints.trials import applied
 from tests.samples import RUBRICS, reference
 from tests.workspace.carts import FOLDER, cart, cart_files, edited
 
-_FAMILIES = ("files", "frames", "controllers", "parameters", "arguments", "programs", "topics", "dependencies")
+_FAMILIES = (
+    "files",
+    "frames",
+    "controllers",
+    "parameters",
+    "arguments",
+    "programs",
+    "topics",
+    "dependencies",
+)
 _RUBRIC = """
 id = "cart"
 title = "A cart"
@@ -59,14 +68,25 @@ def found_for(texts: Mapping[str, str]) -> tuple[Report, Edits]:
 def after(texts: Mapping[str, str], edits: Edits) -> dict[str, str]:
     """Return the files with edits."""
     changed = {edit.path: [it for it in edits if it.path == edit.path] for edit in edits}
-    return {**texts, **{path: applied(texts[path].encode(), own).decode() for path, own in changed.items()}}
+    return {
+        **texts,
+        **{path: applied(texts[path].encode(), own).decode() for path, own in changed.items()},
+    }
 
 
 @pytest.mark.parametrize(
     ("place", "old", "new"),
     [
-        ("config/controllers.yaml", "right_wheel_names: [right_wheel_joint]", "right_wheel_names: [rigth_wheel_joint]"),
-        ("config/controllers.yaml", "\nwheel_controller:\n  ros__parameters", "\nwheel_controller:\n  ros__paramters"),
+        (
+            "config/controllers.yaml",
+            "right_wheel_names: [right_wheel_joint]",
+            "right_wheel_names: [rigth_wheel_joint]",
+        ),
+        (
+            "config/controllers.yaml",
+            "\nwheel_controller:\n  ros__parameters",
+            "\nwheel_controller:\n  ros__paramters",
+        ),
         ("config/detector.yaml", "threshold: 0.5", "treshold: 0.5"),
         ("config/detector.yaml", "detector:", "detecter:"),
         ("config/detector.yaml", "detector:", "vision:"),
@@ -76,7 +96,11 @@ def after(texts: Mapping[str, str], edits: Edits) -> dict[str, str]:
         ("config/bridge.yaml", "gz_topic_name: front_camera", "gz_topic_name: fornt_camera"),
         ("worlds/hall.yaml", "image: hall.pgm", "image: hal.pgm"),
         ("cart_bringup/CMakeLists.txt", "launch config worlds", "launch confg worlds"),
-        ("cart_bringup/package.xml", "<exec_depend>nav2_controller</", "<exec_depend>nav2_controler</"),
+        (
+            "cart_bringup/package.xml",
+            "<exec_depend>nav2_controller</",
+            "<exec_depend>nav2_controler</",
+        ),
         ("robot.launch.py", '"base_link"', '"base_lnk"'),
         ("robot.launch.py", '["wheel_controller"', '["wheel_controler"'),
         ("robot.launch.py", " controllers_file:=", " controler_file:="),
@@ -86,14 +110,22 @@ def after(texts: Mapping[str, str], edits: Edits) -> dict[str, str]:
         ("cart.launch.py", '[("image"', '[("imgae"'),
         ("cart.launch.py", '["map_server"', '["map_sever"'),
         ("cart.launch.py", '{"volume": 3}', '{"volum": 3}'),
-        ("cart.launch.py", 'package="cart_nodes", executable="alarm"', 'package="cart_node", executable="alarm"'),
+        (
+            "cart.launch.py",
+            'package="cart_nodes", executable="alarm"',
+            'package="cart_node", executable="alarm"',
+        ),
         ("cart_nodes/setup.py", "cart_nodes.detector:main", "cart_nodes.detector:run"),
         ("cart_nodes/setup.py", '"alarm = ', '"alrm = '),
         ("detector.py", 'get_parameter("threshold")', 'get_parameter("treshold")'),
-        ("cart.urdf.xacro", 'left_wheel_joint">\n      <command_interface name="velocity"', 'left_wheel_joint">\n      <command_interface name="velocty"'),
+        (
+            "cart.urdf.xacro",
+            'left_wheel_joint">\n      <command_interface name="velocity"',
+            'left_wheel_joint">\n      <command_interface name="velocty"',
+        ),
         ("cart.urdf.xacro", '<gazebo reference="camera_link">', '<gazebo reference="camera_lnk">'),
     ],
-)  # fmt: skip
+)
 def test_a_slip_is_undone_where_it_is(place: str, old: str, new: str) -> None:
     """Not by the same slip in the file that the name belongs to, though both agree then."""
     texts = edited((place, old, new))
@@ -110,7 +142,10 @@ def test_of_names_of_the_students_own_the_one_is_kept_that_more_places_write() -
     """The reference does not know either of them; the slip is in the definition."""
     own = renamed("threshold", "limit")
     [path] = [it for it in own if it.endswith("detector.py")]
-    texts = {**own, path: own[path].replace('declare_parameter("limit"', 'declare_parameter("limt"')}
+    texts = {
+        **own,
+        path: own[path].replace('declare_parameter("limit"', 'declare_parameter("limt"'),
+    }
     _, edits = found_for(texts)
     assert after(texts, edits) == own
 
@@ -129,11 +164,16 @@ def test_of_two_names_that_as_many_places_write_both_edits_are_told_and_none_is_
 
 def test_a_slip_that_makes_two_problems_is_one_edit() -> None:
     """A topic that is remapped under a wrong name is not published, too: with the right name, both are solved."""
-    _, edits = found_for(edited(("cart.launch.py", '("image", "camera/image")', '("imag", "camera/image")')))
+    _, edits = found_for(
+        edited(("cart.launch.py", '("image", "camera/image")', '("imag", "camera/image")'))
+    )
     assert [(edit.old, edit.new) for edit in edits] == [("imag", "image")]
 
 
-_BACKWARD = ('("/diff_drive_controller/cmd_vel", "/cmd_vel")', '("/cmd_vel", "/diff_drive_controller/cmd_vel")')
+_BACKWARD = (
+    '("/diff_drive_controller/cmd_vel", "/cmd_vel")',
+    '("/cmd_vel", "/diff_drive_controller/cmd_vel")',
+)
 
 
 def test_a_remapping_that_is_written_backward_is_exchanged() -> None:
@@ -153,12 +193,22 @@ def test_a_remapping_that_is_written_backward_is_exchanged() -> None:
 @pytest.mark.parametrize(
     ("ending", "text", "expected"),
     [
-        ("py", 'Node(remappings=[("a", "/b"), (\'~/c\', "d",)], arguments=[("e", "f")])', [('"a"', '"/b"'), ("'~/c'", '"d"')]),
+        (
+            "py",
+            'Node(remappings=[("a", "/b"), (\'~/c\', "d",)], arguments=[("e", "f")])',
+            [('"a"', '"/b"'), ("'~/c'", '"d"')],
+        ),
         ("xml", '<node><remap from="a" to="/b"/></node>', [('"a"', '"/b"')]),
-        ("yaml", "remap: [{from: a, to: /b}]\nparam:\n- from: c\n  to: d", [("a", "/b"), ("c", "d")]),
+        (
+            "yaml",
+            "remap: [{from: a, to: /b}]\nparam:\n- from: c\n  to: d",
+            [("a", "/b"), ("c", "d")],
+        ),
     ],
-)  # fmt: skip
-def test_each_way_to_write_a_remapping_is_exchanged(ending: str, text: str, expected: list[tuple[str, str]]) -> None:
+)
+def test_each_way_to_write_a_remapping_is_exchanged(
+    ending: str, text: str, expected: list[tuple[str, str]]
+) -> None:
     """In Python, XML and YAML, each of a list."""
     path = f"cart_bringup/launch/other.launch.{ending}"
     proposals = name_proposals(cart({**cart_files(), path: text}, rubric().lab), "topics", None)

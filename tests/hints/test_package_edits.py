@@ -12,13 +12,19 @@ from tests.examples import spread
 from tests.samples import LAB6, SAMPLES, reference
 
 _REFERENCE = reference()
-SETUP, LAUNCH, RVIZ, MANIFEST = "setup.py", "launch/my_robot_rviz.launch.py", "rviz/my_robot.rviz", "package.xml"
-ENTRY = "        (os.path.join('share', package_name), glob('rviz/*')),\n"
-URDF_PATH, RVIZ_PATH = "os.path.join(share, 'my_robot.urdf')", "os.path.join(share, 'my_robot.rviz')"
-RVIZ_ARGUMENTS = f"            arguments=['-d', {RVIZ_PATH}],\n"
-RVIZ_NODE = (
-    f"        Node(\n            package='rviz2',\n            executable='rviz2',\n{RVIZ_ARGUMENTS}        ),\n"
+SETUP, LAUNCH, RVIZ, MANIFEST = (
+    "setup.py",
+    "launch/my_robot_rviz.launch.py",
+    "rviz/my_robot.rviz",
+    "package.xml",
 )
+ENTRY = "        (os.path.join('share', package_name), glob('rviz/*')),\n"
+URDF_PATH, RVIZ_PATH = (
+    "os.path.join(share, 'my_robot.urdf')",
+    "os.path.join(share, 'my_robot.rviz')",
+)
+RVIZ_ARGUMENTS = f"            arguments=['-d', {RVIZ_PATH}],\n"
+RVIZ_NODE = f"        Node(\n            package='rviz2',\n            executable='rviz2',\n{RVIZ_ARGUMENTS}        ),\n"
 
 # A part of a file of the reference, and what a student writes instead. With the correction, the file is as before.
 UNDONE = {
@@ -27,10 +33,22 @@ UNDONE = {
     "folder capitalised in a pattern": (SETUP, "urdf/*", "URDF/*"),
     "backslash in a pattern": (SETUP, "'urdf/*'", r"'urdf\\*'"),
     "entry missing": (SETUP, ENTRY, ""),
-    "comma missing in an entry": (SETUP, "package_name), glob('urdf/*')", "package_name) glob('urdf/*')"),
+    "comma missing in an entry": (
+        SETUP,
+        "package_name), glob('urdf/*')",
+        "package_name) glob('urdf/*')",
+    ),
     "comma missing between entries": (SETUP, "['package.xml']),", "['package.xml'])"),
-    "other folder than share": (SETUP, "('share', package_name), glob('rviz", "('lib', package_name), glob('rviz"),
-    "name of the package misspelt": (SETUP, "package_name = 'my_robot'", "package_name = 'my_robto'"),
+    "other folder than share": (
+        SETUP,
+        "('share', package_name), glob('rviz",
+        "('lib', package_name), glob('rviz",
+    ),
+    "name of the package misspelt": (
+        SETUP,
+        "package_name = 'my_robot'",
+        "package_name = 'my_robto'",
+    ),
     "import os missing": (SETUP, "import os\n", ""),
     "import misspelt": (SETUP, "import os\n", "import oss\n"),
     "variable misspelt": (SETUP, "package_name = ", "package_nane = "),
@@ -40,13 +58,25 @@ UNDONE = {
     "quote missing": (SETUP, "glob('rviz/*')", "glob('rviz/*)"),
     "bracket not closed": (SETUP, "glob('rviz/*')),", "glob('rviz/*'),"),
     "bracket too many": (SETUP, "glob('rviz/*')),", "glob('rviz/*'))),"),
-    "bracket not opened": (SETUP, "os.path.join('share', package_name)", "os.path.join'share', package_name)"),
+    "bracket not opened": (
+        SETUP,
+        "os.path.join('share', package_name)",
+        "os.path.join'share', package_name)",
+    ),
     "keyword misspelt": (SETUP, "from glob import", "form glob import"),
     "indented": (SETUP, "package_name = ", " package_name = "),
-    "name in quotes": (SETUP, "('share', package_name), glob('urdf/*')", "('share', 'package_name'), glob('urdf/*')"),
+    "name in quotes": (
+        SETUP,
+        "('share', package_name), glob('urdf/*')",
+        "('share', 'package_name'), glob('urdf/*')",
+    ),
     "program of another name": (LAUNCH, "executable='rviz2'", "executable='rviz'"),
     "method not called": (LAUNCH, "file.read()", "file.read"),
-    "block not indented": (LAUNCH, "        robot_description = file", "    robot_description = file"),
+    "block not indented": (
+        LAUNCH,
+        "        robot_description = file",
+        "    robot_description = file",
+    ),
     "line after a tab": (LAUNCH, "    share = get", "\tshare = get"),
     "URDF misspelt": (LAUNCH, "'my_robot.urdf'", "'my_robott.urdf'"),
     "URDF in a folder": (LAUNCH, "'my_robot.urdf'", "'urdf/my_robot.urdf'"),
@@ -55,10 +85,18 @@ UNDONE = {
     "package misspelt": (LAUNCH, "directory('my_robot')", "directory('my_robo')"),
     "node without arguments": (LAUNCH, RVIZ_ARGUMENTS, ""),
     "node missing": (LAUNCH, RVIZ_NODE, ""),
-    "executable misspelt": (LAUNCH, "executable='robot_state_publisher'", "executable='robot_state_publsher'"),
+    "executable misspelt": (
+        LAUNCH,
+        "executable='robot_state_publisher'",
+        "executable='robot_state_publsher'",
+    ),
     "argument misspelt": (LAUNCH, "executable='rviz2'", "excutable='rviz2'"),
     "import of an action missing": (LAUNCH, "from launch_ros.actions import Node\n", ""),
-    "entry function misspelt": (LAUNCH, "def generate_launch_description", "def generate_launch_descripton"),
+    "entry function misspelt": (
+        LAUNCH,
+        "def generate_launch_description",
+        "def generate_launch_descripton",
+    ),
     "nothing returned": (LAUNCH, "    return LaunchDescription", "    LaunchDescription"),
     "comma missing in a node": (LAUNCH, "package='rviz2',\n", "package='rviz2'\n"),
     "colon missing": (LAUNCH, "description():", "description()"),
@@ -77,16 +115,40 @@ UNDONE = {
 # The same, where another correction is as good.
 CORRECTED = {
     "no imports": (SETUP, "import os\nfrom glob import glob\n", ""),
-    "share folder of another package": (SETUP, "('share', package_name), glob('urdf", "('share', 'myrobot'), glob('urdf"),
+    "share folder of another package": (
+        SETUP,
+        "('share', package_name), glob('urdf",
+        "('share', 'myrobot'), glob('urdf",
+    ),
     "a file, not a list": (SETUP, "glob('urdf/*')", "'urdf/my_robot.urdf'"),
     "slash missing": (LAUNCH, URDF_PATH, "share + 'my_robot.urdf'"),
-    "path in the home folder": (LAUNCH, URDF_PATH, "'/home/ash/ws/src/my_robot/urdf/my_robot.urdf'"),
-    "path with a tilde": (LAUNCH, RVIZ_PATH, "os.path.expanduser('~/ws/my_robot/rviz/my_robot.rviz')"),
-    "folder of one machine": (LAUNCH, "get_package_share_directory('my_robot')", "'/home/ash/ws/install/my_robot/share/my_robot'"),
+    "path in the home folder": (
+        LAUNCH,
+        URDF_PATH,
+        "'/home/ash/ws/src/my_robot/urdf/my_robot.urdf'",
+    ),
+    "path with a tilde": (
+        LAUNCH,
+        RVIZ_PATH,
+        "os.path.expanduser('~/ws/my_robot/rviz/my_robot.rviz')",
+    ),
+    "folder of one machine": (
+        LAUNCH,
+        "get_package_share_directory('my_robot')",
+        "'/home/ash/ws/install/my_robot/share/my_robot'",
+    ),
     "path relative to the terminal": (LAUNCH, URDF_PATH, "'src/my_robot/urdf/my_robot.urdf'"),
-    "condition that prevents a node": (LAUNCH, RVIZ_ARGUMENTS, RVIZ_ARGUMENTS + "            condition=UnlessCondition(gui),\n"),
-    "path instead of contents": (LAUNCH, "[{'robot_description': robot_description}]", f"[{{'robot_description': {URDF_PATH}}}]"),
-}  # fmt: skip
+    "condition that prevents a node": (
+        LAUNCH,
+        RVIZ_ARGUMENTS,
+        RVIZ_ARGUMENTS + "            condition=UnlessCondition(gui),\n",
+    ),
+    "path instead of contents": (
+        LAUNCH,
+        "[{'robot_description': robot_description}]",
+        f"[{{'robot_description': {URDF_PATH}}}]",
+    ),
+}
 MOVED = {
     "launch file misspelt": (LAUNCH, "launch/my_robot_rvix.launch.py"),
     "launch file without extension": (LAUNCH, "launch/my_robot_rviz"),
@@ -116,11 +178,19 @@ _ALL = _passed(_REFERENCE)
 def _proposals(submission: Submission) -> list[Proposal]:
     """Return the edits for the criteria of the package that failed or are skipped."""
     passed = _passed(submission)
-    lost = [criterion for criterion in LAB6.criteria if criterion.part == "task2" and criterion.id not in passed]
+    lost = [
+        criterion
+        for criterion in LAB6.criteria
+        if criterion.part == "task2" and criterion.id not in passed
+    ]
     wanted = [(criterion.check.about.looks_at, criterion.arguments) for criterion in lost]
     if submission.package is None:
         return []
-    return [it for made in package_proposals(submission.package, _REFERENCE.package, wanted) for it in made]
+    return [
+        it
+        for made in package_proposals(submission.package, _REFERENCE.package, wanted)
+        for it in made
+    ]
 
 
 def _corrected(broken: Submission) -> Submission | None:
@@ -171,11 +241,22 @@ def test_a_file_is_renamed(mistake: str) -> None:
 
 
 _CORRECTED_SAMPLES = (
-    "folder-misspelt-in-setup", "glob-finds-a-folder", "glob-module-called", "launch-file-misspelt",
-    "launch-home-path", "launch-looks-in-other-folder", "launch-syntax-error", "launch-without-rviz",
-    "missing-import-glob", "package-misnamed", "rviz-fixed-frame-map",
-    "rviz-not-installed", "rviz-robot-off", "setup-as-created", "setup-syntax-error",
-)  # fmt: skip
+    "folder-misspelt-in-setup",
+    "glob-finds-a-folder",
+    "glob-module-called",
+    "launch-file-misspelt",
+    "launch-home-path",
+    "launch-looks-in-other-folder",
+    "launch-syntax-error",
+    "launch-without-rviz",
+    "missing-import-glob",
+    "package-misnamed",
+    "rviz-fixed-frame-map",
+    "rviz-not-installed",
+    "rviz-robot-off",
+    "setup-as-created",
+    "setup-syntax-error",
+)
 
 
 @pytest.mark.parametrize("name", spread(_CORRECTED_SAMPLES, 5))
@@ -196,7 +277,10 @@ def test_the_name_of_a_package_gets_no_slash() -> None:
     """A path without a slash is never corrected in the name of the package, which ROS 2 would not find then."""
     broken = _with_mistake(LAUNCH, URDF_PATH, "share + 'my_robot.urdf'")
     assert not any(
-        "my_robot/" in edit.new for proposal in _proposals(broken) for edit in proposal.edits if edit.old == "my_robot"
+        "my_robot/" in edit.new
+        for proposal in _proposals(broken)
+        for edit in proposal.edits
+        if edit.old == "my_robot"
     )
 
 
@@ -207,10 +291,16 @@ def test_a_node_that_is_wanted_is_not_taken_for_another_one() -> None:
     path = "my_robot/launch/my_robot_rviz.launch.xml"
     text = (content(submission, path) or b"").decode().replace("my_robot.urdf')", "my_robot.urdf)")
     broken = with_files(submission, {path: text.encode()})
-    assert not any(edit.old == "robot_state_publisher" for proposal in _proposals(broken) for edit in proposal.edits)
+    assert not any(
+        edit.old == "robot_state_publisher"
+        for proposal in _proposals(broken)
+        for edit in proposal.edits
+    )
 
 
-@pytest.mark.parametrize(("path", "name"), spread(product((SETUP, LAUNCH, RVIZ, MANIFEST), HOSTILE), 4))
+@pytest.mark.parametrize(
+    ("path", "name"), spread(product((SETUP, LAUNCH, RVIZ, MANIFEST), HOSTILE), 4)
+)
 def test_hostile_files_get_few_edits(path: str, name: str) -> None:
     """No file makes the search for edits fail, or find many."""
     broken = with_files(_REFERENCE, {path: HOSTILE[name]})

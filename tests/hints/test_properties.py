@@ -53,7 +53,9 @@ def test_hints_gain_what_they_promise_and_lose_nothing(data: bytes) -> None:
         after = graded(with_edits(submission, edits))
         assert _passed(before) <= _passed(after)
         assert all(after[name].points >= before[name].points for name in before)
-        known = {name for it in search.found[:index] for name in it.gains}  # promised by hints before it
+        known = {
+            name for it in search.found[:index] for name in it.gains
+        }  # promised by hints before it
         if gains:
             assert _passed(after) - _passed(without) - known == set(gains) - known
             assert gains == {name: after[name].points - without[name].points for name in gains}

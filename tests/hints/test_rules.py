@@ -32,9 +32,15 @@ def changed(*changes: tuple[str, str], text: str = REFERENCE) -> Submission:
 
 def test_a_call_without_its_parameter_gets_the_parameter() -> None:
     """A macro call that lacks a parameter is completed; no link is added beside it."""
-    call = next(line for line in MACROS.text.split("\n") if "<xacro:wheel" in line and "right" in line)
-    name, value = next(pair.split("=") for pair in call.rstrip("/> ").split()[1:] if "right" not in pair)
-    hints = hints_for(MACROS.changed(MACROS.text.replace(call, call.replace(f" {name}={value}", ""))))
+    call = next(
+        line for line in MACROS.text.split("\n") if "<xacro:wheel" in line and "right" in line
+    )
+    name, value = next(
+        pair.split("=") for pair in call.rstrip("/> ").split()[1:] if "right" not in pair
+    )
+    hints = hints_for(
+        MACROS.changed(MACROS.text.replace(call, call.replace(f" {name}={value}", "")))
+    )
     assert hints.is_full
     (edits,) = edits_of(hints)
     assert [new.strip() for _, new in edits] == [f"{name}={value}"]
@@ -42,7 +48,11 @@ def test_a_call_without_its_parameter_gets_the_parameter() -> None:
 
 def test_each_hint_is_alone() -> None:
     """Two mistakes have a hint each, which contains nothing of the other one."""
-    hints = hints_for(changed(('xyz="0.15 0 0.225"', 'xyz="0.15 0 0.025"'), ('rgba="0 0.6 0 1"', 'rgba="0 1 0 1"')))
+    hints = hints_for(
+        changed(
+            ('xyz="0.15 0 0.225"', 'xyz="0.15 0 0.025"'), ('rgba="0 0.6 0 1"', 'rgba="0 1 0 1"')
+        )
+    )
     assert sorted(edits_of(hints)) == [
         [('rgba="0 1 0 1"', 'rgba="0 0.6 0 1"')],
         [('xyz="0.15 0 0.025"', 'xyz="0.15 0 0.225"')],
@@ -52,7 +62,11 @@ def test_each_hint_is_alone() -> None:
 @pytest.mark.parametrize("size", ["6 4 2", "600 400 200", "0.01 0.01 0.0005"])
 def test_no_edit_pleases_a_tolerance(size: str) -> None:
     """A box of another size at the origin gets the size and the place of the lab, not a size that sinks by less than 2 mm."""
-    hints = hints_for(changed(('size="0.6 0.4 0.2"', f'size="{size}"'), ('<origin xyz="0 0 0.1" rpy="0 0 0"/>', "")))
+    hints = hints_for(
+        changed(
+            ('size="0.6 0.4 0.2"', f'size="{size}"'), ('<origin xyz="0 0 0.1" rpy="0 0 0"/>', "")
+        )
+    )
     assert hints.is_full
     new = {new for edits in edits_of(hints) for _, new in edits if "size" in new}
     assert new == {'size="0.6 0.4 0.2"'}
@@ -78,7 +92,9 @@ def test_a_property_without_prefix_gets_it() -> None:
     """The cause is where the property is written, not where its value is missing."""
     base = BASES["equivalent-xacro-numbers"]
     first = base.text.index("<xacro:property")
-    hints = hints_for(base.changed(f"{base.text[:first]}<property{base.text[first + len('<xacro:property') :]}"))
+    hints = hints_for(
+        base.changed(f"{base.text[:first]}<property{base.text[first + len('<xacro:property') :]}")
+    )
     assert hints.is_full
     assert edits_of(hints)[0] == [("<property", "<xacro:property")]
 
@@ -96,12 +112,16 @@ def test_exchanged_expressions_are_exchanged() -> None:
     assert edits_of(hints) == [[(f'xyz="{wrong}"', f'xyz="{right}"')]]
 
 
-def test_hints_that_do_not_hold_from_scratch_are_taken_back(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_hints_that_do_not_hold_from_scratch_are_taken_back(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """All edits together are graded once more, with the submission read as a new one."""
     submission = changed(('xyz="0.15 0 0.225"', 'xyz="0.15 0 0.025"'))
     assert hints_for(submission).found
     of_trial = Trials.graded
-    fails_whole = lambda self, edits, wanted, *, whole=False: {} if whole else of_trial(self, edits, wanted)
+    fails_whole = lambda self, edits, wanted, *, whole=False: (
+        {} if whole else of_trial(self, edits, wanted)
+    )
     monkeypatch.setattr(Trials, "graded", fails_whole)
     assert not hints_for(submission).found
 

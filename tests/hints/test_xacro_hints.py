@@ -53,7 +53,11 @@ def mutant(path: str, old: str, new: str) -> tuple[Submission, str]:
         ("", '"length" value="0.6"', '"length" value="6"'),
         ("", "${length/4}", "${length*4}"),
         ("", 'xyz="0 0 ${height/2}"', 'xyz="0 0.1 ${height/2}"'),
-        ("", '${-length/4} ${-width/2} 0" rpy="${-pi/2}', '${-length/4} ${-width/2} 0" rpy="${pi/2}'),
+        (
+            "",
+            '${-length/4} ${-width/2} 0" rpy="${-pi/2}',
+            '${-length/4} ${-width/2} 0" rpy="${pi/2}',
+        ),
         ("", "${height+0.05/2}", "${height-0.05/2}"),
         ("", "${length/3} 0 ${-wheel_radius/2}", "${length/3} 0 ${wheel_radius/2}"),
         ("", 'izz="${(1/2) * mass', 'izz="${(1/2) * mas'),
@@ -68,7 +72,7 @@ def mutant(path: str, old: str, new: str) -> tuple[Submission, str]:
         (WHEEL, 'params="side outward', 'params="side outwards'),
         (WHEEL, '      <axis xyz="0 0 1"/>\n', ""),
     ],
-)  # fmt: skip
+)
 def test_a_mistake_in_xacro_is_undone(path: str, old: str, new: str) -> None:
     """A wrong number, sign, operator, argument or name in xacro is undone by an edit of the xacro."""
     submission, text = mutant(path, old, new)
@@ -88,8 +92,10 @@ def test_a_mistake_in_xacro_is_undone(path: str, old: str, new: str) -> None:
         ("${-wheel_radius * 10}", "-1", {'outward="${wheel_radius * 10}"'}),
         ("${wheel_radius * 5}", "-1", {'outward="1"'}),
     ],
-)  # fmt: skip
-def test_an_expression_in_a_call_is_corrected_there(left: str, right: str, expected: set[str]) -> None:
+)
+def test_an_expression_in_a_call_is_corrected_there(
+    left: str, right: str, expected: set[str]
+) -> None:
     """The macro, which other calls use, stays as it is: the mistake is in the call."""
     submission, text = mutant(URDF, 'side="left" outward="1"', f'side="left" outward="{left}"')
     assert submission.reopen is not None
@@ -121,7 +127,9 @@ def test_a_value_that_a_macro_gets_computed_is_corrected_where_it_is_given(
     assert wrong != text
     assert correct.reopen is not None
     submission = correct.reopen(overlaid(correct.whole_tree, {path: wrong.encode()}))
-    [found] = search_for(submission, graded(submission, RUBRICS["diffdrive"]), RUBRICS["diffdrive"]).found
+    [found] = search_for(
+        submission, graded(submission, RUBRICS["diffdrive"]), RUBRICS["diffdrive"]
+    ).found
     assert set(texts(found.edits)) == expected
 
 
@@ -137,11 +145,17 @@ def test_a_value_that_a_call_lacks_on_a_side_that_nothing_tells() -> None:
     submission, text = mutant(URDF, 'side="right" outward="-1"', 'side="right"')
     assert [edit.new for edit in search(submission).found[0].edits] == [' outward="-1"']
     assert submission.reopen is not None
-    files = {URDF: text.encode(), WHEEL: MACROS_WHEEL.replace("wheel_width / 2}", "0.001}").encode()}
+    files = {
+        URDF: text.encode(),
+        WHEEL: MACROS_WHEEL.replace("wheel_width / 2}", "0.001}").encode(),
+    }
     found = search(submission.reopen(overlaid(submission.whole_tree, files)))
     [told] = [it for name, it in found.missing.items() if name == "urdf-loads"]
     assert told.alternative is not None
-    assert texts([*told.proposal.edits, *told.alternative.edits]) == [' outward="1"', ' outward="-1"']
+    assert texts([*told.proposal.edits, *told.alternative.edits]) == [
+        ' outward="1"',
+        ' outward="-1"',
+    ]
     assert not [edit for edit in found.edits if "outward" in edit.new and edit.path == URDF]
 
 
@@ -157,7 +171,7 @@ def texts(edits: Sequence[Edit]) -> list[str]:
         ("xacro-macro-for-wheels", PROCESSED),
         ("xacro-in-urdf", PROCESSED),
     ],
-)  # fmt: skip
+)
 def test_xacro_that_ros_2_loads_as_it_stands(sample: str, expected: list[str]) -> None:
     """A launch file that reads the file runs xacro instead; a file on its own gets a name that says xacro."""
     [found] = search(SAMPLES[sample].open()).found
@@ -197,18 +211,30 @@ PATH = "os.path.join(share, 'my_robot.urdf')"
 @pytest.mark.parametrize(
     ("reading", "expected"),
     [
-        (f"    robot_description = open({PATH}, 'r').read()\n", f"xacro.process_file({PATH}).toxml()"),
-        (f"    path = {PATH}\n    file = open(path)\n    robot_description = file.read()\n",
-         "xacro.process_file(path).toxml()"),
-        (f"    from launch.substitutions import Command\n    robot_description = Command(['cat ', {PATH}])\n", "xacro"),
+        (
+            f"    robot_description = open({PATH}, 'r').read()\n",
+            f"xacro.process_file({PATH}).toxml()",
+        ),
+        (
+            f"    path = {PATH}\n    file = open(path)\n    robot_description = file.read()\n",
+            "xacro.process_file(path).toxml()",
+        ),
+        (
+            f"    from launch.substitutions import Command\n    robot_description = Command(['cat ', {PATH}])\n",
+            "xacro",
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_launch_file_runs_xacro(reading: str, expected: str) -> None:
     """However the launch file reads the text, it can read the expansion."""
     submission = SAMPLES["xacro-in-urdf"].open()
     text = submission.whole_tree.files[LAUNCH].read(1 << 20).decode()
     assert READ in text
     assert submission.reopen is not None
-    found = search(submission.reopen(overlaid(submission.whole_tree, {LAUNCH: text.replace(READ, reading).encode()})))
+    found = search(
+        submission.reopen(
+            overlaid(submission.whole_tree, {LAUNCH: text.replace(READ, reading).encode()})
+        )
+    )
     assert texts(found.found[0].edits)[-1] == expected
     assert not failed(found)

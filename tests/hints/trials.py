@@ -53,14 +53,23 @@ def hints_for(submission: Submission, rubric: Rubric = LAB6) -> Hints:
     budget = Trials(rubric, submission, results).left
     fixed = with_edits(submission, search.edits)
     return Hints(
-        submission, _lost(results), search.found, fixed, _lost(graded(fixed, rubric)), budget - search.trials.left
+        submission,
+        _lost(results),
+        search.found,
+        fixed,
+        _lost(graded(fixed, rubric)),
+        budget - search.trials.left,
     )
 
 
-def search_for(submission: Submission, results: Mapping[str, Result], rubric: Rubric = LAB6) -> HintSearch:
+def search_for(
+    submission: Submission, results: Mapping[str, Result], rubric: Rubric = LAB6
+) -> HintSearch:
     """Return the search for a submission with these results."""
     search = HintSearch(
-        Trials(rubric, submission, results), reference_draft(rubric.id), lambda _: reference(rubric).package
+        Trials(rubric, submission, results),
+        reference_draft(rubric.id),
+        lambda _: reference(rubric).package,
     )
     return search.run() if _lost(results) else search
 
@@ -79,7 +88,9 @@ def with_edits(submission: Submission, edits: Iterable[Edit]) -> Submission:
     files: dict[str, bytes | None] = {}
     for path in {edit.path for edit in edits}:
         own = [edit for edit in edits if edit.path == path]
-        files[path] = applied(content(submission, path) or b"", [edit for edit in own if not edit.renamed])
+        files[path] = applied(
+            content(submission, path) or b"", [edit for edit in own if not edit.renamed]
+        )
         for edit in own:
             if edit.renamed:
                 files[edit.renamed] = files[path]
@@ -95,7 +106,9 @@ def applied(data: bytes, edits: Iterable[Edit]) -> bytes:
     else:
         mark = ""
     text = "\n".join(lines)
-    starts = [sum(len(line) + 1 for line in lines[: edit.line - 1]) + edit.column - 1 for edit in edits]
+    starts = [
+        sum(len(line) + 1 for line in lines[: edit.line - 1]) + edit.column - 1 for edit in edits
+    ]
     for start, _, edit in sorted(zip(starts, count(), edits, strict=False), reverse=True):
         assert text[start : start + len(edit.old)] == edit.old, edit
         text = text[:start] + edit.new + text[start + len(edit.old) :]
@@ -120,25 +133,40 @@ class Base(NamedTuple):
 
 def _alone(submission: Submission, urdf: Read) -> Submission:
     """Return the URDF without its package where that makes no difference: it is read faster."""
-    return submission if urdf.is_expanded else read_submission(urdf.data, identity=submission.id, path=urdf.path)
+    return (
+        submission
+        if urdf.is_expanded
+        else read_submission(urdf.data, identity=submission.id, path=urdf.path)
+    )
 
 
 def _bases() -> Iterator[Base]:
     """Yield the reference and every different text of the equivalents, the files that xacro includes as well."""
     texts: Counter[bytes] = Counter()
-    for sample in [SAMPLES["reference"], *(SAMPLES[name] for name in LAB6_SAMPLES if name.startswith("equivalent-"))]:
+    for sample in [
+        SAMPLES["reference"],
+        *(SAMPLES[name] for name in LAB6_SAMPLES if name.startswith("equivalent-")),
+    ]:
         submission = sample.open()
         urdf = submission.urdf
         assert isinstance(urdf, Read)
         paths = [urdf.path]
         if urdf.is_expanded:
-            paths += [path for path in submission.whole_tree.files if path.endswith(".xacro") and path not in paths]
+            paths += [
+                path
+                for path in submission.whole_tree.files
+                if path.endswith(".xacro") and path not in paths
+            ]
         for path in paths:
-            data = urdf.data if path == urdf.path else submission.whole_tree.files[path].read(1 << 20)
+            data = (
+                urdf.data if path == urdf.path else submission.whole_tree.files[path].read(1 << 20)
+            )
             texts[data] += 1
             if texts[data] == 1:
                 name = sample.name if path == urdf.path else f"{sample.name}/{path}"
-                yield Base(name, _alone(submission, urdf), path, data.decode("utf-8", "surrogateescape"))
+                yield Base(
+                    name, _alone(submission, urdf), path, data.decode("utf-8", "surrogateescape")
+                )
 
 
 BASES = {base.name: base for base in _bases()}

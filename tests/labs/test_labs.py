@@ -101,18 +101,27 @@ def reference_pending(lab: str) -> frozenset[str]:
     assert rubric.solution is not None
     results = grade(rubric, rubric.solution.submission).results
     assert {result.outcome.status for result in results} <= {"passed", "pending"}
-    return frozenset(result.criterion.id for result in results if result.outcome.status == "pending")
+    return frozenset(
+        result.criterion.id for result in results if result.outcome.status == "pending"
+    )
 
 
-@pytest.mark.parametrize("robot", spread(ROBOTS, 80), ids=lambda robot: f"{robot.lab}-{robot.kind}-{robot.name}")
+@pytest.mark.parametrize(
+    "robot", spread(ROBOTS, 80), ids=lambda robot: f"{robot.lab}-{robot.kind}-{robot.name}"
+)
 def test_a_robot_loses_what_it_should(robot: Robot, tmp_path: Path) -> None:
     """A correct robot loses nothing, a wrong one exactly the expected criteria, and nothing is errored."""
     report = graded(robot, tmp_path)
     outcomes = {result.criterion.id: result.outcome for result in report.results}
     statuses = {name: outcome.status for name, outcome in outcomes.items()}
-    lost = {name: outcomes[name].message for name in outcomes if statuses[name] in ("failed", "skipped")}
+    lost = {
+        name: outcomes[name].message for name in outcomes if statuses[name] in ("failed", "skipped")
+    }
     assert set(lost) == set(robot.row.get("lost", ())), lost
-    pending, manual = {name for name in outcomes if statuses[name] == "pending"}, reference_pending(robot.lab)
+    pending, manual = (
+        {name for name in outcomes if statuses[name] == "pending"},
+        reference_pending(robot.lab),
+    )
     assert pending == set(robot.row.get("pending", manual))
     assert "errored" not in statuses.values(), lost
     assert bool(lost or pending - manual) == (robot.kind == "wrong")
@@ -149,7 +158,9 @@ def test_mutants_of_a_reference_lose_something(lab: str) -> None:
     """No mistake costs nothing, unless the rubric says why, and no equivalent costs something; `grader rubric test` tries all."""
     rubric = rubric_of(lab)
     trial = Trial(rubric)
-    found = run_rubric_test(rubric, None, lambda *_: None, lambda every: map(trial.outcome, every[::20]))
+    found = run_rubric_test(
+        rubric, None, lambda *_: None, lambda every: map(trial.outcome, every[::20])
+    )
     assert found.losses == ()
     assert [survivor.mutant.id for survivor in found.survivors] == []
     assert found.caught >= 20

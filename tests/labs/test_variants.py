@@ -14,7 +14,13 @@ FAMILIES = {
     *("files", "frames", "controllers", "parameters", "arguments"),
     *("programs", "topics", "dependencies", "value", "structure"),
 }
-KEYS = ({"file", "old", "new"}, {"file", "text"}, {"file", "remove"}, {"file", "move_to"}, {"file", "move_to", "text"})
+KEYS = (
+    {"file", "old", "new"},
+    {"file", "text"},
+    {"file", "remove"},
+    {"file", "move_to"},
+    {"file", "move_to", "text"},
+)
 XML_FILES = {".xml", ".xacro", ".sdf"}
 YAML_FILES = {".yaml", ".rviz"}
 
@@ -44,7 +50,9 @@ def test_a_variant_can_be_written_and_parsed(lab: str, name: str, tmp_path: Path
         parse(workspace / path)
 
 
-@pytest.mark.parametrize(("lab", "name"), [(lab, name) for lab, name in VARIANTS if name.startswith("w")])
+@pytest.mark.parametrize(
+    ("lab", "name"), [(lab, name) for lab, name in VARIANTS if name.startswith("w")]
+)
 def test_a_wrong_variant_differs_in_one_file(lab: str, name: str, tmp_path: Path) -> None:
     """A wrong variant has the files of the solution, of which one has another text."""
     before, after = contents(FOLDER / lab / "solution"), contents(make_variant(lab, name, tmp_path))

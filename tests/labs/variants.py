@@ -28,7 +28,13 @@ def variants_of(lab: str) -> dict[str, Variant]:
     rows = tomllib.loads((FOLDER / lab / "variants.toml").read_text(encoding="utf-8"))["variant"]
     variants = [
         Variant(
-            lab, row["id"], row["kind"], row["about"], row.get("breaks", ""), row.get("family", ""), tuple(row["edit"])
+            lab,
+            row["id"],
+            row["kind"],
+            row["about"],
+            row.get("breaks", ""),
+            row.get("family", ""),
+            tuple(row["edit"]),
         )
         for row in rows
     ]
@@ -50,7 +56,9 @@ def _apply(edit: dict[str, Any], workspace: Path) -> None:
     file = workspace / edit["file"]
     text = file.read_text(encoding="utf-8")
     if "old" in edit:
-        assert text.count(edit["old"]) == 1, f"{edit['file']}: {edit['old']!r} occurs {text.count(edit['old'])} times"
+        assert text.count(edit["old"]) == 1, (
+            f"{edit['file']}: {edit['old']!r} occurs {text.count(edit['old'])} times"
+        )
         text = text.replace(edit["old"], edit["new"])
     changed = edit.get("text", text)
     if edit.get("remove") or "move_to" in edit:

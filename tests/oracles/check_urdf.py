@@ -18,12 +18,17 @@ _MISSING = "check_urdf is not installed: pip install --editable '.[test]'"
 
 # `check_urdf` never reports a link that the root does not reach: it is only not printed. Each link but the root of an
 # accepted file is the child of a joint, so these two say which links should have been printed.
-_MARKUP = re.compile(rb"""<!--.*?-->|<!\[CDATA\[.*?\]\]>|<((?:"[^"]*"|'[^']*'|[^"'<>])*)>""", re.DOTALL)
+_MARKUP = re.compile(
+    rb"""<!--.*?-->|<!\[CDATA\[.*?\]\]>|<((?:"[^"]*"|'[^']*'|[^"'<>])*)>""", re.DOTALL
+)
 _LINK = re.compile(rb"""\s*link\s(?:.*?[\s"'])??name\s*=\s*(["'])(.*?)\1""", re.DOTALL)
 _CHILD = re.compile(rb"""\s*child\s(?:.*?[\s"'])??link\s*=\s*(["'])(.*?)\1""", re.DOTALL)
 _PRINTED = re.compile(rb"( *)child\(\d+\):  (.*)\n")
 _INDENT = 4
-_OUT_OF_TIME = (-signal.SIGXCPU, -signal.SIGKILL)  # the signal for a process that has used up its processor time
+_OUT_OF_TIME = (
+    -signal.SIGXCPU,
+    -signal.SIGKILL,
+)  # the signal for a process that has used up its processor time
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,9 +62,19 @@ def check_urdf(text: bytes, seconds: int = 2) -> OracleVerdict:
         file.write(text)
         file.flush()
         environment = {"LD_LIBRARY_PATH": str(binary.parent.parent / "lib")}
-        command = ["sh", "-c", 'ulimit -t "$1" && shift && exec "$@"', "sh", str(seconds), str(binary), file.name]
+        command = [
+            "sh",
+            "-c",
+            'ulimit -t "$1" && shift && exec "$@"',
+            "sh",
+            str(seconds),
+            str(binary),
+            file.name,
+        ]
         hangs = False
-        with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=errors) as process:
+        with subprocess.Popen(
+            command, env=environment, stdout=subprocess.PIPE, stderr=errors
+        ) as process:
             printed = set()
             for depth, name in _children(process):
                 printed.add(name)
@@ -77,7 +92,9 @@ def check_urdf(text: bytes, seconds: int = 2) -> OracleVerdict:
         return OracleVerdict("rejected", "aborted", stderr)
     if code > 0:
         return OracleVerdict("rejected", "finished", stderr)
-    return OracleVerdict("degraded" if stderr or _omitted(text, printed) else "clean", "finished", stderr)
+    return OracleVerdict(
+        "degraded" if stderr or _omitted(text, printed) else "clean", "finished", stderr
+    )
 
 
 def _children(process: subprocess.Popen[bytes]) -> Iterator[tuple[int, bytes]]:
@@ -89,6 +106,8 @@ def _children(process: subprocess.Popen[bytes]) -> Iterator[tuple[int, bytes]]:
 
 def _omitted(text: bytes, printed: set[bytes]) -> set[bytes]:
     tags = [match[1] or b"" for match in _MARKUP.finditer(text)]
-    links, children = ({found[2] for tag in tags if (found := pattern.match(tag))} for pattern in (_LINK, _CHILD))
+    links, children = (
+        {found[2] for tag in tags if (found := pattern.match(tag))} for pattern in (_LINK, _CHILD)
+    )
     # The oracle decides how a name with an entity or a line ending is printed.
     return {name for name in (links & children) - printed if not re.search(rb"[&\r\n]", name)}

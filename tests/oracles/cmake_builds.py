@@ -28,11 +28,26 @@ def build(package: Path, scratch: Path) -> Built:
     file = package / "CMakeLists.txt"
     file.write_text(PROJECT.sub(r"project(\1 NONE)", file.read_text(errors="replace")))
     prefix = scratch / "install"
-    options = [f"-DCMAKE_INSTALL_PREFIX={prefix}", f"-DCMAKE_PROJECT_INCLUDE={STUB}", "-DBUILD_TESTING=OFF",
-               "-DCMAKE_MAKE_PROGRAM=/bin/true", "-DCMAKE_COMPILER_IS_GNUCXX=1", "-DCMAKE_CXX_COMPILER_ID=GNU",
-               "-DCMAKE_CXX_COMPILER_VERSION=13.2.0"]  # fmt: skip
+    options = [
+        f"-DCMAKE_INSTALL_PREFIX={prefix}",
+        f"-DCMAKE_PROJECT_INCLUDE={STUB}",
+        "-DBUILD_TESTING=OFF",
+        "-DCMAKE_MAKE_PROGRAM=/bin/true",
+        "-DCMAKE_COMPILER_IS_GNUCXX=1",
+        "-DCMAKE_CXX_COMPILER_ID=GNU",
+        "-DCMAKE_CXX_COMPILER_VERSION=13.2.0",
+    ]
     commands = (
-        [str(PROGRAM), "-S", str(package), "-B", str(scratch / "build"), "-G", "Unix Makefiles", *options],
+        [
+            str(PROGRAM),
+            "-S",
+            str(package),
+            "-B",
+            str(scratch / "build"),
+            "-G",
+            "Unix Makefiles",
+            *options,
+        ],
         [str(PROGRAM), "--install", str(scratch / "build")],
     )
     around = {**os.environ, "ROS_DISTRO": "jazzy", "ROS_VERSION": "2"}
@@ -40,7 +55,9 @@ def build(package: Path, scratch: Path) -> Built:
         done = subprocess.run(command, env=around, capture_output=True, text=True, check=False)
         if done.returncode:
             return Built(done.stderr or "an error", frozenset())
-    return Built("", frozenset(str(it.relative_to(prefix)) for it in prefix.rglob("*") if it.is_file()))
+    return Built(
+        "", frozenset(str(it.relative_to(prefix)) for it in prefix.rglob("*") if it.is_file())
+    )
 
 
 def read(package: Path) -> Installation:

@@ -44,7 +44,10 @@ def _build(package: tuple[Path, dict[str, str]]) -> Build:
     workspace, texts = package
     others = ("PYTHON", "COLCON", "SETUPTOOLS", "AMENT", "MY_")
     environment = {name: value for name, value in os.environ.items() if not name.startswith(others)}
-    environment |= {"COLCON_HOME": str(workspace / "home"), "COLCON_LOG_PATH": str(workspace / "log")}
+    environment |= {
+        "COLCON_HOME": str(workspace / "home"),
+        "COLCON_LOG_PATH": str(workspace / "log"),
+    }
     done = subprocess.run(
         [PYTHON, "-m", "colcon", *_ARGUMENTS],
         cwd=workspace,
@@ -62,7 +65,9 @@ def _build(package: tuple[Path, dict[str, str]]) -> Build:
     error = done.stderr.strip() or done.stdout.strip() or "the package is not built"
     own = ("lib/", "share/colcon-core/", *IMPLIED)
     wanted = {
-        target: it for target, it in installed.items() if it and not ignored_part(it) and not target.startswith(own)
+        target: it
+        for target, it in installed.items()
+        if it and not ignored_part(it) and not target.startswith(own)
     }
     return Build(wanted, f"status {done.returncode}: {error}" if has_failed else "")
 

@@ -10,7 +10,13 @@ MISSING = "the group oracle is not installed: pip install --group oracle"
 
 def _folder() -> Path | None:
     try:
-        return Path(str(distribution("example-robot-data").locate_file("cmeel.prefix/share/example-robot-data/robots")))
+        return Path(
+            str(
+                distribution("example-robot-data").locate_file(
+                    "cmeel.prefix/share/example-robot-data/robots"
+                )
+            )
+        )
     except PackageNotFoundError:
         return None
 

@@ -16,7 +16,8 @@ from tests.oracles.example_robots import MISSING
 pin: Any = pytest.importorskip("pinocchio", reason=MISSING)
 
 KINDS = ("fixed", "continuous", "revolute", "prismatic", "planar", "floating")
-_CIRCLE = 2  # how many numbers pinocchio keeps for a joint that turns without limits: cosine and sine
+# how many numbers pinocchio keeps for a joint that turns without limits: cosine and sine
+_CIRCLE = 2
 
 
 def _numbers(random: Random, size: float) -> str:
@@ -35,7 +36,9 @@ def random_tree(random: Random) -> str:
             rule = f'<mimic joint="{random.choice(leading)}" multiplier="{random.uniform(-2, 2)!r}" offset="{random.uniform(-1, 1)!r}"/>'
         elif is_single:
             leading.append(f"j{child}")
-        axis = _numbers(random, 1.0) if kind != "planar" else "0 0 1"  # pinocchio knows planes across z only
+        axis = (
+            _numbers(random, 1.0) if kind != "planar" else "0 0 1"
+        )  # pinocchio knows planes across z only
         elements.append(
             f'<link name="l{child}"/><joint name="j{child}" type="{kind}"><parent link="l{random.randrange(child)}"/>'
             f'<child link="l{child}"/><origin xyz="{_numbers(random, 1.0)}" rpy="{_numbers(random, 4.0)}"/>'
@@ -53,7 +56,10 @@ def followed(robot: Robot, positions: Mapping[str, Any]) -> dict[str, Any]:
     """Return the positions of all joints with mimics applied; a missing joint is at 0, and no robot here mimics a mimic."""
     rules = {joint.name: joint.mimic for joint in robot.joints if joint.mimic is not None}
     leading = {name: position for name, position in positions.items() if name not in rules}
-    following = {name: rule.multiplier * leading.get(rule.joint, 0.0) + rule.offset for name, rule in rules.items()}
+    following = {
+        name: rule.multiplier * leading.get(rule.joint, 0.0) + rule.offset
+        for name, rule in rules.items()
+    }
     return leading | following
 
 
@@ -76,7 +82,9 @@ def difference(text: str, random: Random, count: int) -> str | None:
         pin.framesForwardKinematics(model, data, state)
         for link in robot.links:
             expected = data.oMf[model.getFrameId(link.name, pin.FrameType.BODY)].homogeneous
-            if not np.allclose(np.array(configuration.pose(link.name)), expected, rtol=0, atol=1e-9):
+            if not np.allclose(
+                np.array(configuration.pose(link.name)), expected, rtol=0, atol=1e-9
+            ):
                 return f"the pose of {link.name} differs at {given}"
     return None
 

@@ -13,7 +13,10 @@ from grader.package.manifest import read_manifest
 from tests.examples import examples
 from tests.oracles.example_robots import MISSING
 
-pytestmark = [pytest.mark.exhaustive, pytest.mark.filterwarnings("ignore::DeprecationWarning")]  # of pyparsing
+pytestmark = [
+    pytest.mark.exhaustive,
+    pytest.mark.filterwarnings("ignore::DeprecationWarning"),
+]  # of pyparsing
 
 condition: Any = pytest.importorskip("catkin_pkg.condition", reason=MISSING)
 package: Any = pytest.importorskip("catkin_pkg.package", reason=MISSING)
@@ -33,7 +36,7 @@ WORDS = {
     'The manifest of package "': "must not contain the following tags",
     "The manifest contains invalid XML": "package.xml is not readable as XML",
     'The manifest must contain a single "package" root tag': "the root of package.xml is",
-}  # fmt: skip
+}
 LINES = (
     "<name>my_robot</name>",
     "<version>0.0.0</version>",
@@ -45,26 +48,78 @@ LINES = (
     "<export><build_type>ament_python</build_type></export>",
 )
 OTHERS = (
-    "<name>rover_2</name>", "<name>My-Robot</name>", "<name>my robot</name>", "<name/>", "<name>_x</name>",
-    "<name>my_robot<b/></name>", "<version>1.0</version>", "<version>01.0.0</version>", "<version/>", "<version> 1.2.3 </version>",
-    '<version compatibility="1.0">1.0.0</version>', "<version>1.0.0-1</version>", "<description/>", "<description><b>a</b></description>",
-    "<maintainer>me</maintainer>", '<maintainer email="">me</maintainer>', '<maintainer email="me">me</maintainer>',
-    '<maintainer email="me@host">me</maintainer>', '<maintainer email="me.you+1@a-b.example.org"/>', '<maintainer mail="a@b.org">me</maintainer>',
-    '<maintainer email="mé@example.org">me</maintainer>', '<maintainer email=" me@example.org">me</maintainer>',
-    '<author email="you">you</author>', "<author>you</author>", "<license/>", '<license file="LICENSE">MIT</license>', "<licence>MIT</licence>",
-    "<depend>rclpy</depend>", '<depend version_gte="1.0.0">rclpy</depend>', "<build_depend>rclpy</build_depend>", "<exec_depend>my_robot</exec_depend>",
-    "<run_depend>rclpy</run_depend>", "<depends>rclpy</depends>", "<depend>my_robot</depend>", '<depend version="2">rclpy</depend>',
-    "<test_depend>rclpy</test_depend>", "<doc_depend>doxygen</doc_depend>", "<buildtool_depend>ament_cmake</buildtool_depend>",
-    '<depend condition="$ROS_VERSION == 1">roscpp</depend>', '<depend condition="$ROS_VERSION = 1">roscpp</depend>',
-    "<group_depend>a</group_depend>", "<member_of_group>a</member_of_group>", "<conflict>my_robot</conflict>", "<url>https://a</url>",
-    '<url type="website" x="1">https://a</url>', "<build_type>ament_python</build_type>", "<export/>", "<export>text<a/></export>",
-    '<export><build_type condition="$ROS_VERSION == 2">ament_python</build_type></export>', '<export x="1"/>', "text", "<!-- <name>a</name> -->",
-    "<depend>rclpy<depend>", "</package>", "<name>a</nam>", "&amp;", "&nbsp;", "<a:b/>", '<a:b xmlns:a="urn:a"/>', '<name xmlns="urn:a">rover</name>',
-)  # fmt: skip
+    "<name>rover_2</name>",
+    "<name>My-Robot</name>",
+    "<name>my robot</name>",
+    "<name/>",
+    "<name>_x</name>",
+    "<name>my_robot<b/></name>",
+    "<version>1.0</version>",
+    "<version>01.0.0</version>",
+    "<version/>",
+    "<version> 1.2.3 </version>",
+    '<version compatibility="1.0">1.0.0</version>',
+    "<version>1.0.0-1</version>",
+    "<description/>",
+    "<description><b>a</b></description>",
+    "<maintainer>me</maintainer>",
+    '<maintainer email="">me</maintainer>',
+    '<maintainer email="me">me</maintainer>',
+    '<maintainer email="me@host">me</maintainer>',
+    '<maintainer email="me.you+1@a-b.example.org"/>',
+    '<maintainer mail="a@b.org">me</maintainer>',
+    '<maintainer email="mé@example.org">me</maintainer>',
+    '<maintainer email=" me@example.org">me</maintainer>',
+    '<author email="you">you</author>',
+    "<author>you</author>",
+    "<license/>",
+    '<license file="LICENSE">MIT</license>',
+    "<licence>MIT</licence>",
+    "<depend>rclpy</depend>",
+    '<depend version_gte="1.0.0">rclpy</depend>',
+    "<build_depend>rclpy</build_depend>",
+    "<exec_depend>my_robot</exec_depend>",
+    "<run_depend>rclpy</run_depend>",
+    "<depends>rclpy</depends>",
+    "<depend>my_robot</depend>",
+    '<depend version="2">rclpy</depend>',
+    "<test_depend>rclpy</test_depend>",
+    "<doc_depend>doxygen</doc_depend>",
+    "<buildtool_depend>ament_cmake</buildtool_depend>",
+    '<depend condition="$ROS_VERSION == 1">roscpp</depend>',
+    '<depend condition="$ROS_VERSION = 1">roscpp</depend>',
+    "<group_depend>a</group_depend>",
+    "<member_of_group>a</member_of_group>",
+    "<conflict>my_robot</conflict>",
+    "<url>https://a</url>",
+    '<url type="website" x="1">https://a</url>',
+    "<build_type>ament_python</build_type>",
+    "<export/>",
+    "<export>text<a/></export>",
+    '<export><build_type condition="$ROS_VERSION == 2">ament_python</build_type></export>',
+    '<export x="1"/>',
+    "text",
+    "<!-- <name>a</name> -->",
+    "<depend>rclpy<depend>",
+    "</package>",
+    "<name>a</nam>",
+    "&amp;",
+    "&nbsp;",
+    "<a:b/>",
+    '<a:b xmlns:a="urn:a"/>',
+    '<name xmlns="urn:a">rover</name>',
+)
 ROOTS = (
-    *['<package format="3">'] * 6, '<package format="2">', "<package>", '<package format="1">', '<package format="4">', '<package format="three">',
-    '<package format="3" name="my_robot">', '<package xmlns="urn:a" format="3">', "<robot>",
-)  # fmt: skip
+    *['<package format="3">'] * 6,
+    '<package format="2">',
+    "<package>",
+    '<package format="1">',
+    '<package format="4">',
+    '<package format="three">',
+    '<package format="3" name="my_robot">',
+    '<package xmlns="urn:a" format="3">',
+    "<robot>",
+)
 
 
 @st.composite
@@ -74,7 +129,9 @@ def manifests(draw: st.DrawFn) -> str:
     for other in draw(st.lists(st.sampled_from((*OTHERS, *LINES)), max_size=3)):
         lines.insert(draw(st.integers(0, len(lines))), other)
     root = draw(st.sampled_from(ROOTS))
-    return '<?xml version="1.0"?>\n' + "\n".join([root, *lines, f"</{root[1:].split()[0].rstrip('>')}>"])
+    return '<?xml version="1.0"?>\n' + "\n".join(
+        [root, *lines, f"</{root[1:].split()[0].rstrip('>')}>"]
+    )
 
 
 @given(text=manifests())
@@ -87,8 +144,15 @@ def test_package_xml_is_refused_where_catkin_pkg_refuses_it(
 
 
 @pytest.mark.parametrize(
-    "data", [b"", b"name: my_robot", b"\xef\xbb\xbf<package/>", "<package>\xe9</package>".encode("latin-1"), "<package/>".encode("utf-16")]
-)  # fmt: skip
+    "data",
+    [
+        b"",
+        b"name: my_robot",
+        b"\xef\xbb\xbf<package/>",
+        "<package>\xe9</package>".encode("latin-1"),
+        "<package/>".encode("utf-16"),
+    ],
+)
 def test_other_files_are_refused(data: bytes, tmp_path: Path) -> None:
     """What is no XML, or no UTF-8 text, is refused as well."""
     _compare(data, tmp_path)
@@ -104,11 +168,21 @@ def _compare(data: bytes, folder: Path) -> None:
         expected.evaluate_conditions(JAZZY)
     except package.InvalidPackage as error:
         lines = [line.removeprefix("- ") for line in error.msg.splitlines()]
-        lines = [re.sub(r"\b(\w+)(, \1)+", r"\1", line) for line in lines if not line.startswith(CONSEQUENCES)]
+        lines = [
+            re.sub(r"\b(\w+)(, \1)+", r"\1", line)
+            for line in lines
+            if not line.startswith(CONSEQUENCES)
+        ]
         for line in lines[:1] if "invalid XML" in error.msg else lines:
-            assert next((text for start, text in WORDS.items() if line.startswith(start)), line) in words
+            assert (
+                next((text for start, text in WORDS.items() if line.startswith(start)), line)
+                in words
+            )
         assert words
-    except (AssertionError, ValueError):  # another format, a condition that is not valid, a file that is not UTF-8
+    except (
+        AssertionError,
+        ValueError,
+    ):  # another format, a condition that is not valid, a file that is not UTF-8
         assert words
     else:
         assert not words

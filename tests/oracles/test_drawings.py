@@ -19,4 +19,9 @@ def test_robot_is_drawn(path: Path) -> None:
     assert done.returncode == run(("inspect", path, "--format", "json")).returncode
     says = " ".join(element.text or "" for element in root.iter("{*}text", "{*}tspan"))
     is_drawn = len(root.findall(".//{*}polygon/{*}title")) > 0
-    assert is_drawn or "Not shown: " in says or "only frames of links are shown" in says or "No picture" in says
+    assert (
+        is_drawn
+        or "Not shown: " in says
+        or "only frames of links are shown" in says
+        or "No picture" in says
+    )

@@ -18,7 +18,9 @@ def test_verdict_is_that_of_ros(path: Path) -> None:
     data = path.read_bytes()
     read = read_urdf(data, path.name)
     oracle = check_urdf(data, seconds=20)
-    assert read.verdict == oracle.verdict, f"{oracle.stderr}\n{[problem.message for problem in read.problems]}"
+    assert read.verdict == oracle.verdict, (
+        f"{oracle.stderr}\n{[problem.message for problem in read.problems]}"
+    )
     lines = data.decode().split("\n")
     for problem in read.problems:
         at = problem.location

@@ -31,7 +31,10 @@ def random_shapes(random: Random) -> list[tuple[Shape, Transform]]:
     edges = [random.uniform(0.01, 2.0) for _ in range(6)]
     made = (Box((edges[0], edges[1], edges[2])), Cylinder(edges[3], edges[4]), Sphere(edges[5]))
     chosen = random.choices(made, k=random.randint(1, 4))
-    return [(it, Transform(rotation_from_rpy(random_vector(random, 4.0)), random_vector(random, 1.0))) for it in chosen]
+    return [
+        (it, Transform(rotation_from_rpy(random_vector(random, 4.0)), random_vector(random, 1.0)))
+        for it in chosen
+    ]
 
 
 def by_pinocchio(shapes: Sequence[tuple[Shape, Transform]], mass: float) -> tuple[Any, Any]:

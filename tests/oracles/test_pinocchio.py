@@ -21,10 +21,15 @@ from tests.oracles.random_trees import KINDS, difference, followed, joints_of, p
 
 pytestmark = pytest.mark.exhaustive
 
-_ANGLE, _CIRCLE = 1, 2  # how many numbers pinocchio keeps for a joint of one axis: its position, or cosine and sine
+_ANGLE, _CIRCLE = (
+    1,
+    2,
+)  # how many numbers pinocchio keeps for a joint of one axis: its position, or cosine and sine
 
 
-def assert_same_poses(model: Any, configuration: Configuration, positions: Mapping[str, float]) -> None:
+def assert_same_poses(
+    model: Any, configuration: Configuration, positions: Mapping[str, float]
+) -> None:
     """Assert that every link has the pose of pinocchio's frame of its name, to 1e-9, at these positions."""
     state = pin.neutral(model)
     for name, joint in joints_of(model).items():
@@ -57,12 +62,16 @@ def test_real_robots(path: Path) -> None:
         return
     robot = read.robot
     assert robot is not None
-    assert_same_poses(model, Configuration(robot), followed(robot, dict.fromkeys(joints_of(model), 0.0)))
+    assert_same_poses(
+        model, Configuration(robot), followed(robot, dict.fromkeys(joints_of(model), 0.0))
+    )
     random = Random(path.name)
     for _ in range(5):
         positions = random_positions(model, random)
         leading = {
-            joint.name: positions[joint.name] for joint in robot.joints if joint.name in positions and not joint.mimic
+            joint.name: positions[joint.name]
+            for joint in robot.joints
+            if joint.name in positions and not joint.mimic
         }
         assert_same_poses(model, Configuration(robot, leading), followed(robot, positions))
 
@@ -81,8 +90,12 @@ def test_real_robots_whose_mimics_are_moved_directly(path: Path) -> None:
 # --- Random trees -----------------------------------------------------------------------------------------------------
 
 _length = st.floats(-10, 10) | st.sampled_from((0.0, 1e-9, -1e-300, 1e-3))
-_angle = st.floats(-7, 7) | st.sampled_from((0.0, 1.5707963267948966, -1.57, 3.141592653589793, 1e-12))
-_axis = st.tuples(_length, _length, _length).filter(lambda axis: max(map(abs, axis)) > 1e-3) | st.sampled_from(
+_angle = st.floats(-7, 7) | st.sampled_from(
+    (0.0, 1.5707963267948966, -1.57, 3.141592653589793, 1e-12)
+)
+_axis = st.tuples(_length, _length, _length).filter(
+    lambda axis: max(map(abs, axis)) > 1e-3
+) | st.sampled_from(
     ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, -2.5), (0.0, -1e-3, 0.0))
 )
 _kind = st.sampled_from(("fixed", "continuous", "revolute", "prismatic"))
@@ -99,7 +112,10 @@ def urdfs(draw: st.DrawFn) -> str:
     elements = [f'<link name="l{index}"/>' for index in range(count)]
     for child in range(1, count):
         kind = draw(_kind)
-        xyz, rpy = draw(st.tuples(_length, _length, _length)), draw(st.tuples(_angle, _angle, _angle))
+        xyz, rpy = (
+            draw(st.tuples(_length, _length, _length)),
+            draw(st.tuples(_angle, _angle, _angle)),
+        )
         elements.append(
             f'<joint name="j{child}" type="{kind}"><parent link="l{draw(st.integers(0, child - 1))}"/>'
             f'<child link="l{child}"/><origin xyz="{_text(xyz)}" rpy="{_text(rpy)}"/><axis xyz="{_text(draw(_axis))}"/>'

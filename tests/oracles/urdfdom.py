@@ -20,7 +20,10 @@ from pathlib import Path
 from tests.oracles.check_urdf import check_urdf_path
 
 _PARSE = "_ZN4urdf9parseURDFERKNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEE"
-_NUMBER_OF_LINKS, _ROOT = 40, 176  # in a model: the size of the map of links, and the pointer to the root
+_NUMBER_OF_LINKS, _ROOT = (
+    40,
+    176,
+)  # in a model: the size of the map of links, and the pointer to the root
 _CHILDREN, _CHILDREN_END = 168, 176  # in a link: begin and end of the vector of its child links
 _SHARED = 16  # bytes of a shared pointer
 _SECONDS = 60  # of processor time, for all texts of a call
@@ -30,7 +33,9 @@ _VERDICTS = {b"c": "clean", b"d": "degraded", b"r": "rejected"}
 
 def is_available() -> bool:
     """Return whether the library is installed, on a system whose layout of C++ objects is known."""
-    return sys.platform == "linux" and platform.machine() == "x86_64" and check_urdf_path() is not None
+    return (
+        sys.platform == "linux" and platform.machine() == "x86_64" and check_urdf_path() is not None
+    )
 
 
 def verdicts(texts: Sequence[bytes]) -> list[str]:
@@ -52,7 +57,9 @@ def verdicts(texts: Sequence[bytes]) -> list[str]:
 def _until_crash(texts: Sequence[bytes]) -> list[str]:
     reading, writing = os.pipe()
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # of threads, which the child does not use
+        warnings.simplefilter(
+            "ignore", DeprecationWarning
+        )  # of threads, which the child does not use
         child = os.fork()
     if not child:
         try:
@@ -69,7 +76,9 @@ def _until_crash(texts: Sequence[bytes]) -> list[str]:
                     os.ftruncate(errors.fileno(), 0)
                     is_read, is_whole = _read(text)
                     is_silent = os.fstat(errors.fileno()).st_size == 0
-                    os.write(writing, b"r" if not is_read else b"c" if is_whole and is_silent else b"d")
+                    os.write(
+                        writing, b"r" if not is_read else b"c" if is_whole and is_silent else b"d"
+                    )
         finally:
             os._exit(0)
     os.close(writing)
@@ -104,7 +113,10 @@ def _read(text: bytes) -> tuple[bool, bool]:
     while waiting:
         link = waiting.pop()
         reached.add(link)
-        waiting += [_pointer(at) for at in range(_pointer(link + _CHILDREN), _pointer(link + _CHILDREN_END), _SHARED)]
+        waiting += [
+            _pointer(at)
+            for at in range(_pointer(link + _CHILDREN), _pointer(link + _CHILDREN_END), _SHARED)
+        ]
         steps += 1
         if steps > _MAX_STEPS:
             return False, False

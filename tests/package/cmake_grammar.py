@@ -11,39 +11,115 @@ MANIFEST = """<?xml version="1.0"?>
 FILES: Mapping[str, str] = {
     "package.xml": MANIFEST,
     **dict.fromkeys(
-        ("launch/view.launch.py", "launch/parts/arm.launch.py", "urdf/bot.urdf", "urdf/bot.urdf.xacro", "urdf/parts/a.xacro",
-         "rviz/bot.rviz", "meshes/base.stl", "meshes/visual/arm.dae", "config/a.yaml", "config/b.yaml", "scripts/run.py",
-         "src/node.cpp", "src/other.cpp", "msg/Reading.msg", "srv/Reset.srv", "bot/__init__.py", "bot/tool.py", "README.md"),
+        (
+            "launch/view.launch.py",
+            "launch/parts/arm.launch.py",
+            "urdf/bot.urdf",
+            "urdf/bot.urdf.xacro",
+            "urdf/parts/a.xacro",
+            "rviz/bot.rviz",
+            "meshes/base.stl",
+            "meshes/visual/arm.dae",
+            "config/a.yaml",
+            "config/b.yaml",
+            "scripts/run.py",
+            "src/node.cpp",
+            "src/other.cpp",
+            "msg/Reading.msg",
+            "srv/Reset.srv",
+            "bot/__init__.py",
+            "bot/tool.py",
+            "README.md",
+        ),
         "",
     ),
-}  # fmt: skip
-FOLDERS = ("launch", "urdf", "rviz", "meshes", "config", "urdf/parts", "launch/", "urdf/", "./config", "meshes/visual",
-           "${PROJECT_SOURCE_DIR}/urdf", "${CMAKE_CURRENT_SOURCE_DIR}/launch/")  # fmt: skip
+}
+FOLDERS = (
+    "launch",
+    "urdf",
+    "rviz",
+    "meshes",
+    "config",
+    "urdf/parts",
+    "launch/",
+    "urdf/",
+    "./config",
+    "meshes/visual",
+    "${PROJECT_SOURCE_DIR}/urdf",
+    "${CMAKE_CURRENT_SOURCE_DIR}/launch/",
+)
 WRONG = ("missing", "config/a.yaml", "lunch")
-SINGLE = ("urdf/bot.urdf", "config/a.yaml", "scripts/run.py", "README.md", "launch/view.launch.py",
-          '"rviz/bot.rviz"', "${FILES}", "${PROJECT_NAME}/tool.py")  # fmt: skip
+SINGLE = (
+    "urdf/bot.urdf",
+    "config/a.yaml",
+    "scripts/run.py",
+    "README.md",
+    "launch/view.launch.py",
+    '"rviz/bot.rviz"',
+    "${FILES}",
+    "${PROJECT_NAME}/tool.py",
+)
 WRONG_FILES = ("missing.txt", "rviz", "urdf/bot.urfd")
-TARGETS = ("share/${PROJECT_NAME}", "share/${PROJECT_NAME}/", "share/${PROJECT_NAME}/config", "lib/${PROJECT_NAME}", "share/bot",
-           "${SHARE}", "${CMAKE_INSTALL_PREFIX}/share/${PROJECT_NAME}", "share/${PROJET_NAME}")  # fmt: skip
-CONDITIONS = ("BUILD_TESTING", "NOT BUILD_TESTING", "TRUE", "0", "SOME_FLAG", "NOT SOME_FLAG", "EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/urdf",
-              '"${PROJECT_NAME}" STREQUAL "bot"', "PROJECT_NAME STREQUAL other OR TRUE", "(A AND B) OR NOT (C)", "WIN32",
-              "CMAKE_COMPILER_IS_GNUCXX OR CMAKE_CXX_COMPILER_ID MATCHES Clang", "DEFINED SHARE", "2 GREATER 1")  # fmt: skip
-PATTERNS = ('PATTERN "*.xacro" EXCLUDE', 'FILES_MATCHING PATTERN "*.py"', 'FILES_MATCHING PATTERN "*.urdf" PATTERN "*.xacro"',
-            'PATTERN "parts" EXCLUDE', 'PATTERN "parts/*" EXCLUDE', "USE_SOURCE_PERMISSIONS", "OPTIONAL", 'PATTERN "a.*" EXCLUDE',
-            'PATTERN "bot.urdf" PERMISSIONS OWNER_READ')  # fmt: skip
+TARGETS = (
+    "share/${PROJECT_NAME}",
+    "share/${PROJECT_NAME}/",
+    "share/${PROJECT_NAME}/config",
+    "lib/${PROJECT_NAME}",
+    "share/bot",
+    "${SHARE}",
+    "${CMAKE_INSTALL_PREFIX}/share/${PROJECT_NAME}",
+    "share/${PROJET_NAME}",
+)
+CONDITIONS = (
+    "BUILD_TESTING",
+    "NOT BUILD_TESTING",
+    "TRUE",
+    "0",
+    "SOME_FLAG",
+    "NOT SOME_FLAG",
+    "EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/urdf",
+    '"${PROJECT_NAME}" STREQUAL "bot"',
+    "PROJECT_NAME STREQUAL other OR TRUE",
+    "(A AND B) OR NOT (C)",
+    "WIN32",
+    "CMAKE_COMPILER_IS_GNUCXX OR CMAKE_CXX_COMPILER_ID MATCHES Clang",
+    "DEFINED SHARE",
+    "2 GREATER 1",
+)
+PATTERNS = (
+    'PATTERN "*.xacro" EXCLUDE',
+    'FILES_MATCHING PATTERN "*.py"',
+    'FILES_MATCHING PATTERN "*.urdf" PATTERN "*.xacro"',
+    'PATTERN "parts" EXCLUDE',
+    'PATTERN "parts/*" EXCLUDE',
+    "USE_SOURCE_PERMISSIONS",
+    "OPTIONAL",
+    'PATTERN "a.*" EXCLUDE',
+    'PATTERN "bot.urdf" PERMISSIONS OWNER_READ',
+)
 
 
 def _install(random: Random) -> str:
     kind = random.choice(("DIRECTORY", "DIRECTORY", "FILES", "PROGRAMS", "TARGETS"))
     target = random.choice(TARGETS)
     if kind == "DIRECTORY":
-        folders = " ".join(_with_mistake(random, random.sample(FOLDERS, random.randint(1, 3)), WRONG))
+        folders = " ".join(
+            _with_mistake(random, random.sample(FOLDERS, random.randint(1, 3)), WRONG)
+        )
         return f"install(DIRECTORY {folders} DESTINATION {target}{_one(random, PATTERNS)})"
     if kind == "TARGETS":
-        where = random.choice(("DESTINATION lib/${PROJECT_NAME}", "RUNTIME DESTINATION lib/${PROJECT_NAME} LIBRARY DESTINATION lib",
-                               "EXPORT all", ""))  # fmt: skip
+        where = random.choice(
+            (
+                "DESTINATION lib/${PROJECT_NAME}",
+                "RUNTIME DESTINATION lib/${PROJECT_NAME} LIBRARY DESTINATION lib",
+                "EXPORT all",
+                "",
+            )
+        )
         return f"install(TARGETS {random.choice(('node', 'node', 'node', 'other'))} {where})"
-    files = " ".join(_with_mistake(random, random.sample(SINGLE, random.randint(1, 2)), WRONG_FILES))
+    files = " ".join(
+        _with_mistake(random, random.sample(SINGLE, random.randint(1, 2)), WRONG_FILES)
+    )
     return f"install({kind}\n  {files}  # files\n  DESTINATION {target}{_one(random, ('OPTIONAL',) if ' ' in files else ('RENAME x.txt', 'OPTIONAL'))})"
 
 
@@ -58,7 +134,11 @@ def _one(random: Random, choices: tuple[str, ...]) -> str:
 
 def _statement(random: Random, depth: int = 0) -> str:
     """Return a statement; blocks have others in them."""
-    inner = "\n  ".join(_statement(random, depth + 1) for _ in range(random.randint(1, 2))) if depth < 2 else ""
+    inner = (
+        "\n  ".join(_statement(random, depth + 1) for _ in range(random.randint(1, 2)))
+        if depth < 2
+        else ""
+    )
     other = _statement(random, depth + 1) if depth < 2 else ""
     blocks = (
         f"if({random.choice(CONDITIONS)})\n  {inner}\nendif()",
@@ -103,8 +183,12 @@ def cmake_lists(seed: int) -> str:
     """Return a file, which is the same for the same seed."""
     random = Random(seed)
     name = "bot" if random.random() < 0.95 else "bots"
-    lines = ["cmake_minimum_required(VERSION 3.8)", f"project({name})", "find_package(ament_cmake REQUIRED)",
-             "find_package(rclcpp REQUIRED)"]  # fmt: skip
+    lines = [
+        "cmake_minimum_required(VERSION 3.8)",
+        f"project({name})",
+        "find_package(ament_cmake REQUIRED)",
+        "find_package(rclcpp REQUIRED)",
+    ]
     lines += ["add_executable(node src/node.cpp)"] if random.random() < 0.9 else []
     lines += [_statement(random) for _ in range(random.randint(1, 7))]
     lines += ["ament_package()"] if random.random() < 0.95 else []

@@ -46,8 +46,12 @@ def modules_of(root: Path) -> "Iterator[Module]":
         for path in sorted((root / package / package).rglob("*.py")):
             parts = path.relative_to(root / package).with_suffix("").parts
             name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
-            if parts[-1] == "__init__" or not any(part.startswith("_") or part == "conftest" for part in parts):
-                yield Module(name, ast.parse(path.read_text("utf-8")), is_package=parts[-1] == "__init__")
+            if parts[-1] == "__init__" or not any(
+                part.startswith("_") or part == "conftest" for part in parts
+            ):
+                yield Module(
+                    name, ast.parse(path.read_text("utf-8")), is_package=parts[-1] == "__init__"
+                )
 
 
 class Module:
@@ -61,10 +65,14 @@ class Module:
             if isinstance(node, ast.ImportFrom):
                 package = parts[: len(parts) - node.level + is_package] if node.level else []
                 inner = [*package, *([node.module] if node.module else [])]
-                self.imports |= {it.asname or it.name: ".".join([*inner, it.name]) for it in node.names}
+                self.imports |= {
+                    it.asname or it.name: ".".join([*inner, it.name]) for it in node.names
+                }
             elif isinstance(node, ast.Assign) and isinstance(node.value, ast.Name):
                 known = self.imports.get(node.value.id)  # PushRosNamespace = PushROSNamespace
-                self.imports |= {it.id: known for it in node.targets if known and isinstance(it, ast.Name)}
+                self.imports |= {
+                    it.id: known for it in node.targets if known and isinstance(it, ast.Name)
+                }
 
     @property
     def names(self) -> set[str]:
@@ -84,14 +92,20 @@ def parameter(argument: ast.arg, default: ast.expr | None) -> str:
     """Return a parameter of a constructor: its name, ! if it is required, : and the name of the check of its value."""
     written = ast.unparse(argument.annotation) if argument.annotation else ""
     is_optional = written.startswith("Optional[")
-    check = CHECKS.get(written.removeprefix("Optional[").removesuffix("]") if is_optional else written, "")
+    check = CHECKS.get(
+        written.removeprefix("Optional[").removesuffix("]") if is_optional else written, ""
+    )
     can_be_none = is_optional or (isinstance(default, ast.Constant) and default.value is None)
-    return argument.arg + "!" * (default is None) + (f":{check}" + "?" * can_be_none if check else "")
+    return (
+        argument.arg + "!" * (default is None) + (f":{check}" + "?" * can_be_none if check else "")
+    )
 
 
 def constructor(cls: ast.ClassDef) -> tuple[list[str], list[str]] | None:
     """Return the parameters of a class's own constructor and those that it passes to its base; None without one."""
-    init = next((n for n in cls.body if isinstance(n, ast.FunctionDef) and n.name == "__init__"), None)
+    init = next(
+        (n for n in cls.body if isinstance(n, ast.FunctionDef) and n.name == "__init__"), None
+    )
     if init is None:
         return None
     args = init.args
@@ -99,7 +113,10 @@ def constructor(cls: ast.ClassDef) -> tuple[list[str], list[str]] | None:
     defaults = [None] * (len(positional) - len(args.defaults)) + list(args.defaults)
     rows = [parameter(arg, default) for arg, default in zip(positional, defaults, strict=True)]
     rows += [f"*{args.vararg.arg}:text"] if args.vararg else ["*"]
-    rows += [parameter(arg, default) for arg, default in zip(args.kwonlyargs, args.kw_defaults, strict=True)]
+    rows += [
+        parameter(arg, default)
+        for arg, default in zip(args.kwonlyargs, args.kw_defaults, strict=True)
+    ]
     calls = (node for node in ast.walk(init) if isinstance(node, ast.Call))
     passed = [call.keywords for call in calls if ast.unparse(call.func) == "super().__init__"]
     names = [keyword.arg for keywords in passed for keyword in keywords if keyword.arg is not None]
@@ -109,7 +126,11 @@ def constructor(cls: ast.ClassDef) -> tuple[list[str], list[str]] | None:
 def tags(cls: ast.ClassDef, kind: str) -> list[str]:
     """Return the names that the XML and YAML front ends have for a class."""
     calls = [node for node in cls.decorator_list if isinstance(node, ast.Call)]
-    return [ast.literal_eval(call.args[0]) for call in calls if ast.unparse(call.func) == f"expose_{kind}"]
+    return [
+        ast.literal_eval(call.args[0])
+        for call in calls
+        if ast.unparse(call.func) == f"expose_{kind}"
+    ]
 
 
 def table(*roots: Path) -> dict[str, Any]:
@@ -119,7 +140,11 @@ def table(*roots: Path) -> dict[str, Any]:
     found: dict[str, dict[str, str]] = {"action": {}, "substitution": {}}
     for name, module in modules.items():
         for cls in (node for node in module.tree.body if isinstance(node, ast.ClassDef)):
-            methods = {n.name for n in cls.body if isinstance(n, ast.FunctionDef) and not n.name.startswith("_")}
+            methods = {
+                n.name
+                for n in cls.body
+                if isinstance(n, ast.FunctionDef) and not n.name.startswith("_")
+            }
             bases = [ast.unparse(base).rpartition(".")[2] for base in cls.bases]
             classes[f"{name}.{cls.name}"] = (bases[0] if bases else "", constructor(cls), methods)
             for kind, names in found.items():
@@ -127,7 +152,9 @@ def table(*roots: Path) -> dict[str, Any]:
     exports: dict[str, str] = {}
     for name, module in modules.items():
         inner = {other.rpartition(".")[2] for other in modules if other.rpartition(".")[0] == name}
-        full = {alias: target(module.imports.get(alias, ""), modules, classes) for alias in module.names}
+        full = {
+            alias: target(module.imports.get(alias, ""), modules, classes) for alias in module.names
+        }
         full |= {it.rpartition(".")[2]: it for it in LATER_CLASSES}
         words = [
             alias + (f"={full[alias]}" if inner and full.get(alias) else "")
@@ -169,7 +196,12 @@ def base_of(name: str, classes: dict[str, Any]) -> str:
     """Return the full name of a class's base: the class of this name in the nearest package."""
     base = classes[name][0]
     same = [other for other in classes if other.rpartition(".")[2] == base and other != name]
-    own = [other for package in (name.partition(".")[0], "launch") for other in same if other.startswith(f"{package}.")]
+    own = [
+        other
+        for package in (name.partition(".")[0], "launch")
+        for other in same
+        if other.startswith(f"{package}.")
+    ]
     return next(iter(own), "")
 
 
@@ -177,6 +209,8 @@ if __name__ == "__main__":
     made = table(*map(Path, sys.argv[1:]))
     lines = [f'"source": {json.dumps(made["source"])}']
     for part in ("exports", "action", "substitution", "classes"):
-        rows = ",\n".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in sorted(made[part].items()))
+        rows = ",\n".join(
+            f"{json.dumps(key)}: {json.dumps(value)}" for key, value in sorted(made[part].items())
+        )
         lines.append(f'"{part}": {{\n{rows}\n}}')
     TABLE.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")

@@ -8,7 +8,10 @@ from grader.package.launch.model import Launch, LaunchFault, NamedFile
 from grader.package.launch.places import PREFIX
 from grader.package.launch.reader import read_launch
 
-SAMPLES = {path.name.removesuffix(".txt"): path for path in sorted(Path(__file__).parent.glob("launch_samples/*.txt"))}
+SAMPLES = {
+    path.name.removesuffix(".txt"): path
+    for path in sorted(Path(__file__).parent.glob("launch_samples/*.txt"))
+}
 FOLDER = "share/my_robot/launch"
 # Launch files of the package that the samples include.
 INNER = {
@@ -45,7 +48,9 @@ class Installed(NamedTuple):
 
     def open_installed(self, path: str) -> tuple[bytes, str] | None:
         """Return a file and its path in the submission."""
-        return (self.files[path], path.removeprefix("share/my_robot/")) if path in self.files else None
+        return (
+            (self.files[path], path.removeprefix("share/my_robot/")) if path in self.files else None
+        )
 
     def has_package(self, name: str) -> bool:
         """Return whether a package is there."""
@@ -53,7 +58,9 @@ class Installed(NamedTuple):
 
     def files_in(self, folder: str) -> tuple[str, ...]:
         """Return the names of the files in a folder."""
-        return tuple(path.rpartition("/")[2] for path in self.files if path.rpartition("/")[0] == folder)
+        return tuple(
+            path.rpartition("/")[2] for path in self.files if path.rpartition("/")[0] == folder
+        )
 
     def has_program(self, package: str, name: str) -> bool:
         """Return whether a package has a program."""
@@ -71,7 +78,9 @@ def summarize(launch: Launch) -> list[str]:
     A node is named by its program, preceded by its package if that has another name; ! means not started, ? unknown.
     Everything else has its line and its path or text; `wrong:` and `unknown:` precede the reason why there is no path.
     """
-    nodes = " ".join(_node(node.package, node.executable) + _SIGNS[node.when] for node in launch.nodes)
+    nodes = " ".join(
+        _node(node.package, node.executable) + _SIGNS[node.when] for node in launch.nodes
+    )
     forgotten = " ".join(_node(node.package, node.executable) for node in launch.forgotten)
     found = [f"nodes: {nodes}"] if nodes else []
     for kind in ("urdf", "rviz", "include"):
@@ -90,7 +99,9 @@ def _node(package: str, executable: str) -> str:
 def _fault(fault: LaunchFault) -> str:
     """Return a fault with its line; the parsers' own messages differ between their versions."""
     parsers = ("Python cannot read the file", "not readable as XML", "not readable as YAML")
-    message = next((parser for parser in parsers if fault.message.startswith(f"{parser}: ")), fault.message)
+    message = next(
+        (parser for parser in parsers if fault.message.startswith(f"{parser}: ")), fault.message
+    )
     return f"{fault.location.line}: {message}"
 
 

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 SAMPLES = {
-    path.name.removesuffix(".py.txt"): path for path in sorted(Path(__file__).parent.glob("setup_samples/*.txt"))
+    path.name.removesuffix(".py.txt"): path
+    for path in sorted(Path(__file__).parent.glob("setup_samples/*.txt"))
 }
 
 _XML = "<!-- {} -->\n"
@@ -32,7 +33,8 @@ FILES = {
 """,
     "resource/my_robot": "{}\n",
     "rviz/my_robot.rviz": _HASH,
-    "setup.cfg": _HASH + "[develop]\nscript_dir=$base/lib/my_robot\n[install]\ninstall_scripts=$base/lib/my_robot\n",
+    "setup.cfg": _HASH
+    + "[develop]\nscript_dir=$base/lib/my_robot\n[install]\ninstall_scripts=$base/lib/my_robot\n",
     "urdf/box.urdf": _XML,
     "urdf/my_robot.urdf": _XML,
 }
@@ -48,7 +50,9 @@ ADDED = {
     "urdf_below_resource": ["resource/deep/README", "resource/deep/er/picture.png"],
 }
 INSTEAD = {
-    "data_files_in_setup_cfg": {"setup.cfg": "[options.data_files]\nshare/my_robot = package.xml\n"},
+    "data_files_in_setup_cfg": {
+        "setup.cfg": "[options.data_files]\nshare/my_robot = package.xml\n"
+    },
     "own_module_named_glob": {"glob.py": "def glob(pattern):\n    return []\n"},
     "pyproject_that_is_no_toml": {"pyproject.toml": "name = \n"},
     "script_dir_in_install": {"setup.cfg": "[install]\nscript_dir=$base/lib/my_robot\n"},
@@ -67,15 +71,25 @@ TAKEN_AWAY = {
 
 def make_package(sample: str, folder: Path) -> dict[str, str]:
     """Write the package with a sample as its setup.py; return the path of each file by the file's text."""
-    texts = {path: text.format(path) for path, text in FILES.items() if path not in TAKEN_AWAY.get(sample, ())}
+    texts = {
+        path: text.format(path)
+        for path, text in FILES.items()
+        if path not in TAKEN_AWAY.get(sample, ())
+    }
     texts |= {path: path + "\n" for path in ADDED.get(sample, ())}
     texts |= INSTEAD.get(sample, {})
     return write_package(folder, SAMPLES[sample].read_text(encoding="utf-8"), texts)
 
 
-def write_package(folder: Path, setup: str, files: Mapping[str, str] | None = None) -> dict[str, str]:
+def write_package(
+    folder: Path, setup: str, files: Mapping[str, str] | None = None
+) -> dict[str, str]:
     """Write a package with this setup.py and these files, by default the usual ones; return their paths by their texts."""
-    texts = dict(files) if files is not None else {path: text.format(path) for path, text in FILES.items()}
+    texts = (
+        dict(files)
+        if files is not None
+        else {path: text.format(path) for path, text in FILES.items()}
+    )
     texts["setup.py"] = setup
     for path, text in texts.items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)

@@ -22,24 +22,54 @@ def read(text: str, *, ending: str = "\nament_package()\n") -> Installation:
     ("text", "installed"),
     [
         ("install(DIRECTORY urdf/parts DESTINATION s${MISSPELT})", {"s/parts/a.xacro"}),
-        ('INSTALL(DIRECTORY\n "urdf/parts/" # a comment\n DESTINATION [[share/bot]])', {f"{SHARE}/a.xacro"}),
-        ("foreach(it a b)\n install(FILES config/${it}.yaml DESTINATION c)\nendforeach()", {"c/a.yaml", "c/b.yaml"}),
-        ("set(all README.md)\nlist(APPEND all rviz/bot.rviz)\ninstall(FILES ${all} DESTINATION s)", {"s/README.md", "s/bot.rviz"}),
+        (
+            'INSTALL(DIRECTORY\n "urdf/parts/" # a comment\n DESTINATION [[share/bot]])',
+            {f"{SHARE}/a.xacro"},
+        ),
+        (
+            "foreach(it a b)\n install(FILES config/${it}.yaml DESTINATION c)\nendforeach()",
+            {"c/a.yaml", "c/b.yaml"},
+        ),
+        (
+            "set(all README.md)\nlist(APPEND all rviz/bot.rviz)\ninstall(FILES ${all} DESTINATION s)",
+            {"s/README.md", "s/bot.rviz"},
+        ),
         ("file(GLOB found config/[a].yaml)\ninstall(FILES ${found} DESTINATION c)", {"c/a.yaml"}),
-        ("if(NOT BUILD_TESTING AND EXISTS ${PROJECT_SOURCE_DIR}/urdf)\n install(FILES README.md DESTINATION s)\nendif()", {"s/README.md"}),
-        ('install(DIRECTORY urdf DESTINATION s FILES_MATCHING PATTERN "*.urdf")', {"s/urdf/bot.urdf"}),
+        (
+            "if(NOT BUILD_TESTING AND EXISTS ${PROJECT_SOURCE_DIR}/urdf)\n install(FILES README.md DESTINATION s)\nendif()",
+            {"s/README.md"},
+        ),
+        (
+            'install(DIRECTORY urdf DESTINATION s FILES_MATCHING PATTERN "*.urdf")',
+            {"s/urdf/bot.urdf"},
+        ),
         ('install(DIRECTORY urdf/ DESTINATION s PATTERN "*.xacro" EXCLUDE)', {"s/bot.urdf"}),
-        ("function(put it)\n install(FILES ${it} DESTINATION ${ARGN})\nendfunction()\nput(README.md s)", {"s/README.md"}),
+        (
+            "function(put it)\n install(FILES ${it} DESTINATION ${ARGN})\nendfunction()\nput(README.md s)",
+            {"s/README.md"},
+        ),
         ("install(FILES README.md DESTINATION s RENAME LIESMICH.md)", {"s/LIESMICH.md"}),
-        ("add_executable(node src/node.cpp)\ninstall(TARGETS node DESTINATION lib/${PROJECT_NAME})", {"lib/bot/node"}),
+        (
+            "add_executable(node src/node.cpp)\ninstall(TARGETS node DESTINATION lib/${PROJECT_NAME})",
+            {"lib/bot/node"},
+        ),
         ("add_executable(node src/node.cpp)\ninstall(TARGETS node)", {"bin/node"}),
-        ("add_library(parts SHARED src/node.cpp)\nrclcpp_components_register_node(parts PLUGIN bot::Node EXECUTABLE part)", {"lib/bot/part"}),
-        ("generate_parameter_library(bot_parameters config/a.yaml)\ninstall(TARGETS bot_parameters EXPORT all)", set[str]()),
+        (
+            "add_library(parts SHARED src/node.cpp)\nrclcpp_components_register_node(parts PLUGIN bot::Node EXECUTABLE part)",
+            {"lib/bot/part"},
+        ),
+        (
+            "generate_parameter_library(bot_parameters config/a.yaml)\ninstall(TARGETS bot_parameters EXPORT all)",
+            set[str](),
+        ),
         ("install(PROGRAMS scripts/run.py DESTINATION lib/bot)", {"lib/bot/run.py"}),
-        ("rosidl_generate_interfaces(bot msg/Reading.msg DEPENDENCIES ${known})", {f"{SHARE}/msg/Reading.msg"}),
+        (
+            "rosidl_generate_interfaces(bot msg/Reading.msg DEPENDENCIES ${known})",
+            {f"{SHARE}/msg/Reading.msg"},
+        ),
         ("pluginlib_export_plugin_description_file(nav README.md)", {f"{SHARE}/README.md"}),
     ],
-)  # fmt: skip
+)
 def test_what_is_installed(text: str, installed: set[str]) -> None:
     """Paths below the prefix, besides that of package.xml."""
     found = read(text)
@@ -50,20 +80,46 @@ def test_what_is_installed(text: str, installed: set[str]) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("install(DIRECTORY lunch DESTINATION s)", "install() lists 'lunch', but there is no such folder"),
-        ("install(DIRECTORY README.md DESTINATION s)", "install() lists 'README.md', but it is a file: write install(FILES ...)"),
-        ("install(FILES urdf DESTINATION s)", "install() lists 'urdf', but it is a folder: write install(DIRECTORY ...)"),
+        (
+            "install(DIRECTORY lunch DESTINATION s)",
+            "install() lists 'lunch', but there is no such folder",
+        ),
+        (
+            "install(DIRECTORY README.md DESTINATION s)",
+            "install() lists 'README.md', but it is a file: write install(FILES ...)",
+        ),
+        (
+            "install(FILES urdf DESTINATION s)",
+            "install() lists 'urdf', but it is a folder: write install(DIRECTORY ...)",
+        ),
         ("install(FILES README.md)", "install() has no DESTINATION"),
-        ("install(TARGETS node DESTINATION s)", "install() names the target 'node', which is not defined"),
-        ("add_executable(node src/nodes.cpp)", "add_executable() lists 'src/nodes.cpp', but there is no such file"),
-        ("target_link_libraries(node rclcpp)", "target_link_libraries() names the target 'node', which is not defined"),
-        ("add_library(a src/node.cpp)\nament_target_dependencies(a rclcpp)",
-         "ament_target_dependencies() names the package 'rclcpp', without find_package(rclcpp)"),
-        ("ament_python_install_package(urdf)", "ament_python_install_package() needs the folder 'urdf', which has no __init__.py"),
-        ('message(FATAL_ERROR "no ${PROJECT_NAME}")', "CMakeLists.txt stops with the message 'no bot'"),
+        (
+            "install(TARGETS node DESTINATION s)",
+            "install() names the target 'node', which is not defined",
+        ),
+        (
+            "add_executable(node src/nodes.cpp)",
+            "add_executable() lists 'src/nodes.cpp', but there is no such file",
+        ),
+        (
+            "target_link_libraries(node rclcpp)",
+            "target_link_libraries() names the target 'node', which is not defined",
+        ),
+        (
+            "add_library(a src/node.cpp)\nament_target_dependencies(a rclcpp)",
+            "ament_target_dependencies() names the package 'rclcpp', without find_package(rclcpp)",
+        ),
+        (
+            "ament_python_install_package(urdf)",
+            "ament_python_install_package() needs the folder 'urdf', which has no __init__.py",
+        ),
+        (
+            'message(FATAL_ERROR "no ${PROJECT_NAME}")',
+            "CMakeLists.txt stops with the message 'no bot'",
+        ),
         ("project(bots)", "project() names the package 'bots', package.xml names it 'bot'"),
     ],
-)  # fmt: skip
+)
 def test_what_stops_a_build(text: str, message: str) -> None:
     """CMake stops at it, and it is named."""
     assert [stop.message for stop in read(text).stops] == [message]
@@ -80,7 +136,7 @@ def test_what_stops_a_build(text: str, message: str) -> None:
         "install(FILES ${rclcpp_FILES} DESTINATION s)\nfind_package(rclcpp)\ninstall(FILES ${rclcpp_FILES} DESTINATION s)",
         "while(A)\n install(FILES README.md DESTINATION s)\nendwhile()",
     ],
-)  # fmt: skip
+)
 def test_what_is_not_known(text: str) -> None:
     """Nothing is said to be missing then."""
     found = read(text)
@@ -105,7 +161,9 @@ def test_what_cmake_cannot_read(text: str, message: str) -> None:
     assert (fault.message, fault.location.line) == (message, 4)
 
 
-@pytest.mark.parametrize(("text", "is_sure"), [("if(A)", True), ("if(A)\n" * 90 + "endif()\n" * 90, False)])
+@pytest.mark.parametrize(
+    ("text", "is_sure"), [("if(A)", True), ("if(A)\n" * 90 + "endif()\n" * 90, False)]
+)
 def test_programs_of_a_file_that_is_not_read(text: str, is_sure: bool) -> None:
     """They are not known; blocks that only this reader does not follow stop no build."""
     found = read(text)

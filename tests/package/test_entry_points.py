@@ -19,29 +19,59 @@ setup(
 
 def package_of(scripts: str, **files: str) -> Package:
     """Return a package with these entry points, and these files: `a` is hub/a.py."""
-    texts = {"package.xml": "<package format='3'><name>hub</name></package>", "setup.py": _SETUP % scripts}
+    texts = {
+        "package.xml": "<package format='3'><name>hub</name></package>",
+        "setup.py": _SETUP % scripts,
+    }
     texts |= {"hub/__init__.py": "", "resource/hub": ""}
-    texts |= {path if path.startswith("hub/") else f"hub/{path}.py": text for path, text in files.items()}
-    tree = overlaid(make_tree("work", (), ()), {f"src/hub/{path}": text.encode() for path, text in texts.items()})
+    texts |= {
+        path if path.startswith("hub/") else f"hub/{path}.py": text for path, text in files.items()
+    }
+    tree = overlaid(
+        make_tree("work", (), ()),
+        {f"src/hub/{path}": text.encode() for path, text in texts.items()},
+    )
     [package] = read_packages(tree, Lab("urdf/hub.urdf"))
     return package
 
 
 FAULTS = [
     ("'talk = hub.talker:main'", {}, "there is no module hub.talker"),
-    ("'talk = hub.talker:main'", {"talkr": ""}, "there is no module hub.talker; did you mean 'talkr'?"),
-    ("'talk = hub.node:main'", {"talk": "", "a": ""}, "there is no module hub.node; did you mean 'talk'?"),
-    ("'talk = hub.node:main'", {"a": "", "b": ""}, "there is no module hub.node; there is 'a' and 'b'"),
+    (
+        "'talk = hub.talker:main'",
+        {"talkr": ""},
+        "there is no module hub.talker; did you mean 'talkr'?",
+    ),
+    (
+        "'talk = hub.node:main'",
+        {"talk": "", "a": ""},
+        "there is no module hub.node; did you mean 'talk'?",
+    ),
+    (
+        "'talk = hub.node:main'",
+        {"a": "", "b": ""},
+        "there is no module hub.node; there is 'a' and 'b'",
+    ),
     ("'talk = hub.a.node:main'", {"a": ""}, "there is no module hub.a.node"),
     ("'talk = hub.talker:main'", {"talker": ""}, "hub/talker.py has no 'main'"),
-    ("'talk = hub.talker:mian'", {"talker": "def main(): pass"}, "hub/talker.py has no 'mian'; did you mean 'main'?"),
-    ("'talk = hub.talker:run'", {"talker": "class Talker: pass"}, "hub/talker.py has no 'run'; there is 'Talker'"),
+    (
+        "'talk = hub.talker:mian'",
+        {"talker": "def main(): pass"},
+        "hub/talker.py has no 'mian'; did you mean 'main'?",
+    ),
+    (
+        "'talk = hub.talker:run'",
+        {"talker": "class Talker: pass"},
+        "hub/talker.py has no 'run'; there is 'Talker'",
+    ),
     ("'talk=hub:main [extra]'", {}, "hub/__init__.py has no 'main'"),
 ]
 
 
 @pytest.mark.parametrize(("scripts", "files", "fault"), FAULTS)
-def test_a_program_whose_function_is_not_there_does_not_start(scripts: str, files: dict[str, str], fault: str) -> None:
+def test_a_program_whose_function_is_not_there_does_not_start(
+    scripts: str, files: dict[str, str], fault: str
+) -> None:
     """The message says what is missing, at the entry point in setup.py, and what may be meant."""
     found = entry_fault(package_of(scripts, **files), "talk")
     assert found is not None
@@ -53,7 +83,10 @@ UNKNOWN = [
     ("'talk = hub.talker:Talker.main'", {"talker": "class Talker: pass"}),
     ("'talk = hub.talker:main'", {"talker": "from hub.other import main"}),
     ("'talk = hub.talker:main'", {"talker": "if True:\n    main = print"}),
-    ("'talk = hub.talker:main'", {"talker": "try:\n    import rclpy as main\nexcept ImportError as error:\n    pass"}),
+    (
+        "'talk = hub.talker:main'",
+        {"talker": "try:\n    import rclpy as main\nexcept ImportError as error:\n    pass"},
+    ),
     ("'talk = hub.talker:main'", {"talker": "from hub.other import *"}),
     ("'talk = hub.talker:main'", {"talker": "def f():\n    global main\n    main = 1"}),
     ("'talk = hub.talker:main'", {"talker": "globals()['main'] = print"}),

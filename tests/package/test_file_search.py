@@ -23,13 +23,46 @@ from grader.python.values import Undetermined, Unknown, Value
 from tests.examples import examples, spread
 from tests.work import limited_work
 
-_NAMES = st.sampled_from(["a", "b", "c", "ab", ".h", ".a", "[a]", "a*", "a.urdf", "b.urdf", "A", "a b"])
+_NAMES = st.sampled_from(
+    ["a", "b", "c", "ab", ".h", ".a", "[a]", "a*", "a.urdf", "b.urdf", "A", "a b"]
+)
 _PATHS = st.lists(_NAMES, min_size=1, max_size=4).map("/".join)
 _PARTS = st.sampled_from(
-    ["*", "**", "?", "[a-c]", "[!a]", "[a-c]*", "*.urdf", "a*", ".*", ".h", "a", "b", "ab", "[a]", "[[]a]", "[", "[]", ".", "..",
-     "", "***", "a**", "*?", "[!.]*", "a.urdf", "[b-a]", "[^a]"]
-)  # fmt: skip
-_PATTERNS = st.lists(_PARTS, min_size=1, max_size=4).map("/".join).filter(lambda pattern: not pattern.startswith("/"))
+    [
+        "*",
+        "**",
+        "?",
+        "[a-c]",
+        "[!a]",
+        "[a-c]*",
+        "*.urdf",
+        "a*",
+        ".*",
+        ".h",
+        "a",
+        "b",
+        "ab",
+        "[a]",
+        "[[]a]",
+        "[",
+        "[]",
+        ".",
+        "..",
+        "",
+        "***",
+        "a**",
+        "*?",
+        "[!.]*",
+        "a.urdf",
+        "[b-a]",
+        "[^a]",
+    ]
+)
+_PATTERNS = (
+    st.lists(_PARTS, min_size=1, max_size=4)
+    .map("/".join)
+    .filter(lambda pattern: not pattern.startswith("/"))
+)
 _FOLDERS = st.sampled_from([".", "a", "a/b", "./a/", "b", "[a]", "c/../a", "nowhere"])
 
 
@@ -44,7 +77,11 @@ def trees(draw: st.DrawFn) -> Tree:
     folders = set(draw(st.lists(_PATHS, max_size=5)))
     tree = make_tree("made", [], folders)
     files = {path for path in draw(st.lists(_PATHS, max_size=8)) if path not in tree.folders}
-    files -= {parent for path in files for parent in make_tree("", [File(path, 0, read_nothing)], []).folders}
+    files -= {
+        parent
+        for path in files
+        for parent in make_tree("", [File(path, 0, read_nothing)], []).folders
+    }
     files = {path for path in files if not any(path.startswith(other + "/") for other in files)}
     assume(not any(path.startswith(file + "/") for file in files for path in tree.folders))
     return make_tree("made", [File(path, 0, read_nothing) for path in files], folders)
@@ -54,7 +91,9 @@ def is_unusual(pattern: str) -> bool:
     """Return whether nobody writes such a pattern: its result is unknown."""
     parts = re.sub(r"//+([^/]*[*?\[][^/]*)$", r"/\1", pattern.removeprefix("./")).split("/")
     has_odd = ".." in parts or "." in parts or "" in parts[:-1]
-    return has_odd or ("**" in parts and (parts.count("**") > 1 or any(part.startswith(".") for part in parts)))
+    return has_odd or (
+        "**" in parts and (parts.count("**") > 1 or any(part.startswith(".") for part in parts))
+    )
 
 
 @contextmanager
@@ -72,7 +111,8 @@ def on_disk(tree: Tree) -> Iterator[str]:
 def value_of(expression: str, tree: Tree, root: str = "/root", order: str = ORDERS[0]) -> Value:
     """Return the value of an expression in a file of a package with these files; assert that it is no error."""
     code = parse(
-        f"import os\nfrom glob import glob\nfrom pathlib import Path\nvalue = {expression}\n".encode(), "setup.py"
+        f"import os\nfrom glob import glob\nfrom pathlib import Path\nvalue = {expression}\n".encode(),
+        "setup.py",
     )
     assert isinstance(code, Code)
     interpreter = Interpreter(
@@ -100,7 +140,9 @@ def pythons_glob(pattern: str, root: str, *, recursive: bool = True) -> list[str
 def test_glob_finds_what_pythons_glob_finds(tree: Tree, pattern: str, recursive: bool) -> None:
     """The same paths in the same spelling, for any pattern that stays inside the file tree."""
     try:
-        reported = [PackageListing(tree, order=order).glob(pattern, recursive=recursive) for order in ORDERS]
+        reported = [
+            PackageListing(tree, order=order).glob(pattern, recursive=recursive) for order in ORDERS
+        ]
     except Undetermined:
         assert is_unusual(pattern)
         return
@@ -116,7 +158,9 @@ def test_glob_finds_what_pythons_glob_finds(tree: Tree, pattern: str, recursive:
 def test_glob_with_an_absolute_path(tree: Tree, pattern: str) -> None:
     """A pattern with an absolute path finds the file."""
     with on_disk(tree) as root:
-        found = value_of(f"glob(os.path.join(os.getcwd(), {pattern!r}), recursive=True)", tree, root)
+        found = value_of(
+            f"glob(os.path.join(os.getcwd(), {pattern!r}), recursive=True)", tree, root
+        )
         if isinstance(found, Unknown):
             assert is_unusual(pattern)
         else:
@@ -138,11 +182,17 @@ def test_paths_find_what_pathlib_finds(tree: Tree, pattern: str, folder: str, me
             ".." in [*parts, *folder.split("/")]
             or parts[-1] in ("", ".")
             or any("**" in p and p != "**" for p in parts)
-            or is_unusual("/".join(part for part in ["**" * (method == "rglob"), *parts] if part not in ("", ".")))
+            or is_unusual(
+                "/".join(
+                    part for part in ["**" * (method == "rglob"), *parts] if part not in ("", ".")
+                )
+            )
         )
         return
     with on_disk(tree) as root:
-        real = {str(path.relative_to(root)) for path in getattr(Path(root, folder), method)(pattern)}
+        real = {
+            str(path.relative_to(root)) for path in getattr(Path(root, folder), method)(pattern)
+        }
     assert sorted(found) == sorted(real)
 
 
@@ -151,10 +201,16 @@ def test_paths_find_what_pathlib_finds(tree: Tree, pattern: str, folder: str, me
 def test_paths_are_resolved_like_the_system(tree: Tree, parts: list[str]) -> None:
     """Dots, slashes and files used as folders mean what they mean to the system."""
     path = "/".join(parts).lstrip("/")
-    reported = [value_of(f"os.path.{function}({path!r})", tree) for function in ("exists", "isfile", "isdir")]
+    reported = [
+        value_of(f"os.path.{function}({path!r})", tree)
+        for function in ("exists", "isfile", "isdir")
+    ]
     with on_disk(tree) as root:
         inside = os.path.join(root, "")
-        real = [getattr(os.path, function)(inside + path if path else "") for function in ("exists", "isfile", "isdir")]
+        real = [
+            getattr(os.path, function)(inside + path if path else "")
+            for function in ("exists", "isfile", "isdir")
+        ]
     if any(isinstance(path, Unknown) for path in reported):
         assert not path or ".." in parts or any(part.startswith(".") for part in parts)
     else:
@@ -191,7 +247,9 @@ def test_listing_folders(tree: Tree, folder: str) -> None:
             )
 
 
-@pytest.mark.parametrize("pattern", ["/etc/*", "../*", "a/../../*", "*" * 5000, "**/../" * 20 + "*"])
+@pytest.mark.parametrize(
+    "pattern", ["/etc/*", "../*", "a/../../*", "*" * 5000, "**/../" * 20 + "*"]
+)
 def test_patterns_that_lead_out_are_unknown(pattern: str) -> None:
     """A pattern that leads out of the file tree, or that nobody writes, is unknown."""
     with pytest.raises(Undetermined):
@@ -219,7 +277,10 @@ def test_many_searches_through_many_files_end_soon(expression: str) -> None:
     tree = make_tree("", files, [])
     with limited_work(200_000_000):
         code = parse(
-            f"import os\nfrom glob import glob\nfrom pathlib import Path\nvalue = {expression}\n".encode(), "setup.py"
+            f"import os\nfrom glob import glob\nfrom pathlib import Path\nvalue = {expression}\n".encode(),
+            "setup.py",
         )
         assert isinstance(code, Code)
-        Interpreter({**standard_functions("/root"), **file_functions(PackageListing(tree), "/root")}, {}).run(code)
+        Interpreter(
+            {**standard_functions("/root"), **file_functions(PackageListing(tree), "/root")}, {}
+        ).run(code)

@@ -55,7 +55,10 @@ def python(actions: str, before: str = "", inside: str = "pass") -> bytes:
 
 def doubling(last: str, name: str = "x", levels: int = 60) -> str:
     """Return nested lists, each containing the next twice: few lines that make more than any machine holds."""
-    lines = [f"{name}0 = {last}", *(f"{name}{n} = [{name}{n - 1}, {name}{n - 1}]" for n in range(1, levels))]
+    lines = [
+        f"{name}0 = {last}",
+        *(f"{name}{n} = [{name}{n - 1}, {name}{n - 1}]" for n in range(1, levels)),
+    ]
     return "\n".join(lines)
 
 
@@ -72,23 +75,46 @@ HOSTILE_PYTHON = {
     "nodes in doubled lists": python("x59", doubling("Node(package='a', executable='a')")),
     "texts in doubled lists": python(RVIZ.format("x59"), doubling("'ab'")),
     "package in doubled lists": python("Node(package=x59, executable='a')", doubling("'ab'")),
-    "forgotten node in doubled lists": python("", doubling("'ab'"), "n = Node(package=x59, executable=x59)"),
+    "forgotten node in doubled lists": python(
+        "", doubling("'ab'"), "n = Node(package=x59, executable=x59)"
+    ),
     "command in doubled lists": python(RVIZ.format("Command(x59)"), doubling("'xacro '")),
     "path in doubled lists": python(RVIZ.format("PathJoinSubstitution(x59)"), doubling("'a'")),
     "expression in doubled lists": python(RVIZ.format("PythonExpression(x59)"), doubling("'1 + '")),
-    "dicts in doubled lists": python("Node(package='rviz2', executable='rviz2', parameters=x59)", doubling("{'a': 1}")),
-    "substitutions doubled": python(RVIZ.format("x"), "x = LaunchConfiguration('a', default='b')\n" + "x = PathJoinSubstitution([x, x])\n" * 60),
-    "groups doubled": python("x", "x = Node(package='a', executable='a')\n" + "x = GroupAction([x, x])\n" * 60),
+    "dicts in doubled lists": python(
+        "Node(package='rviz2', executable='rviz2', parameters=x59)", doubling("{'a': 1}")
+    ),
+    "substitutions doubled": python(
+        RVIZ.format("x"),
+        "x = LaunchConfiguration('a', default='b')\n" + "x = PathJoinSubstitution([x, x])\n" * 60,
+    ),
+    "groups doubled": python(
+        "x", "x = Node(package='a', executable='a')\n" + "x = GroupAction([x, x])\n" * 60
+    ),
     "arguments doubled": python(chained() + ", " + RVIZ.format("LaunchConfiguration('a59')")),
     "list in itself": python("x", "x = []\nx.append(x)\nx.append(x)"),
     "list in itself as a text": python(RVIZ.format("x"), "x = []\nx.append(x)\nx.append(x)"),
-    "list in a list, deep": python("x", "x = [Node(package='a', executable='a')]\nfor i in range(5000):\n    x = [x]"),
-    "text in a list, deep": python(RVIZ.format("x"), "x = ['a']\nfor i in range(5000):\n    x = [x]"),
-    "method of a method, deep": python(RVIZ.format("x"), "x = open('a')\nfor i in range(5000):\n    x = x.read()"),
-    "argument of itself": python("DeclareLaunchArgument('a', default_value=LaunchConfiguration('a'))," + RVIZ.format("LaunchConfiguration('a')")),
+    "list in a list, deep": python(
+        "x", "x = [Node(package='a', executable='a')]\nfor i in range(5000):\n    x = [x]"
+    ),
+    "text in a list, deep": python(
+        RVIZ.format("x"), "x = ['a']\nfor i in range(5000):\n    x = [x]"
+    ),
+    "method of a method, deep": python(
+        RVIZ.format("x"), "x = open('a')\nfor i in range(5000):\n    x = x.read()"
+    ),
+    "argument of itself": python(
+        "DeclareLaunchArgument('a', default_value=LaunchConfiguration('a')),"
+        + RVIZ.format("LaunchConfiguration('a')")
+    ),
     "thousands of nodes": python("*[Node(package='a', executable=f'b{i}') for i in range(9000)]"),
-    "function of itself": python("OpaqueFunction(function=f)", "def f(context):\n    return [OpaqueFunction(function=f), OpaqueFunction(function=f)]"),
-    "description of itself": python("", "ld = LaunchDescription()\nld.add_action(ld)\nld.add_action(ld)", "return ld"),
+    "function of itself": python(
+        "OpaqueFunction(function=f)",
+        "def f(context):\n    return [OpaqueFunction(function=f), OpaqueFunction(function=f)]",
+    ),
+    "description of itself": python(
+        "", "ld = LaunchDescription()\nld.add_action(ld)\nld.add_action(ld)", "return ld"
+    ),
     "handler of itself": python("f", "def f():\n    return [f, f]"),
     "huge text": python(RVIZ.format("x"), "x = 'a' * 1000\nfor i in range(40):\n    x = x + x"),
     "huge number": python(RVIZ.format("x"), "x = 9\nfor i in range(9000):\n    x = x + x"),
@@ -97,33 +123,51 @@ HOSTILE_PYTHON = {
     "closed brackets": b"x = " + b"[" * 90 + b"]" * 90,
     "minus signs": b"x = " + b"-" * 100_000 + b"1",
     "additions": b"x = 1" + b" + 1" * 20_000,
-    "thousands of expressions": python(",".join([RVIZ.format("PythonExpression('[i for i in range(2000)]')")] * 4_000)),
+    "thousands of expressions": python(
+        ",".join([RVIZ.format("PythonExpression('[i for i in range(2000)]')")] * 4_000)
+    ),
     "zero bytes": b"\0" * 1000,
     "zero byte in a text": python(RVIZ.format("'a\0b'")),
     "no UTF-8": b"# \xe4\n" + python(""),
     "declared latin-1": "# -*- coding: latin-1 -*-\n# ä\n".encode("latin-1") + python(""),
     "lone surrogate": python(RVIZ.format(r"'\ud800'")),
-    "surrogates everywhere": python(r"Node(package='\udcff', executable='\udcff', condition=IfCondition('\udcff'))"),
+    "surrogates everywhere": python(
+        r"Node(package='\udcff', executable='\udcff', condition=IfCondition('\udcff'))"
+    ),
     "expression with quotes": python(RVIZ.format("PythonExpression(\"'\\\\x\\\\'\")")),
-    "expression that calls": python(RVIZ.format("PythonExpression(\"__import__('os').system('echo')\")")),
+    "expression that calls": python(
+        RVIZ.format("PythonExpression(\"__import__('os').system('echo')\")")
+    ),
     "expression that is deep": python(RVIZ.format("PythonExpression('(' * 900)")),
     "unclosed quotes of a command": python(RVIZ.format("Command('cat \"a')")),
-    "empty command": python(RVIZ.format("Command('')") + ", Node(package='rviz2', executable='rviz2', arguments=[''])"),
+    "empty command": python(
+        RVIZ.format("Command('')") + ", Node(package='rviz2', executable='rviz2', arguments=[''])"
+    ),
     "break outside a loop": b"def generate_launch_description():\n    break\n",
-    "continue outside a loop": python("OpaqueFunction(function=f)", "def f(context):\n    continue"),
+    "continue outside a loop": python(
+        "OpaqueFunction(function=f)", "def f(context):\n    continue"
+    ),
     "return at the top": b"return 1\n",
     "end of Python": python("", "", "import sys; sys.exit(1)"),
-    "strange types": python("1, None, True, 2.5, b'', (), {}, {'a': 1}, ..., Node, LaunchDescription, len, lambda: 1"),
-    "strange arguments": python("Node(package=1, executable=None, parameters=1, arguments=2, condition=3), Node(**1), Node(*2)"),
-    "strange calls": python("LaunchDescription(1), GroupAction(1), IncludeLaunchDescription(1), OpaqueFunction(1), DeclareLaunchArgument(1, 2), SetLaunchConfiguration(None)"),
-}  # fmt: skip
+    "strange types": python(
+        "1, None, True, 2.5, b'', (), {}, {'a': 1}, ..., Node, LaunchDescription, len, lambda: 1"
+    ),
+    "strange arguments": python(
+        "Node(package=1, executable=None, parameters=1, arguments=2, condition=3), Node(**1), Node(*2)"
+    ),
+    "strange calls": python(
+        "LaunchDescription(1), GroupAction(1), IncludeLaunchDescription(1), OpaqueFunction(1), DeclareLaunchArgument(1, 2), SetLaunchConfiguration(None)"
+    ),
+}
 HOSTILE_XML = {
     "deep": b"<launch>" + b"<group>" * 100_000,
     "deep and closed": b"<launch>" + b"<group>" * 200 + b"</group>" * 200 + b"</launch>",
     "deep substitution": f"<launch>{XML_NODE.format('$(var ' * 100_000)}</launch>".encode(),
     "deep quotes": f"<launch>{XML_NODE.format('$(var (&quot;' * 50_000)}</launch>".encode(),
     "wide": b"<launch>" + b'<node pkg="a" exec="b"/>' * 40_000 + b"</launch>",
-    "wide attributes": b"<launch><node " + b" ".join(b'a%d="b"' % n for n in range(20_000)) + b"/></launch>",
+    "wide attributes": b"<launch><node "
+    + b" ".join(b'a%d="b"' % n for n in range(20_000))
+    + b"/></launch>",
     "long line": b'<launch><node pkg="' + b"a" * 1_000_000 + b'" exec="b"/></launch>',
     "many substitutions": f"<launch>{XML_NODE.format('$(var a) ' * 50_000)}</launch>".encode(),
     "backslashes": f"<launch>{XML_NODE.format(chr(92) * 100_000)}</launch>".encode(),
@@ -138,14 +182,19 @@ HOSTILE_XML = {
     "comments": b"<launch><!-- <node> --><?pi <node> ?><![CDATA[<node>]]><node pkg='a' exec='b'/></launch>",
     "doubled arguments": (
         "<launch><let name='a0' value='ab'/>"
-        + "".join(f"<let name='a{n}' value='$(var a{n - 1})$(var a{n - 1})'/>" for n in range(1, 60))
-        + XML_NODE.format("-d $(var a59)") + "</launch>"
+        + "".join(
+            f"<let name='a{n}' value='$(var a{n - 1})$(var a{n - 1})'/>" for n in range(1, 60)
+        )
+        + XML_NODE.format("-d $(var a59)")
+        + "</launch>"
     ).encode(),
     "empty": b"",
-}  # fmt: skip
+}
 HOSTILE_YAML = {
     "aliases doubled": b"launch:\n- group: &a0 [node: {pkg: a, exec: b}]\n"
-    + b"".join(b"- group: &a%d [group: *a%d, group: *a%d]\n" % (n, n - 1, n - 1) for n in range(1, 60)),
+    + b"".join(
+        b"- group: &a%d [group: *a%d, group: *a%d]\n" % (n, n - 1, n - 1) for n in range(1, 60)
+    ),
     "children doubled": b"launch:\n- x: &a0 {y: z}\n"
     + b"".join(b"- x: &a%d {p: [*a%d, *a%d]}\n" % (n, n - 1, n - 1) for n in range(1, 60)),
     "alias of itself": b"launch: &a\n- group: *a\n- group: *a\n",
@@ -167,17 +216,29 @@ HOSTILE_YAML = {
 
 
 COSTLY = {
-    "wide.launch.xml", "many substitutions.launch.xml", "thousands of expressions.launch.py", "deep substitution.launch.xml",
-    "long line.launch.xml", "wide attributes.launch.xml", "thousands of nodes.launch.py", "deep quotes.launch.xml",
-    "function of itself.launch.py", "aliases doubled.launch.yaml", "text in a list, deep.launch.py", "long line.launch.yaml",
-    "method of a method, deep.launch.py", "huge number.launch.py",
-}  # fmt: skip
+    "wide.launch.xml",
+    "many substitutions.launch.xml",
+    "thousands of expressions.launch.py",
+    "deep substitution.launch.xml",
+    "long line.launch.xml",
+    "wide attributes.launch.xml",
+    "thousands of nodes.launch.py",
+    "deep quotes.launch.xml",
+    "function of itself.launch.py",
+    "aliases doubled.launch.yaml",
+    "text in a list, deep.launch.py",
+    "long line.launch.yaml",
+    "method of a method, deep.launch.py",
+    "huge number.launch.py",
+}
 
 
 def hostile() -> list[tuple[str, bytes]]:
     """Return every hostile file with its name as a launch file."""
     kinds = {".launch.py": HOSTILE_PYTHON, ".launch.xml": HOSTILE_XML, ".launch.yaml": HOSTILE_YAML}
-    return [(name + ending, data) for ending, samples in kinds.items() for name, data in samples.items()]
+    return [
+        (name + ending, data) for ending, samples in kinds.items() for name, data in samples.items()
+    ]
 
 
 def is_well_formed(launch: Launch) -> bool:
@@ -185,11 +246,15 @@ def is_well_formed(launch: Launch) -> bool:
     nodes = [*launch.nodes, *launch.forgotten]
     faults = [*launch.faults, *launch.unknown, *filter(None, [launch.syntax])]
     locations = [item.location for part in (nodes, launch.references, faults) for item in part]
-    return len(locations) < 20_000 and all(at_location.line > 0 and at_location.column > 0 for at_location in locations)
+    return len(locations) < 20_000 and all(
+        at_location.line > 0 and at_location.column > 0 for at_location in locations
+    )
 
 
 @pytest.mark.parametrize(
-    ("name", "data"), light(hostile(), lambda row: row[0] in COSTLY), ids=[name for name, _ in hostile()]
+    ("name", "data"),
+    light(hostile(), lambda row: row[0] in COSTLY),
+    ids=[name for name, _ in hostile()],
 )
 def test_hostile_files(name: str, data: bytes) -> None:
     """Whatever a launch file contains, nothing raises or takes long."""
@@ -210,7 +275,9 @@ TWO = """\
 
 def test_two_files_that_include_each_other() -> None:
     """A cycle of included files ends, and is a fault."""
-    others = {f"{FOLDER}/{one}.launch.xml": TWO.format(two, two).encode() for one, two in ("ab", "ba")}
+    others = {
+        f"{FOLDER}/{one}.launch.xml": TWO.format(two, two).encode() for one, two in ("ab", "ba")
+    }
     launch = read(others[f"{FOLDER}/a.launch.xml"], "a.launch.xml", others)
     assert {fault.message for fault in launch.faults} == {"it includes itself"}
     assert len(launch.nodes) == 3
@@ -218,10 +285,15 @@ def test_two_files_that_include_each_other() -> None:
 
 def test_many_includes() -> None:
     """Files that include the next one twice are evaluated up to a bound, which is reported."""
-    others = {f"{FOLDER}/f{n}.launch.xml": TWO.format(f"f{n + 1}", f"f{n + 1}").encode() for n in range(40)}
+    others = {
+        f"{FOLDER}/f{n}.launch.xml": TWO.format(f"f{n + 1}", f"f{n + 1}").encode()
+        for n in range(40)
+    }
     with limited_work(200_000):
         launch = read(others[f"{FOLDER}/f0.launch.xml"], "f0.launch.xml", others)
-    assert "it includes more than 10 launch files" in {unknown.message for unknown in launch.unknown}
+    assert "it includes more than 10 launch files" in {
+        unknown.message for unknown in launch.unknown
+    }
     assert len(launch.nodes) < 50
 
 
@@ -246,7 +318,13 @@ def test_an_included_file_is_read_again() -> None:
     starts = '<launch><node pkg="{0}" exec="{0}"/></launch>'
     outer = b'<launch><include file="$(dirname)/inner.launch.xml"/></launch>'
     launches = [
-        read(outer, "outer.launch.xml", {f"{FOLDER}/inner.launch.xml": starts.format(name).encode()})
+        read(
+            outer, "outer.launch.xml", {f"{FOLDER}/inner.launch.xml": starts.format(name).encode()}
+        )
         for name in ("rviz2", "xacro", "rviz2")
     ]
-    assert [[node.name for node in launch.nodes] for launch in launches] == [["rviz2"], ["xacro"], ["rviz2"]]
+    assert [[node.name for node in launch.nodes] for launch in launches] == [
+        ["rviz2"],
+        ["xacro"],
+        ["rviz2"],
+    ]

@@ -91,7 +91,9 @@ class _Installed(Installed):
 
     def files_in(self, folder: str) -> tuple[str, ...]:
         """Return the names of the files in a folder."""
-        return tuple(path.rpartition("/")[2] for path in self.files if path.rpartition("/")[0] == folder)
+        return tuple(
+            path.rpartition("/")[2] for path in self.files if path.rpartition("/")[0] == folder
+        )
 
     def has_program(self, package: str, name: str) -> bool:
         del name
@@ -107,7 +109,11 @@ def outcome(text: str, language: str) -> bool | None:
         return False
     if launch.doubts:
         return None
-    read = (it for it in launch.references if it.path is not None and (it.by or it.purpose in ("read", "include")))
+    read = (
+        it
+        for it in launch.references
+        if it.path is not None and (it.by or it.purpose in ("read", "include"))
+    )
     if any((it.path or "").removeprefix("/<prefix>/") not in _FILES for it in read):
         return False
     started = {node.name for node in launch.nodes if node.when}
@@ -118,7 +124,9 @@ def outcome(text: str, language: str) -> bool | None:
 @pytest.mark.parametrize("case", _CASES["cases"], ids=lambda case: case["name"])
 def test_a_file(case: dict[str, Any]) -> None:
     """It is judged as launch does, or not at all."""
-    text = case["text"].replace("<imports>\n", _CASES["imports"]).replace("<nodes>\n", _CASES["nodes"])
+    text = (
+        case["text"].replace("<imports>\n", _CASES["imports"]).replace("<nodes>\n", _CASES["nodes"])
+    )
     assert outcome(text, case["language"]) in (case["starts"], None)
 
 
@@ -130,7 +138,8 @@ def test_actions(language: str) -> None:
     wrong = [
         row
         for row in rows
-        if (found := outcome(_text(row), language)) is not row["starts"] and not _is_open(found, row)
+        if (found := outcome(_text(row), language)) is not row["starts"]
+        and not _is_open(found, row)
     ]
     assert len(rows) > 100
     assert wrong == []

@@ -30,7 +30,9 @@ def read(text: str) -> Manifest:
     return read_manifest(text.encode(), "my_robot/package.xml")
 
 
-QUOTED = "the email of <maintainer> in package.xml is in quotes, as git has it: delete the inner quotes"
+QUOTED = (
+    "the email of <maintainer> in package.xml is in quotes, as git has it: delete the inner quotes"
+)
 SAME = "a package with the same name as this package"
 PARSED = "failed to parse: write it as $ROS_VERSION == 2"
 REFUSED = "PKG002 the tools of ROS 2 refuse package.xml: "
@@ -39,7 +41,9 @@ REFUSED = "PKG002 the tools of ROS 2 refuse package.xml: "
 def problems_of(found: Manifest) -> list[str]:
     """Return its problems, each with its line and column; of one that refuses the file, the reason only."""
     return [
-        f"{problem.location.line}:{problem.location.column} {problem.kind.code} {problem.message}".replace(REFUSED, "")
+        f"{problem.location.line}:{problem.location.column} {problem.kind.code} {problem.message}".replace(
+            REFUSED, ""
+        )
         for problem in found.problems
     ]
 
@@ -57,13 +61,23 @@ def test_a_complete_file() -> None:
     ("old", "new", "expected"),
     [
         ("  <name>my_robot</name>\n", "", ['3:1 The manifest must contain exactly one "name" tag']),
-        ("<name>my_robot</name>", "<name> </name>", ['4:3 Package name "" does not follow naming conventions']),
-        ("<license>", "<name>rover</name><license>", ['8:3 The manifest must contain exactly one "name" tag']),
+        (
+            "<name>my_robot</name>",
+            "<name> </name>",
+            ['4:3 Package name "" does not follow naming conventions'],
+        ),
+        (
+            "<license>",
+            "<name>rover</name><license>",
+            ['8:3 The manifest must contain exactly one "name" tag'],
+        ),
         ("<version>0.0.0</version>", "<version/>", ["5:3 Package version must not be empty"]),
         (
             ">0.0.0<",
             ">1.0<",
-            ['5:3 Package version "1.0" does not follow version conventions: write three numbers, as 0.1.0'],
+            [
+                '5:3 Package version "1.0" does not follow version conventions: write three numbers, as 0.1.0'
+            ],
         ),
         (
             "<license>Apache-2.0</license>",
@@ -73,9 +87,17 @@ def test_a_complete_file() -> None:
                 '3:1 The package node must contain at least one "license" tag',
             ],
         ),
-        (' email="me@example.org"', "", ['7:3 The "maintainer" tag must have the attribute "email"']),
+        (
+            ' email="me@example.org"',
+            "",
+            ['7:3 The "maintainer" tag must have the attribute "email"'],
+        ),
         ("me@example.org", "me", ['7:3 Invalid email "me" for person "Me"']),
-        ("me@example.org", "me@todo.todo", ["7:3 PKG003 <maintainer> of package.xml is still TODO"]),
+        (
+            "me@example.org",
+            "me@todo.todo",
+            ["7:3 PKG003 <maintainer> of package.xml is still TODO"],
+        ),
         ("me@example.org", "&quot;me@example.org&quot;", [f"7:3 PKG006 {QUOTED}"]),
         ("python3-pytest", "my_robot", [f'10:3 The package must not "test_depend" on {SAME}']),
         (
@@ -83,8 +105,16 @@ def test_a_complete_file() -> None:
             "<test_depend condition='$ROS_VERSION = 2'>",
             [f"10:3 condition '$ROS_VERSION = 2' {PARSED}"],
         ),
-        ("Apache-2.0", "TODO: License declaration", ["8:3 PKG003 <license> of package.xml is still TODO"]),
-        (">A robot<", ">TODO: Package description<", ["6:3 PKG003 <description> of package.xml is still TODO"]),
+        (
+            "Apache-2.0",
+            "TODO: License declaration",
+            ["8:3 PKG003 <license> of package.xml is still TODO"],
+        ),
+        (
+            ">A robot<",
+            ">TODO: Package description<",
+            ["6:3 PKG003 <description> of package.xml is still TODO"],
+        ),
         (' format="3"', "", ["3:1 PKG004 package.xml has format 1; ROS 2 packages use format 3"]),
         ('"3"', '"2"', []),
         ("<description>A robot</description>", "<description>A <b>robot</b></description>", []),
@@ -101,7 +131,11 @@ def test_problems(old: str, new: str, expected: list[str]) -> None:
     ("text", "line", "words"),
     [
         ("", 1, "not readable as XML"),
-        ("<package>\n<name>a</nam>\n</package>", 2, "not readable as XML: Opening and ending tag mismatch"),
+        (
+            "<package>\n<name>a</nam>\n</package>",
+            2,
+            "not readable as XML: Opening and ending tag mismatch",
+        ),
         ("<package>", 1, "not readable as XML"),
         ("name: my_robot", 1, "not readable as XML"),
         ("<robot/>", 1, "the root of package.xml is <robot>, not <package>"),
@@ -110,13 +144,16 @@ def test_problems(old: str, new: str, expected: list[str]) -> None:
 def test_unreadable_files(text: str, line: int, words: str) -> None:
     """A file that is no package.xml is reported once; the name is then unknown."""
     found = read(text)
-    assert [(problem.kind.code, problem.location.line) for problem in found.problems] == [("PKG001", line)]
+    assert [(problem.kind.code, problem.location.line) for problem in found.problems] == [
+        ("PKG001", line)
+    ]
     assert words in found.problems[0].message
     assert found.refusals == found.problems
 
 
 @pytest.mark.parametrize(
-    "mistake", [("</test_depend>", "<test_depend>"), ("</name>", "</nam>"), ("<license>", "<licence>")]
+    "mistake",
+    [("</test_depend>", "<test_depend>"), ("</name>", "</nam>"), ("<license>", "<licence>")],
 )
 def test_what_can_be_read_of_a_broken_file(mistake: tuple[str, str]) -> None:
     """Name and build type are read of a file that is not well-formed XML."""
@@ -131,13 +168,25 @@ def test_what_can_be_read_of_a_broken_file(mistake: tuple[str, str]) -> None:
     [
         ("<export/>", "catkin"),
         ("<export><build_type> ament_cmake </build_type></export>", "ament_cmake"),
-        ("<export><build_type condition='$ROS_VERSION == 1'>catkin</build_type><build_type>ament_python</build_type></export>", "ament_python"),
+        (
+            "<export><build_type condition='$ROS_VERSION == 1'>catkin</build_type><build_type>ament_python</build_type></export>",
+            "ament_python",
+        ),
         ("<build_type>ament_python</build_type>", "catkin"),
-        ("<export><build_type condition='$ROS_VERSION == 2'>ament_python</build_type></export>", "ament_python"),
-        ("<export><build_type condition='$ROS_VERSION &lt; 2 or ($ROS_DISTRO == \"humble\")'>a</build_type></export>", "catkin"),
-        ("<export><build_type>ament_cmake</build_type><build_type>ament_python</build_type></export>", "ament_cmake and ament_python"),
+        (
+            "<export><build_type condition='$ROS_VERSION == 2'>ament_python</build_type></export>",
+            "ament_python",
+        ),
+        (
+            "<export><build_type condition='$ROS_VERSION &lt; 2 or ($ROS_DISTRO == \"humble\")'>a</build_type></export>",
+            "catkin",
+        ),
+        (
+            "<export><build_type>ament_cmake</build_type><build_type>ament_python</build_type></export>",
+            "ament_cmake and ament_python",
+        ),
     ],
-)  # fmt: skip
+)
 def test_build_type(export: str, kind: str) -> None:
     """The build type is that of <export>; default: colcon's catkin."""
     start, _, _ = COMPLETE.partition("  <export>")
@@ -153,21 +202,32 @@ def test_entities_are_not_resolved() -> None:
     lines = "".join(f"<!ENTITY a{n} '&a{n - 1};&a{n - 1};'>" for n in range(1, 60))
     with limited_work(1_000):
         read(f"<!DOCTYPE p [<!ENTITY a0 'ha'>{lines}]><package><name>&a59;</name></package>")
-        read(f"<!DOCTYPE p [<!ENTITY a0 'ha'>{lines}]><package format='&a59;'><name>a</name></package>")
+        read(
+            f"<!DOCTYPE p [<!ENTITY a0 'ha'>{lines}]><package format='&a59;'><name>a</name></package>"
+        )
 
 
 @pytest.mark.parametrize("encoding", ["UTF-16", "UTF-7", "ISO-8859-1", "cp037", "UTF-8"])
 def test_encodings(encoding: str) -> None:
     """Another encoding is read or refused, and never an error."""
-    text = COMPLETE.replace('version="1.0"', f'version="1.0" encoding="{encoding}"').replace("A robot", "Ein Rääd")
+    text = COMPLETE.replace('version="1.0"', f'version="1.0" encoding="{encoding}"').replace(
+        "A robot", "Ein Rääd"
+    )
     assert read_manifest(text.encode(encoding), "package.xml").name in ("my_robot", None)
 
 
 @pytest.mark.parametrize(
     "text",
-    ["<package>" + "<a>" * 100_000, "<package>" * 200 + "</package>" * 200, "<package " + "a" * 250_000, "<" * 250_000,
-     "<package>" + "<name>a</name>" * 15_000 + "</package>", "<!--" * 60_000, "<package>" + "<![CDATA[" * 20_000],
-)  # fmt: skip
+    [
+        "<package>" + "<a>" * 100_000,
+        "<package>" * 200 + "</package>" * 200,
+        "<package " + "a" * 250_000,
+        "<" * 250_000,
+        "<package>" + "<name>a</name>" * 15_000 + "</package>",
+        "<!--" * 60_000,
+        "<package>" + "<![CDATA[" * 20_000,
+    ],
+)
 def test_hostile_files(text: str) -> None:
     """Depth, length and number take linear time."""
     with limited_work(500_000):

@@ -26,7 +26,14 @@ DEMO = (
     " moveit_ros_move_group/move_group moveit_ros_move_group/move_group! rviz2 rviz2! controller_manager/spawner"
     " controller_manager/spawner"
 )
-STARTED = ("rsp", "move_group", "moveit_rviz", "spawn_controllers", "warehouse_db", "static_virtual_joint_tfs")
+STARTED = (
+    "rsp",
+    "move_group",
+    "moveit_rviz",
+    "spawn_controllers",
+    "warehouse_db",
+    "static_virtual_joint_tfs",
+)
 BUILT = "MoveItConfigsBuilder('arm').to_moveit_configs()"
 HEAD = """\
 from moveit_configs_utils.launches import *
@@ -42,29 +49,40 @@ def generate_launch_description():
 
 def installed(*missing: str, **changed: bytes) -> Installed:
     """Return a MoveIt package, with launch files for each function, without some files of its folder config."""
-    files = {f"{PACKAGE}/config/{name}": data for name, data in FILES.items() if name not in missing}
+    files = {
+        f"{PACKAGE}/config/{name}": data for name, data in FILES.items() if name not in missing
+    }
     files |= {f"{PACKAGE}/config/{name.replace('__', '.')}": data for name, data in changed.items()}
     for name in STARTED:
-        files[f"{PACKAGE}/launch/{name}.launch.py"] = f"{HEAD}    return generate_{name}_launch({BUILT})\n".encode()
+        files[f"{PACKAGE}/launch/{name}.launch.py"] = (
+            f"{HEAD}    return generate_{name}_launch({BUILT})\n".encode()
+        )
     return Installed(files)
 
 
 def launch(body: str, machine: Installed | None = None) -> Launch:
     """Return a launch file whose function has this body."""
     name = "launch/a.launch.py"
-    return read_launch(f"{HEAD}    {body}\n".encode(), name, f"{PACKAGE}/{name}", machine or installed())
+    return read_launch(
+        f"{HEAD}    {body}\n".encode(), name, f"{PACKAGE}/{name}", machine or installed()
+    )
 
 
 def node(built: str, what: str = ".to_dict()") -> str:
     """Return a body that gives a node this part of a configuration."""
-    return f"return LaunchDescription([Node(package='a', executable='b', parameters=[{built}{what}])])"
+    return (
+        f"return LaunchDescription([Node(package='a', executable='b', parameters=[{built}{what}])])"
+    )
 
 
 def given(body: str, machine: Installed | None = None) -> dict[str, Any]:
     """Return the parameters of the node that is started; `?` for those that are unknown, `more` if there may be more."""
     machine = machine or installed()
     found = parameters_of(launch(body, machine).nodes[0], machine.open_installed, "b")
-    values = {name: "?" if isinstance(it.value, Unknown) else it.value for name, it in found.values.items()}
+    values = {
+        name: "?" if isinstance(it.value, Unknown) else it.value
+        for name, it in found.values.items()
+    }
     return values | ({"more": found.unknown} if found.unknown else {})
 
 
@@ -81,7 +99,13 @@ def test_the_demo() -> None:
         "rviz 9: arm_moveit_config/config/moveit.rviz",
         *(
             f"include 9: arm_moveit_config/launch/{name}.launch.py"
-            for name in ("static_virtual_joint_tfs", "rsp", "move_group", "moveit_rviz", "spawn_controllers")
+            for name in (
+                "static_virtual_joint_tfs",
+                "rsp",
+                "move_group",
+                "moveit_rviz",
+                "spawn_controllers",
+            )
         ),
     ]
 
@@ -89,7 +113,10 @@ def test_the_demo() -> None:
 @pytest.mark.parametrize(
     ("function", "nodes"),
     [
-        ("warehouse_db", "warehouse_ros_mongo/mongo_wrapper_ros.py moveit_ros_warehouse/moveit_init_demo_warehouse!"),
+        (
+            "warehouse_db",
+            "warehouse_ros_mongo/mongo_wrapper_ros.py moveit_ros_warehouse/moveit_init_demo_warehouse!",
+        ),
         ("setup_assistant", "moveit_setup_assistant moveit_setup_assistant!"),
     ],
 )
@@ -106,7 +133,10 @@ def test_parameters() -> None:
     assert found["robot_description_planning.cartesian_limits.max_trans_vel"] == 1.0
     assert found["moveit_simple_controller_manager.controller_names"] == ["arm_controller"]
     assert (found["robot_description"], found["planning_pipelines"]) == ("?", "?")
-    assert (found["default_planning_pipeline"], found["ompl.planner_configs.RRT.range"]) == ("ompl", 0.0)
+    assert (found["default_planning_pipeline"], found["ompl.planner_configs.RRT.range"]) == (
+        "ompl",
+        0.0,
+    )
     assert "stomp" in found["more"]
 
 
@@ -125,9 +155,15 @@ def test_parts() -> None:
 
 @pytest.mark.parametrize(
     ("missing", "is_needed"),
-    [("kinematics.yaml", True), ("joint_limits.yaml", True), ("pilz_cartesian_limits.yaml", True), ("arm.srdf", True),
-     ("arm.urdf.xacro", False), ("moveit_controllers.yaml", False)],
-)  # fmt: skip
+    [
+        ("kinematics.yaml", True),
+        ("joint_limits.yaml", True),
+        ("pilz_cartesian_limits.yaml", True),
+        ("arm.srdf", True),
+        ("arm.urdf.xacro", False),
+        ("moveit_controllers.yaml", False),
+    ],
+)
 def test_missing_files(missing: str, is_needed: bool) -> None:
     """A file that MoveIt needs is read, whether it is there or not; the robot and the controllers are optional."""
     assert (missing in read_by(node(BUILT), installed(missing))) is is_needed
@@ -138,10 +174,22 @@ def test_missing_files(missing: str, is_needed: bool) -> None:
     ("built", "fault"),
     [
         ("MoveItConfigsBuilder()", "MoveItConfigsBuilder needs the name of the robot"),
-        ("MoveItConfigsBuilder('arm').planning_pipelines('x', ['ompl'])", "the default pipeline 'x' is none of ompl"),
-        ("MoveItConfigsBuilder('arm').planning_pipelines(pipelines=[])", "MoveIt finds no *_planning.yaml"),
-        ("MoveItConfigsBuilder('arm').joint_limits(path='a')", "joint_limits takes no argument 'path'"),
-        ("MoveItConfigsBuilder('arm').joint_limits('a', 'b')", "joint_limits takes at most 1 arguments"),
+        (
+            "MoveItConfigsBuilder('arm').planning_pipelines('x', ['ompl'])",
+            "the default pipeline 'x' is none of ompl",
+        ),
+        (
+            "MoveItConfigsBuilder('arm').planning_pipelines(pipelines=[])",
+            "MoveIt finds no *_planning.yaml",
+        ),
+        (
+            "MoveItConfigsBuilder('arm').joint_limits(path='a')",
+            "joint_limits takes no argument 'path'",
+        ),
+        (
+            "MoveItConfigsBuilder('arm').joint_limits('a', 'b')",
+            "joint_limits takes at most 1 arguments",
+        ),
         (f"{BUILT}.robot", "MoveItConfigs has no attribute 'robot'"),
     ],
 )
@@ -153,8 +201,13 @@ def test_faults(built: str, fault: str) -> None:
 def test_several_controllers() -> None:
     """MoveIt cannot choose between several files of controllers without a usual name."""
     found = launch(node(BUILT), installed("moveit_controllers.yaml", my_controllers__yaml=b"a: 1"))
-    assert "cannot choose between my_controllers.yaml, ros2_controllers.yaml" in found.faults[0].message
-    by_name = given(node(BUILT), installed("moveit_controllers.yaml", arm_controllers__yaml=b"a: 1"))
+    assert (
+        "cannot choose between my_controllers.yaml, ros2_controllers.yaml"
+        in found.faults[0].message
+    )
+    by_name = given(
+        node(BUILT), installed("moveit_controllers.yaml", arm_controllers__yaml=b"a: 1")
+    )
     assert by_name["a"] == 1
 
 
@@ -168,10 +221,13 @@ def test_sensors() -> None:
 
 @pytest.mark.parametrize(
     "built",
-    ["MoveItConfigsBuilder(open('a').read())", "MoveItConfigsBuilder('arm').joint_limits(LaunchConfiguration('a'))",
-     "MoveItConfigsBuilder('arm').robot_description(mappings=LaunchConfiguration('a'))",
-     "MoveItConfigsBuilder('arm').planning_pipelines(pipelines=LaunchConfiguration('a'))"],
-)  # fmt: skip
+    [
+        "MoveItConfigsBuilder(open('a').read())",
+        "MoveItConfigsBuilder('arm').joint_limits(LaunchConfiguration('a'))",
+        "MoveItConfigsBuilder('arm').robot_description(mappings=LaunchConfiguration('a'))",
+        "MoveItConfigsBuilder('arm').planning_pipelines(pipelines=LaunchConfiguration('a'))",
+    ],
+)
 def test_undecided(built: str) -> None:
     """What is not known leaves the launch file undecided."""
     found = launch(node(built))
@@ -182,9 +238,13 @@ def test_undecided(built: str) -> None:
 def test_what_only_the_setup_assistant_says() -> None:
     """With another SRDF, or without the robot's usual name, the hidden file .setup_assistant decides: unknown."""
     found = launch(
-        f"return generate_static_virtual_joint_tfs_launch({BUILT})", installed("arm.srdf", my__srdf=b"<robot/>")
+        f"return generate_static_virtual_joint_tfs_launch({BUILT})",
+        installed("arm.srdf", my__srdf=b"<robot/>"),
     )
-    reasons = ["the virtual joints of the SRDF are not evaluated", "the SRDF that MoveIt finds is not evaluated"]
+    reasons = [
+        "the virtual joints of the SRDF are not evaluated",
+        "the SRDF that MoveIt finds is not evaluated",
+    ]
     assert [it.message for it in found.unknown] == reasons
     published = launch(f"return generate_rsp_launch({BUILT})", installed("arm.urdf.xacro"))
     assert [it.path for it in published.named("urdf")] == [None]
@@ -205,5 +265,7 @@ def test_broken_yaml() -> None:
 
 def test_several_controllers_of_a_list() -> None:
     """A list of controllers that is not known may start more."""
-    machine = installed("moveit_controllers.yaml", moveit_controllers__yaml=b"moveit_simple_controller_manager: 1")
+    machine = installed(
+        "moveit_controllers.yaml", moveit_controllers__yaml=b"moveit_simple_controller_manager: 1"
+    )
     assert launch(f"return generate_spawn_controllers_launch({BUILT})", machine).unknown

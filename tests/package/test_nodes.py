@@ -32,9 +32,15 @@ class Talker(Node):
 
 def nodes_of(text: str, **files: str) -> PythonNodes:
     """Return the nodes of a package whose module talker has this text; other modules are given by their names."""
-    texts = {"package.xml": "<package format='3'><name>hub</name></package>", "setup.py": _SETUP, "hub/__init__.py": ""}
+    texts = {
+        "package.xml": "<package format='3'><name>hub</name></package>",
+        "setup.py": _SETUP,
+        "hub/__init__.py": "",
+    }
     texts |= {f"hub/{name}.py": it for name, it in {"talker": text, **files}.items()}
-    tree = overlaid(make_tree("work", (), ()), {f"src/hub/{path}": it.encode() for path, it in texts.items()})
+    tree = overlaid(
+        make_tree("work", (), ()), {f"src/hub/{path}": it.encode() for path, it in texts.items()}
+    )
     [package] = read_packages(tree, Lab("urdf/hub.urdf"))
     return read_nodes(package)
 
@@ -46,26 +52,53 @@ def node_of(*statements: str) -> PythonNode:
 
 
 ENDPOINTS = [
-    ("self.create_publisher(Float32, 'heat', 10)", ("publisher", "std_msgs.msg.Float32", "heat", (10, "reliable", "volatile"))),
-    ("self.create_publisher(qos_profile=5, topic=TOPIC, msg_type=std_msgs.msg.Bool)",
-     ("publisher", "std_msgs.msg.Bool", "heat", (5, "reliable", "volatile"))),
-    ("self.create_subscription(Float32, f'{TOPIC}/raw', self.on, qos_profile_sensor_data)",
-     ("subscription", "std_msgs.msg.Float32", "heat/raw", (5, "best_effort", "volatile"))),
-    ("self.create_subscription(Float32, 'a' + TOPIC, self.on, QoSPresetProfiles.SENSOR_DATA.value)",
-     ("subscription", "std_msgs.msg.Float32", "aheat", (5, "best_effort", "volatile"))),
-    ("self.create_publisher(Float32, 'a', QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))",
-     ("publisher", "std_msgs.msg.Float32", "a", (1, "reliable", "transient_local"))),
-    ("self.create_publisher(Float32, 'a', QoSProfile(depth=n(), reliability=ReliabilityPolicy.BEST_EFFORT))",
-     ("publisher", "std_msgs.msg.Float32", "a", (None, "best_effort", "volatile"))),
-    ("self.create_publisher(Float32, 'a', QoSProfile(depth=1, reliability=n()))",
-     ("publisher", "std_msgs.msg.Float32", "a", (1, None, "volatile"))),
-    ("self.create_publisher(Float32, 'a', True)", ("publisher", "std_msgs.msg.Float32", "a", (None, None, None))),
-    ("self.create_service(Trigger, 'reset', self.on)", ("service", "std_srvs.srv.Trigger", "reset", (None, None, None))),
-    ("self.create_client(Trigger, 'reset')", ("client", "std_srvs.srv.Trigger", "reset", (None, None, None))),
-    ("self.create_publisher(kind(), topic(), 10)", ("publisher", None, None, (10, "reliable", "volatile"))),
+    (
+        "self.create_publisher(Float32, 'heat', 10)",
+        ("publisher", "std_msgs.msg.Float32", "heat", (10, "reliable", "volatile")),
+    ),
+    (
+        "self.create_publisher(qos_profile=5, topic=TOPIC, msg_type=std_msgs.msg.Bool)",
+        ("publisher", "std_msgs.msg.Bool", "heat", (5, "reliable", "volatile")),
+    ),
+    (
+        "self.create_subscription(Float32, f'{TOPIC}/raw', self.on, qos_profile_sensor_data)",
+        ("subscription", "std_msgs.msg.Float32", "heat/raw", (5, "best_effort", "volatile")),
+    ),
+    (
+        "self.create_subscription(Float32, 'a' + TOPIC, self.on, QoSPresetProfiles.SENSOR_DATA.value)",
+        ("subscription", "std_msgs.msg.Float32", "aheat", (5, "best_effort", "volatile")),
+    ),
+    (
+        "self.create_publisher(Float32, 'a', QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))",
+        ("publisher", "std_msgs.msg.Float32", "a", (1, "reliable", "transient_local")),
+    ),
+    (
+        "self.create_publisher(Float32, 'a', QoSProfile(depth=n(), reliability=ReliabilityPolicy.BEST_EFFORT))",
+        ("publisher", "std_msgs.msg.Float32", "a", (None, "best_effort", "volatile")),
+    ),
+    (
+        "self.create_publisher(Float32, 'a', QoSProfile(depth=1, reliability=n()))",
+        ("publisher", "std_msgs.msg.Float32", "a", (1, None, "volatile")),
+    ),
+    (
+        "self.create_publisher(Float32, 'a', True)",
+        ("publisher", "std_msgs.msg.Float32", "a", (None, None, None)),
+    ),
+    (
+        "self.create_service(Trigger, 'reset', self.on)",
+        ("service", "std_srvs.srv.Trigger", "reset", (None, None, None)),
+    ),
+    (
+        "self.create_client(Trigger, 'reset')",
+        ("client", "std_srvs.srv.Trigger", "reset", (None, None, None)),
+    ),
+    (
+        "self.create_publisher(kind(), topic(), 10)",
+        ("publisher", None, None, (10, "reliable", "volatile")),
+    ),
     ("self.create_publisher(*given)", ("publisher", None, None, (None, None, None))),
     ("self.create_publisher(**given)", ("publisher", None, None, (None, None, None))),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("statement", "expected"), ENDPOINTS)
@@ -97,7 +130,9 @@ CONSTANTS = [
 
 
 @pytest.mark.parametrize(("statements", "topic", "expected"), CONSTANTS)
-def test_a_name_that_is_bound_once_is_a_constant(statements: list[str], topic: str, expected: str | None) -> None:
+def test_a_name_that_is_bound_once_is_a_constant(
+    statements: list[str], topic: str, expected: str | None
+) -> None:
     """A name that is bound twice, changed, a parameter or in a list is not known."""
     node = node_of(*statements, f"self.create_publisher(Float32, {topic}, 10)")
     assert [it.name for it in node.endpoints] == [expected]
@@ -133,21 +168,28 @@ PARAMETERS = [
     ("self.declare_parameter('rate', rclpy.Parameter.Type.DOUBLE)", [("rate", None, True)]),
     ("self.declare_parameter('rate', n())", [("rate", "?", True)]),
     ("self.declare_parameter(n(), 1)", [(None, 1, True)]),
-    ("self.declare_parameters('', [('a', 1), ('b', [2.0], Descriptor()), ('c',)])",
-     [("a", 1, True), ("b", [2.0], True), ("c", None, True)]),
+    (
+        "self.declare_parameters('', [('a', 1), ('b', [2.0], Descriptor()), ('c',)])",
+        [("a", 1, True), ("b", [2.0], True), ("c", None, True)],
+    ),
     ("self.declare_parameters('arm', [('a', 1)])", [("arm.a", 1, True)]),
     ("self.declare_parameters(n(), [('a', 1)])", [(None, 1, True)]),
     ("self.declare_parameters('', n())", [(None, "?", True)]),
     ("x = self.get_parameter('rate').value", [("rate", None, False)]),
     ("x = self.get_parameter_or('rate', 5)", [("rate", None, False)]),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("statement", "expected"), PARAMETERS)
-def test_parameters_are_known_with_their_defaults(statement: str, expected: list[tuple[object, ...]]) -> None:
+def test_parameters_are_known_with_their_defaults(
+    statement: str, expected: list[tuple[object, ...]]
+) -> None:
     """Each parameter has a name and a default, as far as they are constants, and is declared or read."""
     found: tuple[NodeParameter, ...] = node_of(statement).parameters
-    shown = [(it.name, "?" if isinstance(it.default, Unknown) else it.default, it.is_declared) for it in found]
+    shown = [
+        (it.name, "?" if isinstance(it.default, Unknown) else it.default, it.is_declared)
+        for it in found
+    ]
     assert shown == expected
 
 
@@ -169,25 +211,45 @@ BASES = [
 @pytest.mark.parametrize(("head", "base"), BASES)
 def test_a_class_of_nodes_is_one_whatever_its_base_is_called(head: str, base: str) -> None:
     """The base is known by its full name; super() or the base itself names the node."""
-    for call in ("super().__init__('a')", "super(T, self).__init__(node_name='a')", f"{base}.__init__(self, 'a')"):
-        [node] = nodes_of(f"{head}class T({base}):\n    def __init__(self):\n        {call}\n").nodes
-        assert (node.class_name, node.name, node.location.line, node.doubts) == ("hub.talker.T", "a", 2, ())
+    for call in (
+        "super().__init__('a')",
+        "super(T, self).__init__(node_name='a')",
+        f"{base}.__init__(self, 'a')",
+    ):
+        [node] = nodes_of(
+            f"{head}class T({base}):\n    def __init__(self):\n        {call}\n"
+        ).nodes
+        assert (node.class_name, node.name, node.location.line, node.doubts) == (
+            "hub.talker.T",
+            "a",
+            2,
+            (),
+        )
 
 
-NAMES = ["pass", "super().__init__(name)", "super().__init__(name); super().__init__('b')", "Mixin.__init__(self, 'a')"]
+NAMES = [
+    "pass",
+    "super().__init__(name)",
+    "super().__init__(name); super().__init__('b')",
+    "Mixin.__init__(self, 'a')",
+]
 
 
 def test_a_name_is_known_beside_other_arguments() -> None:
     """It is the first one, or has a name."""
     for call in ("'a', **given", "node_name='a', **given"):
-        [node] = nodes_of(f"{_HEAD}class T(Node):\n    def __init__(self):\n        super().__init__({call})\n").nodes
+        [node] = nodes_of(
+            f"{_HEAD}class T(Node):\n    def __init__(self):\n        super().__init__({call})\n"
+        ).nodes
         assert node.name == "a"
 
 
 @pytest.mark.parametrize("call", NAMES)
 def test_a_name_that_is_computed_is_not_known(call: str) -> None:
     """So is one of a node that is named twice, or whose base class is given the name."""
-    [node] = nodes_of(f"{_HEAD}class T(Node):\n    def __init__(self, name):\n        {call}\n").nodes
+    [node] = nodes_of(
+        f"{_HEAD}class T(Node):\n    def __init__(self, name):\n        {call}\n"
+    ).nodes
     assert node.name is None
 
 
@@ -205,7 +267,9 @@ DOUBTS = [
 @pytest.mark.parametrize(("statement", "doubt"), DOUBTS)
 def test_what_may_open_more_is_a_doubt(statement: str, doubt: str | None) -> None:
     """A function that is given the node, and options of Node, may declare or open more."""
-    [node] = nodes_of(f"{_HEAD}class T(Node):\n    def __init__(self):\n        {statement}\n").nodes
+    [node] = nodes_of(
+        f"{_HEAD}class T(Node):\n    def __init__(self):\n        {statement}\n"
+    ).nodes
     assert [it.reason for it in node.doubts] == [doubt] * (doubt is not None)
 
 
@@ -214,7 +278,12 @@ def test_a_node_may_be_made_by_a_function() -> None:
     text = f"{_HEAD}def main():\n    n = rclpy.create_node('a')\n    n.create_publisher(Float32, 'x', 10)\n    rclpy.spin(n)\n"
     found = nodes_of(text)
     [node] = found.nodes
-    assert (node.class_name, node.name, [it.name for it in node.endpoints], node.doubts) == ("", "a", ["x"], ())
+    assert (node.class_name, node.name, [it.name for it in node.endpoints], node.doubts) == (
+        "",
+        "a",
+        ["x"],
+        (),
+    )
     assert [(it.name, it.nodes) for it in found.programs] == [("talk", (node,)), ("b", ())]
     [other] = nodes_of(_HEAD + "node = Node('b')\nnode.create_client(Trigger, 'x')").nodes
     assert (other.name, len(other.endpoints)) == ("b", 1)
@@ -232,9 +301,7 @@ def test_calls_of_an_unknown_node_are_a_doubt_of_the_package() -> None:
 def test_a_program_has_the_nodes_that_its_function_creates() -> None:
     """Also those of functions that it calls, and of a function or class of another module; a derived class is one."""
     text = f"{_HEAD}from .base import Base, run\nclass T(Base):\n    pass\ndef start():\n    T()\ndef main():\n    start(); run()\n"
-    base = (
-        f"{_HEAD}class Base(Node):\n    def __init__(self):\n        super().__init__('base')\ndef run():\n    Base()\n"
-    )
+    base = f"{_HEAD}class Base(Node):\n    def __init__(self):\n        super().__init__('base')\ndef run():\n    Base()\n"
     found = nodes_of(text, base=base)
     assert {it.class_name for it in found.nodes} == {"hub.base.Base", "hub.talker.T"}
     assert [{it.class_name for it in program.nodes} for program in found.programs] == [
@@ -245,7 +312,9 @@ def test_a_program_has_the_nodes_that_its_function_creates() -> None:
     assert [it.reason for it in derived.doubts] == ["what another base class does is not added"]
 
 
-@pytest.mark.parametrize(("file", "expected"), [("talk.py", ["talker"]), ("talk", ["talker"]), ("other", None)])
+@pytest.mark.parametrize(
+    ("file", "expected"), [("talk.py", ["talker"]), ("talk", ["talker"]), ("other", None)]
+)
 def test_a_script_that_cmake_installs_is_a_program(file: str, expected: list[str] | None) -> None:
     """Its body creates the node; it is Python by its ending or its first line."""
     first = "#!/bin/sh" if file == "other" else "#!/usr/bin/env python3"
@@ -255,7 +324,9 @@ def test_a_script_that_cmake_installs_is_a_program(file: str, expected: list[str
         f"install(PROGRAMS scripts/{file} DESTINATION lib/${{PROJECT_NAME}})\nament_package()",
         f"scripts/{file}": f"{first}\n{_HEAD}{_CLASS}\nif __name__ == '__main__':\n    Talker()\n",
     }
-    tree = overlaid(make_tree("work", (), ()), {f"src/hub/{path}": it.encode() for path, it in texts.items()})
+    tree = overlaid(
+        make_tree("work", (), ()), {f"src/hub/{path}": it.encode() for path, it in texts.items()}
+    )
     [package] = read_packages(tree, Lab("urdf/hub.urdf"))
     found = [(it.name, [node.name for node in it.nodes]) for it in read_nodes(package).programs]
     assert found == ([(file, expected)] if expected else [])
@@ -270,6 +341,9 @@ def test_a_module_may_be_too_long_to_evaluate(monkeypatch: pytest.MonkeyPatch) -
 
 def test_a_package_without_a_build_file_has_no_nodes() -> None:
     """Nothing of it is installed."""
-    tree = overlaid(make_tree("work", (), ()), {"hub/package.xml": b"<package format='3'><name>hub</name></package>"})
+    tree = overlaid(
+        make_tree("work", (), ()),
+        {"hub/package.xml": b"<package format='3'><name>hub</name></package>"},
+    )
     [package] = read_packages(tree, Lab("urdf/hub.urdf"))
     assert read_nodes(package) == PythonNodes((), (), ())

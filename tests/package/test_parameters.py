@@ -66,7 +66,10 @@ def given(actions: str, ending: str = "py", **options: Any) -> NodeParameters:
 
 def values(found: NodeParameters) -> dict[str, Any]:
     """Return the values of parameters; `?` for one that is unknown."""
-    return {name: "?" if isinstance(it.value, Unknown) else it.value for name, it in found.values.items()}
+    return {
+        name: "?" if isinstance(it.value, Unknown) else it.value
+        for name, it in found.values.items()
+    }
 
 
 NAMED = "Node(package='a', executable='b', name='driver', parameters=[{}])"
@@ -78,27 +81,70 @@ FILE = "CONFIG / 'named.yaml'"
 @pytest.mark.parametrize(
     ("actions", "options", "expected"),
     [
-        (NAMED.format("{'a': 1, 'b': {'c': True, 'd': [1, 2.5]}}"), {}, {"a": 1, "b.c": True, "b.d": [1.0, 2.5]}),
-        (NAMED.format("{'a': '5', 'b': LaunchConfiguration('x', default='5')}"), {}, {"a": "5", "b": 5}),
-        (NAMED.format("{'a': ParameterValue(LaunchConfiguration('x', default='5'), value_type=str)}"), {}, {"a": "5"}),
+        (
+            NAMED.format("{'a': 1, 'b': {'c': True, 'd': [1, 2.5]}}"),
+            {},
+            {"a": 1, "b.c": True, "b.d": [1.0, 2.5]},
+        ),
+        (
+            NAMED.format("{'a': '5', 'b': LaunchConfiguration('x', default='5')}"),
+            {},
+            {"a": "5", "b": 5},
+        ),
+        (
+            NAMED.format(
+                "{'a': ParameterValue(LaunchConfiguration('x', default='5'), value_type=str)}"
+            ),
+            {},
+            {"a": "5"},
+        ),
         (NAMED.format("{'a': Command(['cat ', str(CONFIG / 'named.yaml')])}"), {}, {"a": "?"}),
-        (NAMED.format("{'a': LaunchConfiguration('x', default=EnvironmentVariable('A'))}, {'b': 1}"), {}, {"a": "?", "b": 1}),
+        (
+            NAMED.format(
+                "{'a': LaunchConfiguration('x', default=EnvironmentVariable('A'))}, {'b': 1}"
+            ),
+            {},
+            {"a": "?", "b": 1},
+        ),
         (NAMED.format("{'a': 1}, {'a': 2}"), {}, {"a": 2}),
         ("SetParameter('a', 1), " + NAMED.format("{'b': 1}"), {}, {"a": 1, "b": 1}),
         ("SetParameter('a', 1), " + NAMED.format("{'a': 2}"), {}, {"a": 2}),
-        ("SetParameter('a', '5'), SetParameter('b', [1]), " + NAMED.format(""), {}, {"a": 5, "b": "?"}),
-        (f"SetParametersFromFile(str({FILE})), " + IN_ROOT.format("{'speed': 9.0}"), {"is_python": True}, {"speed": 9.0}),
+        (
+            "SetParameter('a', '5'), SetParameter('b', [1]), " + NAMED.format(""),
+            {},
+            {"a": 5, "b": "?"},
+        ),
+        (
+            f"SetParametersFromFile(str({FILE})), " + IN_ROOT.format("{'speed': 9.0}"),
+            {"is_python": True},
+            {"speed": 9.0},
+        ),
         ("GroupAction([SetParameter('a', 1)]), " + NAMED.format("{'b': 1}"), {}, {"b": 1}),
-        ("SetParameter('c', 1), GroupAction([SetParameter('a', 1)]), " + NAMED.format("{'b': 1}"), {}, {"c": 1, "a": 1, "b": 1}),
+        (
+            "SetParameter('c', 1), GroupAction([SetParameter('a', 1)]), "
+            + NAMED.format("{'b': 1}"),
+            {},
+            {"c": 1, "a": 1, "b": 1},
+        ),
         ("SetUseSimTime(True), " + NAMED.format("{'b': 1}"), {}, {"b": 1}),
-        ("Node(package='a', executable='b', arguments=['--ros-args', '-p', 'x:=1.5', '-p', 'driver:y:=on', '-p', 'other:z:=1'], name='driver')", {}, {"x": 1.5, "y": True}),
-        ("Node(package='a', executable='b', ros_arguments=['-p', 'x:=[1, 2]', '-p', 'y:={'], name='driver')", {}, {"x": [1, 2], "y": "?"}),
+        (
+            "Node(package='a', executable='b', arguments=['--ros-args', '-p', 'x:=1.5', '-p', 'driver:y:=on', '-p', 'other:z:=1'], name='driver')",
+            {},
+            {"x": 1.5, "y": True},
+        ),
+        (
+            "Node(package='a', executable='b', ros_arguments=['-p', 'x:=[1, 2]', '-p', 'y:={'], name='driver')",
+            {},
+            {"x": [1, 2], "y": "?"},
+        ),
     ],
-)  # fmt: skip
+)
 def test_values(actions: str, options: dict[str, Any], expected: dict[str, Any]) -> None:
     """A parameter has the value that launch evaluates, and the last one that is given counts."""
     found = given(actions, **options)
-    assert {name: it for name, it in values(found).items() if name in expected or len(found.values) < 5} == expected
+    assert {
+        name: it for name, it in values(found).items() if name in expected or len(found.values) < 5
+    } == expected
     assert found.unknown == ""
 
 
@@ -106,8 +152,14 @@ def test_files() -> None:
     """A file is read as rcl reads it: by the names of nodes, with YAML's numbers, booleans, quotes and nested names."""
     found = given(IN_ROOT.format(FILE), is_python=True)
     assert values(found) == {
-        "speed": 2.0, "is_on": True, "quoted": "yes", "empty": "?", "wheels": ["left", "right"], "pid.p": 1, "pid.i": 16,
-    }  # fmt: skip
+        "speed": 2.0,
+        "is_on": True,
+        "quoted": "yes",
+        "empty": "?",
+        "wheels": ["left", "right"],
+        "pid.p": 1,
+        "pid.i": 16,
+    }
     assert found.values["pid.i"].location.line == 5
     assert found.values["pid.i"].location.path == "config/named.yaml"
 
@@ -115,8 +167,19 @@ def test_files() -> None:
 def test_texts() -> None:
     """A value that is a substitution, no scalar or a list of several types is unknown; the rest is as in rcl."""
     found = given(NAMED.format("ParameterFile(CONFIG / 'texts.yaml', allow_substs=True)"), name="x")
-    assert values(found) == {"a": "?", "b": float("inf"), "c": 1000.0, "d": 8, "e": "?", "f": "1:30", "g": "z"}
-    assert values(given(NAMED.format("ParameterFile([str(CONFIG / 'texts.yaml')])")))["a"] == "$(var name)"
+    assert values(found) == {
+        "a": "?",
+        "b": float("inf"),
+        "c": 1000.0,
+        "d": 8,
+        "e": "?",
+        "f": "1:30",
+        "g": "z",
+    }
+    assert (
+        values(given(NAMED.format("ParameterFile([str(CONFIG / 'texts.yaml')])")))["a"]
+        == "$(var name)"
+    )
 
 
 @pytest.mark.parametrize(
@@ -168,20 +231,32 @@ def test_names() -> None:
     assert values(given(wild, "xml", is_python=False, name="/other")) == {"speed": 5}
     nameless = f"Node(package='a', executable='b', parameters=[{FILE}, {{'x': 1}}])"
     assert values(given(nameless)) == {
-        "speed": "?", "is_on": True, "quoted": "yes", "empty": "?", "wheels": "?", "pid.p": "?", "pid.i": "?", "x": 1,
-    }  # fmt: skip
+        "speed": "?",
+        "is_on": True,
+        "quoted": "yes",
+        "empty": "?",
+        "wheels": "?",
+        "pid.p": "?",
+        "pid.i": "?",
+        "x": 1,
+    }
     assert values(given(nameless, name="driver", is_python=True))["wheels"] == ["left", "right"]
-    renamed = (
-        "Node(package='a', executable='b', name='x', arguments=['--ros-args', '-r', '__node:=y', '-r', '__ns:=/z'])"
-    )
+    renamed = "Node(package='a', executable='b', name='x', arguments=['--ros-args', '-r', '__node:=y', '-r', '__ns:=/z'])"
     assert (node(renamed).node_name, node(renamed).namespace) == ("y", "/z")
 
 
 @pytest.mark.parametrize(
     "parameters",
-    ["CONFIG / 'missing.yaml'", "'/tmp/a.yaml'", "CONFIG / 'broken.yaml'", "ParameterValue(1)", "{'b': {'c': EnvironmentVariable('A')}}",
-     "ParameterFile(EnvironmentVariable('A'))", "EnvironmentVariable('A')"],
-)  # fmt: skip
+    [
+        "CONFIG / 'missing.yaml'",
+        "'/tmp/a.yaml'",
+        "CONFIG / 'broken.yaml'",
+        "ParameterValue(1)",
+        "{'b': {'c': EnvironmentVariable('A')}}",
+        "ParameterFile(EnvironmentVariable('A'))",
+        "EnvironmentVariable('A')",
+    ],
+)
 def test_unknown(parameters: str) -> None:
     """What is not evaluated may contain any parameter, and replaces those before it."""
     found = given(NAMED.format(f"{{'a': 1}}, {parameters}, {{'z': 1}}"))
@@ -195,7 +270,9 @@ def test_for_all_nodes() -> None:
     assert given(f"SetParameter('a', 1, {condition}), " + NAMED.format("")).unknown
     remapped = node(f"SetRemap('a', 'b', {condition}), Node(package='a', executable='b')")
     assert remapped.remaps is None
-    kept = node("GroupAction([SetRemap('a', 'b')]), Node(package='a', executable='b', remappings=[('a', 'c')])")
+    kept = node(
+        "GroupAction([SetRemap('a', 'b')]), Node(package='a', executable='b', remappings=[('a', 'c')])"
+    )
     assert kept.remaps == (("a", "c"),)
     first = "Node(package='a', executable='b', remappings=[('a', 'c')], arguments=['--ros-args', '-r', 'a:=d'])"
     assert node(f"SetRemap('a', 'b'), {first}").topic("a") == "/d"
@@ -203,7 +280,9 @@ def test_for_all_nodes() -> None:
 
 def test_arguments() -> None:
     """The words after the program are kept; one that is not evaluated is None."""
-    assert node("Node(package='a', executable='b', arguments=['x', EnvironmentVariable('A')])").arguments == ("x", None)
+    assert node(
+        "Node(package='a', executable='b', arguments=['x', EnvironmentVariable('A')])"
+    ).arguments == ("x", None)
     assert node('<node pkg="a" exec="b" ros_args="-p x:=1"/>', "xml").arguments == ()
     assert values(given('<node pkg="a" exec="b" ros_args="-p x:=1"/>', "xml")) == {"x": 1}
 
@@ -212,14 +291,18 @@ def test_included_by() -> None:
     """A node knows the launch files by which its own is included."""
     inner = {"share/my_robot/launch/b.launch.xml": b'<launch><node pkg="a" exec="b"/></launch>'}
     outer = b'<launch><include file="$(dirname)/b.launch.xml"/></launch>'
-    assert read(outer, "a.launch.xml", inner).nodes[0].included_by == ("share/my_robot/launch/a.launch.xml",)
+    assert read(outer, "a.launch.xml", inner).nodes[0].included_by == (
+        "share/my_robot/launch/a.launch.xml",
+    )
 
 
 def test_files_are_named() -> None:
     """A launch file names the parameter files that it gives to nodes, and stops without one for all nodes."""
     found = launch(f"SetParametersFromFile(str({FILE})), " + NAMED.format("CONFIG / 'wild.yaml'"))
     named = [[it.path for it in found.named(purpose)] for purpose in ("read", "parameters")]
-    spawned = launch("Node(package='controller_manager', executable='spawner', arguments=['a', '-p', 'x.yaml'])")
+    spawned = launch(
+        "Node(package='controller_manager', executable='spawner', arguments=['a', '-p', 'x.yaml'])"
+    )
     assert [it.path for it in spawned.named("parameters")] == ["x.yaml"]
     assert named == [
         [f"/<prefix>/{SHARE}/named.yaml"],
@@ -229,11 +312,17 @@ def test_files_are_named() -> None:
 
 def controllers(words: str) -> list[tuple[str | None, str | None, dict[str, Any]]] | None:
     """Return the names, namespaces and parameters of the controllers that a spawner with these arguments starts."""
-    found = controllers_of(node(f"Node(package='controller_manager', executable='spawner', arguments=[{words}])"))
+    found = controllers_of(
+        node(f"Node(package='controller_manager', executable='spawner', arguments=[{words}])")
+    )
     if found is None:
         return None
     return [
-        (it.node_name, it.namespace, values(parameters_of(it, Installed(FILES).open_installed, is_python=False)))
+        (
+            it.node_name,
+            it.namespace,
+            values(parameters_of(it, Installed(FILES).open_installed, is_python=False)),
+        )
         for it in found
     ]
 
@@ -241,10 +330,14 @@ def controllers(words: str) -> list[tuple[str | None, str | None, dict[str, Any]
 def test_controllers() -> None:
     """A spawner starts controllers in the namespace of their manager, with the parameters of its files."""
     path = "str(CONFIG / 'wild.yaml')"
-    assert controllers(f"'other', 'driver', '--param-file', {path}, '-c', '/ns/controller_manager'") == [
+    assert controllers(
+        f"'other', 'driver', '--param-file', {path}, '-c', '/ns/controller_manager'"
+    ) == [
         ("other", "/ns", {}),
         ("driver", "/ns", {"speed": 3, "deep": 4}),
     ]
     assert controllers(f"'--inactive', 'other', '-p', {path}") == [("other", "/", {"speed": 5})]
-    assert controllers("'other', '--controller-manager=cm', '--ros-args', '-p', 'a:=1'") == [("other", "/", {})]
+    assert controllers("'other', '--controller-manager=cm', '--ros-args', '-p', 'a:=1'") == [
+        ("other", "/", {})
+    ]
     assert controllers("'other', EnvironmentVariable('A')") is None

@@ -73,7 +73,9 @@ def read(text: str) -> RvizFile:
 def displays(*entries: str) -> RvizFile:
     """Return an RViz file with these displays, each a flow mapping."""
     listed = "".join(f"    - {{{entry}}}\n" for entry in entries)
-    return read(f"Visualization Manager:\n  Displays:\n{listed}  Global Options: {{Fixed Frame: base_link}}\n")
+    return read(
+        f"Visualization Manager:\n  Displays:\n{listed}  Global Options: {{Fixed Frame: base_link}}\n"
+    )
 
 
 def test_a_saved_file() -> None:
@@ -83,7 +85,9 @@ def test_a_saved_file() -> None:
     assert found.fixed_frame == "base_footprint"
     assert SAVED.splitlines()[found.frame_location.line - 1] == "    Fixed Frame: base_footprint"
     assert found.frame_location.column == 18
-    assert [(display.package, display.kind, display.name, display.enabled) for display in found.displays] == [
+    assert [
+        (display.package, display.kind, display.name, display.enabled) for display in found.displays
+    ] == [
         ("rviz_default_plugins", "Grid", "Grid", True),
         ("rviz_default_plugins", "RobotModel", "My robot: the model", True),
         ("rviz_default_plugins", "TF", "TF", False),
@@ -106,8 +110,13 @@ def test_a_saved_file() -> None:
 def test_problems() -> None:
     """A TF display that is disabled counts as missing; a ROS 1 class is reported at its location."""
     assert [problem.kind.code for problem in read(SAVED).problems] == ["RVZ003"]
-    old = displays("Class: rviz/RobotModel, Enabled: true", "Class: rviz/TF, Enabled: true, Name: TF")
-    assert [(problem.kind.code, problem.location.line) for problem in old.problems] == [("RVZ002", 3), ("RVZ002", 4)]
+    old = displays(
+        "Class: rviz/RobotModel, Enabled: true", "Class: rviz/TF, Enabled: true, Name: TF"
+    )
+    assert [(problem.kind.code, problem.location.line) for problem in old.problems] == [
+        ("RVZ002", 3),
+        ("RVZ002", 4),
+    ]
     assert "in ROS 2 it is rviz_default_plugins/RobotModel" in old.problems[0].message
     assert displays("Class: rviz_default_plugins/TF, Enabled: true").problems == ()
 
@@ -150,15 +159,29 @@ def test_odd_shapes(text: str) -> None:
     found = read(text)
     assert found.fault is None
     assert found.fixed_frame is None
-    assert all(display.kind == display.package == "" and not display.enabled for display in found.displays)
+    assert all(
+        display.kind == display.package == "" and not display.enabled for display in found.displays
+    )
 
 
 @pytest.mark.parametrize(
     ("settings", "is_on"),
-    [("Enabled: true", True), ("Enabled: True", True), ("Enabled: 1", True), ("Enabled: 'true'", True), ("Enabled: yes", True),
-     ("Enabled: false", False), ("Enabled: FALSE", False), ("Enabled: 0", False), ("Enabled: ''", False), ("Enabled: ", False),
-     ("Name: a", False), ("Enabled: false, Value: true", False), ("Enabled: true, Value: false", True)],
-)  # fmt: skip
+    [
+        ("Enabled: true", True),
+        ("Enabled: True", True),
+        ("Enabled: 1", True),
+        ("Enabled: 'true'", True),
+        ("Enabled: yes", True),
+        ("Enabled: false", False),
+        ("Enabled: FALSE", False),
+        ("Enabled: 0", False),
+        ("Enabled: ''", False),
+        ("Enabled: ", False),
+        ("Name: a", False),
+        ("Enabled: false, Value: true", False),
+        ("Enabled: true, Value: false", True),
+    ],
+)
 def test_enabled(settings: str, is_on: bool) -> None:
     """A display is enabled exactly if RViz enables it."""
     assert [display.enabled for display in displays(f"Class: a/B, {settings}").displays] == [is_on]
@@ -175,7 +198,11 @@ def test_settings_of_displays() -> None:
 def test_class_without_a_package() -> None:
     """A class is split at its last slash."""
     found = displays("Class: RobotModel", "Class: a/b/C", "Class: ''").displays
-    assert [(display.package, display.kind) for display in found] == [("", "RobotModel"), ("a/b", "C"), ("", "")]
+    assert [(display.package, display.kind) for display in found] == [
+        ("", "RobotModel"),
+        ("a/b", "C"),
+        ("", ""),
+    ]
 
 
 @pytest.mark.parametrize(
@@ -184,7 +211,10 @@ def test_class_without_a_package() -> None:
         [
             "Visualization Manager:\n  Displays: &a\n    - Displays: *a\n    - Displays: *a\n",
             "Visualization Manager:\n  Displays: &a\n" + "    - Displays: *a\n" * 900,
-            "Visualization Manager:\n  Displays: &a [" + "{Displays: *a}, " * 900 + "b, " * 80_000 + "]\n",
+            "Visualization Manager:\n  Displays: &a ["
+            + "{Displays: *a}, " * 900
+            + "b, " * 80_000
+            + "]\n",
             "Visualization Manager:\n  Displays:\n" + "    - Class: a/B\n" * 20_000,
             "Visualization Manager: &a {Displays: [*a, *a], Global Options: *a}",
         ],

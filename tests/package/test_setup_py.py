@@ -48,13 +48,20 @@ def build_samples(samples: Iterable[str] = SAMPLES) -> dict[str, Build]:
 def recorded() -> dict[str, Build]:
     """Return what colcon does with each sample: the installed files by path, or the last line of the error."""
     table: dict[str, dict[str, str] | str] = json.loads(_RECORDED.read_text(encoding="utf-8"))
-    return {name: Build({}, found) if isinstance(found, str) else Build(found, "") for name, found in table.items()}
+    return {
+        name: Build({}, found) if isinstance(found, str) else Build(found, "")
+        for name, found in table.items()
+    }
 
 
 def _plain(build: Build) -> dict[str, str] | str:
-    lines = [line for line in build.error.splitlines() if line.strip() and not line.startswith("Failed ")]
+    lines = [
+        line for line in build.error.splitlines() if line.strip() and not line.startswith("Failed ")
+    ]
     # The command that failed has the path of the oracle's Python in it.
-    return lines[-1].strip().split(" '[")[0][:100] if lines else dict(sorted(build.installed.items()))
+    return (
+        lines[-1].strip().split(" '[")[0][:100] if lines else dict(sorted(build.installed.items()))
+    )
 
 
 @pytest.mark.parametrize("sample", SAMPLES)
@@ -80,4 +87,6 @@ def test_colcon_does_what_is_recorded() -> None:
 
 
 if __name__ == "__main__":
-    _RECORDED.write_text(json.dumps({name: _plain(it) for name, it in build_samples().items()}, indent=1) + "\n")
+    _RECORDED.write_text(
+        json.dumps({name: _plain(it) for name, it in build_samples().items()}, indent=1) + "\n"
+    )

@@ -16,7 +16,9 @@ from tests.examples import examples
 def tree_of(text: str, file: str = "a.yaml") -> Entry:
     """Return the tree of a file of a package."""
     texts = {"package.xml": "<package format='3'><name>hub</name></package>", file: text}
-    tree = overlaid(make_tree("work", (), ()), {f"hub/{path}": it.encode() for path, it in texts.items()})
+    tree = overlaid(
+        make_tree("work", (), ()), {f"hub/{path}": it.encode() for path, it in texts.items()}
+    )
     [package] = read_packages(tree, Lab("urdf/hub.urdf"))
     return read_tree(package, file)
 
@@ -68,7 +70,9 @@ def test_every_way_to_nest_a_key_is_found(words: list[str], data: st.DataObject)
 
 def test_elements_and_attributes_are_found_with_their_places() -> None:
     """Below the root; text in comments does not count, and a quote may be of either kind."""
-    tree = tree_of("<sdf>\n<!-- <m/> -->\n<m name='a/b'><p>1 <!-- 3 -->2</p></m>\n<m name='c'/></sdf>", "a.sdf")
+    tree = tree_of(
+        "<sdf>\n<!-- <m/> -->\n<m name='a/b'><p>1 <!-- 3 -->2</p></m>\n<m name='c'/></sdf>", "a.sdf"
+    )
     [found] = Search().find(tree, steps_of("m[@name='a/b']/p", is_xml=True))
     assert (found.text, found.place) == ("1 2", Location("hub/a.sdf", 3, 15))
     [name] = Search().find(tree, steps_of('m[@name="c"]/@name', is_xml=True))
@@ -78,7 +82,18 @@ def test_elements_and_attributes_are_found_with_their_places() -> None:
 def test_a_path_has_closed_brackets() -> None:
     """A condition is a key and a value; quotes are of one kind."""
     assert all(
-        map(is_path, ("", "a.b", "a/@b", "a[b=c].d", "[a=/b].c", "a[@b='c']/d", 'a[b="[x]"]'.replace("[x]", "x")))
+        map(
+            is_path,
+            (
+                "",
+                "a.b",
+                "a/@b",
+                "a[b=c].d",
+                "[a=/b].c",
+                "a[@b='c']/d",
+                'a[b="[x]"]'.replace("[x]", "x"),
+            ),
+        )
     )
     assert not any(map(is_path, ("a[b", "a[b]", "a]b", "a[b='c\"]")))
 

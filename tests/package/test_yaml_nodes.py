@@ -38,7 +38,9 @@ TEXTS = st.text(st.characters(blacklist_categories=["Cs"]), max_size=12) | st.sa
     ]
 )
 VALUES = st.recursive(
-    TEXTS, lambda inner: st.lists(inner, max_size=4) | st.dictionaries(TEXTS, inner, max_size=4), max_leaves=20
+    TEXTS,
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(TEXTS, inner, max_size=4),
+    max_leaves=20,
 )
 
 
@@ -50,11 +52,21 @@ def plain(node: YamlNode) -> Any:
 
 
 @examples(30)
-@given(VALUES, st.booleans() | st.none(), st.sampled_from([None, "'", '"', "|", ">"]), st.booleans())
-def test_agreement_with_pyyaml(value: Any, flow: bool | None, style: str | None, marked: bool) -> None:
+@given(
+    VALUES, st.booleans() | st.none(), st.sampled_from([None, "'", '"', "|", ">"]), st.booleans()
+)
+def test_agreement_with_pyyaml(
+    value: Any, flow: bool | None, style: str | None, marked: bool
+) -> None:
     """Structure and strings of any document equal those of PyYAML."""
-    text = yaml.dump(value, Dumper=NoAliases, default_flow_style=flow, default_style=style, explicit_start=marked,
-                     allow_unicode=True)  # fmt: skip
+    text = yaml.dump(
+        value,
+        Dumper=NoAliases,
+        default_flow_style=flow,
+        default_style=style,
+        explicit_start=marked,
+        allow_unicode=True,
+    )
     assert plain(read_yaml(text.encode(), "a.yaml")) == yaml.load(text, Loader=yaml.BaseLoader)
 
 
@@ -66,7 +78,9 @@ class NoAliases(yaml.SafeDumper):
 
 
 @examples(30)
-@given(st.binary(max_size=60) | st.text("[]{}:-,&*!|>'\"%@`#? \n\tab1\\", max_size=40).map(str.encode))
+@given(
+    st.binary(max_size=60) | st.text("[]{}:-,&*!|>'\"%@`#? \n\tab1\\", max_size=40).map(str.encode)
+)
 @example(b"a: *b")
 @example(b"&a [*a]")
 @example(b"? [a, b]\n: c")
@@ -88,7 +102,9 @@ def test_any_text(data: bytes) -> None:
     if b"*" in data or b"&" in data or data.startswith((b"\xff\xfe", b"\xfe\xff")):
         return
     try:
-        expected = next(islice(yaml.load_all(data.decode("utf-8", "replace"), Loader=yaml.CBaseLoader), 1), None)
+        expected = next(
+            islice(yaml.load_all(data.decode("utf-8", "replace"), Loader=yaml.CBaseLoader), 1), None
+        )
     except (yaml.YAMLError, ValueError, TypeError):
         return
     assert plain(found) == ({} if expected is None else expected)
@@ -96,7 +112,10 @@ def test_any_text(data: bytes) -> None:
 
 def test_locations() -> None:
     """Every value has its line and column, in characters."""
-    root = read_yaml("# café\nä: é\nlist:\n  - one\n  - {two: 2, drei: 'ü'}\n\"é\": |\n  text\n".encode(), "a.yaml")
+    root = read_yaml(
+        "# café\nä: é\nlist:\n  - one\n  - {two: 2, drei: 'ü'}\n\"é\": |\n  text\n".encode(),
+        "a.yaml",
+    )
     found = {key: root.get(*key.split("/")) for key in ("ä", "list", "é")}
     items = found["list"].items if found["list"] is not None else []
     nodes = [*found.values(), *items, items[1].get("two"), items[1].get("drei")]
@@ -111,7 +130,13 @@ def test_locations_after_a_byte_order_mark_and_with_crlf() -> None:
     one, two = root.get("a"), root.get("c", "d")
     assert one is not None
     assert two is not None
-    assert (one.text, one.location.line, two.text, two.location.line, two.location.column) == ("b", 1, "e", 3, 6)
+    assert (one.text, one.location.line, two.text, two.location.line, two.location.column) == (
+        "b",
+        1,
+        "e",
+        3,
+        6,
+    )
 
 
 @pytest.mark.parametrize(
@@ -138,7 +163,12 @@ def test_faults(text: str, words: str, line: int, column: int) -> None:
 def test_quoted_strings_are_distinguished() -> None:
     """A quoted string differs from a plain one."""
     root = read_yaml(b"a: 'true'\nb: true\nc: \"1\"\nd: |\n  1\n", "a.yaml")
-    assert {key: item.quoted for key, item in plain_items(root)} == {"a": True, "b": False, "c": True, "d": False}
+    assert {key: item.quoted for key, item in plain_items(root)} == {
+        "a": True,
+        "b": False,
+        "c": True,
+        "d": False,
+    }
 
 
 def plain_items(node: YamlNode) -> list[tuple[str, YamlNode]]:
@@ -148,7 +178,12 @@ def plain_items(node: YamlNode) -> list[tuple[str, YamlNode]]:
 
 def test_an_empty_text_is_an_empty_mapping() -> None:
     """Empty text, comments alone and an empty document contain nothing."""
-    assert [plain(read_yaml(text, "")) for text in (b"", b"# a\n", b"---\n...\n", b"---\n")] == [{}, {}, "", ""]
+    assert [plain(read_yaml(text, "")) for text in (b"", b"# a\n", b"---\n...\n", b"---\n")] == [
+        {},
+        {},
+        "",
+        "",
+    ]
 
 
 def test_first_document_only() -> None:
@@ -164,7 +199,11 @@ def test_the_last_of_equal_keys_counts() -> None:
 
 def test_keys_that_are_no_strings_are_kept_separately() -> None:
     """A list as a key hides nothing."""
-    assert list(plain(read_yaml(b"? [a, b]\n: c\n? [d]\n: e\nf: g\n", "")).values()) == ["c", "e", "g"]
+    assert list(plain(read_yaml(b"? [a, b]\n: c\n? [d]\n: e\nf: g\n", "")).values()) == [
+        "c",
+        "e",
+        "g",
+    ]
 
 
 def test_aliases_are_shared() -> None:
@@ -185,7 +224,9 @@ def test_recursion_through_anchors_is_harmless() -> None:
 
 def test_billion_laughs() -> None:
     """Aliases of aliases take no time and no memory."""
-    lines = ["a0: &a0 [ha, ha]"] + [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, 60)]
+    lines = ["a0: &a0 [ha, ha]"] + [
+        f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, 60)
+    ]
     with limited_work(200_000):
         root = read_yaml("\n".join(lines).encode(), "")
     last = root.get("a59")

@@ -13,9 +13,12 @@ from tests.examples import examples
 
 _NAMES = ("a", "b", "c")
 _LINES = st.one_of(
-    st.tuples(st.sampled_from(_NAMES), st.sampled_from(["'x'", "1", "a", "b + 'y'", "f'{c}'", "[1]", "str(5)", "a or b", "(1, 'x')"])).map(
-        lambda it: f"{it[0]} = {it[1]}"
-    ),
+    st.tuples(
+        st.sampled_from(_NAMES),
+        st.sampled_from(
+            ["'x'", "1", "a", "b + 'y'", "f'{c}'", "[1]", "str(5)", "a or b", "(1, 'x')"]
+        ),
+    ).map(lambda it: f"{it[0]} = {it[1]}"),
     st.sampled_from(
         [
             "a += 'z'",
@@ -39,7 +42,7 @@ _LINES = st.one_of(
             "lambda a: a",
         ]
     ),
-)  # fmt: skip
+)
 
 
 class _Manager:

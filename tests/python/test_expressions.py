@@ -12,7 +12,14 @@ from grader.python.builtins import BUILTINS, MATH
 from grader.python.expressions import evaluate
 from grader.python.values import EvaluationFails, Undetermined, Value
 
-NAMES: dict[str, Value] = {**BUILTINS, **MATH, "size": 4, "text": "wheel", "table": {"a": [1, 2]}, "flag": True}
+NAMES: dict[str, Value] = {
+    **BUILTINS,
+    **MATH,
+    "size": 4,
+    "text": "wheel",
+    "table": {"a": [1, 2]},
+    "flag": True,
+}
 PLAIN = {name: NAMES[name] for name in ("size", "text", "table", "flag", "pi")}
 
 
@@ -65,9 +72,28 @@ def test_the_value_is_pythons(text: str) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["1 +", "missing", "1 / 0", "'a' + 1", "[][0]", "dict()['a']", "size.missing", "float('x')", "5(3)", "len(5)", "1\n2",
-     "x = 1", "sqrt(-1)", "max()", "dict(a=1, a=2)", "''.join([1])", "sorted([1, 'a'])", "-text", ""],
-)  # fmt: skip
+    [
+        "1 +",
+        "missing",
+        "1 / 0",
+        "'a' + 1",
+        "[][0]",
+        "dict()['a']",
+        "size.missing",
+        "float('x')",
+        "5(3)",
+        "len(5)",
+        "1\n2",
+        "x = 1",
+        "sqrt(-1)",
+        "max()",
+        "dict(a=1, a=2)",
+        "''.join([1])",
+        "sorted([1, 'a'])",
+        "-text",
+        "",
+    ],
+)
 def test_what_python_refuses_fails(text: str) -> None:
     """An expression for which Python raises an error fails with its message."""
     with pytest.raises(EvaluationFails, match=r"\w"):
@@ -76,15 +102,60 @@ def test_what_python_refuses_fails(text: str) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["().__class__", "__import__('os')", "text.__class__", "'{0.__class__}'.format(1)", "f'{text.__len__}'",
-     "(lambda: 0).__globals__", "[x.__class__ for x in (1,)]", "open('a')", "type(1)", "vars()", "table.update(a=1)",
-     "table.pop('a')", "str(len)", "hash('a')", "'%*d' % (10**9, 1)", "'{:9999999}'.format(1)", "9**9**9", "1 << 10**9",
-     "'a' * 10**9", "[0] * 10**9", "10**9 * 'a'", "range(10**9)", "factorial(10**6)", "round(1, -10**9)",
-     "'a'.ljust(10**9)", "[[[0] * 99] * 99] * 99", "size is 4", "(a := 1)", "[]" + "()" * 400, "-" * 3000 + "1",
-     "f'{text}'", "{size}", "{'a': 1}", "[*text]", "max(*[1, 2])", "dict(**table)", "lambda: 1", "(x for x in [1])",
-     "~size", "size << 1", "await 1", "1j", "b'a'", "...", "divmod(7, 2)", "sorted(['b', 'A'], key=len)",
-     "isinstance(1, int)", "text.zfill(9)", "(-8) ** 0.5", "dict([(0.5, 1)])", "dict([(2**40, 1)])"],
-)  # fmt: skip
+    [
+        "().__class__",
+        "__import__('os')",
+        "text.__class__",
+        "'{0.__class__}'.format(1)",
+        "f'{text.__len__}'",
+        "(lambda: 0).__globals__",
+        "[x.__class__ for x in (1,)]",
+        "open('a')",
+        "type(1)",
+        "vars()",
+        "table.update(a=1)",
+        "table.pop('a')",
+        "str(len)",
+        "hash('a')",
+        "'%*d' % (10**9, 1)",
+        "'{:9999999}'.format(1)",
+        "9**9**9",
+        "1 << 10**9",
+        "'a' * 10**9",
+        "[0] * 10**9",
+        "10**9 * 'a'",
+        "range(10**9)",
+        "factorial(10**6)",
+        "round(1, -10**9)",
+        "'a'.ljust(10**9)",
+        "[[[0] * 99] * 99] * 99",
+        "size is 4",
+        "(a := 1)",
+        "[]" + "()" * 400,
+        "-" * 3000 + "1",
+        "f'{text}'",
+        "{size}",
+        "{'a': 1}",
+        "[*text]",
+        "max(*[1, 2])",
+        "dict(**table)",
+        "lambda: 1",
+        "(x for x in [1])",
+        "~size",
+        "size << 1",
+        "await 1",
+        "1j",
+        "b'a'",
+        "...",
+        "divmod(7, 2)",
+        "sorted(['b', 'A'], key=len)",
+        "isinstance(1, int)",
+        "text.zfill(9)",
+        "(-8) ** 0.5",
+        "dict([(0.5, 1)])",
+        "dict([(2**40, 1)])",
+    ],
+)
 def test_what_is_dangerous_or_unknown_has_no_value(text: str) -> None:
     """Attributes with underscores, formats that reach them, huge values and everything else outside the list are refused."""
     with pytest.raises((EvaluationFails, Undetermined, OutOfBudget)):
@@ -103,13 +174,15 @@ def test_steps_are_bounded() -> None:
         value("[[0 for i in range(1000)] for j in range(1000)]")
 
 
-NUMBERS = st.one_of(st.integers(-50, 50), st.floats(-1e3, 1e3, allow_nan=False)).map(lambda number: f"({number!r})")
+NUMBERS = st.one_of(st.integers(-50, 50), st.floats(-1e3, 1e3, allow_nan=False)).map(
+    lambda number: f"({number!r})"
+)
 ARITHMETIC = st.recursive(
     NUMBERS,
     lambda inner: st.one_of(
-        st.tuples(inner, st.sampled_from(["+", "-", "*", "/", "//", "%", "<", "==", "and", "or"]), inner).map(
-            lambda parts: f"({' '.join(parts)})"
-        ),
+        st.tuples(
+            inner, st.sampled_from(["+", "-", "*", "/", "//", "%", "<", "==", "and", "or"]), inner
+        ).map(lambda parts: f"({' '.join(parts)})"),
         st.tuples(st.sampled_from(["sin", "abs", "-", "not ", "radians"]), inner).map(
             lambda parts: f"({parts[0]}({parts[1]}))"
         ),
@@ -130,7 +203,9 @@ def test_any_arithmetic_is_pythons(text: str) -> None:
     assert repr(value(text)) == repr(expected)
 
 
-@given(text=st.text(alphabet="()[]{}'\"%.,:+-*/=<>!&|~ \\\n0123456789abcdefpisz_xlnmort", max_size=60))
+@given(
+    text=st.text(alphabet="()[]{}'\"%.,:+-*/=<>!&|~ \\\n0123456789abcdefpisz_xlnmort", max_size=60)
+)
 def test_no_text_raises_anything_else(text: str) -> None:
     """Any text has a value, fails or is undetermined."""
     with suppress(EvaluationFails, Undetermined, OutOfBudget):

@@ -38,18 +38,105 @@ def is_fully_known(setup: Installation) -> bool:
 # --- Any program ------------------------------------------------------------------------------------------------------
 
 _NAMES = st.sampled_from(
-    ["a", "b", "f", "os", "glob", "setup", "data_files", "Path", "self", "len", "sorted", "__file__"]
+    [
+        "a",
+        "b",
+        "f",
+        "os",
+        "glob",
+        "setup",
+        "data_files",
+        "Path",
+        "self",
+        "len",
+        "sorted",
+        "__file__",
+    ]
 )
 _LITERALS = st.sampled_from(
-    ["0", "1", "-1", "1e400", "10**9", "0x" + "f" * 5000, "None", "True", "''", "'urdf/*'", "'a/b'", "'%s'", "'{}'", "b'x'", "...",
-     "1j", "[]", "()", "{}", "{1}", "'..'", "'/'", "'\\0'", "f'{a}'", "f'{a!r:>{b}}'", "'nan'", "'**'"]
-)  # fmt: skip
+    [
+        "0",
+        "1",
+        "-1",
+        "1e400",
+        "10**9",
+        "0x" + "f" * 5000,
+        "None",
+        "True",
+        "''",
+        "'urdf/*'",
+        "'a/b'",
+        "'%s'",
+        "'{}'",
+        "b'x'",
+        "...",
+        "1j",
+        "[]",
+        "()",
+        "{}",
+        "{1}",
+        "'..'",
+        "'/'",
+        "'\\0'",
+        "f'{a}'",
+        "f'{a!r:>{b}}'",
+        "'nan'",
+        "'**'",
+    ]
+)
 _METHODS = st.sampled_from(
-    ["append", "extend", "insert", "pop", "remove", "sort", "reverse", "clear", "index", "copy", "items", "keys", "values",
-     "get", "update", "setdefault", "join", "split", "format", "replace", "strip", "upper", "find", "splitlines", "glob", "rglob",
-     "iterdir", "parent", "parents", "name", "parts", "with_suffix", "relative_to", "resolve", "joinpath", "read_text", "open",
-     "path", "exists", "isfile", "walk", "listdir", "getcwd", "chdir", "environ", "dirname", "relpath", "splitext", "nothing"]
-)  # fmt: skip
+    [
+        "append",
+        "extend",
+        "insert",
+        "pop",
+        "remove",
+        "sort",
+        "reverse",
+        "clear",
+        "index",
+        "copy",
+        "items",
+        "keys",
+        "values",
+        "get",
+        "update",
+        "setdefault",
+        "join",
+        "split",
+        "format",
+        "replace",
+        "strip",
+        "upper",
+        "find",
+        "splitlines",
+        "glob",
+        "rglob",
+        "iterdir",
+        "parent",
+        "parents",
+        "name",
+        "parts",
+        "with_suffix",
+        "relative_to",
+        "resolve",
+        "joinpath",
+        "read_text",
+        "open",
+        "path",
+        "exists",
+        "isfile",
+        "walk",
+        "listdir",
+        "getcwd",
+        "chdir",
+        "environ",
+        "dirname",
+        "relpath",
+        "splitext",
+        "nothing",
+    ]
+)
 _OPERATORS = st.sampled_from(
     ["+", "-", "*", "/", "%", "|", "&", "==", "!=", "<", "<=", "in", "not in", "is", "and", "or"]
 )
@@ -60,13 +147,19 @@ def _inner(expressions: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
     pair = st.tuples(expressions, expressions)
     named = st.tuples(_NAMES, expressions, expressions)
     return st.one_of(
-        st.tuples(expressions, _OPERATORS, expressions).map(lambda it: f"({it[0]} {it[1]} {it[2]})"),
+        st.tuples(expressions, _OPERATORS, expressions).map(
+            lambda it: f"({it[0]} {it[1]} {it[2]})"
+        ),
         st.tuples(expressions, _METHODS).map(lambda it: f"{it[0]}.{it[1]}"),
         st.tuples(expressions, _METHODS, st.lists(expressions, max_size=2)).map(
             lambda it: f"{it[0]}.{it[1]}({', '.join(it[2])})"
         ),
-        st.tuples(_NAMES, st.lists(expressions, max_size=3)).map(lambda it: f"{it[0]}({', '.join(it[1])})"),
-        st.tuples(expressions, _NAMES, expressions).map(lambda it: f"{it[0]}(*{it[2]}, {it[1]}={it[2]})"),
+        st.tuples(_NAMES, st.lists(expressions, max_size=3)).map(
+            lambda it: f"{it[0]}({', '.join(it[1])})"
+        ),
+        st.tuples(expressions, _NAMES, expressions).map(
+            lambda it: f"{it[0]}(*{it[2]}, {it[1]}={it[2]})"
+        ),
         pair.map(lambda it: f"{it[0]}(**{it[1]})"),
         pair.map(lambda it: f"{it[0]}[{it[1]}]"),
         pair.map(lambda it: f"{it[0]}[{it[1]}:]"),
@@ -99,7 +192,9 @@ def _compound(statements: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
     body = st.lists(statements, min_size=1, max_size=3).map(_indented)
     return st.one_of(
         st.tuples(_EXPRESSIONS, body, body).map(lambda it: f"if {it[0]}:\n{it[1]}\nelse:\n{it[2]}"),
-        st.tuples(_NAMES, _EXPRESSIONS, body).map(lambda it: f"for {it[0]} in {it[1]}:\n{it[2]}\n    continue"),
+        st.tuples(_NAMES, _EXPRESSIONS, body).map(
+            lambda it: f"for {it[0]} in {it[1]}:\n{it[2]}\n    continue"
+        ),
         st.tuples(_EXPRESSIONS, body).map(lambda it: f"while {it[0]}:\n{it[1]}\n    break"),
         st.tuples(_NAMES, _NAMES, _EXPRESSIONS, body).map(
             lambda it: f"def {it[0]}({it[1]}={it[2]}, *b, **k):\n{it[3]}"
@@ -108,7 +203,9 @@ def _compound(statements: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
             lambda it: f"try:\n{it[0]}\nexcept {it[1]} as a:\n{it[2]}\nfinally:\n    pass"
         ),
         st.tuples(_EXPRESSIONS, _NAMES, body).map(lambda it: f"with {it[0]} as {it[1]}:\n{it[2]}"),
-        st.tuples(_EXPRESSIONS, _NAMES, body).map(lambda it: f"match {it[0]}:\n  case [{it[1]}, *_]:\n{it[2]}"),
+        st.tuples(_EXPRESSIONS, _NAMES, body).map(
+            lambda it: f"match {it[0]}:\n  case [{it[1]}, *_]:\n{it[2]}"
+        ),
         st.tuples(_NAMES, body).map(lambda it: f"class {it[0]}:\n{it[1]}"),
     )
 
@@ -126,7 +223,9 @@ _SIMPLE = st.one_of(
     _EXPRESSIONS.map(lambda it: f"assert {it}"),
     _EXPRESSIONS.map(lambda it: f"raise {it}"),
 )
-_PROGRAMS = st.lists(st.recursive(_SIMPLE, _compound, max_leaves=5), min_size=1, max_size=8).map("\n".join)
+_PROGRAMS = st.lists(st.recursive(_SIMPLE, _compound, max_leaves=5), min_size=1, max_size=8).map(
+    "\n".join
+)
 _START = "import os\nfrom glob import glob\nfrom pathlib import Path\nfrom setuptools import setup\na = ['urdf']\nb = {'a': a}\n"
 
 
@@ -160,7 +259,10 @@ REFUSED: dict[str, str | bytes] = {
     "a NUL byte": b"x = 1\0\n",
     "an unknown encoding": b"# coding: klingon\nx = 1\n",
     "an encoding that is none": b"# coding: undefined\nx = 1\n",
-    "an encoding that takes its time": b"# coding: punycode\nx=" + b"a" * 60_000 + b"-" + b"b" * 60_000,
+    "an encoding that takes its time": b"# coding: punycode\nx="
+    + b"a" * 60_000
+    + b"-"
+    + b"b" * 60_000,
     "another": b"# coding: idna\nx=" + b"a." * 60_000,
     "an encoding of bytes": b"# coding: zip\nx = 1\n",
     "wide characters": "x = 1\n".encode("utf-16"),
@@ -181,14 +283,28 @@ EXPENSIVE = {
     "a list that doubles": f"x = [1]\n{_LOOP}x += x\nsetup(data_files=x)",
     "a long text": "x = 'a' * 10**9\nsetup(data_files=[(x, [])])",
     "a text that doubles": "x = 'a'\n" + "x += x\n" * 99 + "setup(data_files=[(x, [])])",
-    "a text that doubles by %": "x = 'ab'\n" + "x = '%s%s' % (x, x)\n" * 99 + "setup(data_files=[(x, [])])",
-    "a text that doubles by format": "x = 'ab'\n" + "x = '{}{}'.format(x, x)\n" * 99 + "setup(data_files=[(x, [])])",
-    "a text that doubles by f-string": "x = 'ab'\n" + "x = f'{x}{x}'\n" * 99 + "setup(data_files=[(x, [])])",
-    "a text that doubles by replace": "x = 'a'\n" + "x = x.replace('a', 'aa')\n" * 99 + "setup(data_files=[(x, [])])",
+    "a text that doubles by %": "x = 'ab'\n"
+    + "x = '%s%s' % (x, x)\n" * 99
+    + "setup(data_files=[(x, [])])",
+    "a text that doubles by format": "x = 'ab'\n"
+    + "x = '{}{}'.format(x, x)\n" * 99
+    + "setup(data_files=[(x, [])])",
+    "a text that doubles by f-string": "x = 'ab'\n"
+    + "x = f'{x}{x}'\n" * 99
+    + "setup(data_files=[(x, [])])",
+    "a text that doubles by replace": "x = 'a'\n"
+    + "x = x.replace('a', 'aa')\n" * 99
+    + "setup(data_files=[(x, [])])",
     "a path that doubles": _PATH + "x = x / x\n" * 99 + "setup(data_files=[(x, [])])",
-    "a path that doubles by joinpath": _PATH + "x = x.joinpath(x)\n" * 99 + "setup(data_files=[(x, [])])",
-    "a path that doubles by join": _PATH + "x = os.path.join(x, x)\n" * 99 + "setup(data_files=[(x, [])])",
-    "a number that doubles": "x = 1\n" + "x = x + x\n" * 20_000 + "setup(data_files=[(str(x), [])])",
+    "a path that doubles by joinpath": _PATH
+    + "x = x.joinpath(x)\n" * 99
+    + "setup(data_files=[(x, [])])",
+    "a path that doubles by join": _PATH
+    + "x = os.path.join(x, x)\n" * 99
+    + "setup(data_files=[(x, [])])",
+    "a number that doubles": "x = 1\n"
+    + "x = x + x\n" * 20_000
+    + "setup(data_files=[(str(x), [])])",
     "a number of many digits": f"x = 0x{'f' * 99_999}\nsetup(data_files=[(f'{{x}}', ['%s' % x, '{{}}'.format(x)])])",
     "a function that calls itself": "def f(n): return f(n)\nsetup(data_files=f(1))",
     "functions that call each other": "def f(n): return g(n) + g(n)\ndef g(n): return f(n) + f(n)\nsetup(data_files=f(1))",
@@ -209,7 +325,8 @@ EXPENSIVE = {
     "a function with a long body": "def f():\n return 1\n"
     + " x = 1\n" * 12_000
     + f"{_LOOP}[f() for j in range(9)]\nsetup(data_files=[])",
-    "many files": "f = [('a', ['package.xml'] ) for i in range(9000)]\n" + "setup(packages=[], data_files=f)\n" * 99,
+    "many files": "f = [('a', ['package.xml'] ) for i in range(9000)]\n"
+    + "setup(packages=[], data_files=f)\n" * 99,
     "many calls": f"f = [('a', ['package.xml'] ) for i in range(9000)]\n{_LOOP}setup(packages=[], data_files=f)",
 }
 
@@ -225,24 +342,92 @@ def test_expensive_programs_are_stopped(name: str) -> None:
 
 # Each of these repeats an expensive step on a large value.
 SLOW = {
-    **{f"a list: {code}": _LIST + code for code in (
-        "y = x + x[:3000]", "y = [*x]", "sorted(x)", "x[:]", "list(x)", "x.copy()", "-1 in x", "len(x)", "x.index(5)", "x[0]",
-        "a, b = x", "x.remove('a')", "x.sort()", "x[3] = 4", "del x[3]", "x.insert(0, 1)", "x.pop(0)", "f'{x}'", "x == x",
-        "range(20000)", "set(x)", "reversed(x)", "map(str, x)", "dict(a=x)", "print(*x)", "(lambda *a: 0)(*x)", "''.join(x)",
-        "x.reverse()", "zip(x, x)", "enumerate(x)", "sum([x, x], [])", "[x, x] == [x, x]", "x.count('a')", "x += x",
-    )},
-    **{f"a text: {code}": _TEXT + code for code in (
-        "x + x", "x.split(',')", "x.count('a,a,b')", "x.find('a,a,b')", "'b' in x", "x == x", "x.upper()", "x.replace('a', 'b')",
-        "x.replace('', 'b')", "f'{x}{x}'", "'%s' % x", "'{}{}'.format(x, x)", "x.format(x)", "list(x)", "x[1:]", "x[::-1]", "[*x]",
-        "x % 1", "x.splitlines()", "x.partition('b')", "x.strip('a')", "(x, x) == (x, x)", "for c in x: break",
-    )},
-    **{f"a dict: {code}": _DICT + code for code in (
-        "x.items()", "{**x}", "f(**x)", "dict(**x)", "x.update(x)", "x | x", "x == x", "list(x)", "x.copy()", "x.values()",
-    )},
+    **{
+        f"a list: {code}": _LIST + code
+        for code in (
+            "y = x + x[:3000]",
+            "y = [*x]",
+            "sorted(x)",
+            "x[:]",
+            "list(x)",
+            "x.copy()",
+            "-1 in x",
+            "len(x)",
+            "x.index(5)",
+            "x[0]",
+            "a, b = x",
+            "x.remove('a')",
+            "x.sort()",
+            "x[3] = 4",
+            "del x[3]",
+            "x.insert(0, 1)",
+            "x.pop(0)",
+            "f'{x}'",
+            "x == x",
+            "range(20000)",
+            "set(x)",
+            "reversed(x)",
+            "map(str, x)",
+            "dict(a=x)",
+            "print(*x)",
+            "(lambda *a: 0)(*x)",
+            "''.join(x)",
+            "x.reverse()",
+            "zip(x, x)",
+            "enumerate(x)",
+            "sum([x, x], [])",
+            "[x, x] == [x, x]",
+            "x.count('a')",
+            "x += x",
+        )
+    },
+    **{
+        f"a text: {code}": _TEXT + code
+        for code in (
+            "x + x",
+            "x.split(',')",
+            "x.count('a,a,b')",
+            "x.find('a,a,b')",
+            "'b' in x",
+            "x == x",
+            "x.upper()",
+            "x.replace('a', 'b')",
+            "x.replace('', 'b')",
+            "f'{x}{x}'",
+            "'%s' % x",
+            "'{}{}'.format(x, x)",
+            "x.format(x)",
+            "list(x)",
+            "x[1:]",
+            "x[::-1]",
+            "[*x]",
+            "x % 1",
+            "x.splitlines()",
+            "x.partition('b')",
+            "x.strip('a')",
+            "(x, x) == (x, x)",
+            "for c in x: break",
+        )
+    },
+    **{
+        f"a dict: {code}": _DICT + code
+        for code in (
+            "x.items()",
+            "{**x}",
+            "f(**x)",
+            "dict(**x)",
+            "x.update(x)",
+            "x | x",
+            "x == x",
+            "list(x)",
+            "x.copy()",
+            "x.values()",
+        )
+    },
     "many undefined names": "".join(f"x{i}\n" for i in range(15_000)),
     "many statements": "x = 1\n" * 20_000,
     "many searches": "from glob import glob\n" + _LOOP + "glob(f'**/*{i}*', recursive=True)",
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", spread(SLOW, 2))
@@ -262,32 +447,74 @@ def end(data_files: str) -> str:
 
 
 FAULTS = [
-    ("from setuptools import setup\n" + end("[(os.path.join('a'), [])]"), 2, 60, "the name 'os' is not defined"),
-    ("import os\nfrom setuptools import setup\n" + end("[('a', glob('*'))]"), 3, 65, "the name 'glob' is not defined"),
-    ("import glob\nfrom setuptools import setup\n" + end("[('a', glob('*'))]"), 3, 65, "glob is a module here"),
+    (
+        "from setuptools import setup\n" + end("[(os.path.join('a'), [])]"),
+        2,
+        60,
+        "the name 'os' is not defined",
+    ),
+    (
+        "import os\nfrom setuptools import setup\n" + end("[('a', glob('*'))]"),
+        3,
+        65,
+        "the name 'glob' is not defined",
+    ),
+    (
+        "import glob\nfrom setuptools import setup\n" + end("[('a', glob('*'))]"),
+        3,
+        65,
+        "glob is a module here",
+    ),
     (_IMPORTS + end("[('a', glob.glob('*'))]"), 4, 65, "glob is a function here"),
     (_IMPORTS + end("[('a', globb('*'))]"), 4, 65, "the name 'globb' is not defined"),
     (_IMPORTS + "é = 'ä'; x = nmae\n" + end("[]"), 4, 14, "the name 'nmae' is not defined"),
-    (_IMPORTS + "x = name + 'a'\nname = 'my_robot'\n" + end("[]"), 4, 5, "the name 'name' is not defined"),
-    ("from setuptools import find_package, setup\n" + end("[]"), 1, 1, "setuptools has no 'find_package'"),
-    ("import setuptools\nsetuptools.find_package()\nsetuptools." + end("[]"), 2, 1, "setuptools has no 'find_package'"),
+    (
+        _IMPORTS + "x = name + 'a'\nname = 'my_robot'\n" + end("[]"),
+        4,
+        5,
+        "the name 'name' is not defined",
+    ),
+    (
+        "from setuptools import find_package, setup\n" + end("[]"),
+        1,
+        1,
+        "setuptools has no 'find_package'",
+    ),
+    (
+        "import setuptools\nsetuptools.find_package()\nsetuptools." + end("[]"),
+        2,
+        1,
+        "setuptools has no 'find_package'",
+    ),
     ("from os import Path\n" + _IMPORTS + end("[]"), 1, 1, "os has no 'Path'"),
     ("import oss\n" + _IMPORTS + end("[]"), 1, 1, None),
     (_IMPORTS + end("[(os.join('a', 'b'), [])]"), 4, 60, "os has no 'join'"),
-    (_IMPORTS + "def f():\n    return nmae\nf()\n" + end("[]"), 5, 12, "the name 'nmae' is not defined"),
+    (
+        _IMPORTS + "def f():\n    return nmae\nf()\n" + end("[]"),
+        5,
+        12,
+        "the name 'nmae' is not defined",
+    ),
     (_IMPORTS + "f = lambda: nmae\nf()\n" + end("[]"), 4, 13, "the name 'nmae' is not defined"),
     (_IMPORTS + "[x for x in [1]]\nx\n" + end("[]"), 5, 1, "the name 'x' is not defined"),
     (_IMPORTS + "def f(x):\n    y = x\nf(1)\ny\n" + end("[]"), 7, 1, "the name 'y' is not defined"),
     (_IMPORTS + "open('nothing.md')\n" + end("[]"), 4, 1, "there is no file 'nothing.md'"),
     (_IMPORTS + "os.listdir('nothing')\n" + end("[]"), 4, 1, "there is no folder 'nothing'"),
-    (_IMPORTS + "raise RuntimeError('no')\n" + end("[]"), 4, 1, "the file raises RuntimeError here"),
+    (
+        _IMPORTS + "raise RuntimeError('no')\n" + end("[]"),
+        4,
+        1,
+        "the file raises RuntimeError here",
+    ),
     (_IMPORTS + end("[('a', ['README.md'])('b', [])]"), 4, 59, "a tuple cannot be called"),
     (_IMPORTS + end("['a' + ['b']]"), 4, 59, "TypeError: can only concatenate str"),
 ]
 
 
 @pytest.mark.parametrize(("text", "line", "column", "message"), FAULTS, ids=range(len(FAULTS)))
-def test_faults_have_messages_and_locations(text: str, line: int, column: int, message: str | None) -> None:
+def test_faults_have_messages_and_locations(
+    text: str, line: int, column: int, message: str | None
+) -> None:
     """A fault has its message, and its location as an editor counts it; what only looks like a mistake has none."""
     setup = evaluated(text)
     if message is None:

@@ -12,7 +12,9 @@ def is_harmless(text: str, kind: Format | None = None) -> None:
     text.encode()
     assert kind is Format.MARKDOWN or "##vso[" not in text.lower()  # of Azure Pipelines
     unseen = {character for character in text if not character.isprintable()} - {"\n"}
-    assert unseen <= ({"\u2060"} if kind is Format.MARKDOWN else set())  # it keeps mentions from being found
+    assert unseen <= (
+        {"\u2060"} if kind is Format.MARKDOWN else set()
+    )  # it keeps mentions from being found
     found = commands(text) if kind is not Format.MARKDOWN else []
     assert kind is Format.GITHUB or not found
     assert {command.name for command in found} <= ANNOTATIONS

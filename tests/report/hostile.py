@@ -14,7 +14,9 @@ REFERENCE = ROOT / "submissions/lab6/reference"
 PACKAGE = "roscourse_sim_ws/src/my_robot"
 
 # Each is dangerous to some viewer of reports: texts by the viewer or the sign, those for pages as `attacks`.
-HOSTILE: dict[str, list[str]] = json.loads((Path(__file__).parent / "hostile.json").read_text(encoding="utf-8"))
+HOSTILE: dict[str, list[str]] = json.loads(
+    (Path(__file__).parent / "hostile.json").read_text(encoding="utf-8")
+)
 LONG = ("`" * 90, "\n" + "`" * 300 + "\n", "x" * 300, "e" * 5000)
 PIECES = (*(text for name, texts in HOSTILE.items() if name != "attacks" for text in texts), *LONG)
 TEXT = st.lists(st.sampled_from(PIECES) | st.text(max_size=6), max_size=5).map("".join)
@@ -37,9 +39,35 @@ def comment(text: str) -> str:
     return f"<!-- {text.replace(chr(0), '').replace('--', '- -').replace('>', ' ')} -->"
 
 
-SLOTS = ("robot", "link", "joint", "material", "comment", "file", "folder", "picture", "answer", "note")
-UNASKED = ("robot", "material", "comment", "file", "folder", "note")  # text in these slots changes no mark
-BREAKING = ("box", "raw", "package", "setup", "launch", "frame", "task")  # text in these slots may lose points
+SLOTS = (
+    "robot",
+    "link",
+    "joint",
+    "material",
+    "comment",
+    "file",
+    "folder",
+    "picture",
+    "answer",
+    "note",
+)
+UNASKED = (
+    "robot",
+    "material",
+    "comment",
+    "file",
+    "folder",
+    "note",
+)  # text in these slots changes no mark
+BREAKING = (
+    "box",
+    "raw",
+    "package",
+    "setup",
+    "launch",
+    "frame",
+    "task",
+)  # text in these slots may lose points
 Texts = Mapping[str, str]
 
 

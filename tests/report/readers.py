@@ -118,7 +118,9 @@ def junit_structure(text: str) -> Any:
 
 def commands_structure(text: str) -> Any:
     """Return the annotations with the names of their properties."""
-    return [(command.name, [key for key, _ in command.properties]) for command in read_commands(text)]
+    return [
+        (command.name, [key for key, _ in command.properties]) for command in read_commands(text)
+    ]
 
 
 def json_structure(text: str) -> Any:
@@ -148,7 +150,9 @@ def markdown_text(text: str) -> str:
 
 def junit_text(text: str) -> str:
     return "\n".join(
-        piece for element in read_junit(text).iter() for piece in (*element.attrib.values(), element.text or "")
+        piece
+        for element in read_junit(text).iter()
+        for piece in (*element.attrib.values(), element.text or "")
     )
 
 
@@ -183,8 +187,12 @@ def read_page(text: str) -> Any:
     """Return the root of an HTML page. It has the elements of its template only, and no event handler or style of its own."""
     root: Any = html.document_fromstring(text)
     for element in root.iter():
-        assert not any(name.startswith("on") or name in ("style", "srcset") for name in element.attrib)
-        assert element.get("src", "data:image/").startswith("data:image/")  # a picture of the submission
+        assert not any(
+            name.startswith("on") or name in ("style", "srcset") for name in element.attrib
+        )
+        assert element.get("src", "data:image/").startswith(
+            "data:image/"
+        )  # a picture of the submission
     return root
 
 
@@ -209,9 +217,23 @@ def page_text(text: str) -> str:
 
 _SVG_ELEMENTS = {"svg", "title", "desc", "style", "rect", "g", "path", "polygon", "text", "circle"}
 _SVG_ATTRIBUTES = {
-    "cx", "cy", "r", "transform", "class", "d", "fill", "fill-opacity", "height", "points", "role", "stroke", "viewBox",
-    "width", "x", "y",
-}  # fmt: skip
+    "cx",
+    "cy",
+    "r",
+    "transform",
+    "class",
+    "d",
+    "fill",
+    "fill-opacity",
+    "height",
+    "points",
+    "role",
+    "stroke",
+    "viewBox",
+    "width",
+    "x",
+    "y",
+}
 
 
 def read_svg(text: str) -> Any:
@@ -219,20 +241,29 @@ def read_svg(text: str) -> Any:
     root = etree.fromstring(text.encode(), etree.XMLParser(resolve_entities=False))
     for element in root.iter():
         name = etree.QName(element)
-        assert (name.namespace, name.localname in _SVG_ELEMENTS) == ("http://www.w3.org/2000/svg", True), element.tag
+        assert (name.namespace, name.localname in _SVG_ELEMENTS) == (
+            "http://www.w3.org/2000/svg",
+            True,
+        ), element.tag
         assert set(element.attrib) <= _SVG_ATTRIBUTES, element.attrib
         assert name.localname != "style" or "url" not in str(element.text)
     return root
 
 
 def svg_text(text: str) -> str:
-    return "\n".join(filter(None, (element.text for element in read_svg(text).iter("{*}text", "{*}desc"))))
+    return "\n".join(
+        filter(None, (element.text for element in read_svg(text).iter("{*}text", "{*}desc")))
+    )
 
 
 def gradescope_text(text: str) -> str:
     data = json.loads(text)
     return "\n".join(
-        (json_text(text), markdown_text(data["output"]), *(markdown_text(test["output"]) for test in data["tests"]))
+        (
+            json_text(text),
+            markdown_text(data["output"]),
+            *(markdown_text(test["output"]) for test in data["tests"]),
+        )
     )
 
 
@@ -275,7 +306,9 @@ READERS: Mapping[Format, FormatReader] = {
         read_by_schema("classroom50"),
         json_structure,
         json_text,
-        dict.fromkeys(("problem", "note", "aside", "package", "waits", "rubric", "version"), _TESTS),
+        dict.fromkeys(
+            ("problem", "note", "aside", "package", "waits", "rubric", "version"), _TESTS
+        ),
     ),
 }
 
@@ -286,7 +319,9 @@ def reader(kind: Format) -> FormatReader:
     Only a format with a row must contain every fact.
     """
     if kind is Format.SVG:
-        return FormatReader(read_svg, lambda _: None, svg_text)  # its texts have as many lines as they need
+        return FormatReader(
+            read_svg, lambda _: None, svg_text
+        )  # its texts have as many lines as they need
     is_json = kind.ending.endswith("json")
     return READERS.get(kind) or FormatReader(
         read_json if is_json else str, json_structure if is_json else lambda _: None, str

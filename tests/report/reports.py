@@ -33,21 +33,33 @@ with = {{ link = "{link}", size = [{size}, 0.4, 0.2], tolerance = 0.002 }}
 feedback = \"\"\"Two
 lines.\"\"\"
 """
-_ROWS = (("half", 0.5, "base_link", 0.5), ("quarter", 0.25, "base_link", 0.6), ("free", 0, "base", 0.6))
+_ROWS = (
+    ("half", 0.5, "base_link", 0.5),
+    ("quarter", 0.25, "base_link", 0.6),
+    ("free", 0, "base", 0.6),
+)
 _MORE = (("skipped", 0, "base", 0.6), ("ours", 0.125, "base_link", 0.6))
 
 
 def half_points(folder: Path) -> Report:
     """Return a report with fractions of points: one criterion failed, one passed, one missing, one skipped, one errored."""
     rows = "".join(
-        _BOX.format(id=name, points=points, link=link, size=size) for name, points, link, size in (*_ROWS, *_MORE)
+        _BOX.format(id=name, points=points, link=link, size=size)
+        for name, points, link, size in (*_ROWS, *_MORE)
     )
     file = folder / "fractions.toml"
-    file.write_text(f'id = "fractions"\ntitle = "Fractions"\n[[part]]\nid = "p"\ntitle = "P"\n{rows}', encoding="utf-8")
+    file.write_text(
+        f'id = "fractions"\ntitle = "Fractions"\n[[part]]\nid = "p"\ntitle = "P"\n{rows}',
+        encoding="utf-8",
+    )
     rubric = load_rubric(str(file))
-    report = grade(rubric, opened("submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf", rubric))
+    report = grade(
+        rubric, opened("submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf", rubric)
+    )
     *others, last = report.results
-    own = last._replace(outcome=Outcome("errored", "the grader itself failed here (KeyError); please report it"))
+    own = last._replace(
+        outcome=Outcome("errored", "the grader itself failed here (KeyError); please report it")
+    )
     return report._replace(results=(*others, own))
 
 
@@ -68,9 +80,14 @@ def hinted(report: Report | None = None) -> Report:
         (AXLE, 'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"` (line 73)', (rpy,)),
         (LIFT, "Raise the base by 50 mm", (xyz, other)),
     ):
-        at, gains = Location(where, edits[0].line, edits[0].column), {name: points[name] for name in names}
+        at, gains = (
+            Location(where, edits[0].line, edits[0].column),
+            {name: points[name] for name in names},
+        )
         hints |= dict.fromkeys(names, Hint(message, at, gains, edits, shown_by=names[0]))
-    results = tuple(result._replace(hint=hints.get(result.criterion.id)) for result in report.results)
+    results = tuple(
+        result._replace(hint=hints.get(result.criterion.id)) for result in report.results
+    )
     return report._replace(results=results)
 
 
@@ -80,8 +97,12 @@ def marked() -> Report:
     rulings: dict[str, ManualMark] = {}
     for status, share in (("failed", 1), ("passed", 0), ("pending", Decimal("0.5"))):
         chosen = next(result for result in report.results if result.outcome.status == status)
-        rulings[chosen.criterion.id] = ManualMark(chosen.criterion.points * share, "Ada", "so it\nis")
-    results = tuple(result._replace(manual_mark=rulings.get(result.criterion.id)) for result in report.results)
+        rulings[chosen.criterion.id] = ManualMark(
+            chosen.criterion.points * share, "Ada", "so it\nis"
+        )
+    results = tuple(
+        result._replace(manual_mark=rulings.get(result.criterion.id)) for result in report.results
+    )
     return report._replace(results=results)
 
 
@@ -125,7 +146,14 @@ reason = "the question was ambiguous"
 action = "drop"
 reason = "RViz was broken"
 """
-COMMENTED = ("base-green", "base-box", "answer-launch-nodes", "launch-found", "flat-base", "lidar-frame")
+COMMENTED = (
+    "base-green",
+    "base-box",
+    "answer-launch-nodes",
+    "launch-found",
+    "flat-base",
+    "lidar-frame",
+)
 
 
 def adjusted() -> Report:
@@ -133,5 +161,7 @@ def adjusted() -> Report:
     rubric = read_rubric(LAB6.data + _ADJUSTED.encode(), LAB6.path)
     report = grade(rubric, opened("submissions/lab6/several-mistakes/my_robot/urdf", rubric))
     comments = {name: ManualComment(f"seen <{name}>\nin *class*", "Ada") for name in COMMENTED}
-    results = tuple(result._replace(comment=comments.get(result.criterion.id)) for result in report.results)
+    results = tuple(
+        result._replace(comment=comments.get(result.criterion.id)) for result in report.results
+    )
     return report._replace(results=results)

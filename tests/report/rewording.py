@@ -32,10 +32,13 @@ def recast(report: Report, words: Words) -> Report:
     def path() -> str:
         return f"a{printable(words())}"
 
-    hints: dict[str, Hint] = {}  # criteria with the same hint still have the same, and those with the same place
+    hints: dict[
+        str, Hint
+    ] = {}  # criteria with the same hint still have the same, and those with the same place
     places: dict[Location, Location] = {}
     problems = tuple(
-        problem._replace(message=words(), location=Location(path(), 2, 3)) for problem in other_problems(report)
+        problem._replace(message=words(), location=Location(path(), 2, 3))
+        for problem in other_problems(report)
     )
     return report._replace(
         submission=_submission(report.submission, words, path),
@@ -44,7 +47,8 @@ def recast(report: Report, words: Words) -> Report:
         notes=tuple(words() for _ in report.notes),
         another_robot=f"a {words()}" if report.another_robot else "",
         evidence=tuple(
-            file._replace(files=tuple(replace(file, path=path()) for file in file.files)) for file in report.evidence
+            file._replace(files=tuple(replace(file, path=path()) for file in file.files))
+            for file in report.evidence
         ),
         other_pictures=tuple(replace(other, path=path()) for other in report.other_pictures),
     )
@@ -57,7 +61,9 @@ def _submission(old: Submission, words: Words, path: Words) -> Submission:
         tuple(OtherCandidate(path(), words()) for _ in old.unused_candidates),
         tree=replace(old.tree, ignored=tuple(IgnoredFile(path(), words()) for _ in old.ignored)),
         package=_package(old.package, words, path) if old.package is not None else None,
-        lab_packages={name: _package(package, words, path) for name, package in old.lab_packages.items()},
+        lab_packages={
+            name: _package(package, words, path) for name, package in old.lab_packages.items()
+        },
         is_single=old.is_single,
         text="\n".join(f"<a b='{words()}'/>{words()}" for _ in range(3)),
     )
@@ -94,12 +100,18 @@ def _urdf(old: Urdf, words: Words, path: Words) -> Urdf:
     return old._replace(path=path(), reading=old.reading._replace(robot=renamed))
 
 
-def _result(old: Result, words: Words, path: Words, known: dict[str, Hint], places: dict[Location, Location]) -> Result:
+def _result(
+    old: Result, words: Words, path: Words, known: dict[str, Hint], places: dict[Location, Location]
+) -> Result:
     outcome, where = old.outcome, old.outcome.location
     if where is not None:
         where = places.setdefault(where, Location(f"{len(places)}{path()}", 1, 2))
     measured = f"found\n{words()}" if isinstance(outcome.measured, str) else outcome.measured
-    hint = known.setdefault(old.hint.message, _hint(old.hint, words, path)) if old.hint is not None else None
+    hint = (
+        known.setdefault(old.hint.message, _hint(old.hint, words, path))
+        if old.hint is not None
+        else None
+    )
     mistake = outcome.mistake or outcome.message  # equal for what is about the same, as before
     renamed = outcome._replace(message=words(), measured=measured, location=where, mistake=mistake)
     return old._replace(outcome=renamed, hint=hint)
@@ -107,6 +119,7 @@ def _result(old: Result, words: Words, path: Words, known: dict[str, Hint], plac
 
 def _hint(old: Hint, words: Words, path: Words) -> Hint:
     edits = tuple(
-        edit._replace(path=f"{number}{path()}", old=words(), new=words()) for number, edit in enumerate(old.edits)
+        edit._replace(path=f"{number}{path()}", old=words(), new=words())
+        for number, edit in enumerate(old.edits)
     )
     return old._replace(message=words(), edits=edits)

@@ -16,7 +16,13 @@ from tests.report.readers import READERS
 from tests.report.reports import adjusted, half_points, marked
 from tests.samples import REPORTED, SAMPLES
 
-KINDS = {"passed": None, "failed": Failure, "errored": Error, "skipped": Skipped, "pending": Skipped}
+KINDS = {
+    "passed": None,
+    "failed": Failure,
+    "errored": Error,
+    "skipped": Skipped,
+    "pending": Skipped,
+}
 
 
 @cache
@@ -24,7 +30,11 @@ def report_of(name: str, folder: Path) -> Report:
     """Return a sample's report, or one that no sample has."""
     if name == "fractions":
         return half_points(folder)
-    return SAMPLES[name].grade() if name in SAMPLES else {"adjusted": adjusted, "marked": marked}[name]()
+    return (
+        SAMPLES[name].grade()
+        if name in SAMPLES
+        else {"adjusted": adjusted, "marked": marked}[name]()
+    )
 
 
 @pytest.fixture(params=[*REPORTED, "fractions", "adjusted", "marked"])
@@ -47,16 +57,28 @@ def test_json_adds_up(report: Report) -> None:
     """The score is the sum of the points; only what failed has feedback."""
     data = read(report, Format.JSON)
     assert exact(row["points"] for row in data["results"]) == exact([data["score"]]) == report.score
-    assert all((row["status"] == "skipped") == (row["because"] is not None) for row in data["results"])
+    assert all(
+        (row["status"] == "skipped") == (row["because"] is not None) for row in data["results"]
+    )
     assert all(row["status"] == "failed" or row["feedback"] == "" for row in data["results"])
 
 
 def test_gradescope_adds_up(report: Report) -> None:
     """What is open has no score; extra credit has no maximum, so that the maxima are the automatic points."""
     data = read(report, Format.GRADESCOPE)
-    assert exact(test.get("score", 0) for test in data["tests"]) == exact([data["score"]]) == report.score
-    assert exact(test.get("max_score", 0) for test in data["tests"]) == report.max_score - report.pending
-    assert all(("score" in test) == (not one.is_open) for test, one in zip(data["tests"], report.results, strict=True))
+    assert (
+        exact(test.get("score", 0) for test in data["tests"])
+        == exact([data["score"]])
+        == report.score
+    )
+    assert (
+        exact(test.get("max_score", 0) for test in data["tests"])
+        == report.max_score - report.pending
+    )
+    assert all(
+        ("score" in test) == (not one.is_open)
+        for test, one in zip(data["tests"], report.results, strict=True)
+    )
 
 
 def test_classroom50_has_whole_numbers(report: Report) -> None:
@@ -77,9 +99,16 @@ def test_junit_has_a_case_for_each_criterion(report: Report) -> None:
     xml = JUnitXml.fromstring(text.encode())
     found: list[Any] = [case for suite in xml for case in suite]
     for result, case in zip(report.results, found, strict=True):
-        earned = {entry.name: entry.value for entry in case.properties()}["points"].partition("/")[0]
+        earned = {entry.name: entry.value for entry in case.properties()}["points"].partition("/")[
+            0
+        ]
         assert (earned == "–") if result.is_open else (Decimal(earned) == result.points)
-        if result.manual_mark is None and not result.is_adjusted and not result.carried and not result.criterion.bonus:
+        if (
+            result.manual_mark is None
+            and not result.is_adjusted
+            and not result.carried
+            and not result.criterion.bonus
+        ):
             expected = KINDS[result.outcome.status]
             assert [type(one) for one in case.result] == ([expected] if expected else [])
         where = result.outcome.location

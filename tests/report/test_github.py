@@ -31,7 +31,11 @@ def test_eleven_findings_are_nine_and_the_rest() -> None:
             Problem(UNDEFINED_MATERIAL, f"message {number}", Location("a.urdf", number, 1))
             for number in range(1, count + 1)
         )
-        found = [command for command in annotated(report._replace(problems=problems)) if command.name == "warning"]
+        found = [
+            command
+            for command in annotated(report._replace(problems=problems))
+            if command.name == "warning"
+        ]
         assert len(found) == MAX_ANNOTATIONS
         assert found[-1].get("title") == last
 

@@ -12,7 +12,9 @@ from tests.report.reports import hinted
 def test_a_manual_mark_leaves_no_hint() -> None:
     """What a person has graded is not to be changed."""
     report = hinted()
-    results = tuple(result._replace(manual_mark=ManualMark(result.points, "Ada")) for result in report.results)
+    results = tuple(
+        result._replace(manual_mark=ManualMark(result.points, "Ada")) for result in report.results
+    )
     assert "Change" not in render(report._replace(results=results), Format.TERMINAL)
 
 
@@ -28,7 +30,10 @@ TEXT = "<a>\n  <b x='1' y='2'/>\r\n  <c/>\n</a>\n"
 @pytest.mark.parametrize(
     ("edits", "expected"),
     [
-        ([Edit("f", 2, 6, "x='1'", "x='3'")], ["@@ line 2 @@", "-  <b x='1' y='2'/>", "+  <b x='3' y='2'/>"]),
+        (
+            [Edit("f", 2, 6, "x='1'", "x='3'")],
+            ["@@ line 2 @@", "-  <b x='1' y='2'/>", "+  <b x='3' y='2'/>"],
+        ),
         (
             [Edit("f", 2, 12, "y='2'", "y='4'"), Edit("f", 2, 6, "x='1'", "x='3'")],
             ["@@ line 2 @@", "-  <b x='1' y='2'/>", "+  <b x='3' y='4'/>"],
@@ -39,7 +44,10 @@ TEXT = "<a>\n  <b x='1' y='2'/>\r\n  <c/>\n</a>\n"
             [Edit("f", 2, 3, "<b x='1' y='2'/>\r\n  <c/>", "<e/>")],
             ["@@ line 2 @@", "-  <b x='1' y='2'/>", "-  <c/>", "+  <e/>"],
         ),
-        ([Edit("f", 3, 3, "<other/>", "<d/>")], ["@@ line 3 @@", "-<other/>", "+<d/>"]),  # of another version
+        (
+            [Edit("f", 3, 3, "<other/>", "<d/>")],
+            ["@@ line 3 @@", "-<other/>", "+<d/>"],
+        ),  # of another version
         (
             [Edit("f", 1, 1, "<a", "<r"), Edit("f", 4, 3, "a", "r")],
             ["@@ line 1 @@", "-<a>", "+<r>", "@@ line 4 @@", "-</a>", "+</r>"],

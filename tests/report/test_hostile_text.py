@@ -28,7 +28,11 @@ from tests.samples import LAB6, SAMPLES, opened
 
 TEXTS = st.dictionaries(st.sampled_from(SLOTS + BREAKING), TEXT, min_size=1, max_size=6)
 EVERYWHERE = {slot: "".join(PIECES[::7]) for slot in SLOTS}
-FENCES = {"answer": "`" * 300 + "\n![x](http://e.org/y.png)\n# h\n", "file": "`" * 90 + "![x](y)", "box": "`" * 90}
+FENCES = {
+    "answer": "`" * 300 + "\n![x](http://e.org/y.png)\n# h\n",
+    "file": "`" * 90 + "![x](y)",
+    "box": "`" * 90,
+}
 
 
 def harmless_structures(report: Report, base: Base) -> dict[Format, Any]:
@@ -37,7 +41,9 @@ def harmless_structures(report: Report, base: Base) -> dict[Format, Any]:
     return {kind: reader(kind).structure(render(twin, kind, base)) for kind in Format}
 
 
-def assert_harmless(report: Report, base: Base, expected: Mapping[Format, Any] | None = None) -> None:
+def assert_harmless(
+    report: Report, base: Base, expected: Mapping[Format, Any] | None = None
+) -> None:
     """Assert that every format is valid, harmless, and has the same structure as with harmless text."""
     expected = harmless_structures(report, base) if expected is None else expected
     is_harmless(render(report, Format.TERMINAL, base, verbose=True))
@@ -52,7 +58,9 @@ def assert_harmless(report: Report, base: Base, expected: Mapping[Format, Any] |
 def written(texts: Mapping[str, str]) -> Report:
     """Return the report on a submission with these texts, from files on disk."""
     with tempfile.TemporaryDirectory() as folder:
-        target = Path(os.fsdecode(os.path.join(os.fsencode(folder), name_of(texts.get("note", "x")))))
+        target = Path(
+            os.fsdecode(os.path.join(os.fsencode(folder), name_of(texts.get("note", "x"))))
+        )
         write_submission(target, texts)
         report = grade(LAB6, opened(target))
         assert not report.fault, [result.traceback for result in report.results if result.traceback]
@@ -113,7 +121,9 @@ def structures_of(name: str, base: Base) -> dict[Format, Any]:
 def test_text_of_a_report_stays_text(name: str, base: Base, words: list[str]) -> None:
     """Also text that no file system and no XML can hold: NUL and lone surrogates, in every message, name and path."""
     following = cycle(words)
-    assert_harmless(recast(report_of(name), lambda: next(following)), base, structures_of(name, base))
+    assert_harmless(
+        recast(report_of(name), lambda: next(following)), base, structures_of(name, base)
+    )
 
 
 def cli(*arguments: str, **variables: str) -> tuple[int, str, str]:
@@ -128,10 +138,16 @@ def cli(*arguments: str, **variables: str) -> tuple[int, str, str]:
 def test_output_in_a_job_is_harmless(texts: Mapping[str, str]) -> None:
     """Reports, warnings and inspections contain no command; standard error has annotations, and the summary is Markdown."""
     with tempfile.TemporaryDirectory() as folder:
-        target = Path(os.fsdecode(os.path.join(os.fsencode(folder), name_of(texts.get("note", "x")))))
+        target = Path(
+            os.fsdecode(os.path.join(os.fsencode(folder), name_of(texts.get("note", "x"))))
+        )
         write_submission(target, texts)
         summary = Path(folder) / "summary"
-        job = {"GITHUB_ACTIONS": "true", "GITHUB_WORKSPACE": folder, "GITHUB_STEP_SUMMARY": str(summary)}
+        job = {
+            "GITHUB_ACTIONS": "true",
+            "GITHUB_WORKSPACE": folder,
+            "GITHUB_STEP_SUMMARY": str(summary),
+        }
         code, out, err = cli("grade", str(target), **job)
         assert code in (0, 1)
         is_harmless(out)

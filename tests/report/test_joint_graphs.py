@@ -21,7 +21,10 @@ joints = st.tuples(names, names, st.sampled_from(("fixed", "continuous", "floati
 
 def robot(links: dict[str, bool], graph: list[tuple[str, str, str]]) -> str:
     """Return a URDF with these links, some of them with a shape, and a joint for each edge of the graph."""
-    parts = [f'<link name="{name}">{SHAPE if is_shown else ""}</link>' for name, is_shown in links.items()]
+    parts = [
+        f'<link name="{name}">{SHAPE if is_shown else ""}</link>'
+        for name, is_shown in links.items()
+    ]
     parts += [
         f'<joint name="j{number}" type="{kind}"><parent link="{parent}"/><child link="{child}"/></joint>'
         for number, (parent, child, kind) in enumerate(graph)
@@ -34,14 +37,18 @@ def robot(links: dict[str, bool], graph: list[tuple[str, str, str]]) -> str:
 @given(st.dictionaries(names, st.booleans(), min_size=1), st.lists(joints, max_size=6))
 @example({"base_link": False, "lidar": False, "w": False}, LOOP)
 @example({"base_link": True, "lidar": True, "w": False}, LOOP)
-def test_every_format_renders_every_graph(links: dict[str, bool], graph: list[tuple[str, str, str]]) -> None:
+def test_every_format_renders_every_graph(
+    links: dict[str, bool], graph: list[tuple[str, str, str]]
+) -> None:
     """`grade` saves each format, and `inspect` prints each in the frame of any link, without an error."""
     with TemporaryDirectory() as place:
         urdf = Path(place, "r.urdf")
         urdf.write_text(robot(links, graph))
         files = {kind: Path(place, f"report.{kind.ending}") for kind in Format}
         saves = [f"--save={kind}={file}" for kind, file in files.items()]
-        done = run(["grade", urdf, "--hints", "none", *saves])  # the search takes longer than all else
+        done = run(
+            ["grade", urdf, "--hints", "none", *saves]
+        )  # the search takes longer than all else
         assert (done.returncode, done.stderr) == (1, b""), done.stderr
         assert all(file.stat().st_size for file in files.values())
         for kind in InspectFormat:

@@ -27,11 +27,15 @@ def inspected(data: bytes) -> str:
     """Return the inspection of a file's bytes as JSON."""
     reading = read_urdf(data, "a.urdf")
     robot = Configuration(reading.robot) if reading.robot is not None else None
-    return inspection_json(Inspection("a.urdf", reading, robot, main_root(robot) if robot else None))
+    return inspection_json(
+        Inspection("a.urdf", reading, robot, main_root(robot) if robot else None)
+    )
 
 
 @pytest.mark.parametrize(
-    "schema", [json_schema("report"), json_schema("inspect"), rubric_schema()], ids=["report", "inspect", "rubric"]
+    "schema",
+    [json_schema("report"), json_schema("inspect"), rubric_schema()],
+    ids=["report", "inspect", "rubric"],
 )
 def test_schemas_are_json_schemas(schema: dict[str, Any]) -> None:
     """Every printed schema is a JSON Schema."""
@@ -42,7 +46,8 @@ def test_schemas_are_json_schemas(schema: dict[str, Any]) -> None:
 def test_reports_and_inspections_of_edge_cases_are_valid() -> None:
     """Whatever the file: no exception, no NaN, no invalid Unicode."""
     report_schema, inspect_schema = (
-        jsonschema.Draft202012Validator(schema) for schema in (json_schema("report"), json_schema("inspect"))
+        jsonschema.Draft202012Validator(schema)
+        for schema in (json_schema("report"), json_schema("inspect"))
     )
     for case in EDGE_CASES[::8]:
         if len(case.text) > 20_000:

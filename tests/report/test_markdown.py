@@ -29,7 +29,10 @@ def _plain(text: str) -> str:
     return text.replace(JOINER, "")
 
 
-@given(st.sampled_from(["reference", "several-mistakes", "pictures-only", "setup-as-created"]), st.integers(-5, 20_000))
+@given(
+    st.sampled_from(["reference", "several-mistakes", "pictures-only", "setup-as-created"]),
+    st.integers(-5, 20_000),
+)
 def test_a_cut_report_keeps_its_limit(name: str, most: int) -> None:
     """It is never longer, keeps whole blocks from the beginning, and a notice says that something is missing."""
     whole = render_markdown(report_of(name))
@@ -54,7 +57,13 @@ def _contents(text: str) -> list[tuple[str, str]]:
 
 
 # The places where text may be, with the text before it.
-LAYOUTS = {"{}\n": "", "- \u2717 {}\n": "\u2717", "# {}\n": "", "*{}*\n": "", "- \u2717\n\n  {}\n": "\u2717"}
+LAYOUTS = {
+    "{}\n": "",
+    "- \u2717 {}\n": "\u2717",
+    "# {}\n": "",
+    "*{}*\n": "",
+    "- \u2717\n\n  {}\n": "\u2717",
+}
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
@@ -81,8 +90,15 @@ def test_inline_code_is_shown_unchanged(text: str) -> None:
     """Backticks in it do not end it; with more of them than GitHub supports it becomes plain text."""
     root = read_as_github(f"- x {code(text)} y\n")
     is_code = "`" * 80 not in text
-    assert [element.tag for element in root.iter()] == ["div", "ul", "li", *(["code"] if is_code else [])]
-    assert _plain(root.text_content()).strip() == (f"x {text} y" if is_code else f"x {text.strip()} y")
+    assert [element.tag for element in root.iter()] == [
+        "div",
+        "ul",
+        "li",
+        *(["code"] if is_code else []),
+    ]
+    assert _plain(root.text_content()).strip() == (
+        f"x {text} y" if is_code else f"x {text.strip()} y"
+    )
 
 
 @given(st.lists((TEXT | st.text() | st.text("`~ a")).map(printable).filter(str.strip)))

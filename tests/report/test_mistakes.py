@@ -70,4 +70,6 @@ def test_the_costs_of_generated_robots_add_up() -> None:
 
     for seed in range(ROBOTS):
         robot = random_robot(seed)
-        assert_mistakes_add_up(grade(RUBRICS[robot.rubric], read_submission(robot.text, identity="a", path="a.urdf")))
+        assert_mistakes_add_up(
+            grade(RUBRICS[robot.rubric], read_submission(robot.text, identity="a", path="a.urdf"))
+        )

@@ -31,11 +31,16 @@ def test_policy_allows_what_the_page_has_and_nothing_else() -> None:
     text = page()
     policy = dict(
         part.split(" ", 1)
-        for part in re.findall('Security-Policy" content="([^"]*)"', text)[0].replace("&#39;", "'").split("; ")
+        for part in re.findall('Security-Policy" content="([^"]*)"', text)[0]
+        .replace("&#39;", "'")
+        .split("; ")
     )
     assert policy["default-src"] == "'none'"
     style = re.findall("<style>(.*?)</style>", text, re.DOTALL)[0]
-    assert policy["style-src"] == f"'sha256-{b64encode(hashlib.sha256(style.encode()).digest()).decode()}'"
+    assert (
+        policy["style-src"]
+        == f"'sha256-{b64encode(hashlib.sha256(style.encode()).digest()).decode()}'"
+    )
     assert policy["script-src"] == policy["base-uri"] == policy["form-action"] == "'none'"
 
 
@@ -80,9 +85,13 @@ def test_own_files_are_not_changed_for_ci(file: Path) -> None:
 def test_policy_names_the_scripts_of_the_students_page(name: str) -> None:
     """The hashes in the policy are those of the scripts and styles as they are printed."""
     text = render(SAMPLES[name].grade(), Format.HTML)
-    named = re.findall("'sha256-([^']+)'", text.partition('Policy" content="')[2].replace("&#39;", "'"))
+    named = re.findall(
+        "'sha256-([^']+)'", text.partition('Policy" content="')[2].replace("&#39;", "'")
+    )
     inline = re.findall("<style>(.*?)</style>|<script>(.*?)</script>", text, re.DOTALL)
-    hashes = [b64encode(hashlib.sha256("".join(pair).encode()).digest()).decode() for pair in inline]
+    hashes = [
+        b64encode(hashlib.sha256("".join(pair).encode()).digest()).decode() for pair in inline
+    ]
     assert named == hashes
     assert len(hashes) > 3
 
@@ -91,13 +100,17 @@ def test_policy_names_the_scripts_of_the_students_page(name: str) -> None:
 def test_scripts_make_no_markup_and_run_no_text(file: Path) -> None:
     """Text of a submission reaches the page as text only."""
     assert not re.search(
-        r"innerHTML|outerHTML|insertAdjacent|document\.write|\beval\b|\bFunction\(|import\(", file.read_text()
+        r"innerHTML|outerHTML|insertAdjacent|document\.write|\beval\b|\bFunction\(|import\(",
+        file.read_text(),
     )
 
 
 def test_a_page_of_a_huge_robot_is_bounded() -> None:
     """A browser shows it soon: so many shapes and links are on it, and how many are not."""
-    boxes = "".join(f"<visual><geometry><box size='1 1 {1 + k % 600}'/></geometry></visual>" for k in range(1500))
+    boxes = "".join(
+        f"<visual><geometry><box size='1 1 {1 + k % 600}'/></geometry></visual>"
+        for k in range(1500)
+    )
     parts = "".join(
         f"<link name='l{k}'/><joint name='j{k}' type='continuous'><parent link='a'/><child link='l{k}'/></joint>"
         for k in range(1200)

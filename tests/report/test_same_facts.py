@@ -41,9 +41,15 @@ def facts(report: Report) -> Iterator[Fact]:
             yield Fact("problem", spellings, problem.code)
     submission = report.submission
     yield from (Fact("note", (note,)) for note in report.notes)
-    yield from (Fact("aside", (words,)) for candidate in submission.unused_candidates for words in candidate[:2])
+    yield from (
+        Fact("aside", (words,))
+        for candidate in submission.unused_candidates
+        for words in candidate[:2]
+    )
     yield from (Fact("aside", (path,)) for path in submission.ignored)
-    if submission.package is not None and any(report.rubric.part(part).needs == "package" for part in report.parts):
+    if submission.package is not None and any(
+        report.rubric.part(part).needs == "package" for part in report.parts
+    ):
         yield Fact("package", (submission.package.folder or submission.package.name,))
     score, most, is_pending = map(format_points, (report.score, report.max_score, report.pending))
     if report.pending:
@@ -69,7 +75,10 @@ def _of_criterion(result: Result, report: Report) -> Iterator[Fact]:
     name, status = criterion.id, outcome.status
     if criterion.bonus:
         earned, most = format_points(result.points), format_points(criterion.points)
-        keys = f'"points":{earned},"max_points":{most},', f'"points":{earned},"maxPoints":{most},"bonus":true'
+        keys = (
+            f'"points":{earned},"max_points":{most},',
+            f'"points":{earned},"maxPoints":{most},"bonus":true',
+        )
         yield Fact(
             "earned bonus" if result.points else "bonus",
             (f"{earned}/{most} bonus", f'"score":{earned},"status"', *keys),
@@ -78,7 +87,9 @@ def _of_criterion(result: Result, report: Report) -> Iterator[Fact]:
     if result.comment is not None:
         words = " ".join(result.comment.text.split())
         yield Fact(
-            "comment", (f"Comment by Ada: {words}", f'"text":{json.dumps(result.comment.text)},"by":"Ada"'), name
+            "comment",
+            (f"Comment by Ada: {words}", f'"text":{json.dumps(result.comment.text)},"by":"Ada"'),
+            name,
         )
     if criterion.adjustment is not None:
         yield Fact("title", (criterion.title, name), name)
@@ -91,7 +102,8 @@ def _of_criterion(result: Result, report: Report) -> Iterator[Fact]:
     if is_absent(result) or is_absent(cause):  # one line for each thing
         absent = (result if is_absent(result) else cause).outcome.absent
         yield from (
-            Fact("unbuilt", (thing, outcome.message, f'"because":"{result.because}"'), name) for thing in absent
+            Fact("unbuilt", (thing, outcome.message, f'"because":"{result.because}"'), name)
+            for thing in absent
         )
         return
     if is_not_found(result):
@@ -104,13 +116,19 @@ def _of_criterion(result: Result, report: Report) -> Iterator[Fact]:
         yield Fact("because", (f"{result.because} failed", f'"because":"{result.because}"'), name)
         return
     if result.carried:
-        yield Fact("carried", (f"only because of {result.carried}", f'"carried":"{result.carried}"'), name)
+        yield Fact(
+            "carried", (f"only because of {result.carried}", f'"carried":"{result.carried}"'), name
+        )
         return
     message = printable(outcome.message)
-    yield Fact("message of pending" if is_open else "message", (message, message.replace("`", "")), name)
+    yield Fact(
+        "message of pending" if is_open else "message", (message, message.replace("`", "")), name
+    )
     if is_open and isinstance(outcome.measured, str):
         lines = (line for line in map(printable, outcome.measured.splitlines()) if line.strip())
-        yield from (Fact("found", (line, line.lstrip("# ").replace("`", "")), name) for line in lines)
+        yield from (
+            Fact("found", (line, line.lstrip("# ").replace("`", "")), name) for line in lines
+        )
     if status == "failed" and outcome.location is not None:
         yield Fact("place", (f"{outcome.location.path}:{outcome.location.line}",), name)
     if (
@@ -135,11 +153,15 @@ def missing_from(kind: Format, report: Report) -> Iterator[Fact]:
         text = render(report, kind, verbose=True)
     shown = _plain(READERS[kind].text(text))
     reported = read_commands(text) if kind is Format.GITHUB else []
-    named = {line for command in reported for line in command.data.partition("See the report for:")[2].split("\n")} - {
-        ""
-    }
+    named = {
+        line
+        for command in reported
+        for line in command.data.partition("See the report for:")[2].split("\n")
+    } - {""}
     for fact in facts(report):
-        if fact.rule not in named and not any(_plain(spelling) in shown for spelling in fact.spellings):
+        if fact.rule not in named and not any(
+            _plain(spelling) in shown for spelling in fact.spellings
+        ):
             yield fact
 
 
@@ -153,7 +175,9 @@ def omitted(name: str) -> frozenset[tuple[Format, Fact]]:
 @pytest.mark.parametrize("name", [*REPORTED, _ADJUSTED])
 def test_all_formats_contain_the_same_facts(name: str) -> None:
     """For each criterion its title, message, location and feedback; for the submission all of its facts."""
-    assert not {(kind.value, fact) for kind, fact in omitted(name) if fact.kind not in READERS[kind].excused}
+    assert not {
+        (kind.value, fact) for kind, fact in omitted(name) if fact.kind not in READERS[kind].excused
+    }
 
 
 @pytest.mark.slow

@@ -32,7 +32,9 @@ def read(text: str | bytes) -> Any:
 
 def test_page_of_sixty_links_is_small() -> None:
     """Score, failures and three views of all shapes take less than 300 KB."""
-    page = render(grade(LAB6, read_submission(chain(60).encode(), identity="x", path="x.urdf")), Format.HTML)
+    page = render(
+        grade(LAB6, read_submission(chain(60).encode(), identity="x", path="x.urdf")), Format.HTML
+    )
     assert len(page.encode()) < MAX_SIZE
     assert page.count("<polygon") == 3 * 60
 
@@ -41,16 +43,28 @@ def test_number_of_a_failure_is_that_of_the_picture() -> None:
     """A failure has the number under which the views call its link out."""
     page = read(render_html(hinted()))
     pins = {pin.text_content().split()[-1] for pin in page.find_class("pin")}
-    assert pins == {text.text for text in page.xpath("//*[local-name()='text' and @class='number']")}
-    assert pins == {"1", "2", "3", "4"}  # the fifth is about several links: it has no place in the picture
-    assert "see below" not in page.text_content()  # as in a picture of its own, which lists the criteria
+    assert pins == {
+        text.text for text in page.xpath("//*[local-name()='text' and @class='number']")
+    }
+    assert pins == {
+        "1",
+        "2",
+        "3",
+        "4",
+    }  # the fifth is about several links: it has no place in the picture
+    assert (
+        "see below" not in page.text_content()
+    )  # as in a picture of its own, which lists the criteria
 
 
 def test_mark_in_place_of_a_hint_hides_no_other_card() -> None:
     """The card of a manual mark shows no edit: what the same edit fixes has its own card."""
     mark = ManualMark(Decimal(0), "Ada", "")
     report = hinted()
-    results = (one._replace(manual_mark=mark if one.criterion.id == AXLE[0] else None) for one in report.results)
+    results = (
+        one._replace(manual_mark=mark if one.criterion.id == AXLE[0] else None)
+        for one in report.results
+    )
     page = read(render_html(report._replace(results=tuple(results))))
     assert not page.get_element_by_id(f"criterion-{AXLE[0]}").xpath(".//article")
     assert "180 degrees off" in page.get_element_by_id(f"criterion-{AXLE[1]}").text_content()
@@ -71,7 +85,12 @@ def mark_of_the_cause() -> Report:
 
 @pytest.mark.parametrize(
     "report",
-    [marked, hinted, mark_of_the_cause, *(SAMPLES[name].grade for name in ("axis-negated", "empty-urdf"))],
+    [
+        marked,
+        hinted,
+        mark_of_the_cause,
+        *(SAMPLES[name].grade for name in ("axis-negated", "empty-urdf")),
+    ],
 )
 def test_every_link_of_a_page_has_a_target(report: Callable[[], Report]) -> None:
     """A criterion that is skipped leads to the card of its cause."""
@@ -81,7 +100,9 @@ def test_every_link_of_a_page_has_a_target(report: Callable[[], Report]) -> None
     assert any(target.startswith("criterion-") for target in targets)
 
 
-@pytest.mark.parametrize(("level", "is_shown"), [("none", False), ("place", False), ("cause", True), ("edit", True)])
+@pytest.mark.parametrize(
+    ("level", "is_shown"), [("none", False), ("place", False), ("cause", True), ("edit", True)]
+)
 def test_reference_is_as_secret_as_the_hints(level: Any, is_shown: bool) -> None:
     """Below the level `cause` no dashed outline shows the reference."""
     report = SAMPLES["lidar-buried"].grade()

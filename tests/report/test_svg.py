@@ -41,13 +41,19 @@ def inspected(text: str, code: int = 0) -> Any:
 
 def words(root: Any) -> str:
     """Return the text of a drawing, without line breaks."""
-    return " ".join(" ".join(element.text or "" for element in root.iter("{*}text", "{*}tspan")).split())
+    return " ".join(
+        " ".join(element.text or "" for element in root.iter("{*}text", "{*}tspan")).split()
+    )
 
 
 def numbers_at(root: Any) -> list[tuple[float, float]]:
     """Return the centres of the numbers in the views; the key has its own coordinates."""
     views = [view for view in root.findall("{*}g") if view.get("transform") is None]
-    return [(float(disc.get("cx")), float(disc.get("cy"))) for view in views for disc in view.iter("{*}circle")]
+    return [
+        (float(disc.get("cx")), float(disc.get("cy")))
+        for view in views
+        for disc in view.iter("{*}circle")
+    ]
 
 
 def bodies(root: Any) -> dict[str, list[Any]]:
@@ -83,7 +89,9 @@ def test_drawing_of_a_sample_is_well_formed_and_says_what_it_calls_out(name: str
         assert ("not in the picture" in said) or callout.point is not None
 
 
-@pytest.mark.parametrize("name", ["reference", "several-mistakes", "wheels-lying-flat", "arm/elbow-to-the-side"])
+@pytest.mark.parametrize(
+    "name", ["reference", "several-mistakes", "wheels-lying-flat", "arm/elbow-to-the-side"]
+)
 def test_numbers_do_not_overlap(name: str) -> None:
     """The discs of all callouts are beside each other, inside the sheet, and there is one in each view."""
     picture = picture_of(SAMPLES[name].grade())
@@ -121,7 +129,9 @@ def test_views_show_the_robot_at_one_scale() -> None:
 
 def test_long_names_are_cut() -> None:
     """A name of 200,000 letters makes the drawing neither large nor slow."""
-    text = f'<robot name="{"x" * 200_000}">' + link("y" * 200_000, '<sphere radius="1"/>') + "</robot>"
+    text = (
+        f'<robot name="{"x" * 200_000}">' + link("y" * 200_000, '<sphere radius="1"/>') + "</robot>"
+    )
     with limited_work(200_000):
         root = inspected(text)
     assert len(root.findtext("{*}title")) == 200
@@ -134,14 +144,20 @@ def test_every_text_that_the_reader_knows_is_drawn() -> None:
         data = case.text if isinstance(case.text, bytes) else case.text.encode()
         reading = read_urdf(data, "a.urdf")
         robot = Configuration(reading.robot) if reading.robot is not None else None
-        root = inspection_svg(Inspection("a.urdf", reading, robot, main_root(robot) if robot is not None else None))
+        root = inspection_svg(
+            Inspection("a.urdf", reading, robot, main_root(robot) if robot is not None else None)
+        )
         drawn = "".join(path.get("d") for path in read_svg(root).iter("{*}path"))
         assert not re.search(r"[a-z]{2}|e", drawn), case.name
 
 
 def test_two_hundred_links_are_drawn_in_a_second() -> None:
     """A chain of boxes, cylinders and spheres, each of which overlaps its neighbours."""
-    shapes = ('<box size="0.1 0.08 0.12"/>', '<cylinder radius="0.04" length="0.12"/>', '<sphere radius="0.05"/>')
+    shapes = (
+        '<box size="0.1 0.08 0.12"/>',
+        '<cylinder radius="0.04" length="0.12"/>',
+        '<sphere radius="0.05"/>',
+    )
     text = "".join(link(f"l{n}", shapes[n % 3]) for n in range(200)) + "".join(
         f'<joint name="j{n}" type="fixed"><parent link="l{n - 1}"/><child link="l{n}"/>'
         f'<origin xyz="0.02 0 0.1" rpy="0 {n % 2 / 10} 0.2"/></joint>'

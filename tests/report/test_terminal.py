@@ -31,12 +31,19 @@ HOSTILE = (
 def printed(data: bytes, width: int = 80, *, terminal: bool = False) -> str:
     """Return a report and an inspection of a file's bytes for a console of this width."""
     out = StringIO()
-    console = Console(file=out, width=width, force_terminal=terminal, color_system="standard" if terminal else None)
+    console = Console(
+        file=out,
+        width=width,
+        force_terminal=terminal,
+        color_system="standard" if terminal else None,
+    )
     submission = read_submission(data, identity="a", path="a.urdf")
     render_terminal(grade(RUBRIC, submission), console)
     reading = submission.needed_urdf()
     robot = Configuration(reading.robot) if reading.robot is not None else None
-    inspection_terminal(Inspection("a.urdf", reading, robot, main_root(robot) if robot else None), console)
+    inspection_terminal(
+        Inspection("a.urdf", reading, robot, main_root(robot) if robot else None), console
+    )
     return out.getvalue()
 
 
@@ -63,7 +70,9 @@ def test_printable_text_is_printable(text: str) -> None:
 
 
 @pytest.mark.parametrize("width", [40, 60, 80, 120])
-@pytest.mark.parametrize("name", ["reference", "several-mistakes", "raw-xacro", "links-without-joints"])
+@pytest.mark.parametrize(
+    "name", ["reference", "several-mistakes", "raw-xacro", "links-without-joints"]
+)
 def test_no_line_is_wider_than_the_terminal(name: str, width: int) -> None:
     """Text wraps and source lines are cut, in a report as in an inspection's problems."""
     out = StringIO()
@@ -116,7 +125,10 @@ def test_the_location_is_underlined(line: str, column: int, underlined: str) -> 
     """The marks are below the attribute or tag, from its first character to its last."""
     out = StringIO()
     console = Console(file=out, width=80)
-    Page(console, [excerpt_block(console, Source("a.urdf", f"\n{line}\n"), Location("a.urdf", 2, column), 4)]).print()
+    Page(
+        console,
+        [excerpt_block(console, Source("a.urdf", f"\n{line}\n"), Location("a.urdf", 2, column), 4)],
+    ).print()
     text, marks = out.getvalue().splitlines()
     start, end = marks.index("\u2500"), marks.rindex("\u2500") + 1
     assert text[start:end] == underlined
@@ -127,7 +139,9 @@ def test_a_long_line_is_cut_around_the_location() -> None:
     out = StringIO()
     line = "<a>" * 500 + '<b c="d"/>'
     console = Console(file=out, width=60)
-    Page(console, [excerpt_block(console, Source("a.urdf", line), Location("a.urdf", 1, 1504), 4)]).print()
+    Page(
+        console, [excerpt_block(console, Source("a.urdf", line), Location("a.urdf", 1, 1504), 4)]
+    ).print()
     text, marks = out.getvalue().splitlines()
     assert 'c="d"' in text
     assert max(len(text), len(marks)) <= 60

@@ -6,15 +6,35 @@ from typing import NamedTuple
 
 # Every command that any runner has supported, in any case.
 REGISTERED = frozenset(
-    {"add-mask", "add-matcher", "add-path", "debug", "echo", "endgroup", "error", "group", "internal-set-repo-path"}
-    | {"notice", "remove-matcher", "save-state", "set-env", "set-output", "stop-commands", "warning"}
+    {
+        "add-mask",
+        "add-matcher",
+        "add-path",
+        "debug",
+        "echo",
+        "endgroup",
+        "error",
+        "group",
+        "internal-set-repo-path",
+    }
+    | {
+        "notice",
+        "remove-matcher",
+        "save-state",
+        "set-env",
+        "set-output",
+        "stop-commands",
+        "warning",
+    }
 )
 # What a runner reads as one character, in this order: an escaped percent sign last.
 _DATA = (("%0D", "\r"), ("%0A", "\n"), ("%25", "%"))
 _PROPERTY = (("%0D", "\r"), ("%0A", "\n"), ("%3A", ":"), ("%2C", ","), ("%25", "%"))
 _OLDER = (("%3B", ";"), ("%0D", "\r"), ("%0A", "\n"), ("%5D", "]"), ("%25", "%"))
 # Culture-sensitive comparisons of .NET ignore these.
-_UNSEEN = re.compile("[\u00ad\u034f\u061c\u180e\u200b-\u200f\u202a-\u202e\u2060-\u206f\ufe00-\ufe0f\ufeff]")
+_UNSEEN = re.compile(
+    "[\u00ad\u034f\u061c\u180e\u200b-\u200f\u202a-\u202e\u2060-\u206f\ufe00-\ufe0f\ufeff]"
+)
 
 
 class Command(NamedTuple):
@@ -58,12 +78,16 @@ def _older(line: str) -> Command | None:
     return _command(inside, ";", _OLDER, _unescaped(data, _OLDER)) if start and end else None
 
 
-def _command(inside: str, separator: str, escapes: Sequence[tuple[str, str]], data: str) -> Command | None:
+def _command(
+    inside: str, separator: str, escapes: Sequence[tuple[str, str]], data: str
+) -> Command | None:
     name, _, listed = inside.partition(" ")
     if name.lower() not in REGISTERED:
         return None
     pairs = (item.partition("=") for item in listed.strip().split(separator))
-    properties = tuple((key, _unescaped(value, escapes)) for key, _, value in pairs if key and value)
+    properties = tuple(
+        (key, _unescaped(value, escapes)) for key, _, value in pairs if key and value
+    )
     return Command(name.lower(), properties, data)
 
 

@@ -14,7 +14,11 @@ _ENDINGS = {"agrees": "finished", "hangs": "hung", "aborts": "aborted"}
 def test_reader_gives_recorded_verdict() -> None:
     """The reader's verdict is the recorded one."""
     verdicts = {case.name: (read_urdf(case.text, "case.urdf").verdict, case) for case in EDGE_CASES}
-    assert {name: (verdict, case.rule) for name, (verdict, case) in verdicts.items() if verdict != case.verdict} == {}
+    assert {
+        name: (verdict, case.rule)
+        for name, (verdict, case) in verdicts.items()
+        if verdict != case.verdict
+    } == {}
 
 
 @pytest.mark.exhaustive
@@ -22,7 +26,9 @@ def test_reader_gives_recorded_verdict() -> None:
 def test_ros_gives_recorded_verdict(case: EdgeCase) -> None:
     """ROS 2's verdict is the recorded one, and its program ends as recorded."""
     oracle = check_urdf(case.text)
-    assert (oracle.verdict, oracle.ending) == (case.verdict, _ENDINGS[case.oracle]), f"{case.rule}\n{oracle.stderr}"
+    assert (oracle.verdict, oracle.ending) == (case.verdict, _ENDINGS[case.oracle]), (
+        f"{case.rule}\n{oracle.stderr}"
+    )
 
 
 def test_corpus_is_large() -> None:

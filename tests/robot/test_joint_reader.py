@@ -32,18 +32,28 @@ def test_every_element_is_kept() -> None:
         SafetyController(6.0, 0.0, 7.0, 0.0),
         Calibration(8.0, None),
     )
-    assert [element.location.resolve().line for element in kept if element and element.location] == [2, 3, 4, 5, 6]
+    assert [
+        element.location.resolve().line for element in kept if element and element.location
+    ] == [2, 3, 4, 5, 6]
 
 
 def test_a_joint_without_them_has_none() -> None:
     """An absent element is no element of zeros."""
     found = only_joint("")
-    assert [found.limit, found.mimic, found.dynamics, found.safety_controller, found.calibration] == [None] * 5
+    assert [
+        found.limit,
+        found.mimic,
+        found.dynamics,
+        found.safety_controller,
+        found.calibration,
+    ] == [None] * 5
 
 
 def test_an_unreadable_number_does_not_hide_the_others() -> None:
     """ROS 2 rejects the file; the numbers that can be read are kept, and the others are NaN."""
-    found = only_joint('<limit lower="-1" upper="1"/><dynamics damping="a" friction="2"/>', "revolute")
+    found = only_joint(
+        '<limit lower="-1" upper="1"/><dynamics damping="a" friction="2"/>', "revolute"
+    )
     assert found.limit is not None
     assert (found.limit.lower, found.limit.upper, isnan(found.limit.effort)) == (-1.0, 1.0, True)
     assert found.dynamics is not None
@@ -77,7 +87,10 @@ def moving(link: str, *kinds: str) -> Joint:
     """Return the joint that moves a link of a chain a, b, c, ... with joints of these types, named by both ends."""
     names = "abcdef"[: len(kinds) + 1]
     ends = [(one, other, kind) for one, other, kind in zip(names, names[1:], kinds, strict=False)]
-    text = robot(links(*names) + "".join(joint(one, other, one + other, kind=kind) for one, other, kind in ends))
+    text = robot(
+        links(*names)
+        + "".join(joint(one, other, one + other, kind=kind) for one, other, kind in ends)
+    )
     read = read_urdf(text.encode()).robot
     assert read is not None
     return Configuration(read).moving_joint(link)
@@ -102,7 +115,11 @@ def test_the_moving_joint_is_the_last_that_is_not_fixed(kinds: list[str], name: 
     [
         ("a", ["continuous"], "no joint above 'a' moves; one should turn or slide"),
         ("b", ["fixed", "continuous"], "no joint above 'b' moves; one should turn or slide"),
-        ("c", ["continuous", "hinge"], "the joint that moves 'c' has the type 'hinge', which does not exist"),
+        (
+            "c",
+            ["continuous", "hinge"],
+            "the joint that moves 'c' has the type 'hinge', which does not exist",
+        ),
         ("x", ["continuous"], "there is no link 'x'"),
     ],
 )

@@ -16,7 +16,14 @@ from grader.robot.joint_reader import MOVING_TYPES
 from grader.robot.kinematics import SINGLE, Configuration
 from grader.robot.model import Joint, Link, Mimic, Origin, Robot
 from grader.robot.reader import read_urdf
-from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_about, rotation_from_rpy, unit
+from grader.robot.transforms import (
+    IDENTITY,
+    Transform,
+    Vector,
+    rotation_about,
+    rotation_from_rpy,
+    unit,
+)
 from tests.examples import examples
 from tests.work import limited_work
 
@@ -37,7 +44,9 @@ def joint(ends: str, kind: str = "fixed", **more: Any) -> Joint:
 
 def robot(*joints: Joint, alone: str = "") -> Robot:
     """Return a robot of these joints, with the links that they name in this order, and others."""
-    names = dict.fromkeys([*(end for joint in joints for end in (joint.parent, joint.child)), *alone])
+    names = dict.fromkeys(
+        [*(end for joint in joints for end in (joint.parent, joint.child)), *alone]
+    )
     return Robot("r", tuple(Link(name) for name in names if name), joints)
 
 
@@ -80,7 +89,9 @@ def near(one: Transform, other: Transform, within: float = 1e-9) -> bool:
 def test_every_joint_at_zero_is_at_its_origin(kind: str) -> None:
     """At 0 a joint of any type, known or not, adds nothing."""
     origin = Origin((1.0, 2.0, 3.0), (0.1, 0.2, 0.3))
-    assert Configuration(robot(joint("ab", kind, origin=origin, axis=Z))).pose("b") == transform(origin)
+    assert Configuration(robot(joint("ab", kind, origin=origin, axis=Z))).pose("b") == transform(
+        origin
+    )
 
 
 @pytest.mark.parametrize("kind", ["fixed", "", "Continuous", "planar", "floating"])
@@ -115,7 +126,9 @@ def test_moved_changes_one_joint() -> None:
 
 
 @given(multiplier=lengths, offset=lengths, second=lengths, start=lengths)
-def test_mimics_follow_through_a_chain(multiplier: float, offset: float, second: float, start: float) -> None:
+def test_mimics_follow_through_a_chain(
+    multiplier: float, offset: float, second: float, start: float
+) -> None:
     """A mimic of a mimic follows both rules, whatever the order in the file."""
     following = robot(
         joint("ad", "prismatic", mimic=Mimic("ac", second, -1.0)),
@@ -145,7 +158,13 @@ def test_a_mimic_that_is_moved_directly_does_not_follow() -> None:
 def test_cyclic_mimics_stay_at_zero(length: int) -> None:
     """Joints that mimic each other stay at 0, and so does a joint that mimics them."""
     circle = [
-        Joint(f"j{index}", "prismatic", "a", f"b{index}", mimic=Mimic(f"j{(index + 1) % length}", 2.0, 1.0))
+        Joint(
+            f"j{index}",
+            "prismatic",
+            "a",
+            f"b{index}",
+            mimic=Mimic(f"j{(index + 1) % length}", 2.0, 1.0),
+        )
         for index in range(length)
     ]
     names = ("a", *(joint.child for joint in circle))
@@ -156,7 +175,8 @@ def test_cyclic_mimics_stay_at_zero(length: int) -> None:
 def test_a_cycle_of_mimics_is_opened_by_a_position() -> None:
     """If one of them is moved, the others follow."""
     circle = robot(
-        joint("ab", "prismatic", mimic=Mimic("ac", 2.0)), joint("ac", "prismatic", mimic=Mimic("ab", 3.0, 1.0))
+        joint("ab", "prismatic", mimic=Mimic("ac", 2.0)),
+        joint("ac", "prismatic", mimic=Mimic("ab", 3.0, 1.0)),
     )
     configuration = Configuration(circle, {"ab": 1.0})
     assert [configuration.pose(name).translation[0] for name in "bc"] == [1.0, 4.0]
@@ -178,7 +198,11 @@ def trees(draw: st.DrawFn) -> Robot:
     joints = [
         Joint(
             f"j{child}",
-            draw(st.sampled_from(("fixed", "continuous", "revolute", "prismatic", "planar", "floating"))),
+            draw(
+                st.sampled_from(
+                    ("fixed", "continuous", "revolute", "prismatic", "planar", "floating")
+                )
+            ),
             f"l{draw(st.integers(0, child - 1))}",
             f"l{child}",
             draw(origins),
@@ -264,7 +288,9 @@ def test_missing_links_and_joints() -> None:
         lambda: configuration.joint("x"),
         lambda: configuration.axis("x"),
     ):
-        with pytest.raises(MissingElement, match=r"no (link|joint) 'x'; the file has: '(a', 'b|ab)'$"):
+        with pytest.raises(
+            MissingElement, match=r"no (link|joint) 'x'; the file has: '(a', 'b|ab)'$"
+        ):
             ask()
 
 
@@ -277,9 +303,13 @@ def test_axes_are_unit() -> None:
     )
     configuration = Configuration(named)
     assert configuration.axis("ab") == pytest.approx((0.0, -0.6, 0.8))
-    with pytest.raises(MissingElement, match=r"is undefined: the joint's axis is 0 0 0 .joint 'ac'"):
+    with pytest.raises(
+        MissingElement, match=r"is undefined: the joint's axis is 0 0 0 .joint 'ac'"
+    ):
         configuration.axis("ac")
-    with pytest.raises(MissingElement, match=r"is undefined: the joint's axis cannot be read .joint 'ad'"):
+    with pytest.raises(
+        MissingElement, match=r"is undefined: the joint's axis cannot be read .joint 'ad'"
+    ):
         configuration.axis("ad")
 
 
@@ -295,7 +325,9 @@ def test_several_roots_are_solved_separately() -> None:
     assert configuration.pose("d").translation == (0.0, 1.0, 0.0)
     assert configuration.pose("e") == IDENTITY
     for one, other in (("b", "d"), ("a", "e"), ("c", "b")):
-        with pytest.raises(MissingElement, match=f"'{one}' is not connected to '{other}'") as caught:
+        with pytest.raises(
+            MissingElement, match=f"'{one}' is not connected to '{other}'"
+        ) as caught:
             configuration.pose(one, relative_to=other)
         assert caught.value.kind == "connection"
         with pytest.raises(MissingElement):
@@ -315,7 +347,9 @@ def test_an_unreadable_origin_begins_a_frame_group() -> None:
     assert configuration.pose("e", relative_to="d").translation == (0.0, 0.0, 1.0)
     assert configuration.pose("d", relative_to="c").translation == (0.0, 0.0, 1.0)
     for one, other in (("c", None), ("d", None), ("d", "b"), ("a", "e")):
-        with pytest.raises(MissingElement, match=r"is undefined: the joint's origin cannot be read .joint 'bc'"):
+        with pytest.raises(
+            MissingElement, match=r"is undefined: the joint's origin cannot be read .joint 'bc'"
+        ):
             configuration.pose(one, relative_to=other)
     assert configuration.root_of("e") == "a"
     assert [joint.name for joint in configuration.between("e", "a")] == ["ce", "bc", "ab"]
@@ -323,8 +357,12 @@ def test_an_unreadable_origin_begins_a_frame_group() -> None:
 
 def test_two_frame_groups_name_a_joint_between_them() -> None:
     """Between two frame groups the message names one of the joints with an unreadable origin."""
-    broken = robot(joint("ab", origin=None), joint("ac", origin=None), joint("cd", origin=at(1, 0, 0)))
-    with pytest.raises(MissingElement, match=r"is undefined: the joint's origin cannot be read .joint '(ab|ac)'"):
+    broken = robot(
+        joint("ab", origin=None), joint("ac", origin=None), joint("cd", origin=at(1, 0, 0))
+    )
+    with pytest.raises(
+        MissingElement, match=r"is undefined: the joint's origin cannot be read .joint '(ab|ac)'"
+    ):
         Configuration(broken).pose("b", relative_to="d")
 
 
@@ -333,11 +371,17 @@ def test_two_frame_groups_name_a_joint_between_them() -> None:
 def test_a_zero_axis_hides_what_is_below_it(kind: str, position: float | None) -> None:
     """At any position, 0 included, as KDL divides by the axis' length; links elsewhere have their poses."""
     broken = robot(
-        joint("ab", kind, origin=at(1, 0, 0), axis=(0.0, 0.0, 0.0)), joint("bc"), joint("ad", origin=at(0, 1, 0))
+        joint("ab", kind, origin=at(1, 0, 0), axis=(0.0, 0.0, 0.0)),
+        joint("bc"),
+        joint("ad", origin=at(0, 1, 0)),
     )
-    configuration = Configuration(broken, {"ab": position} if position is not None and kind != "planar" else {})
+    configuration = Configuration(
+        broken, {"ab": position} if position is not None and kind != "planar" else {}
+    )
     for link in "bc":
-        with pytest.raises(MissingElement, match=r"is undefined: the joint's axis is 0 0 0 .joint 'ab'"):
+        with pytest.raises(
+            MissingElement, match=r"is undefined: the joint's axis is 0 0 0 .joint 'ab'"
+        ):
             configuration.pose(link)
     assert configuration.pose("c", relative_to="b") == IDENTITY
     assert configuration.pose("d").translation == (0.0, 1.0, 0.0)
@@ -363,7 +407,9 @@ def test_of_two_parent_joints_the_last_by_name_counts(names: tuple[str, str]) ->
 def test_links_on_a_loop_have_no_pose(ring: str) -> None:
     """Loops, and links below them, raise MissingElement and terminate; other trees are not affected."""
     loop = [joint(f"{one}{other}") for one, other in zip(ring, ring[1:] + ring[0], strict=True)]
-    configuration = Configuration(robot(*loop, joint(f"{ring[0]}y"), joint("yz"), joint("uv", origin=at(1, 0, 0))))
+    configuration = Configuration(
+        robot(*loop, joint(f"{ring[0]}y"), joint("yz"), joint("uv", origin=at(1, 0, 0)))
+    )
     for link in (*ring, "y", "z"):
         with pytest.raises(MissingElement, match=f"'{link}' is on or below a loop of joints"):
             configuration.pose(link)
@@ -384,7 +430,12 @@ def test_a_joint_without_links_is_no_parent_joint() -> None:
     robot_with_gaps = Robot(
         "r",
         (Link("a"), Link("b"), Link("")),
-        (Joint("j1", "fixed", "a", "x"), Joint("j2", "fixed", "x", "b"), Joint("j3", "fixed", "", "a"), joint("ab")),
+        (
+            Joint("j1", "fixed", "a", "x"),
+            Joint("j2", "fixed", "x", "b"),
+            Joint("j3", "fixed", "", "a"),
+            joint("ab"),
+        ),
     )
     configuration = Configuration(robot_with_gaps)
     assert configuration.roots == ("a", "")
@@ -418,13 +469,17 @@ def test_a_chain_of_20000_links() -> None:
         last = configuration.pose("l19999")
         assert last.translation == pytest.approx((19.999, 0.0, 0.0), abs=1e-9)
         assert last.rotation == pytest.approx(rotation_about((1.0, 0.0, 0.0), 0.5), abs=1e-9)
-        assert configuration.pose("l0", relative_to="l19999").translation[0] == pytest.approx(-19.999, abs=1e-9)
+        assert configuration.pose("l0", relative_to="l19999").translation[0] == pytest.approx(
+            -19.999, abs=1e-9
+        )
         assert len(configuration.between("l19999", "l1")) == 19_998
 
 
 def ask_all(links: int, joints: list[Joint]) -> None:
     """Compute the pose of every link, ignoring missing ones."""
-    configuration = Configuration(Robot("r", tuple(Link(f"l{index}") for index in range(links)), tuple(joints)))
+    configuration = Configuration(
+        Robot("r", tuple(Link(f"l{index}") for index in range(links)), tuple(joints))
+    )
     for index in range(links):
         with suppress(MissingElement):
             configuration.pose(f"l{index}")
@@ -433,7 +488,10 @@ def ask_all(links: int, joints: list[Joint]) -> None:
 def test_links_on_a_long_loop_are_refused_in_linear_time() -> None:
     """Computing the poses of 6,000 links on a loop does not walk the loop 6,000 times."""
     count = 6000
-    joints = [Joint(f"j{index}", "fixed", f"l{index}", f"l{(index + 1) % count}") for index in range(count)]
+    joints = [
+        Joint(f"j{index}", "fixed", f"l{index}", f"l{(index + 1) % count}")
+        for index in range(count)
+    ]
     with limited_work(2_000_000):
         ask_all(count, joints)
 
@@ -441,7 +499,9 @@ def test_links_on_a_long_loop_are_refused_in_linear_time() -> None:
 def test_links_below_a_defect_are_refused_in_linear_time() -> None:
     """Computing the poses of 6,000 links below a zero axis does not walk up to it 6,000 times."""
     count = 6000
-    joints = [Joint(f"j{index}", "fixed", f"l{index}", f"l{index + 1}") for index in range(1, count - 1)]
+    joints = [
+        Joint(f"j{index}", "fixed", f"l{index}", f"l{index + 1}") for index in range(1, count - 1)
+    ]
     joints.append(Joint("j0", "continuous", "l0", "l1", axis=(0.0, 0.0, 0.0)))
     with limited_work(3_000_000):
         ask_all(count, joints)
@@ -456,7 +516,10 @@ def assert_finite_or_missing(configuration: Configuration) -> None:
                 pose = configuration.pose(link, relative_to=relative_to)
             except MissingElement:
                 continue
-            assert all(isfinite(number) for number in (*pose.rotation, *pose.translation)), (link, relative_to)
+            assert all(isfinite(number) for number in (*pose.rotation, *pose.translation)), (
+                link,
+                relative_to,
+            )
 
 
 huge = st.sampled_from((1.7e308, -1.7e308, 1e308, 1e300, 1e154, 1.0, 0.0, -1e-300)) | st.floats(
@@ -488,8 +551,14 @@ def test_huge_numbers_never_give_nan(
     assert configuration.pose("e").translation == (1.0, 2.0, 3.0)
 
 
-@given(multipliers=st.lists(huge, min_size=2, max_size=2), offsets=st.lists(huge, min_size=2, max_size=2), start=huge)
-def test_huge_mimics_never_give_nan(multipliers: list[float], offsets: list[float], start: float) -> None:
+@given(
+    multipliers=st.lists(huge, min_size=2, max_size=2),
+    offsets=st.lists(huge, min_size=2, max_size=2),
+    start=huge,
+)
+def test_huge_mimics_never_give_nan(
+    multipliers: list[float], offsets: list[float], start: float
+) -> None:
     """If a mimic overflows, the pose is missing like any other undefined pose."""
     following = robot(
         joint("ab", "continuous", axis=Z),

@@ -23,7 +23,9 @@ def robot(*joints: Joint, rejected: bool = True) -> Robot:
 
 def parents(*joints: Joint, rejected: bool = True) -> dict[str, str]:
     """Return the name of each link's parent joint."""
-    return {link: joint.name for link, joint in parent_joints(robot(*joints, rejected=rejected)).items()}
+    return {
+        link: joint.name for link, joint in parent_joints(robot(*joints, rejected=rejected)).items()
+    }
 
 
 FOOT, WHEEL = joint("base_joint", "foot", "base"), joint("base_wheel_joint", "base", "wheel")
@@ -43,7 +45,9 @@ def test_a_swapped_joint_is_no_parent_joint_of_the_base() -> None:
     swapped = joint("wheel_joint", "wheel", "base")
     for order in permutations((FOOT, swapped, LIDAR)):
         assert parents(*order) == {"base": "base_joint", "lidar": "base_lidar_joint"}
-    assert parents(FOOT, swapped, rejected=False) == {"base": "wheel_joint"}  # ROS 2: the last in name order
+    assert parents(FOOT, swapped, rejected=False) == {
+        "base": "wheel_joint"
+    }  # ROS 2: the last in name order
 
 
 def test_a_name_with_both_links_decides_nothing() -> None:
@@ -55,7 +59,10 @@ def test_a_name_with_both_links_decides_nothing() -> None:
 
 def test_the_original_of_a_copied_joint_counts() -> None:
     """Of a joint that was copied with its child the first is the parent joint."""
-    left, copied = joint("left_wheel_joint", "base", "left_wheel"), joint("right_wheel_joint", "base", "left_wheel")
+    left, copied = (
+        joint("left_wheel_joint", "base", "left_wheel"),
+        joint("right_wheel_joint", "base", "left_wheel"),
+    )
     assert parents(FOOT, left, copied) == {"base": "base_joint", "left_wheel": "left_wheel_joint"}
     assert parents(FOOT, left, copied, rejected=False)["left_wheel"] == "right_wheel_joint"
 
@@ -93,7 +100,11 @@ def test_a_joint_from_a_link_to_itself_is_no_parent_joint() -> None:
 def test_joints_without_existing_links_connect_nothing() -> None:
     """A parent or child that is missing or not given connects nothing."""
     links = (Link("base"), Link("wheel"))
-    for broken in (joint("j", "nowhere", "wheel"), joint("j", "base", "nowhere"), joint("j", "", "wheel")):
+    for broken in (
+        joint("j", "nowhere", "wheel"),
+        joint("j", "base", "nowhere"),
+        joint("j", "", "wheel"),
+    ):
         assert parent_joints(Robot("r", links, (broken,), rejected=True)) == {}
 
 

@@ -27,7 +27,9 @@ _number = st.floats(-2.0, 2.0)
 _vector = st.tuples(_number, _number, _number)
 _tensor = st.tuples(*[_number] * 6)
 shapes: st.SearchStrategy[Shape] = st.one_of(
-    st.builds(Box, st.tuples(_edge, _edge, _edge)), st.builds(Cylinder, _edge, _edge), st.builds(Sphere, _edge)
+    st.builds(Box, st.tuples(_edge, _edge, _edge)),
+    st.builds(Cylinder, _edge, _edge),
+    st.builds(Sphere, _edge),
 )
 poses = st.builds(lambda rpy, xyz: Transform(rotation_from_rpy(rpy), xyz), _vector, _vector)
 placed = st.lists(st.tuples(shapes, poses), min_size=1, max_size=4)
@@ -62,16 +64,24 @@ def test_the_formulas_of_textbooks(shape: Shape, moments: Vector) -> None:
 
 
 @given(placed, poses, st.floats(0.1, 10.0))
-def test_the_frame_does_not_matter(parts: list[tuple[Shape, Transform]], T_a_b: Transform, mass: float) -> None:
+def test_the_frame_does_not_matter(
+    parts: list[tuple[Shape, Transform]], T_a_b: Transform, mass: float
+) -> None:
     """In another frame the centre is the same point and the inertia the same tensor."""
     here = uniform_solid(parts, mass)
     there = uniform_solid([(shape, T_a_b @ pose) for shape, pose in parts], mass)
-    assert close(there, MassProperties(mass, T_a_b.apply(here.centre), turned(here.inertia, T_a_b.rotation)))
-    assert np.allclose(principal_moments(there.inertia), principal_moments(here.inertia), rtol=0, atol=1e-9)
+    assert close(
+        there, MassProperties(mass, T_a_b.apply(here.centre), turned(here.inertia, T_a_b.rotation))
+    )
+    assert np.allclose(
+        principal_moments(there.inertia), principal_moments(here.inertia), rtol=0, atol=1e-9
+    )
 
 
 @given(placed, placed)
-def test_bodies_add_up(first: list[tuple[Shape, Transform]], second: list[tuple[Shape, Transform]]) -> None:
+def test_bodies_add_up(
+    first: list[tuple[Shape, Transform]], second: list[tuple[Shape, Transform]]
+) -> None:
     """Bodies put together in two steps are those put together at once, and a body in halves is the body."""
     one, other = uniform_solid(first, 2.0), uniform_solid(second, 3.0)
     point = together([one, other, one])
@@ -102,16 +112,22 @@ def test_the_parallel_axis_of_a_rod() -> None:
 @given(_tensor)
 def test_principal_moments_are_eigenvalues(inertia: Tensor) -> None:
     """The moments of any symmetric matrix are those of numpy, smallest first."""
-    assert np.allclose(principal_moments(inertia), np.linalg.eigvalsh(matrix(inertia)), rtol=0, atol=1e-12)
+    assert np.allclose(
+        principal_moments(inertia), np.linalg.eigvalsh(matrix(inertia)), rtol=0, atol=1e-12
+    )
 
 
 @given(_tensor, _tensor)
 def test_the_difference_is_a_norm(a: Tensor, b: Tensor) -> None:
     """The difference of two inertias is the largest moment, in size, of their difference."""
-    assert largest_difference(a, b) == pytest.approx(np.linalg.norm(matrix(a) - matrix(b), 2), abs=1e-12)
+    assert largest_difference(a, b) == pytest.approx(
+        np.linalg.norm(matrix(a) - matrix(b), 2), abs=1e-12
+    )
 
 
-@pytest.mark.parametrize("inertia", [(1e308, 1e308, 0.0, 1e308, 0.0, 1e308), (float("inf"),) * 6, (float("nan"),) * 6])
+@pytest.mark.parametrize(
+    "inertia", [(1e308, 1e308, 0.0, 1e308, 0.0, 1e308), (float("inf"),) * 6, (float("nan"),) * 6]
+)
 def test_huge_numbers_have_no_moments(inertia: Tensor) -> None:
     """Where a sum overflows, the moments are NaN, which is within no tolerance."""
     assert all(map(isnan, principal_moments(inertia)))
@@ -119,7 +135,9 @@ def test_huge_numbers_have_no_moments(inertia: Tensor) -> None:
 
 def test_tiny_numbers_have_moments() -> None:
     """Numbers whose squares underflow have their moments, and 0 has 0."""
-    assert principal_moments((1e-300, 0.0, 0.0, 2e-300, 0.0, 3e-300)) == pytest.approx((1e-300, 2e-300, 3e-300))
+    assert principal_moments((1e-300, 0.0, 0.0, 2e-300, 0.0, 3e-300)) == pytest.approx(
+        (1e-300, 2e-300, 3e-300)
+    )
     assert principal_moments((0.0,) * 6) == (0.0, 0.0, 0.0)
 
 
@@ -133,5 +151,7 @@ def test_no_volume(shape: Shape) -> None:
 def test_the_volume_is_the_weight() -> None:
     """Of two shapes of one density the larger weighs more."""
     small, large = Cylinder(1.0, 1.0), Cylinder(1.0, 3.0)
-    body = uniform_solid([(small, IDENTITY), (large, Transform(translation=(4.0, 0.0, 0.0)))], 8.0 * pi)
+    body = uniform_solid(
+        [(small, IDENTITY), (large, Transform(translation=(4.0, 0.0, 0.0)))], 8.0 * pi
+    )
     assert body.centre == pytest.approx((3.0, 0.0, 0.0))

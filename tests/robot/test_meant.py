@@ -11,7 +11,9 @@ def many_misspelt(count: int) -> str:
     """Return a robot in which joints name their parent wrongly."""
     links = "".join(f'<link name="arm_{number}"/>' for number in range(count))
     wrong = ("torsoo", "trso")
-    joints = "".join(JOINT.format(number, wrong[number % 2], f"arm_{number}") for number in range(count))
+    joints = "".join(
+        JOINT.format(number, wrong[number % 2], f"arm_{number}") for number in range(count)
+    )
     return f'<robot name="r"><link name="torso"/>{links}{joints}</robot>'
 
 
@@ -23,6 +25,11 @@ def test_a_name_is_undone_in_few_places(count: int, *, is_meant: bool) -> None:
 
 def test_ends_without_a_link_are_not_exchanged() -> None:
     """A second joint of a link, whose parent names no link, stays as it is."""
-    joints = JOINT.format(1, "base", "arm") + '<joint name="j2" type="fixed"><parent/><child link="arm"/></joint>'
-    reading = read_urdf(f'<robot name="r"><link name="base"/><link name="arm"/>{joints}</robot>'.encode(), "r.urdf")
+    joints = (
+        JOINT.format(1, "base", "arm")
+        + '<joint name="j2" type="fixed"><parent/><child link="arm"/></joint>'
+    )
+    reading = read_urdf(
+        f'<robot name="r"><link name="base"/><link name="arm"/>{joints}</robot>'.encode(), "r.urdf"
+    )
     assert (reading.verdict, reading.is_meant) == ("rejected", False)

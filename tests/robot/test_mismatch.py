@@ -20,7 +20,9 @@ shapes = st.sampled_from((BRICK, ROD, BALL))
 
 
 @given(shapes, poses, poses, poses)
-def test_the_frame_does_not_matter(shape: Shape, one: Transform, other: Transform, frame: Transform) -> None:
+def test_the_frame_does_not_matter(
+    shape: Shape, one: Transform, other: Transform, frame: Transform
+) -> None:
     """Seen from another frame, two shapes differ as much."""
     here, there = (
         mismatch(shape, one, shape, other, TOLERANCE),
@@ -28,7 +30,9 @@ def test_the_frame_does_not_matter(shape: Shape, one: Transform, other: Transfor
     )
     assert here is not None
     assert there is not None
-    assert (here.apart, here.size, here.turn) == pytest.approx((there.apart, there.size, there.turn), abs=1e-9)
+    assert (here.apart, here.size, here.turn) == pytest.approx(
+        (there.apart, there.size, there.turn), abs=1e-9
+    )
 
 
 @given(shapes, poses)
@@ -40,7 +44,9 @@ def test_a_half_turn_is_a_symmetry(shape: Shape, pose: Transform) -> None:
 
 
 @given(shapes, poses, _vector)
-def test_a_shift_is_the_distance_of_the_centres(shape: Shape, pose: Transform, shift: Vector) -> None:
+def test_a_shift_is_the_distance_of_the_centres(
+    shape: Shape, pose: Transform, shift: Vector
+) -> None:
     """A shift counts in full, whatever its direction."""
     found = mismatch(shape, pose, shape, Transform(translation=shift) @ pose, TOLERANCE)
     assert found is not None

@@ -31,10 +31,14 @@ COPIES = {
     "numbers": REFERENCE.replace("0.6 0.4 0.2", ".60 4e-1 0.20").replace('"0 0 0"', '"-0 0.0 0"'),
     "defaults": REFERENCE.replace(' rpy="0 0 0"', ""),
     "materials": REFERENCE.replace('"green"', '"grass"'),
-    "joint names": REFERENCE.replace("base_lidar_joint", "j1").replace("base_left_wheel_joint", "j2"),
+    "joint names": REFERENCE.replace("base_lidar_joint", "j1").replace(
+        "base_left_wheel_joint", "j2"
+    ),
     "the length of an axis": REFERENCE.replace('axis xyz="0 0 1"', 'axis xyz="0 0 1.0001"', 1),
     "robot name": REFERENCE.replace('name="my_robot"', 'name="mine"'),
-    "unused material": REFERENCE.replace("</robot>", '<material name="x"><color rgba="1 0 0 1"/></material></robot>'),
+    "unused material": REFERENCE.replace(
+        "</robot>", '<material name="x"><color rgba="1 0 0 1"/></material></robot>'
+    ),
 }
 
 

@@ -78,14 +78,25 @@ def read_vector(text: str) -> tuple[float, float, float] | None:
 
 @pytest.mark.parametrize(
     ("value", "text"),
-    [(0.1 + 0.2, "0.3"), (-0.0, "0"), (1e-9, "1e-09"), (1e-14, "0"), (1e-5, "0.00001"), (12345678.0, "12345678"), (inf, "inf")],
-)  # fmt: skip
+    [
+        (0.1 + 0.2, "0.3"),
+        (-0.0, "0"),
+        (1e-9, "1e-09"),
+        (1e-14, "0"),
+        (1e-5, "0.00001"),
+        (12345678.0, "12345678"),
+        (inf, "inf"),
+    ],
+)
 def test_numbers_are_written_as_a_person_would(value: float, text: str) -> None:
     """In few characters, without an exponent unless the number is tiny, as those of an inertia are."""
     assert written_number(value) == text
 
 
-_relevant = st.text("0123456789+-.eE \t\n\r\v\f,xXnNaAiIfF_$u\u00a0\u2212\u0661\uff11\x1f\x85\u2028\udc80", max_size=12)
+_relevant = st.text(
+    "0123456789+-.eE \t\n\r\v\f,xXnNaAiIfF_$u\u00a0\u2212\u0661\uff11\x1f\x85\u2028\udc80",
+    max_size=12,
+)
 _digits = st.text(_DIGITS, max_size=4)
 _likely = st.builds(
     "".join,
@@ -244,5 +255,19 @@ def test_python_writes_what_ros_reads(value: float) -> None:
 def test_versions() -> None:
     """`x.y` that C's strtol reads as 1 and 0."""
     assert all(is_version_one(text) for text in ("1.0", " 1.0", "01.00", "+1.0", "1.+0"))
-    refused = ("1", "", "1.0.0", "2.0", "1.1", "1.", ".0", "1.0 ", "a.b", "-1.0", "1,0", "1.0x", "\u0661.0")
+    refused = (
+        "1",
+        "",
+        "1.0.0",
+        "2.0",
+        "1.1",
+        "1.",
+        ".0",
+        "1.0 ",
+        "a.b",
+        "-1.0",
+        "1,0",
+        "1.0x",
+        "\u0661.0",
+    )
     assert not any(is_version_one(text) for text in refused)

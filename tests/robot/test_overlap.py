@@ -32,14 +32,18 @@ def at(x: float, y: float, z: float, rpy: Vector = (0.0, 0.0, 0.0)) -> Transform
 
 def moved(pose: Transform, way: float, direction: Vector) -> Transform:
     """Return a pose moved along a direction, metres."""
-    x, y, z = (start + way * along for start, along in zip(pose.translation, direction, strict=True))
+    x, y, z = (
+        start + way * along for start, along in zip(pose.translation, direction, strict=True)
+    )
     return Transform(pose.rotation, (x, y, z))
 
 
 SIDEWAYS = (pi / 2, 0.0, 0.0)
 HANDMADE = (1.5708, 0.0, 0.0)  # a quarter turn with the usual rounding
 
-_sizes = st.floats(-3, 1).map(lambda power: 10.0**power) | st.sampled_from((0.0, -0.2, 0.001, 0.5, 1.0))
+_sizes = st.floats(-3, 1).map(lambda power: 10.0**power) | st.sampled_from(
+    (0.0, -0.2, 0.001, 0.5, 1.0)
+)
 boxes = st.builds(Box, st.tuples(_sizes, _sizes, _sizes))
 cylinders = st.builds(Cylinder, _sizes, _sizes)
 spheres = st.builds(Sphere, _sizes)
@@ -54,13 +58,18 @@ def spread(count: int) -> list[Vector]:
     turn = pi * (3.0 - sqrt(5.0))
     heights = [1.0 - (2.0 * step + 1.0) / count for step in range(count)]
     flat = [rotation_from_rpy((0.0, 0.0, turn * step)) for step in range(count)]
-    return [(sqrt(1 - z * z) * r[0], sqrt(1 - z * z) * r[3], z) for r, z in zip(flat, heights, strict=True)]
+    return [
+        (sqrt(1 - z * z) * r[0], sqrt(1 - z * z) * r[3], z)
+        for r, z in zip(flat, heights, strict=True)
+    ]
 
 
 DIRECTIONS = spread(400)
 
 
-def distance_along(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, direction: Vector) -> float:
+def distance_along(
+    a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, direction: Vector
+) -> float:
     """Return how far b starts beyond the end of a along a direction; negative if they overlap."""
     return extent(b, T_w_b, direction)[0] - extent(a, T_w_a, direction)[1]
 
@@ -81,10 +90,28 @@ def distance_along(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, direc
         (Box((1, 1, 1)), at(0, 0, 0), Box((2, 2, 2)), at(1.5, 0, 0), 0.0),
         (Box((1, 1, 1)), at(0, 0, 0), Box((2, 2, 2)), at(1.4, 1.3, 1.2), -0.1),
         (Box((1, 1, 1)), at(0, 0, 0), Box((3, 3, 3)), at(0.1, 0.2, 0.3), -1.7),
-        (Box((1, 1, 1)), at(0, 0, 0), Box((1, 1, 1)), at(1.2, 0, 0, (0, 0, pi / 4)), 0.7 - sqrt(0.5)),
+        (
+            Box((1, 1, 1)),
+            at(0, 0, 0),
+            Box((1, 1, 1)),
+            at(1.2, 0, 0, (0, 0, pi / 4)),
+            0.7 - sqrt(0.5),
+        ),
         # edge across edge: normal along x, halfway between two leaning boxes
-        (Box((1, 1, 1)), at(0, 0, 0, (0, 0, pi / 4)), Box((1, 1, 1)), at(1.5, 0, 0, (0, pi / 4, 0)), 1.5 - sqrt(2)),
-        (Box((1, 1, 1)), at(0, 0, 0, (0, 0, pi / 4)), Box((1, 1, 1)), at(1.4, 0, 0, (0, pi / 4, 0)), 1.4 - sqrt(2)),
+        (
+            Box((1, 1, 1)),
+            at(0, 0, 0, (0, 0, pi / 4)),
+            Box((1, 1, 1)),
+            at(1.5, 0, 0, (0, pi / 4, 0)),
+            1.5 - sqrt(2),
+        ),
+        (
+            Box((1, 1, 1)),
+            at(0, 0, 0, (0, 0, pi / 4)),
+            Box((1, 1, 1)),
+            at(1.4, 0, 0, (0, pi / 4, 0)),
+            1.4 - sqrt(2),
+        ),
         # a sphere by a box: beside a face, an edge, a corner; and inside
         (Box((2, 2, 2)), at(0, 0, 0), Sphere(0.5), at(2, 0.3, 0.2), 0.5),
         (Box((2, 2, 2)), at(0, 0, 0), Sphere(0.5), at(1.3, 1.4, 0), 0.0),
@@ -134,7 +161,9 @@ def distance_along(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, direc
         (Box((1e9, 1e9, 1e9)), at(0, 0, 0), Box((1e9, 1e9, 1e9)), at(0, 0, 2e9), 1e9),
     ],
 )
-def test_closed_forms(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, expected: float) -> None:
+def test_closed_forms(
+    a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, expected: float
+) -> None:
     """A depth with a closed form is found, in both orders of the shapes; what is `expected` metres apart has none."""
     assert penetration(a, T_w_a, b, T_w_b) == pytest.approx(max(0.0, -expected), abs=FINE)
     assert penetration(b, T_w_b, a, T_w_a) == pytest.approx(max(0.0, -expected), abs=FINE)
@@ -142,7 +171,9 @@ def test_closed_forms(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, ex
 
 @examples(30)
 @given(a=shapes, T_w_a=poses, b=shapes, T_w_b=poses)
-def test_no_direction_has_a_smaller_overlap(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> None:
+def test_no_direction_has_a_smaller_overlap(
+    a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform
+) -> None:
     """Along each of 400 directions the shapes overlap at least as much."""
     least = -max(distance_along(a, T_w_a, b, T_w_b, direction) for direction in DIRECTIONS)
     assert penetration(a, T_w_a, b, T_w_b) <= max(0.0, least) + NEAR
@@ -152,7 +183,9 @@ def test_no_direction_has_a_smaller_overlap(a: Shape, T_w_a: Transform, b: Shape
 @given(a=shapes, T_w_a=poses, b=shapes, T_w_b=poses)
 def test_both_orders_agree(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> None:
     """The depth of b in a is that of a in b."""
-    assert penetration(b, T_w_b, a, T_w_a) == pytest.approx(penetration(a, T_w_a, b, T_w_b), abs=NEAR)
+    assert penetration(b, T_w_b, a, T_w_a) == pytest.approx(
+        penetration(a, T_w_a, b, T_w_b), abs=NEAR
+    )
 
 
 @slow
@@ -168,18 +201,26 @@ def test_a_common_motion_changes_nothing(
 def away(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> Vector:
     """Return the direction of least overlap in the world, from a to b."""
     x, y, z = T_w_a.rotate(least_overlap(a, b, T_w_a.inverse() @ T_w_b))
-    return (x, y, z) if dot((x, y, z), minus(T_w_b.translation, T_w_a.translation)) >= 0.0 else (-x, -y, -z)
+    return (
+        (x, y, z)
+        if dot((x, y, z), minus(T_w_b.translation, T_w_a.translation)) >= 0.0
+        else (-x, -y, -z)
+    )
 
 
 @slow
 @given(a=shapes, T_w_a=poses, b=shapes, T_w_b=poses)
-def test_the_depth_is_the_smallest_separating_motion(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> None:
+def test_the_depth_is_the_smallest_separating_motion(
+    a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform
+) -> None:
     """Moved by the depth the shapes touch; moved by less they still overlap."""
     depth, direction = penetration(a, T_w_a, b, T_w_b), away(a, T_w_a, b, T_w_b)
     assert penetration(a, T_w_a, b, moved(T_w_b, depth, direction), NEAR) == 0.0
     if depth > 0.001:
         for less in (0.0005, 0.5 * depth):
-            assert 0.0 < penetration(a, T_w_a, b, moved(T_w_b, depth - less, direction)) <= less + NEAR
+            assert (
+                0.0 < penetration(a, T_w_a, b, moved(T_w_b, depth - less, direction)) <= less + NEAR
+            )
 
 
 @slow
@@ -245,8 +286,17 @@ _extreme_shapes = (
 
 @slow
 @given(a=_extreme_shapes, b=_extreme_shapes, x=_extreme, y=_extreme, z=_extreme, pose=poses)
-@example(a=Sphere(1.7e308), b=Cylinder(1.7e308, 1.7e308), x=-1.7e308, y=1.7e308, z=1.7e308, pose=at(0, 0, 0))
-def test_any_finite_input_has_a_result(a: Shape, b: Shape, x: float, y: float, z: float, pose: Transform) -> None:
+@example(
+    a=Sphere(1.7e308),
+    b=Cylinder(1.7e308, 1.7e308),
+    x=-1.7e308,
+    y=1.7e308,
+    z=1.7e308,
+    pose=at(0, 0, 0),
+)
+def test_any_finite_input_has_a_result(
+    a: Shape, b: Shape, x: float, y: float, z: float, pose: Transform
+) -> None:
     """Sizes and positions anywhere in the range of floats give a number."""
     assert penetration(a, pose, b, Transform(pose.rotation, (x, y, z))) >= 0.0
 
@@ -294,8 +344,14 @@ def random_shape(rng: random.Random, kind: type[Shape]) -> Shape:
 
 def random_pose(rng: random.Random, size: float) -> Transform:
     """Return a random pose with its origin about `size` from the world's, one in three along the axes."""
-    rpy = [rng.choice((0.0, pi / 2, 1.5708)) if rng.random() < 0.3 else rng.uniform(-4, 4) for _ in range(3)]
-    x, y, z = (rng.choice((0.0, size)) if rng.random() < 0.3 else rng.gauss(0.0, size / 2) for _ in range(3))
+    rpy = [
+        rng.choice((0.0, pi / 2, 1.5708)) if rng.random() < 0.3 else rng.uniform(-4, 4)
+        for _ in range(3)
+    ]
+    x, y, z = (
+        rng.choice((0.0, size)) if rng.random() < 0.3 else rng.gauss(0.0, size / 2)
+        for _ in range(3)
+    )
     return at(x, y, z, (rpy[0], rpy[1], rpy[2]))
 
 
@@ -311,7 +367,13 @@ def test_coal_agrees(oracle: Oracle, first: type[Shape], second: type[Shape]) ->
     rng = random.Random(f"{first.__name__} {second.__name__}")
     for _ in range(1500):
         a, b = random_shape(rng, first), random_shape(rng, second)
-        size = hypot(*(high - low for shape in (a, b) for low, high in [extent(shape, IDENTITY, DIRECTIONS[0])]))
+        size = hypot(
+            *(
+                high - low
+                for shape in (a, b)
+                for low, high in [extent(shape, IDENTITY, DIRECTIONS[0])]
+            )
+        )
         pair = (a, random_pose(rng, 0.1), b, random_pose(rng, size))
         own, theirs = penetration(*pair), -oracle.distance(*pair)
         if own != pytest.approx(max(0.0, theirs), abs=NEAR):

@@ -86,7 +86,9 @@ def test_a_problem_has_its_location(sample: ProblemSample) -> None:
     """Its line and column are those of its attribute or tag, and there are no other problems."""
     read = read_urdf(sample.data, "sample.urdf")
     locations = [
-        (problem.location.line, problem.location.column) for problem in read.problems if problem.code == sample.code
+        (problem.location.line, problem.location.column)
+        for problem in read.problems
+        if problem.code == sample.code
     ]
     assert sample.location in locations, [
         (problem.code, problem.message, problem.location) for problem in read.problems
@@ -96,16 +98,20 @@ def test_a_problem_has_its_location(sample: ProblemSample) -> None:
 
 @pytest.mark.parametrize(
     "sample",
-    [sample for sample in SAMPLES if sample.code not in _AT_THE_TOP and "<?xml" not in sample.marked[:6]],
+    [
+        sample
+        for sample in SAMPLES
+        if sample.code not in _AT_THE_TOP and "<?xml" not in sample.marked[:6]
+    ],
     ids=lambda sample: f"{sample.code}-{sample.name}",
 )
 def test_a_problem_moves_with_its_line(sample: ProblemSample) -> None:
     """Three lines of comment before it, with CR LF, move it by three lines and change nothing else."""
     first = read_urdf(sample.data).problems
     second = read_urdf(b"<!--\r\n\r\n-->\r\n" + sample.data.replace(b"\n", b"\r\n")).problems
-    assert [(problem.code, problem.location.line - 3, problem.location.column) for problem in second] == [
-        (problem.code, problem.location.line, problem.location.column) for problem in first
-    ]
+    assert [
+        (problem.code, problem.location.line - 3, problem.location.column) for problem in second
+    ] == [(problem.code, problem.location.line, problem.location.column) for problem in first]
 
 
 def test_every_kind_of_problem_has_a_sample() -> None:
@@ -115,7 +121,9 @@ def test_every_kind_of_problem_has_a_sample() -> None:
 
 def test_locations_count_characters() -> None:
     """A column is one more than the number of characters before it, including tabs and non-ASCII letters."""
-    read = read_urdf("<robot name='r'>\n\t<!-- \u00fc\U0001f916 --><link name='a'/><link  name='a'/></robot>".encode())
+    read = read_urdf(
+        "<robot name='r'>\n\t<!-- \u00fc\U0001f916 --><link name='a'/><link  name='a'/></robot>".encode()
+    )
     (problem,) = read.problems
     assert (problem.location.line, problem.location.column) == (2, 36)
 
@@ -137,14 +145,18 @@ def test_all_roots_are_named() -> None:
     """ROS 2 names two roots; the grader names all."""
     read = read_urdf(robot(links("a", "b", "c", "d", "e") + joint("a", "b")).encode())
     text = message(read, "URDF080")
-    assert text.startswith("'c', 'd' and 'e' are not connected to the robot: no joint has them as its child")
+    assert text.startswith(
+        "'c', 'd' and 'e' are not connected to the robot: no joint has them as its child"
+    )
     assert "roots are 'a', 'c', 'd', 'e'" in text
 
 
 def test_a_single_detached_link_is_named() -> None:
     """The message names the small part, not the robot."""
     read = read_urdf(robot(links("loose", "a", "b") + joint("a", "b")).encode())
-    assert message(read, "URDF080").startswith("'loose' is not connected to the robot: no joint has it as its child")
+    assert message(read, "URDF080").startswith(
+        "'loose' is not connected to the robot: no joint has it as its child"
+    )
 
 
 @pytest.mark.parametrize(
@@ -161,7 +173,11 @@ def test_loops_are_listed_link_by_link(ends: str, code: str, spelt: str) -> None
     """Each link of the loop in order, back to the first, and the joints by name."""
     names = dict.fromkeys(ends.replace(" ", ""))
     pairs = ends.split()
-    read = read_urdf(robot(links(*names) + "".join(joint(pair[0], pair[1], f"j_{pair}") for pair in pairs)).encode())
+    read = read_urdf(
+        robot(
+            links(*names) + "".join(joint(pair[0], pair[1], f"j_{pair}") for pair in pairs)
+        ).encode()
+    )
     text = message(read, code)
     assert spelt in text
     around = spelt.replace("'", "").split(" -> ")
@@ -172,7 +188,9 @@ def test_loops_are_listed_link_by_link(ends: str, code: str, spelt: str) -> None
 def test_every_separate_loop_is_found() -> None:
     """Two loops are two problems."""
     pairs = ("ab", "ba", "cd", "de", "ec")
-    read = read_urdf(robot(links(*"xabcde") + "".join(joint(pair[0], pair[1], pair) for pair in pairs)).encode())
+    read = read_urdf(
+        robot(links(*"xabcde") + "".join(joint(pair[0], pair[1], pair) for pair in pairs)).encode()
+    )
     assert codes(read).count("URDF083") == 2
 
 
@@ -188,9 +206,21 @@ def test_cyclic_mimics_are_listed() -> None:
 @pytest.mark.parametrize(
     ("text", "code", "guess"),
     [
-        (robot(links("base_link", "lidar") + joint("base_link", "lidr")), "URDF071", "did you mean 'lidar'?"),
-        (robot(links("base_link", "lidar") + joint("Base_Link", "lidar")), "URDF071", "did you mean 'base_link'?"),
-        (robot(links("a", "b") + joint("a", "b", kind="continous")), "URDF061", "did you mean 'continuous'?"),
+        (
+            robot(links("base_link", "lidar") + joint("base_link", "lidr")),
+            "URDF071",
+            "did you mean 'lidar'?",
+        ),
+        (
+            robot(links("base_link", "lidar") + joint("Base_Link", "lidar")),
+            "URDF071",
+            "did you mean 'base_link'?",
+        ),
+        (
+            robot(links("a", "b") + joint("a", "b", kind="continous")),
+            "URDF061",
+            "did you mean 'continuous'?",
+        ),
         (robot(links("a", "b") + joint("a", "b", kind="Fixed")), "URDF061", "write 'fixed'"),
         (robot(links("a", "b") + joint("a", "b", kind=" fixed")), "URDF061", "write 'fixed'"),
         (
@@ -223,10 +253,17 @@ def test_misspelt_names_have_suggestions(text: str, code: str, guess: str) -> No
 def test_places_do_not_count_in_comparisons() -> None:
     """A robot that is written elsewhere in a file is equal to another one, in its hash and its representation, too."""
     text = robot(links("a", "b"), joint("a", "b"))
-    one, other = (read_urdf(raw.encode(), path).robot for raw, path in ((text, "a"), (text.replace("<", "\n<"), "b")))
+    one, other = (
+        read_urdf(raw.encode(), path).robot
+        for raw, path in ((text, "a"), (text.replace("<", "\n<"), "b"))
+    )
     assert one is not None
     assert one == other != read_urdf(robot(links("a")).encode(), "a").robot
-    assert (one.joints, hash(one.joints), repr(one)) == (other.joints, hash(other.joints), repr(other))
+    assert (one.joints, hash(one.joints), repr(one)) == (
+        other.joints,
+        hash(other.joints),
+        repr(other),
+    )
     assert one.joints[0].origin == Origin() != Origin((1.0, 0.0, 0.0))
 
 
@@ -238,7 +275,14 @@ def test_one_run_finds_all_problems() -> None:
         '<link name="a"/>\n'
         '<joint name="j" type="fixd"><parent link="a"/><child link="x"/><origin xyz="1,2,x"/></joint>'
     )
-    assert codes(read_urdf(text.encode())) == ["URDF052", "URDF041", "URDF031", "URDF061", "URDF071", "URDF062"]
+    assert codes(read_urdf(text.encode())) == [
+        "URDF052",
+        "URDF041",
+        "URDF031",
+        "URDF061",
+        "URDF071",
+        "URDF062",
+    ]
 
 
 def test_several_malformed_tags_are_found_in_one_run() -> None:
@@ -269,8 +313,12 @@ def test_external_entities_are_not_opened() -> None:
 
 def test_entities_do_not_expand() -> None:
     """A billion laughs are not expanded."""
-    entities = '<!ENTITY l0 "lol">' + "".join(f'<!ENTITY l{n} "{f"&l{n - 1};" * 10}">' for n in range(1, 10))
-    text = f'<?xml version="1.0"?>\n<!DOCTYPE r [{entities}]>\n<robot name="&l9;">{_LINK}&l9;</robot>'
+    entities = '<!ENTITY l0 "lol">' + "".join(
+        f'<!ENTITY l{n} "{f"&l{n - 1};" * 10}">' for n in range(1, 10)
+    )
+    text = (
+        f'<?xml version="1.0"?>\n<!DOCTYPE r [{entities}]>\n<robot name="&l9;">{_LINK}&l9;</robot>'
+    )
     with limited_work(6_000):
         read = read_urdf(text.encode())
     assert "URDF010" in codes(read)
@@ -329,7 +377,9 @@ _FRAMES = {
     "attributes-like-name": robot(_LINK, '{ nam%=""}'),
     "attributes-like-version": robot(_LINK, 'name="r"{ version%=""}'),
     "attributes-without-space": robot(_LINK, 'name="r"{a%=""}'),
-    "attributes-of-an-inertia": robot('<link name="a"><inertial><inertia{ ix%=""}/></inertial></link>'),
+    "attributes-of-an-inertia": robot(
+        '<link name="a"><inertial><inertia{ ix%=""}/></inertial></link>'
+    ),
     "namespaces": robot(_LINK, 'name="r"{ xmlns:a%="u"}'),
     "prefixed-tags": robot(_LINK + "{<x:y/>}"),
     "many-prefixes": robot(_LINK + "{<x%:y/>}"),
@@ -373,13 +423,22 @@ def test_many_attributes_are_read_in_linear_time() -> None:
     """An element with 300,000 attributes, of which none is a name, is not searched for a misspelt name."""
     attributes = " ".join(f'a{number}="1"' for number in range(300_000))
     with limited_work(20_000_000):  # a search in each attribute for each other one hangs
-        assert read_urdf(f'<robot name="r"><link name="a"/><link {attributes}/></robot>'.encode()).verdict == "rejected"
+        assert (
+            read_urdf(
+                f'<robot name="r"><link name="a"/><link {attributes}/></robot>'.encode()
+            ).verdict
+            == "rejected"
+        )
 
 
 def test_words_are_undone_in_few_mistakes_only() -> None:
     """With hundreds of mistakes no word is read as another one: the work would not be worth it."""
-    assert read_urdf(robot('<link name="a"/><link name="b"/>' + joint("a", "b", "j").replace("fixed", "fixd"))).is_meant
-    many = "".join(joint("a", f"l{number}", f"j{number}").replace("fixed", "fixd") for number in range(400))
+    assert read_urdf(
+        robot('<link name="a"/><link name="b"/>' + joint("a", "b", "j").replace("fixed", "fixd"))
+    ).is_meant
+    many = "".join(
+        joint("a", f"l{number}", f"j{number}").replace("fixed", "fixd") for number in range(400)
+    )
     with limited_work(1_000_000):
         assert not read_urdf(robot('<link name="a"/>' + many)).is_meant
 

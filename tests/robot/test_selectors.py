@@ -29,7 +29,14 @@ def selected(found: Robot, name: str) -> str:
 
 @pytest.mark.parametrize(
     ("name", "link"),
-    [("@root", "b"), ("@moved:1", "u"), ("@moved:2", "h"), ("@tip", "t"), ("u", "u"), ("nowhere", "nowhere")],
+    [
+        ("@root", "b"),
+        ("@moved:1", "u"),
+        ("@moved:2", "h"),
+        ("@tip", "t"),
+        ("u", "u"),
+        ("nowhere", "nowhere"),
+    ],
 )
 def test_a_selector_means_a_link_of_the_main_chain(name: str, link: str) -> None:
     """Fixed joints and links beside the chain do not count; a name is itself."""
@@ -40,10 +47,17 @@ def test_a_selector_means_a_link_of_the_main_chain(name: str, link: str) -> None
 def test_the_order_of_the_file_does_not_matter(joints: list[str]) -> None:
     """The links are the same in every order of the joints."""
     found = robot(*joints)
-    assert [selected(found, name) for name in ("@root", "@moved:1", "@moved:2", "@tip")] == ["b", "u", "h", "t"]
+    assert [selected(found, name) for name in ("@root", "@moved:1", "@moved:2", "@tip")] == [
+        "b",
+        "u",
+        "h",
+        "t",
+    ]
 
 
-@pytest.mark.parametrize(("link", "message"), [("b", "no joint holds 'b'"), ("x", "there is no link 'x'")])
+@pytest.mark.parametrize(
+    ("link", "message"), [("b", "no joint holds 'b'"), ("x", "there is no link 'x'")]
+)
 def test_a_joint_is_named_by_its_link(link: str, message: str) -> None:
     """It is the parent joint; a root has none."""
     assert [selected(robot(*ARM), f"@joint:{it}") for it in "mhc"] == ["bm", "fh", "bc"]
@@ -59,7 +73,9 @@ def test_a_moving_joint_that_is_not_there_is_missing(name: str) -> None:
         selected(robot(*ARM), name)
     assert str(caught.value) == f"there is no {name}: the longest chain has 2 moving joints"
     found = robot(*ARM)
-    assert selected_or_name(found, parent_joints(found), name) == name  # of which no hint can be about a link
+    assert (
+        selected_or_name(found, parent_joints(found), name) == name
+    )  # of which no hint can be about a link
 
 
 def test_a_mimic_joint_does_not_count() -> None:
@@ -81,14 +97,18 @@ def test_several_links_are_not_guessed() -> None:
 def test_of_several_trees_the_largest_counts() -> None:
     """A forgotten joint detaches a part; two trees of the same size have no root."""
     assert selected(robot("ab:revolute", "bc:revolute", "xy:revolute"), "@root") == "a"
-    with pytest.raises(MissingElement, match=r"several links are roots of trees of the same size: 'a' and 'x'"):
+    with pytest.raises(
+        MissingElement, match=r"several links are roots of trees of the same size: 'a' and 'x'"
+    ):
         selected(robot("ab:revolute", "xy:revolute"), "@root")
 
 
 @pytest.mark.parametrize("name", ["@root", "@tip", "@moved:1"])
 def test_a_loop_has_no_root(name: str) -> None:
     """Links that are in no tree have no place in it."""
-    with pytest.raises(MissingElement, match=f"there is no {name}: no link is the root of the robot"):
+    with pytest.raises(
+        MissingElement, match=f"there is no {name}: no link is the root of the robot"
+    ):
         selected(robot("ab:revolute", "ba:revolute"), name)
 
 
@@ -112,5 +132,7 @@ def test_links_that_may_exist_are_not_ignored() -> None:
 def test_a_long_chain_takes_linear_time() -> None:
     """Thousands of links are no problem."""
     links = tuple(Link(str(number)) for number in range(20_000))
-    joints = tuple(Joint(f"j{number}", "revolute", str(number), str(number + 1)) for number in range(19_999))
+    joints = tuple(
+        Joint(f"j{number}", "revolute", str(number), str(number + 1)) for number in range(19_999)
+    )
     assert selected(Robot("r", links, joints), "@moved:9999") == "9999"

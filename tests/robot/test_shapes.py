@@ -23,13 +23,18 @@ from grader.robot.transforms import IDENTITY, Transform, Vector, dot, rotation_f
 
 _sizes = st.floats(-3, 1).map(lambda power: 10.0**power) | st.sampled_from((0.0, -0.3, 1.0))
 shapes = (
-    st.builds(Box, st.tuples(_sizes, _sizes, _sizes)) | st.builds(Cylinder, _sizes, _sizes) | st.builds(Sphere, _sizes)
+    st.builds(Box, st.tuples(_sizes, _sizes, _sizes))
+    | st.builds(Cylinder, _sizes, _sizes)
+    | st.builds(Sphere, _sizes)
 )
 _coordinates = st.floats(-2, 2)
 vectors = st.tuples(_coordinates, _coordinates, _coordinates)
 _components = _coordinates | st.sampled_from((0.0, 1.0, -1.0, 1e-7))
 directions = (
-    st.tuples(_components, _components, _components).map(unit).filter(bool).map(lambda found: found or (1, 0, 0))
+    st.tuples(_components, _components, _components)
+    .map(unit)
+    .filter(bool)
+    .map(lambda found: found or (1, 0, 0))
 )
 poses = st.builds(lambda rpy, xyz: Transform(rotation_from_rpy(rpy), xyz), vectors, vectors)
 
@@ -46,17 +51,28 @@ def surface(shape: Shape) -> list[Vector]:
         return [(a * x, b * y, c * z) for x in steps for y in steps for z in steps]
     if isinstance(shape, Cylinder):
         r, h = shape.radius, shape.length / 2
-        return [(r * part * x, r * part * y, h * z) for x, y in around for z in (-1.0, 0.0, 1.0) for part in (0.0, 1.0)]
+        return [
+            (r * part * x, r * part * y, h * z)
+            for x, y in around
+            for z in (-1.0, 0.0, 1.0)
+            for part in (0.0, 1.0)
+        ]
     rings = [turn * pi / 36 for turn in range(37)]
     r = shape.radius
-    return [(r * sin(ring) * x, r * sin(ring) * y, r * cos(ring)) for x, y in around[::10] for ring in rings]
+    return [
+        (r * sin(ring) * x, r * sin(ring) * y, r * cos(ring))
+        for x, y in around[::10]
+        for ring in rings
+    ]
 
 
 def inside(shape: Shape, point: Vector) -> bool:
     """Return whether a shape contains a point, up to rounding."""
     x, y, z = point
     if isinstance(shape, Box):
-        return all(abs(at) <= abs(size) / 2 + 1e-12 for at, size in zip(point, shape.size, strict=True))
+        return all(
+            abs(at) <= abs(size) / 2 + 1e-12 for at, size in zip(point, shape.size, strict=True)
+        )
     if isinstance(shape, Cylinder):
         return hypot(x, y) <= abs(shape.radius) + 1e-12 and abs(z) <= abs(shape.length) / 2 + 1e-12
     return hypot(x, y, z) <= abs(shape.radius) + 1e-12
@@ -71,8 +87,12 @@ def test_no_surface_point_is_beyond_the_support_point(shape: Shape, direction: V
     assert dot(found, direction) == pytest.approx(half_width(shape, direction), abs=1e-7)
 
 
-@given(shape=shapes, direction=directions, factor=st.sampled_from((2.0**-900, 0.125, 4.0, 2.0**900)))
-def test_the_length_of_a_direction_does_not_matter(shape: Shape, direction: Vector, factor: float) -> None:
+@given(
+    shape=shapes, direction=directions, factor=st.sampled_from((2.0**-900, 0.125, 4.0, 2.0**900))
+)
+def test_the_length_of_a_direction_does_not_matter(
+    shape: Shape, direction: Vector, factor: float
+) -> None:
     """Support points are the same for a direction of any length."""
     x, y, z = direction
     longer = support(shape, (factor * x, factor * y, factor * z))
@@ -98,7 +118,9 @@ def test_the_length_of_a_direction_does_not_matter(shape: Shape, direction: Vect
         (Sphere(1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
     ],
 )
-def test_several_support_points_give_their_centre(shape: Shape, direction: Vector, middle: Vector) -> None:
+def test_several_support_points_give_their_centre(
+    shape: Shape, direction: Vector, middle: Vector
+) -> None:
     """If a face, an edge or a line is farthest as a whole, its centre is returned."""
     assert support(shape, direction) == pytest.approx(middle, abs=1e-12)
 
@@ -109,7 +131,9 @@ def test_the_lowest_point_of_a_lying_cylinder_is_the_middle_of_its_contact_line(
 
 
 @given(shape=shapes, pose=poses, direction=directions, shift=vectors)
-def test_extents_move_with_the_shape(shape: Shape, pose: Transform, direction: Vector, shift: Vector) -> None:
+def test_extents_move_with_the_shape(
+    shape: Shape, pose: Transform, direction: Vector, shift: Vector
+) -> None:
     """Moving a shape moves both ends of its extent by its motion along the direction."""
     (a, b, c), (x, y, z) = shift, pose.translation
     moved = Transform(pose.rotation, (x + a, y + b, z + c))
@@ -119,7 +143,9 @@ def test_extents_move_with_the_shape(shape: Shape, pose: Transform, direction: V
 
 
 @given(shape=shapes, pose=poses, direction=directions)
-def test_extents_agree_with_support_points(shape: Shape, pose: Transform, direction: Vector) -> None:
+def test_extents_agree_with_support_points(
+    shape: Shape, pose: Transform, direction: Vector
+) -> None:
     """The high end is at the support point, and the low end is the high end of the opposite direction."""
     low, high = extent(shape, pose, direction)
     x, y, z = direction
@@ -184,6 +210,8 @@ def test_shapes_without_area_are_empty(geometry: Geometry, expected: bool) -> No
 )
 def test_the_size_of_a_mesh_is_unknown(ask: Callable[[], Any]) -> None:
     """Every function of the size of a mesh raises an error that names the mesh."""
-    with pytest.raises(UnknownShape, match=r"'wheel\.stl' is unknown: mesh files are not opened") as caught:
+    with pytest.raises(
+        UnknownShape, match=r"'wheel\.stl' is unknown: mesh files are not opened"
+    ) as caught:
         ask()
     assert caught.value.geometry is MESH

@@ -151,7 +151,9 @@ def test_a_turn_about_an_axis(axis: Vector, angle: float) -> None:
 def test_turns_about_coordinate_axes_agree_with_rpy(angle: float, axis: Vector) -> None:
     """About x it is roll, about y pitch, about z yaw."""
     rpy = (axis[0] * angle, axis[1] * angle, axis[2] * angle)
-    assert np.allclose(square(rotation_about(axis, angle)), square(rotation_from_rpy(rpy)), rtol=0, atol=1e-15)
+    assert np.allclose(
+        square(rotation_about(axis, angle)), square(rotation_from_rpy(rpy)), rtol=0, atol=1e-15
+    )
 
 
 @given(axis=directions, angle=st.floats(-1e-5, 1e-5) | _tiny)
@@ -178,11 +180,22 @@ def test_unit_vectors_of_any_size(vector: Vector) -> None:
         return
     assert found is not None
     assert hypot(*found) == pytest.approx(1.0, abs=1e-15)
-    assert all(a * b >= 0 for a, b in zip(found, (np.sign(coordinate) for coordinate in vector), strict=True))
+    assert all(
+        a * b >= 0
+        for a, b in zip(found, (np.sign(coordinate) for coordinate in vector), strict=True)
+    )
 
 
 @pytest.mark.parametrize(
-    "vector", [(0.0, 0.0, 0.0), (-0.0, 0.0, -0.0), (nan, 0.0, 1.0), (1.0, nan, 0.0), (inf, 0.0, 0.0), (nan, inf, 1.0)]
+    "vector",
+    [
+        (0.0, 0.0, 0.0),
+        (-0.0, 0.0, -0.0),
+        (nan, 0.0, 1.0),
+        (1.0, nan, 0.0),
+        (inf, 0.0, 0.0),
+        (nan, inf, 1.0),
+    ],
 )
 def test_vectors_without_a_direction(vector: Vector) -> None:
     """Zero, infinite and undefined vectors have none."""
@@ -251,7 +264,9 @@ def test_products_with_arrays_are_those_of_the_matrix(pose: Transform, point: Ve
     assert pose.apply([*point]) == pose.apply(np.array(point)) == pose.apply(point)
 
 
-@pytest.mark.parametrize("mistake", ["pose @ 3", "pose @ [1, 2, 3]", "3 @ pose", "pose + pose", "len(pose)", "[*pose]"])
+@pytest.mark.parametrize(
+    "mistake", ["pose @ 3", "pose @ [1, 2, 3]", "3 @ pose", "pose + pose", "len(pose)", "[*pose]"]
+)
 def test_a_pose_is_no_sequence(mistake: str) -> None:
     """What is no product of motions is a TypeError."""
     with pytest.raises(TypeError):

@@ -10,7 +10,9 @@ from tests.second_opinion.compare import Comparison, compared_mutants, compared_
 def main(number: str, first: str = "0", processes: str = "1") -> int:
     """Print the summary and return the exit code: 1 with a disagreement."""
     if number == "mutants":
-        comparisons: Iterable[Comparison] = chain(*map(compared_mutants, ("lab6", "arm", "sensors")))
+        comparisons: Iterable[Comparison] = chain(
+            *map(compared_mutants, ("lab6", "arm", "sensors"))
+        )
     else:
         comparisons = compared_seeds(range(int(first), int(first) + int(number)), int(processes))
     lines, different = summary(comparisons)

@@ -14,7 +14,9 @@ _VISIBLE = 0.01  # alpha
 _SIDE_BY_SIDE = 0.001  # metres: shapes that overlap by no more share no solid
 
 
-def shows_box(posed: Posed, link: str, size: Sequence[float], tolerance: float, centred: bool = False) -> Fact:
+def shows_box(
+    posed: Posed, link: str, size: Sequence[float], tolerance: float, centred: bool = False
+) -> Fact:
     edges = []
     for shape in _of_kind(posed, link, "box"):
         turned = np.abs(shape.pose[:3, :3])
@@ -23,7 +25,9 @@ def shows_box(posed: Posed, link: str, size: Sequence[float], tolerance: float, 
             edges.append((np.array(shape.size)[order], shape.pose[:2, 3]))
     if not edges:
         return False, None
-    best, middle = min(edges, key=lambda found: (np.abs(found[0] - size).max(), np.abs(found[1]).max()))
+    best, middle = min(
+        edges, key=lambda found: (np.abs(found[0] - size).max(), np.abs(found[1]).max())
+    )
     fine = near(best, size, tolerance) and bool(best.min() >= 0)
     if fine and centred and not near(middle, (0, 0), tolerance):
         return False, middle
@@ -37,7 +41,10 @@ def shows_cylinder(posed: Posed, link: str, radius: float, length: float, tolera
 
 
 def shows_sphere(posed: Posed, link: str, radius: float, tolerance: float) -> Fact:
-    best = min((shape.size[0] for shape in _of_kind(posed, link, "sphere")), key=lambda found: abs(found - radius))
+    best = min(
+        (shape.size[0] for shape in _of_kind(posed, link, "sphere")),
+        key=lambda found: abs(found - radius),
+    )
     return near(best, radius, tolerance), best
 
 
@@ -50,7 +57,9 @@ def _of_kind(posed: Posed, link: str, kind: str) -> list[Shape]:
     return found
 
 
-def shows_colour(posed: Posed, link: str, colour: Sequence[float], tolerance: float, shape: str = "any") -> Fact:
+def shows_colour(
+    posed: Posed, link: str, colour: Sequence[float], tolerance: float, shape: str = "any"
+) -> Fact:
     found = posed.main(link, shape).colour
     if found is None:
         return False, None
@@ -64,7 +73,9 @@ def shows_grey(posed: Posed, link: str, at_least: float, tolerance: float) -> Fa
     if found is None:
         return False, None
     red_green_blue = found[:3]
-    is_grey = found[3] >= _VISIBLE and max(red_green_blue) - min(red_green_blue) <= tolerance + SLACK
+    is_grey = (
+        found[3] >= _VISIBLE and max(red_green_blue) - min(red_green_blue) <= tolerance + SLACK
+    )
     return bool(is_grey and min(red_green_blue) >= at_least - SLACK), red_green_blue
 
 
@@ -74,7 +85,9 @@ def shows_nothing(posed: Posed, link: str) -> Fact:
 
 def is_shown(link: Link) -> bool:
     """Return whether a link shows anything: a visual that has a size and is not transparent."""
-    return any(one.has_size and (one.colour is None or one.colour[3] >= _VISIBLE) for one in link.visuals)
+    return any(
+        one.has_size and (one.colour is None or one.colour[3] >= _VISIBLE) for one in link.visuals
+    )
 
 
 def mass_is(posed: Posed, link: str, mass: float, tolerance: float) -> Fact:
@@ -99,25 +112,34 @@ def inertia_plausible(posed: Posed, link: str, tolerance: float) -> Fact:
         raise Missing("visual", link)
     if any(shape.kind == "mesh" for shape in shapes):
         raise Undecided(link)
-    shapes = [one for at, one in enumerate(shapes) if not any(_is_equal(one, other) for other in shapes[:at])]
+    shapes = [
+        one
+        for at, one in enumerate(shapes)
+        if not any(_is_equal(one, other) for other in shapes[:at])
+    ]
     total = sum(shape.volume for shape in shapes)
     middle = sum((shape.volume / total * shape.pose[:3, 3] for shape in shapes), np.zeros(3))
     expected = np.zeros((3, 3))
     for shape in shapes:
         part, away = mass * shape.volume / total, shape.pose[:3, 3] - middle
         turned = shape.pose[:3, :3]
-        expected += turned @ inertia(shape, part) @ turned.T + part * (away @ away * np.eye(3) - np.outer(away, away))
+        expected += turned @ inertia(shape, part) @ turned.T + part * (
+            away @ away * np.eye(3) - np.outer(away, away)
+        )
     size = max(
         float(np.linalg.norm(one.pose[:3, 3] - other.pose[:3, 3])) + one.radius + other.radius
         for one in shapes
         for other in shapes
     )
     is_off = np.linalg.norm(centre - middle) > max(0.002, 0.02 * size) + SLACK
-    off = 100 * np.abs(np.linalg.eigvalsh(tensor - expected)).max() / np.linalg.eigvalsh(expected)[2]
+    off = (
+        100 * np.abs(np.linalg.eigvalsh(tensor - expected)).max() / np.linalg.eigvalsh(expected)[2]
+    )
     fine = bool(off <= tolerance + SLACK and not is_off)
     pairs = combinations(shapes, 2)
     if not fine and any(
-        overlap(one, one.pose, other, other.pose, _SIDE_BY_SIDE) > _SIDE_BY_SIDE for one, other in pairs
+        overlap(one, one.pose, other, other.pose, _SIDE_BY_SIDE) > _SIDE_BY_SIDE
+        for one, other in pairs
     ):
         raise Undecided(link)
     return fine, off
@@ -128,7 +150,10 @@ def _is_equal(one: Shape, other: Shape) -> bool:
 
 
 def collision_matches_visual(posed: Posed, link: str, tolerance: float) -> Fact:
-    visuals, left = posed.visuals(link), [shape for shape in posed.link(link).collisions if shape.has_size]
+    visuals, left = (
+        posed.visuals(link),
+        [shape for shape in posed.link(link).collisions if shape.has_size],
+    )
     if any(shape.kind == "mesh" for shape in (*visuals, *left)):
         raise Undecided(link)
     if len(visuals) != len(left):

@@ -20,9 +20,18 @@ _SHAPES = (
 _TYPES = ("fixed", "continuous", "revolute", "prismatic", "floating", "planar")
 # How far the criteria allow a number to be off, by the attribute that has it.
 _TOLERANCES = {
-    "xyz": 0.002, "rpy": pi / 180, "size": 0.002, "radius": 0.002, "length": 0.002, "rgba": 0.01, "value": 0.01, "lower": pi / 180,
-    "upper": pi / 180, "effort": 1e-6, "velocity": 1e-6,
-}  # fmt: skip
+    "xyz": 0.002,
+    "rpy": pi / 180,
+    "size": 0.002,
+    "radius": 0.002,
+    "length": 0.002,
+    "rgba": 0.01,
+    "value": 0.01,
+    "lower": pi / 180,
+    "upper": pi / 180,
+    "effort": 1e-6,
+    "velocity": 1e-6,
+}
 
 
 def _some(random: Random, elements: list[ET.Element]) -> ET.Element:
@@ -30,7 +39,9 @@ def _some(random: Random, elements: list[ET.Element]) -> ET.Element:
 
 
 def _attribute(random: Random, robot: ET.Element, names: Sequence[str]) -> tuple[ET.Element, str]:
-    found = [(element, name) for element in robot.iter() for name in element.attrib if name in names]
+    found = [
+        (element, name) for element in robot.iter() for name in element.attrib if name in names
+    ]
     return random.choice(found) if found else (ET.Element("none", {"xyz": "0 0 0"}), "xyz")
 
 
@@ -101,18 +112,28 @@ def _rotate(random: Random, robot: ET.Element) -> None:
 
 
 def _remove_attribute(random: Random, robot: ET.Element) -> None:
-    element, name = _attribute(random, robot, ("xyz", "rpy", "rgba", "effort", "lower", "size", "radius", "ixx"))
+    element, name = _attribute(
+        random, robot, ("xyz", "rpy", "rgba", "effort", "lower", "size", "radius", "ixx")
+    )
     element.attrib.pop(name, None)
 
 
 def _remove_element(random: Random, robot: ET.Element) -> None:
-    parents = [(parent, child) for parent in robot.iter() for child in parent if child.tag not in ("parent", "child")]
+    parents = [
+        (parent, child)
+        for parent in robot.iter()
+        for child in parent
+        if child.tag not in ("parent", "child")
+    ]
     parent, child = random.choice(parents)
     parent.remove(child)
 
 
 def _reparent(random: Random, robot: ET.Element) -> None:
-    links, joint = [link.get("name", "") for link in robot.findall("link")], _some(random, robot.findall("joint"))
+    links, joint = (
+        [link.get("name", "") for link in robot.findall("link")],
+        _some(random, robot.findall("joint")),
+    )
     end = joint.find("parent")
     if end is not None and links:
         end.set("link", random.choice(links))
@@ -143,7 +164,18 @@ def _axis(random: Random, robot: ET.Element) -> None:
     axis.set(
         "xyz",
         random.choice(
-            ("1 0 0", "0 1 0", "0 0 1", "0 0 -1", "0 -1 0", "0 0 2.5", "0 0.0174 1", "0 0.018 1", "0 0 0", some)
+            (
+                "1 0 0",
+                "0 1 0",
+                "0 0 1",
+                "0 0 -1",
+                "0 -1 0",
+                "0 0 2.5",
+                "0 0.0174 1",
+                "0 0.018 1",
+                "0 0 0",
+                some,
+            )
         ),
     )
 
@@ -172,7 +204,8 @@ def _another_shape(random: Random, robot: ET.Element) -> None:
     )
     same = link.find(tag)
     link.insert(
-        random.randrange(len(link) + 1), copy.deepcopy(same) if same is not None and random.random() < 0.3 else new
+        random.randrange(len(link) + 1),
+        copy.deepcopy(same) if same is not None and random.random() < 0.3 else new,
     )
 
 
@@ -183,7 +216,9 @@ def _joint_between(random: Random, robot: ET.Element) -> None:
     if parent is None or robot.find("link[@name='between']") is not None:
         return
     first = ET.SubElement(
-        robot, "joint", {"name": "first_half", "type": random.choice(("fixed", "fixed", "fixed", "continuous"))}
+        robot,
+        "joint",
+        {"name": "first_half", "type": random.choice(("fixed", "fixed", "fixed", "continuous"))},
     )
     ET.SubElement(first, "parent", {"link": parent.get("link", "")})
     ET.SubElement(first, "child", {"link": "between"})
@@ -212,7 +247,12 @@ def _turn_frame(random: Random, robot: ET.Element) -> None:
             if (end := other.find("parent")) is not None and end.get("link") == name:
                 _place(other, turned.T, np.eye(3))
         if (axis := joint.find("axis")) is not None:
-            axis.set("xyz", " ".join(map(_text, turned.T @ [float(value) for value in axis.get("xyz", "").split()])))
+            axis.set(
+                "xyz",
+                " ".join(
+                    map(_text, turned.T @ [float(value) for value in axis.get("xyz", "").split()])
+                ),
+            )
     except (TypeError, ValueError):
         return  # an earlier change left no three numbers
 
@@ -222,14 +262,20 @@ def _place(element: ET.Element, before: np.ndarray[Any, Any], after: np.ndarray[
     origin = element.find("origin")
     if origin is None:
         origin = ET.SubElement(element, "origin")
-    xyz, rpy = ([float(value) for value in origin.get(name, "0 0 0").split()] for name in ("xyz", "rpy"))
+    xyz, rpy = (
+        [float(value) for value in origin.get(name, "0 0 0").split()] for name in ("xyz", "rpy")
+    )
     turned = before @ rotation(*rpy) @ after
     origin.set("xyz", " ".join(map(_text, before @ np.array(xyz))))
     pitch = np.arctan2(-turned[2, 0], np.hypot(turned[0, 0], turned[1, 0]))
     if np.hypot(turned[0, 0], turned[1, 0]) < 1e-9:
         angles = (0.0, pitch, np.arctan2(-turned[0, 1], turned[1, 1]))
     else:
-        angles = (np.arctan2(turned[2, 1], turned[2, 2]), pitch, np.arctan2(turned[1, 0], turned[0, 0]))
+        angles = (
+            np.arctan2(turned[2, 1], turned[2, 2]),
+            pitch,
+            np.arctan2(turned[1, 0], turned[0, 0]),
+        )
     origin.set("rpy", " ".join(repr(float(angle)) for angle in angles))
 
 
@@ -255,10 +301,22 @@ def _material(random: Random, robot: ET.Element) -> None:
     for material in visual.findall("material"):
         visual.remove(material)
     rgba = random.choice(
-        ("0 0.6 0 1", "0.7 0.7 0.7 1", "1 1 1 1", "0.75 0.75 0.75 1", "0.9 0.9 0.9", "0 0 2 1", "0.7 0.71 0.7 0")
+        (
+            "0 0.6 0 1",
+            "0.7 0.7 0.7 1",
+            "1 1 1 1",
+            "0.75 0.75 0.75 1",
+            "0.9 0.9 0.9",
+            "0 0 2 1",
+            "0.7 0.71 0.7 0",
+        )
     )
     inner = random.choice((f'<color rgba="{rgba}"/>', f'<color rgba="{rgba}"/>', ""))
-    visual.append(ET.fromstring(f'<material name="{random.choice(("own", "gray", "", "green"))}">{inner}</material>'))
+    visual.append(
+        ET.fromstring(
+            f'<material name="{random.choice(("own", "gray", "", "green"))}">{inner}</material>'
+        )
+    )
 
 
 def _shuffle(random: Random, robot: ET.Element) -> None:
@@ -276,7 +334,23 @@ def _mimic(random: Random, robot: ET.Element) -> None:
 
 _Change = Callable[[Random, ET.Element], None]
 CHANGES: tuple[_Change, ...] = (
-    *[_change_number] * 12, *[_turn_frame] * 3, *[_rotate] * 3, *[_change_all] * 2, _remove_attribute, _remove_element, _reparent,
-    _misspell, _swap_ends, _retype, _axis, _reshape, *[_another_shape] * 2, *[_joint_between] * 2, *[_mirror] * 2, _swap_links, _material,
-    _shuffle, _mimic,
-)  # fmt: skip
+    *[_change_number] * 12,
+    *[_turn_frame] * 3,
+    *[_rotate] * 3,
+    *[_change_all] * 2,
+    _remove_attribute,
+    _remove_element,
+    _reparent,
+    _misspell,
+    _swap_ends,
+    _retype,
+    _axis,
+    _reshape,
+    *[_another_shape] * 2,
+    *[_joint_between] * 2,
+    *[_mirror] * 2,
+    _swap_links,
+    _material,
+    _shuffle,
+    _mimic,
+)

@@ -45,13 +45,17 @@ def _rubric(name: str) -> tuple[Rubric, GraderRubric]:
     return Rubric(name), load_rubric(name)
 
 
-def compared(name: str, rubric: str, text: bytes, results: Iterable[Result] | None = None) -> Comparison:
+def compared(
+    name: str, rubric: str, text: bytes, results: Iterable[Result] | None = None
+) -> Comparison:
     """Compare the results of a robot, by default those of grading its text alone."""
     own, graders = _rubric(rubric)
     reading = read_urdf(text)
     is_assumed = any(problem.kind is RECOVERED for problem in reading.problems)
     if results is None:
-        results = grade(graders, read_submission(text, identity="student", path="robot.urdf")).results
+        results = grade(
+            graders, read_submission(text, identity="student", path="robot.urdf")
+        ).results
     found = {result.criterion.id: result for result in results}
     try:
         opinions = own.opinions(Robot(text))
@@ -62,7 +66,9 @@ def compared(name: str, rubric: str, text: bytes, results: Iterable[Result] | No
     if is_assumed:
         status = found["urdf-loads"].outcome.status
         return Comparison(
-            name, Counter({"only refused": 1}), [] if status == "failed" else [f"urdf-loads: {status}, not failed"]
+            name,
+            Counter({"only refused": 1}),
+            [] if status == "failed" else [f"urdf-loads: {status}, not failed"],
         )
     verdicts = [(key, *_agreement(found[key], opinion)) for key, opinion in opinions.items()]
     different = [f"{key}: {text}" for key, kind, text in verdicts if kind == "different"]
@@ -81,14 +87,21 @@ def _agreement(result: Result, opinion: Opinion) -> tuple[str, str]:
             f"{status} {outcome.measured}, opinion {opinion.status} {opinion.measured}: {outcome.message}",
         )
     check = result.criterion.check.name
-    if outcome.measured is None or opinion.measured is None or (check in _LESS_EXACT and status == "passed"):
+    if (
+        outcome.measured is None
+        or opinion.measured is None
+        or (check in _LESS_EXACT and status == "passed")
+    ):
         return "same status", ""
     limit = _LESS_EXACT.get(check, _SAME)
     values = [np.ravel(np.asarray(value, float)) for value in (outcome.measured, opinion.measured)]
     scale = max(1.0, float(np.abs(values[0]).max()))
     if len(values[0]) == len(values[1]) and np.abs(values[0] - values[1]).max() <= limit * scale:
         return "same value", ""
-    return "different", f"measured {outcome.measured}, opinion {opinion.measured}: {outcome.message}"
+    return (
+        "different",
+        f"measured {outcome.measured}, opinion {opinion.measured}: {outcome.message}",
+    )
 
 
 def _of_seed(seed: int) -> Comparison:
@@ -110,14 +123,20 @@ def compared_mutants(rubric: str, step: int = 1) -> Iterator[Comparison]:
     trial = Trial(_rubric(rubric)[1])
     texts = {path: trial.text(path) for path in trial.robot_files}
     for mutant in islice(trial.mutants(), None, None, step):
-        submission = trial.submission(mutant) if mutant.path in texts and not mutant.is_deleted else None
+        submission = (
+            trial.submission(mutant) if mutant.path in texts and not mutant.is_deleted else None
+        )
         if submission is None:
             continue
         files: dict[str, str | bytes] = {**texts, mutant.path: mutant.applied(texts[mutant.path])}
-        expanded = oracle.expand(Document(str(files[trial.robot_files[0]]), files, path=trial.robot_files[0]))
+        expanded = oracle.expand(
+            Document(str(files[trial.robot_files[0]]), files, path=trial.robot_files[0])
+        )
         results = list(trial.results(mutant, submission))
         if isinstance(expanded, oracle.Accepted):
-            yield compared(mutant.id, rubric, expanded.text.encode("utf-8", "surrogateescape"), results)
+            yield compared(
+                mutant.id, rubric, expanded.text.encode("utf-8", "surrogateescape"), results
+            )
         else:
             yield Comparison(mutant.id, Counter({"no XML": 1}), [])
 
@@ -129,7 +148,9 @@ def summary(comparisons: Iterable[Comparison]) -> tuple[list[str], int]:
         robots += 1
         counts += comparison.counts
         number += len(comparison.different)
-        shown += [f"{comparison.name}: {text}" for text in comparison.different][: MAX_SHOWN - len(shown)]
+        shown += [f"{comparison.name}: {text}" for text in comparison.different][
+            : MAX_SHOWN - len(shown)
+        ]
     same = counts["same value"] + counts["same status"]
     lines = [
         f"{robots} robots, {same + counts['different']} criteria compared, {same} agree ({counts['same value']} with the value), {number} differ",

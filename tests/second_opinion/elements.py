@@ -46,7 +46,11 @@ class Shape:
     def radius(self) -> float:
         """The distance of the farthest point from the centre."""
         sizes = np.abs(self.size)
-        radii = {"box": np.linalg.norm(sizes) / 2, "cylinder": np.hypot(sizes[0], sizes[-1] / 2), "sphere": sizes[0]}
+        radii = {
+            "box": np.linalg.norm(sizes) / 2,
+            "cylinder": np.hypot(sizes[0], sizes[-1] / 2),
+            "sphere": sizes[0],
+        }
         return float(radii[self.kind])
 
     @property
@@ -163,6 +167,8 @@ def read_shape(element: ET.Element) -> Shape:
 def read_inertial(element: ET.Element) -> tuple[float, Matrix, Matrix]:
     pose, inertia = origin_of(element), element.find("inertia")
     mass = number(element.find("mass"), "value")
-    ixx, ixy, ixz, iyy, iyz, izz = (number(inertia, name) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
+    ixx, ixy, ixz, iyy, iyz, izz = (
+        number(inertia, name) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    )
     tensor = np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
     return mass, pose[:3, 3], pose[:3, :3] @ tensor @ pose[:3, :3].T

@@ -8,4 +8,7 @@ _NAMES = (
     "joint_limits joint_axis kinematics_match_reference mass_is inertia_plausible collision_matches_visual"
 )
 _MODULES = (tree_facts, body_facts, place_facts, motion_facts)
-FACTS = {name: next(getattr(module, name) for module in _MODULES if hasattr(module, name)) for name in _NAMES.split()}
+FACTS = {
+    name: next(getattr(module, name) for module in _MODULES if hasattr(module, name))
+    for name in _NAMES.split()
+}

@@ -45,7 +45,11 @@ def overlap(one: Shape, pose: Matrix, other: Shape, other_pose: Matrix, enough: 
     apart = other_pose[:3, 3] - pose[:3, 3]
 
     def depth(directions: Matrix) -> Matrix:
-        return reach(one, pose[:3, :3], directions) + reach(other, other_pose[:3, :3], directions) - directions @ apart
+        return (
+            reach(one, pose[:3, :3], directions)
+            + reach(other, other_pose[:3, :3], directions)
+            - directions @ apart
+        )
 
     axes = np.vstack([pose[:3, :3].T, other_pose[:3, :3].T])
     crosses = np.cross(axes[:3, None], axes[None, 3:]).reshape(-1, 3)
@@ -59,12 +63,16 @@ def overlap(one: Shape, pose: Matrix, other: Shape, other_pose: Matrix, enough: 
         return best
     starts = directions[order]
     step = 0.1
-    while step > 1e-11:  # the depth has several minima with edges: search around the best directions, closer and closer
+    while (
+        step > 1e-11
+    ):  # the depth has several minima with edges: search around the best directions, closer and closer
         near = starts[:, None, :] + step * _CLOUD[None, :40, :]
         near /= np.linalg.norm(near, axis=2)[:, :, None]
         found = depth(near.reshape(-1, 3)).reshape(len(starts), -1)
         better = found.min(axis=1) < depth(starts) - 1e-16
-        starts = np.where(better[:, None], near[np.arange(len(starts)), found.argmin(axis=1)], starts)
+        starts = np.where(
+            better[:, None], near[np.arange(len(starts)), found.argmin(axis=1)], starts
+        )
         best = min(best, float(found.min()))
         step *= 1.0 if better.any() else 0.4
         if best <= enough:
@@ -87,9 +95,15 @@ def inertia(shape: Shape, mass: float) -> Matrix:
 
 def is_same_solid(one: Shape, other: Shape, tolerance: float) -> bool:
     """Return whether two solids are the same: kind, centre, sizes, and the place of each point of the surface."""
-    if one.kind != other.kind or np.abs(one.pose[:3, 3] - other.pose[:3, 3]).max() > tolerance + 1e-9:
+    if (
+        one.kind != other.kind
+        or np.abs(one.pose[:3, 3] - other.pose[:3, 3]).max() > tolerance + 1e-9
+    ):
         return False
-    sizes, others = np.array(one.size), np.array(other.size)  # a negative size differs, because simulators refuse it
+    sizes, others = (
+        np.array(one.size),
+        np.array(other.size),
+    )  # a negative size differs, because simulators refuse it
     relative = one.pose[:3, :3].T @ other.pose[:3, :3]
     if one.kind == "box":
         for quarter in _QUARTERS:
@@ -103,5 +117,7 @@ def is_same_solid(one: Shape, other: Shape, tolerance: float) -> bool:
         return False
     if one.kind == "cylinder":
         cosine = min(1.0, abs(relative[2, 2]))
-        return bool(2 * np.sqrt((1 - cosine) / 2) * np.hypot(sizes[0], sizes[1] / 2) <= tolerance + 1e-9)
+        return bool(
+            2 * np.sqrt((1 - cosine) / 2) * np.hypot(sizes[0], sizes[1] / 2) <= tolerance + 1e-9
+        )
     return True

@@ -8,7 +8,16 @@ import numpy as np
 
 from tests.second_opinion.elements import Joint, Matrix, Shape, turn
 from tests.second_opinion.geometry import reach
-from tests.second_opinion.posed import SLACK, Fact, Missing, Posed, Undecided, Unsure, angle_between, near
+from tests.second_opinion.posed import (
+    SLACK,
+    Fact,
+    Missing,
+    Posed,
+    Undecided,
+    Unsure,
+    angle_between,
+    near,
+)
 from tests.second_opinion.robot import Robot
 
 _SMALL_TURN = 1e-3  # radians
@@ -17,7 +26,10 @@ _RANDOM = np.random.default_rng(11).random((40, 6))
 
 def _turning(posed: Posed, link: str, base: str) -> tuple[Joint, Matrix, Matrix]:
     """Return the turning joint next to a link on the path to the base, its axis, and a point on it, in the base's frame."""
-    joint = next((joint for joint in posed.path(link, base) if joint.type in ("continuous", "revolute")), None)
+    joint = next(
+        (joint for joint in posed.path(link, base) if joint.type in ("continuous", "revolute")),
+        None,
+    )
     if joint is None:
         raise Missing("moving joint", link)
     return joint, *_line(posed, joint, base)
@@ -75,7 +87,10 @@ def _extreme(shapes: Sequence[Shape], pose: Matrix, direction: Matrix) -> Matrix
             case "cylinder":
                 across = np.hypot(local[0], local[1])
                 point = np.array(
-                    [*(local[:2] / across * size[0] if across else (0, 0)), np.sign(local[2]) * size[1] / 2]
+                    [
+                        *(local[:2] / across * size[0] if across else (0, 0)),
+                        np.sign(local[2]) * size[1] / 2,
+                    ]
                 )
             case _:
                 point = local * size[0]
@@ -120,9 +135,13 @@ def joint_limits(
         found[:2] = np.degrees(found[:2])
     fine = near(found[:2], (lower, upper), tolerance)
     rest = [
-        (actual, wanted) for actual, wanted in zip(found[2:], (effort, velocity), strict=True) if wanted is not None
+        (actual, wanted)
+        for actual, wanted in zip(found[2:], (effort, velocity), strict=True)
+        if wanted is not None
     ]
-    return fine and all(near(actual, wanted, 1e-6) for actual, wanted in rest), found[: 2 + len(rest)]
+    return fine and all(near(actual, wanted, 1e-6) for actual, wanted in rest), found[
+        : 2 + len(rest)
+    ]
 
 
 def joint_axis(
@@ -150,13 +169,23 @@ def joint_axis(
 
 
 def kinematics_match_reference(
-    posed: Posed, links: Sequence[str], match: str, tolerance: float, angle: float, *, reference: Robot
+    posed: Posed,
+    links: Sequence[str],
+    match: str,
+    tolerance: float,
+    angle: float,
+    *,
+    reference: Robot,
 ) -> Fact:
     """Compare at many positions of its own; only what holds at nearly none or at most of them is decided."""
     assert match == "order"
     posed = Posed(posed.robot)
     base = next(iter(reference.trees))
-    base = base if base in posed.robot.links else max(posed.robot.trees, key=lambda root: len(posed.robot.trees[root]))
+    base = (
+        base
+        if base in posed.robot.links
+        else max(posed.robot.trees, key=lambda root: len(posed.robot.trees[root]))
+    )
     expected = Posed(reference)
     shares = []
     for link in links:
@@ -173,9 +202,15 @@ def kinematics_match_reference(
             return False, None
         limits = np.array([joint.limit[:2] for joint in chains[1] if joint.limit])
         positions = np.vstack(
-            [np.zeros(len(limits)), _RANDOM[:, : len(limits)] * (limits[:, 1] - limits[:, 0]) + limits[:, 0]]
+            [
+                np.zeros(len(limits)),
+                _RANDOM[:, : len(limits)] * (limits[:, 1] - limits[:, 0]) + limits[:, 0],
+            ]
         )
-        poses = [_chained(one, link, chain, positions) for one, chain in zip((posed, expected), chains, strict=True)]
+        poses = [
+            _chained(one, link, chain, positions)
+            for one, chain in zip((posed, expected), chains, strict=True)
+        ]
         gaps = np.linalg.norm(poses[0][:, :3, 3] - poses[1][:, :3, 3], axis=1)
         turns = np.einsum("nji,njk->nik", poses[0][:, :3, :3], poses[1][:, :3, :3])
         angles = np.degrees(np.arccos(np.clip((np.einsum("nii->n", turns) - 1) / 2, -1, 1)))

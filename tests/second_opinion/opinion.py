@@ -49,15 +49,27 @@ class Rubric:
                 opinion = self._decide(robot, row, row.get("at", {}))
             except Missing as missing:
                 first = missed.setdefault(missing.thing, row["id"])
-                opinion = Opinion("failed") if first == row["id"] else Opinion("skipped", because=first)
+                opinion = (
+                    Opinion("failed") if first == row["id"] else Opinion("skipped", because=first)
+                )
             given = row.get("carried", [])
             for carried in [given] if isinstance(given, dict) else given:
                 if opinion.status not in ("failed", "skipped"):
                     break
                 mistakes = [found[name].because or name for name in carried["from"]]
-                reasons = {opinion.because, found[opinion.because].cause} if opinion.because else set(mistakes)
-                causes = [name for name in mistakes if name in reasons and found[name].status in ("failed", "carried")]
-                opinion = self._carried(robot, row, carried, opinion, causes[0]) if causes else opinion
+                reasons = (
+                    {opinion.because, found[opinion.because].cause}
+                    if opinion.because
+                    else set(mistakes)
+                )
+                causes = [
+                    name
+                    for name in mistakes
+                    if name in reasons and found[name].status in ("failed", "carried")
+                ]
+                opinion = (
+                    self._carried(robot, row, carried, opinion, causes[0]) if causes else opinion
+                )
             found[row["id"]] = opinion
         return found
 
@@ -68,7 +80,12 @@ class Rubric:
         return self._posed[key]
 
     def _carried(
-        self, robot: Robot, row: dict[str, Any], carried: dict[str, Any], opinion: Opinion, cause: str
+        self,
+        robot: Robot,
+        row: dict[str, Any],
+        carried: dict[str, Any],
+        opinion: Opinion,
+        cause: str,
     ) -> Opinion:
         try:
             other = self._decide(robot, carried, row.get("at", {}))
@@ -84,7 +101,12 @@ class Rubric:
             positions = {}
             for name, position in at.items():
                 joint = next(
-                    (joint for joint in robot.joints if joint.name == _resolved(robot, name, is_joint=True)), None
+                    (
+                        joint
+                        for joint in robot.joints
+                        if joint.name == _resolved(robot, name, is_joint=True)
+                    ),
+                    None,
                 )
                 if joint is None or joint.type == "fixed":
                     raise Missing("joint", name)
@@ -129,7 +151,11 @@ def _resolved(robot: Robot, value: Any, *, is_joint: bool = False) -> Any:
     longest = max(map(len, chains.values()))
     if longest < number:
         raise Missing("selector", value)
-    ends = {chain[number - 1].name: chain[number - 1] for chain in chains.values() if len(chain) == longest}
+    ends = {
+        chain[number - 1].name: chain[number - 1]
+        for chain in chains.values()
+        if len(chain) == longest
+    }
     if len(ends) > 1:
         raise Undecided(value)
     joint = next(iter(ends.values()))

@@ -7,7 +7,17 @@ import numpy as np
 
 from tests.second_opinion.elements import Shape, rotation
 from tests.second_opinion.geometry import overlap, span
-from tests.second_opinion.posed import SLACK, UP, Fact, Missing, Posed, Undecided, angle_between, angle_of, near
+from tests.second_opinion.posed import (
+    SLACK,
+    UP,
+    Fact,
+    Missing,
+    Posed,
+    Undecided,
+    angle_between,
+    angle_of,
+    near,
+)
 
 
 def frame_at(
@@ -42,17 +52,26 @@ def centre_at(
     is_loose = rigid and any(joint.type != "fixed" for joint in posed.path(link, relative_to))
     tilt = angle_between(pose[:3, 2], axis)
     is_turned = angle < 90 and min(tilt, 180 - tilt) > angle + SLACK
-    return near(pose[:3, 3], xyz, tolerance) and not is_loose and not is_turned, None if is_loose else pose[:3, 3]
+    return near(
+        pose[:3, 3], xyz, tolerance
+    ) and not is_loose and not is_turned, None if is_loose else pose[:3, 3]
 
 
 def axis_along(
-    posed: Posed, link: str, axis: Sequence[float], relative_to: str, direction: Sequence[float], tolerance: float
+    posed: Posed,
+    link: str,
+    axis: Sequence[float],
+    relative_to: str,
+    direction: Sequence[float],
+    tolerance: float,
 ) -> Fact:
     found = posed.pose(link, relative_to)[:3, :3] @ (np.asarray(axis) / np.linalg.norm(axis))
     return angle_between(found, direction) <= tolerance + SLACK, found
 
 
-def _spans(posed: Posed, shapes: Sequence[Shape], link: str, relative_to: str, direction: Any) -> tuple[float, float]:
+def _spans(
+    posed: Posed, shapes: Sequence[Shape], link: str, relative_to: str, direction: Any
+) -> tuple[float, float]:
     if any(shape.kind == "mesh" for shape in shapes):
         raise Undecided(link)
     pose = posed.pose(link, relative_to)
@@ -70,7 +89,9 @@ def bottom_at_height(
     return near(low, height, tolerance), low
 
 
-def bottoms_at_height(posed: Posed, links: Sequence[str], relative_to: str, height: float, tolerance: float) -> Fact:
+def bottoms_at_height(
+    posed: Posed, links: Sequence[str], relative_to: str, height: float, tolerance: float
+) -> Fact:
     posed.link(relative_to)
     lows, missing = _lows(posed, links, relative_to)
     fine = near(lows, height, tolerance)
@@ -79,7 +100,9 @@ def bottoms_at_height(posed: Posed, links: Sequence[str], relative_to: str, heig
     return fine, lows
 
 
-def _lows(posed: Posed, links: Sequence[str], relative_to: str) -> tuple[list[float], Exception | None]:
+def _lows(
+    posed: Posed, links: Sequence[str], relative_to: str
+) -> tuple[list[float], Exception | None]:
     """Return the lowest points that can be measured, and why one of the others cannot: it does not hide them."""
     lows, missing = [], None
     for link in links:
@@ -111,11 +134,17 @@ def clear_of(posed: Posed, link: str, of: str, tolerance: float) -> Fact:
     if any(shape.kind == "mesh" for shape in (*shapes, *others)):
         raise Undecided(link)
     pose = posed.pose(link, of)
-    depth = max(overlap(one, pose @ one.pose, other, other.pose, tolerance) for one in shapes for other in others)
+    depth = max(
+        overlap(one, pose @ one.pose, other, other.pose, tolerance)
+        for one in shapes
+        for other in others
+    )
     return depth <= tolerance + SLACK, depth
 
 
-def under_the_base(posed: Posed, link: str, base: str, wheels: Sequence[str], tolerance: float, angle: float) -> Fact:
+def under_the_base(
+    posed: Posed, link: str, base: str, wheels: Sequence[str], tolerance: float, angle: float
+) -> Fact:
     pose = posed.pose(base, link)
     lows, missing = _lows(posed, wheels, link)
     value = [*pose[:2, 3], *lows]

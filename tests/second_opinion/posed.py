@@ -43,7 +43,12 @@ def angle_between(one: Matrix, other: Any) -> float:
 
 def angle_of(turned: Matrix) -> float:
     """Return the angle of a rotation, in degrees."""
-    sine = np.linalg.norm([turned[2, 1] - turned[1, 2], turned[0, 2] - turned[2, 0], turned[1, 0] - turned[0, 1]]) / 2
+    sine = (
+        np.linalg.norm(
+            [turned[2, 1] - turned[1, 2], turned[0, 2] - turned[2, 0], turned[1, 0] - turned[0, 1]]
+        )
+        / 2
+    )
     return degrees(np.arctan2(sine, (np.trace(turned) - 1) / 2))
 
 
@@ -69,7 +74,12 @@ class Posed:
             raise Missing("chain", *sorted((one.root, other.root)))
         if one.below != other.below:  # of two joints without a direction, the lower one
             raise Missing(
-                "pose", max(one.below, other.below, key=lambda joint: len(self.way_up(self.robot.child(joint))))
+                "pose",
+                max(
+                    one.below,
+                    other.below,
+                    key=lambda joint: len(self.way_up(self.robot.child(joint))),
+                ),
             )
         found: Matrix = np.linalg.inv(other.pose) @ one.pose
         return found

@@ -23,7 +23,7 @@ from tests.second_opinion.elements import (
     read_shape,
     transform,
     turn,
-)  # fmt: skip
+)
 
 
 class Placed(NamedTuple):
@@ -39,7 +39,9 @@ class Robot:
 
     def __init__(self, text: bytes) -> None:
         if LINE_BREAK.search(text):
-            raise Unclear("a line break in an attribute, which an XML parser reads as a space, and urdfdom does not")
+            raise Unclear(
+                "a line break in an attribute, which an XML parser reads as a space, and urdfdom does not"
+            )
         root = ET.fromstring(text)
         self.loads = root.tag == "robot" and "name" in root.attrib
         self.links: dict[str, Link] = {}
@@ -105,9 +107,16 @@ class Robot:
 
     def _add_joint(self, element: ET.Element) -> None:
         name, kind, limit = element.get("name"), element.get("type"), element.find("limit")
-        ends = [end.get("link") for tag in ("parent", "child") if (end := element.find(tag)) is not None]
+        ends = [
+            end.get("link") for tag in ("parent", "child") if (end := element.find(tag)) is not None
+        ]
         axis, mimic = element.find("axis"), element.find("mimic")
-        if kind not in TYPES or len(ends) != 2 or None in ends or name in (None, *(joint.name for joint in self.named)):
+        if (
+            kind not in TYPES
+            or len(ends) != 2
+            or None in ends
+            or name in (None, *(joint.name for joint in self.named))
+        ):
             raise Unclear(name)
         if name is None or (mimic is not None and mimic.get("joint") is None):
             raise Unclear(name)
@@ -115,10 +124,16 @@ class Robot:
             origin = origin_of(element)
             direction = [1.0, 0.0, 0.0]
             if axis is not None and kind not in ("fixed", "floating"):
-                direction = numbers(axis.get("xyz"), 3) if axis.get("xyz") is not None else [0.0, 0.0, 0.0]
+                direction = (
+                    numbers(axis.get("xyz"), 3) if axis.get("xyz") is not None else [0.0, 0.0, 0.0]
+                )
             follows = None
             if mimic is not None:
-                follows = (mimic.attrib["joint"], number(mimic, "multiplier", "1"), number(mimic, "offset", "0"))
+                follows = (
+                    mimic.attrib["joint"],
+                    number(mimic, "multiplier", "1"),
+                    number(mimic, "offset", "0"),
+                )
         except Bad as error:
             raise Unclear(name) from error
         limits = None
@@ -135,11 +150,15 @@ class Robot:
         elif kind in ("revolute", "prismatic"):
             self.loads = False
         parent, child = str(ends[0]), str(ends[1])
-        self.named.append(Joint(name, kind, parent, child, origin, np.array(direction), limits, follows))
+        self.named.append(
+            Joint(name, kind, parent, child, origin, np.array(direction), limits, follows)
+        )
 
     def _build(self) -> None:
         """Find the parent joints, the roots, and the links of each tree from its root downward."""
-        self.joints = [joint for joint in self.named if {joint.parent, joint.child} <= self.links.keys()]
+        self.joints = [
+            joint for joint in self.named if {joint.parent, joint.child} <= self.links.keys()
+        ]
         self.parents: dict[str, Joint] = {}
         for joint in sorted(self.joints, key=lambda joint: joint.name.encode()):
             self.parents[joint.child] = joint
@@ -172,7 +191,12 @@ class Robot:
 
         def position(joint: Joint | None, before: tuple[str, ...] = ()) -> float:
             """Return the given position, or that which follows from the leader's; a leader that is missing is at 0."""
-            if joint is None or joint.name in positions or joint.mimic is None or joint.name in before:
+            if (
+                joint is None
+                or joint.name in positions
+                or joint.mimic is None
+                or joint.name in before
+            ):
                 return positions.get(joint.name, 0.0) if joint is not None else 0.0
             leader, factor, offset = joint.mimic
             return factor * position(by_name.get(leader), (*before, joint.name)) + offset

@@ -34,16 +34,27 @@ def _bases() -> dict[str, list[ET.Element]]:
     xacro: Any = __import__("xacro")  # of our own reference
     samples = _ROOT / "submissions"
     found = {
-        "lab6": [_ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf", *_urdfs(samples / "lab6", _OF_LAB6)],
+        "lab6": [
+            _ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf",
+            *_urdfs(samples / "lab6", _OF_LAB6),
+        ],
         "arm": [_ROOT / "rubrics/arm/arm.urdf", *_urdfs(samples / "arm", _OF_ARM)],
     }
-    sensors = xacro.process_file(str(_ROOT / "rubrics/sensors/sensor_robot/urdf/sensor_robot.urdf.xacro"))
-    trees = {name: [ET.fromstring(path.read_bytes()) for path in paths] for name, paths in found.items()}
+    sensors = xacro.process_file(
+        str(_ROOT / "rubrics/sensors/sensor_robot/urdf/sensor_robot.urdf.xacro")
+    )
+    trees = {
+        name: [ET.fromstring(path.read_bytes()) for path in paths] for name, paths in found.items()
+    }
     return trees | {"sensors": [ET.fromstring(sensors.toxml())]}
 
 
 def _urdfs(folder: Path, names: Sequence[str]) -> list[Path]:
-    return [path for name in names for path in sorted((folder / f"equivalent-{name}").rglob("*.urdf"))[:1]]
+    return [
+        path
+        for name in names
+        for path in sorted((folder / f"equivalent-{name}").rglob("*.urdf"))[:1]
+    ]
 
 
 def random_robot(seed: int) -> RandomRobot:

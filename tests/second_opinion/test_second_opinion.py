@@ -10,7 +10,13 @@ from grader.hints.edits import content
 from grader.submission.urdf import Read
 from tests.examples import spread
 from tests.samples import SAMPLES
-from tests.second_opinion.compare import Comparison, compared, compared_mutants, compared_seeds, summary
+from tests.second_opinion.compare import (
+    Comparison,
+    compared,
+    compared_mutants,
+    compared_seeds,
+    summary,
+)
 from tests.second_opinion.opinion import Rubric
 
 CHECKER = (
@@ -46,15 +52,24 @@ def assert_alike(comparisons: Iterable[Comparison], least: int) -> None:
     found = list(comparisons)
     lines, different = summary(found)
     assert different == 0, "\n".join(lines)
-    assert sum(one.counts["same value"] + one.counts["same status"] for one in found) >= least, lines[0]
+    assert sum(one.counts["same value"] + one.counts["same status"] for one in found) >= least, (
+        lines[0]
+    )
 
 
 def test_the_checker_shares_no_code_with_the_grader() -> None:
     """It imports numpy, the standard library and itself."""
     for name in CHECKER:
         tree = ast.parse(Path(__file__).with_name(f"{name}.py").read_text(encoding="utf-8"))
-        imported = {alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
-        imported |= {str(node.module) for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+        imported = {
+            alias.name
+            for node in ast.walk(tree)
+            if isinstance(node, ast.Import)
+            for alias in node.names
+        }
+        imported |= {
+            str(node.module) for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)
+        }
         own = {f"tests.second_opinion.{module}" for module in CHECKER} | {"tests.second_opinion"}
         assert {module.partition(".")[0] for module in imported - own} <= LIBRARIES, name
 
@@ -72,7 +87,8 @@ def test_random_robots(part: int) -> None:
 
 
 @pytest.mark.parametrize(
-    "rubric", [pytest.param(name, marks=pytest.mark.exhaustive) for name in ("lab6", "arm", "sensors")]
+    "rubric",
+    [pytest.param(name, marks=pytest.mark.exhaustive) for name in ("lab6", "arm", "sensors")],
 )
 def test_many_mutants(rubric: str) -> None:
     """Mutants of the reference that `grader rubric test` grades get the same results: every fourth of all."""

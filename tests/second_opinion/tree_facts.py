@@ -17,7 +17,9 @@ def held_by(posed: Posed, link: str, parent: str, joint_type: str, free: bool = 
         raise Missing("moving joint", link)
     moving = [joint for joint in way or () if joint.type != "fixed"]
     is_free = not any(joint.is_mimic or (joint.limit and joint.limit[3] <= 0) for joint in moving)
-    return way is not None and types == ([] if joint_type == "fixed" else [joint_type]) and (is_free or not free), None
+    return way is not None and types == ([] if joint_type == "fixed" else [joint_type]) and (
+        is_free or not free
+    ), None
 
 
 def joints_named(posed: Posed, parent: str, joints: Mapping[str, str]) -> Fact:
@@ -28,9 +30,15 @@ def joints_named(posed: Posed, parent: str, joints: Mapping[str, str]) -> Fact:
             return False, None
         up, other = posed.way_up(link), posed.way_up(parent) if parent in posed.robot.links else []
         tops = [way[-1].parent if way else start for way, start in ((up, link), (other, parent))]
-        between = [joint for joint in (*up, *other) if (joint in up) != (joint in other)] if tops[0] == tops[1] else []
+        between = (
+            [joint for joint in (*up, *other) if (joint in up) != (joint in other)]
+            if tops[0] == tops[1]
+            else []
+        )
         joints_of_link = (
-            [*up[:1], *between] if up else [joint for joint in posed.robot.named if link in (joint.parent, joint.child)]
+            [*up[:1], *between]
+            if up
+            else [joint for joint in posed.robot.named if link in (joint.parent, joint.child)]
         )
         if name not in [joint.name for joint in joints_of_link]:
             return False, None

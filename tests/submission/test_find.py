@@ -36,7 +36,13 @@ BOX = b"<robot name='box'><link name='box'/></robot>"
 def tree_of(*paths: str, **contents: bytes) -> Tree:
     """Return a file tree of robots; `contents` gives the content of files by a prefix of their names."""
     files = [
-        _file(path, next((data for name, data in contents.items() if path.split("/")[-1].startswith(name)), ROBOT))
+        _file(
+            path,
+            next(
+                (data for name, data in contents.items() if path.split("/")[-1].startswith(name)),
+                ROBOT,
+            ),
+        )
         for path in paths
     ]
     return make_tree("lab6", files, ())
@@ -126,10 +132,22 @@ def test_pairs(better: str, worse: str, reason: str) -> None:
 def test_files_that_are_no_robot() -> None:
     """A file whose first element is not <robot>, or that is no text, is no robot, whatever it is called."""
     tree = tree_of(
-        "package.xml", "notes.md", "my_robot.launch.py", "robot.png", "late.xml", "other.xml", "empty.xml", "macros.txt",
-        package=manifest("x"), notes=b"# My robot\n" + ROBOT, my_robot=b"TEXT = '''" + ROBOT, late=b"text" + ROBOT,
-        other=b"<robots/>", empty=b"", macros=b"<?xml?><!-- <robot> --><launch><robot/></launch>",
-    )  # fmt: skip
+        "package.xml",
+        "notes.md",
+        "my_robot.launch.py",
+        "robot.png",
+        "late.xml",
+        "other.xml",
+        "empty.xml",
+        "macros.txt",
+        package=manifest("x"),
+        notes=b"# My robot\n" + ROBOT,
+        my_robot=b"TEXT = '''" + ROBOT,
+        late=b"text" + ROBOT,
+        other=b"<robots/>",
+        empty=b"",
+        macros=b"<?xml?><!-- <robot> --><launch><robot/></launch>",
+    )
     assert find_urdf(tree, EXPECTED) == UrdfChoice(None, ())
 
 
@@ -146,7 +164,15 @@ def test_files_that_are_no_robot() -> None:
     ],
 )
 @pytest.mark.parametrize(
-    "name", ["urdf.xacro file", "urdf.xacro file.py", "urdf.Xacro file.txt", "my_robot", "CMakeLists.txt", "a.md"]
+    "name",
+    [
+        "urdf.xacro file",
+        "urdf.xacro file.py",
+        "urdf.Xacro file.txt",
+        "my_robot",
+        "CMakeLists.txt",
+        "a.md",
+    ],
 )
 def test_a_robot_is_recognised_by_its_first_element(name: str, text: bytes) -> None:
     """Whatever the file is called, after a declaration, comments, a byte-order mark, a DOCTYPE and white space, however broken."""
@@ -183,7 +209,14 @@ def test_a_file_that_another_one_includes_is_a_part() -> None:
     """The file that includes others is graded, not the macros and materials that it includes."""
     includes = ("$(find my_robot)/urdf/materials.xacro", "a.xacro")
     main = XACRO + b"".join(b"<xacro:include filename='%s'/>" % name.encode() for name in includes)
-    tree = tree_of("a.xacro", "materials.xacro", "z/robot.xacro", a=b"<robot/>", materials=b"<robot/>", robot=main)
+    tree = tree_of(
+        "a.xacro",
+        "materials.xacro",
+        "z/robot.xacro",
+        a=b"<robot/>",
+        materials=b"<robot/>",
+        robot=main,
+    )
     fragment = "its <robot> has no name or no links"
     others = (
         OtherCandidate("a.xacro", fragment, is_part=True),
@@ -202,9 +235,16 @@ def test_the_name_of_a_part_does_not_matter(main: str) -> None:
     """A file that includes one named like the robot is graded, unless that is named exactly so, with any ending."""
     name = main.rpartition("/")[2].partition(".")[0]
     up = b"../" if "/" in main else b""
-    includes = XACRO.replace(b"my_robot", b"r") + b"<xacro:include filename='" + up + b"%s'/></robot>"
+    includes = (
+        XACRO.replace(b"my_robot", b"r") + b"<xacro:include filename='" + up + b"%s'/></robot>"
+    )
     tree = tree_of(
-        main, "box.urdf", "my_robot_core.xacro", **{name: includes % b"my_robot_core.xacro"}, my_robot=LINKS, box=BOX
+        main,
+        "box.urdf",
+        "my_robot_core.xacro",
+        **{name: includes % b"my_robot_core.xacro"},
+        my_robot=LINKS,
+        box=BOX,
     )
     assert find_urdf(tree, EXPECTED) == UrdfChoice(
         main,
@@ -213,7 +253,13 @@ def test_the_name_of_a_part_does_not_matter(main: str) -> None:
             OtherCandidate("box.urdf", ANOTHER),
         ),
     )
-    tree = tree_of(main, "my_robot.urdf.xacro", **{name: includes % b"my_robot.urdf.xacro"}, my_robot=LINKS, box=LINKS)
+    tree = tree_of(
+        main,
+        "my_robot.urdf.xacro",
+        **{name: includes % b"my_robot.urdf.xacro"},
+        my_robot=LINKS,
+        box=LINKS,
+    )
     assert find_urdf(tree, EXPECTED).path == "my_robot.urdf.xacro"
 
 
@@ -231,11 +277,14 @@ def test_backups(better: str, backup: str) -> None:
     """A file that is named like a backup is graded only if no other one has the name or the robot of the lab."""
     named = LINKS.replace(b"'r'", b"'my_robot'")
     tree = tree_of(better, backup, my_robot=named, robot=named)
-    assert find_urdf(tree, EXPECTED) == UrdfChoice(better, (OtherCandidate(backup, "it is named like a backup"),))
+    assert find_urdf(tree, EXPECTED) == UrdfChoice(
+        better, (OtherCandidate(backup, "it is named like a backup"),)
+    )
     assert find_urdf(tree_of(backup), EXPECTED).path == backup
     assert find_urdf(tree_of(backup, "box.urdf", my_robot=LINKS, box=BOX), EXPECTED).path == backup
     assert (
-        find_urdf(tree_of("z/golden/my_robot.urdf", "y/old/my_robot.urdf"), EXPECTED).path == "z/golden/my_robot.urdf"
+        find_urdf(tree_of("z/golden/my_robot.urdf", "y/old/my_robot.urdf"), EXPECTED).path
+        == "z/golden/my_robot.urdf"
     )
 
 
@@ -272,7 +321,9 @@ def test_links_anywhere_in_the_beginning(content: bytes) -> None:
     assert find_urdf(tree, EXPECTED).path == "urdf/my_robot.urdf.xacro"
 
 
-@pytest.mark.parametrize("tag", [b"<xacro:macro ", b"<xacro:include ", b"<!--", b"</xacro:macro ", b"filename = '/"])
+@pytest.mark.parametrize(
+    "tag", [b"<xacro:macro ", b"<xacro:include ", b"<!--", b"</xacro:macro ", b"filename = '/"]
+)
 def test_tags_that_never_end(tag: bytes) -> None:
     """The search in the beginning of a file takes linear time."""
     data = b"<robot>" + tag * (60_000 // len(tag))
@@ -283,8 +334,14 @@ def test_tags_that_never_end(tag: bytes) -> None:
 def test_a_file_of_the_right_name_needs_no_content() -> None:
     """A file at the expected path is graded whatever its content, if there is no robot."""
     for content in (b"nonsense", b""):
-        assert find_urdf(tree_of("urdf/my_robot.urdf", my_robot=content), EXPECTED).path == "urdf/my_robot.urdf"
-        assert find_urdf(tree_of("urdf/my_robot.urdf", "other.urdf", my_robot=content), EXPECTED).path == "other.urdf"
+        assert (
+            find_urdf(tree_of("urdf/my_robot.urdf", my_robot=content), EXPECTED).path
+            == "urdf/my_robot.urdf"
+        )
+        assert (
+            find_urdf(tree_of("urdf/my_robot.urdf", "other.urdf", my_robot=content), EXPECTED).path
+            == "other.urdf"
+        )
 
 
 def test_a_file_that_cannot_be_read() -> None:
@@ -318,7 +375,9 @@ def test_build_products() -> None:
     generated = [f"install/{n}.urdf" for n in range(30)]
     found = find_urdf(make_tree("", [_file("a.urdf", ROBOT)], (), generated=generated), EXPECTED)
     assert found.path == "a.urdf"
-    assert set(rejected(found).values()) == {"it was generated by a build, and only source files are graded"}
+    assert set(rejected(found).values()) == {
+        "it was generated by a build, and only source files are graded"
+    }
     assert len(found.others) == 20
     assert find_urdf(make_tree("", (), (), generated=generated[:1]), EXPECTED).path is None
 
@@ -336,7 +395,9 @@ def test_many_texts() -> None:
 def test_very_many_urdfs() -> None:
     """All are listed, and only so many are read; files that include each other take no more time."""
     text = b"<robot>" + b"".join(b"<xacro:include filename='%d.urdf'/>" % n for n in range(80))
-    tree = tree_of(*(f"p{n % 200}/{n}/{n % 80}.urdf" for n in range(5000)), **{str(n): text for n in range(10)})
+    tree = tree_of(
+        *(f"p{n % 200}/{n}/{n % 80}.urdf" for n in range(5000)), **{str(n): text for n in range(10)}
+    )
     with limited_work(40_000_000):
         found = submission_of(tree, "many", Lab(EXPECTED, "my_robot", ("Lab6",)))
     assert len(found.other_candidates) == 4999
@@ -345,7 +406,12 @@ def test_very_many_urdfs() -> None:
 def test_likely_files_are_read_first() -> None:
     """Of very many files, those are read whose names say that they may be robots."""
     tree = make_tree(
-        "", [*(_file(f"a/{n:04}.txt", b"text") for n in range(3000)), _file("z/urdf.xacro file", ROBOT)], ()
+        "",
+        [
+            *(_file(f"a/{n:04}.txt", b"text") for n in range(3000)),
+            _file("z/urdf.xacro file", ROBOT),
+        ],
+        (),
     )
     assert find_urdf(tree, EXPECTED).path == "z/urdf.xacro file"
 
@@ -364,7 +430,10 @@ def test_the_order_of_files_does_not_matter(folder: str, names: list[str]) -> No
     ("paths", "folders"),
     [
         (["package.xml", "setup.py"], [""]),
-        (["b/package.xml", "a/package.xml", "package.xml", "x/y/package.xml"], ["", "a", "b", "x/y"]),
+        (
+            ["b/package.xml", "a/package.xml", "package.xml", "x/y/package.xml"],
+            ["", "a", "b", "x/y"],
+        ),
         (["my_robot/setup.py"], ["my_robot"]),
         (["other/setup.py"], ["other"]),
         (["other/package.xml", "my_robot/setup.py"], ["my_robot", "other"]),
@@ -449,7 +518,10 @@ def test_a_team_is_not_mixed_up() -> None:
         "team",
         Lab(EXPECTED, "my_robot"),
     )
-    assert "Lab6/Brown/my_robot/urdf/my_robot.urdf was graded, not Lab6/Adams/my_robot/robot.urdf" in found.several
+    assert (
+        "Lab6/Brown/my_robot/urdf/my_robot.urdf was graded, not Lab6/Adams/my_robot/robot.urdf"
+        in found.several
+    )
     assert found.path == "Lab6/Brown/my_robot/urdf/my_robot.urdf"
     assert found.package is not None
     assert found.package.folder == "Lab6/Brown/my_robot"
@@ -459,7 +531,11 @@ def test_a_package_with_the_labs_files_takes_precedence() -> None:
     """Of packages of one name the one with the URDF at its path is graded, then the one with more of the usual files."""
     tree = tree_of(
         *("Lab5/my_robot/package.xml", "Lab5/my_robot/setup.py", "Lab5/my_robot/urdf/box.urdf"),
-        *("Lab6/my_robot/package.xml", "Lab6/my_robot/setup.py", "Lab6/my_robot/urdf/my_robot.urdf"),
+        *(
+            "Lab6/my_robot/package.xml",
+            "Lab6/my_robot/setup.py",
+            "Lab6/my_robot/urdf/my_robot.urdf",
+        ),
         package=manifest("my_robot"),
     )
     found = submission_of(tree, "a", Lab(EXPECTED, "my_robot"))
@@ -474,9 +550,17 @@ def test_a_package_with_the_labs_files_takes_precedence() -> None:
 
 def test_a_description_package() -> None:
     """A URDF in another package beside the graded one is found by its path."""
-    tree = tree_of("my_robot/package.xml", "my_robot/test.urdf", "my_robot_description/package.xml", "my_robot_description/urdf/my_robot.urdf",
-                   package=manifest("my_robot"))  # fmt: skip
-    assert submission_of(tree, "a", Lab(EXPECTED, "my_robot")).path == "my_robot_description/urdf/my_robot.urdf"
+    tree = tree_of(
+        "my_robot/package.xml",
+        "my_robot/test.urdf",
+        "my_robot_description/package.xml",
+        "my_robot_description/urdf/my_robot.urdf",
+        package=manifest("my_robot"),
+    )
+    assert (
+        submission_of(tree, "a", Lab(EXPECTED, "my_robot")).path
+        == "my_robot_description/urdf/my_robot.urdf"
+    )
 
 
 @pytest.mark.parametrize(("is_link", "status"), [(True, "pending"), (False, "failed")])

@@ -57,7 +57,9 @@ def test_names_of_other_labs(name: str) -> None:
     assert LabFolders(["Lab6"], [f"{name}/a"]).belonging(f"{name}/a") is Belonging.OTHER_LAB
 
 
-@pytest.mark.parametrize("name", ["lab", "prelab6", "src", "6", "final", "laboratory 6", "my_robot", "project"])
+@pytest.mark.parametrize(
+    "name", ["lab", "prelab6", "src", "6", "final", "laboratory 6", "my_robot", "project"]
+)
 def test_names_of_no_lab(name: str) -> None:
     """Anything else."""
     assert LabFolders(["Lab6"], [f"{name}/a"]).belonging(f"{name}/a") is Belonging.NO_LAB
@@ -71,7 +73,9 @@ def test_the_nearest_folder_decides() -> None:
     assert labs.belonging("lab6_description/urdf/a") is Belonging.NO_LAB
     assert labs.belonging("Lab7 robot/a") is Belonging.NO_LAB
     assert labs.belonging("Lab6 resources/a") is Belonging.NO_LAB  # there is a Lab6
-    assert LabFolders(["robot"], ["my robot/a"]).belonging("my robot/a") is Belonging.NO_LAB  # it has no number
+    assert (
+        LabFolders(["robot"], ["my robot/a"]).belonging("my robot/a") is Belonging.NO_LAB
+    )  # it has no number
     assert LabFolders([], ["Lab6/a"]).belonging("Lab6/a") is Belonging.NO_LAB
 
 
@@ -79,7 +83,11 @@ def test_the_nearest_folder_decides() -> None:
     ("files", "urdf", "folder", "reasons"),
     [
         (
-            {"Lab_7/my_robot.urdf": ROBOT, **package("Lab7/my_robot"), **package("Lab6/Ash/ws/src/my_robot")},
+            {
+                "Lab_7/my_robot.urdf": ROBOT,
+                **package("Lab7/my_robot"),
+                **package("Lab6/Ash/ws/src/my_robot"),
+            },
             "Lab6/Ash/ws/src/my_robot/urdf/my_robot.urdf",
             "Lab6/Ash/ws/src/my_robot",
             {
@@ -89,7 +97,11 @@ def test_the_nearest_folder_decides() -> None:
             },
         ),
         (
-            {**package("Lab6/my_robot"), **package("ws/src/my_robot"), "Lab6 resources/my_robot.urdf": ROBOT},
+            {
+                **package("Lab6/my_robot"),
+                **package("ws/src/my_robot"),
+                "Lab6 resources/my_robot.urdf": ROBOT,
+            },
             "Lab6/my_robot/urdf/my_robot.urdf",
             "Lab6/my_robot",
             {
@@ -99,7 +111,11 @@ def test_the_nearest_folder_decides() -> None:
             },
         ),
         (
-            {"lab 6/deep/er/robot.txt": ROBOT, "my_robot.urdf": ROBOT, **package("Final Project/my_robot")},
+            {
+                "lab 6/deep/er/robot.txt": ROBOT,
+                "my_robot.urdf": ROBOT,
+                **package("Final Project/my_robot"),
+            },
             "lab 6/deep/er/robot.txt",
             None,
             {
@@ -144,9 +160,16 @@ def test_the_folder_of_the_lab_wins(
 
 def test_another_lab_is_used_if_there_is_nothing_else() -> None:
     """The note says so, and of several other labs only that one is read."""
-    found = submission({"README.md": b"", **package("Lab5/my_robot"), "Lab4/b.urdf": BOX, "Lab4/x.png": PICTURE})
-    assert (found.path, found.package and found.package.folder) == ("Lab5/my_robot/urdf/my_robot.urdf", "Lab5/my_robot")
-    assert found.notes == ("no folder of this lab was found: Lab5, the folder of another lab, was graded",)
+    found = submission(
+        {"README.md": b"", **package("Lab5/my_robot"), "Lab4/b.urdf": BOX, "Lab4/x.png": PICTURE}
+    )
+    assert (found.path, found.package and found.package.folder) == (
+        "Lab5/my_robot/urdf/my_robot.urdf",
+        "Lab5/my_robot",
+    )
+    assert found.notes == (
+        "no folder of this lab was found: Lab5, the folder of another lab, was graded",
+    )
     assert others(found) == {"Lab4/b.urdf": "its path is less like urdf/my_robot.urdf"}
     assert found.labelled_files == ()
     assert "README.md" in found.tree.files
@@ -154,7 +177,9 @@ def test_another_lab_is_used_if_there_is_nothing_else() -> None:
 
 def test_a_robot_outside_of_the_folder_is_noted() -> None:
     """A lab's folder with pictures, and the workspace in the root of the repository."""
-    found = submission({"Lab6/step.png": PICTURE, **package("ws/src/my_robot"), "other.png": PICTURE})
+    found = submission(
+        {"Lab6/step.png": PICTURE, **package("ws/src/my_robot"), "other.png": PICTURE}
+    )
     urdf = "ws/src/my_robot/urdf/my_robot.urdf"
     assert found.path == urdf
     assert found.notes == (
@@ -165,7 +190,10 @@ def test_a_robot_outside_of_the_folder_is_noted() -> None:
 
 def test_the_folder_confines_evidence_and_documents() -> None:
     """A picture or answer of another lab is none of this lab; without a folder of the lab all others are ignored."""
-    files = {name: PICTURE for name in ("Lab6/a.png", "Lab7/Task1_Step8.png", "b.png", "Lab7/answers.md", "Lab6/c.md")}
+    files = {
+        name: PICTURE
+        for name in ("Lab6/a.png", "Lab7/Task1_Step8.png", "b.png", "Lab7/answers.md", "Lab6/c.md")
+    }
     found = submission({**files, "Lab6/my_robot.urdf": ROBOT})
     assert [file.file.path for file in found.labelled_files] == ["Lab6/a.png"]
     assert [document.file.path for document in found.documents.named(["*.md"])[0]] == ["Lab6/c.md"]
@@ -185,13 +213,26 @@ def test_without_lab_folders_everything_is_read() -> None:
 @pytest.mark.parametrize(
     ("files", "folder"),
     [
-        ({"my_robot.urdf": ROBOT, **package("other_robot_gazebo", "other_robot_gazebo", urdf=False)}, None),
+        (
+            {
+                "my_robot.urdf": ROBOT,
+                **package("other_robot_gazebo", "other_robot_gazebo", urdf=False),
+            },
+            None,
+        ),
         ({"my_robot.urdf": ROBOT, **package("my_robott", "my_robott", urdf=False)}, None),
         (package("other", "other"), "other"),
         (package("my_robott", "my_robott"), "my_robott"),
         ({**package("a", "My_Robot", urdf=False), "my_robot.urdf": ROBOT}, "a"),
         ({**package("a", "a"), **package("b", "my_robot", urdf=False)}, "b"),
-        ({**package("a", "a"), "a/b/package.xml": manifest("b"), "a/b/urdf/my_robot.urdf": ROBOT}, "a"),
+        (
+            {
+                **package("a", "a"),
+                "a/b/package.xml": manifest("b"),
+                "a/b/urdf/my_robot.urdf": ROBOT,
+            },
+            "a",
+        ),
     ],
 )
 def test_another_package_is_not_graded(files: Mapping[str, bytes], folder: str | None) -> None:
@@ -202,8 +243,13 @@ def test_another_package_is_not_graded(files: Mapping[str, bytes], folder: str |
 
 def test_another_lab_is_graded_where_this_one_has_no_work() -> None:
     """The robot that is wanted is taken from another lab's folder if there is no other, with a note; no other robot is."""
-    found = submission({"Lab6/step.png": PICTURE, **package("Lab7/my_robot"), **package("Lab8/my_robot", "other")})
-    assert (found.path, found.package and found.package.folder) == ("Lab7/my_robot/urdf/my_robot.urdf", "Lab7/my_robot")
+    found = submission(
+        {"Lab6/step.png": PICTURE, **package("Lab7/my_robot"), **package("Lab8/my_robot", "other")}
+    )
+    assert (found.path, found.package and found.package.folder) == (
+        "Lab7/my_robot/urdf/my_robot.urdf",
+        "Lab7/my_robot",
+    )
     why = "Lab6, the folder of this lab, has no robot of this lab"
     assert found.notes == (found.several, f"{why}: Lab7, the folder of another lab, was graded")
     assert "not Lab8/my_robot/urdf/my_robot.urdf" in found.several

@@ -19,7 +19,9 @@ def test_a_report_is_no_answer(tmp_path: Path, kind: Format) -> None:
     before = grade(LAB6, opened(work))
     (work / f"a_report.{kind.ending}").write_text(render(before, kind), encoding="utf-8")
     after = grade(LAB6, opened(work))
-    assert [result.outcome for result in after.results] == [result.outcome for result in before.results]
+    assert [result.outcome for result in after.results] == [
+        result.outcome for result in before.results
+    ]
     assert after.problems == before.problems
 
 
@@ -27,7 +29,9 @@ def test_a_report_is_no_answer(tmp_path: Path, kind: Format) -> None:
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_an_answer_has_the_line_of_an_editor(tmp_path: Path, odd: str, end: str) -> None:
     """Only line endings start a line, whatever other breaks Unicode has."""
-    text = end.join(["# Lab 6", f"some{odd}thing", "", "## Task 1 step 15", "The tree has two roots.", ""])
+    text = end.join(
+        ["# Lab 6", f"some{odd}thing", "", "## Task 1 step 15", "The tree has two roots.", ""]
+    )
     (tmp_path / "answers.md").write_bytes(text.encode())
     found = [
         result.outcome

@@ -14,7 +14,9 @@ from tests.samples import LAB6, opened
 
 REFERENCE = (LAB6.path.parent / LAB6.reference / LAB6.urdf).read_text(encoding="utf-8")
 NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
-PLAIN = REFERENCE.replace('rpy="-1.57 0 0"', 'rpy="${-pi/2} 0 0"').replace("<robot ", f"<robot {NAMESPACE} ")
+PLAIN = REFERENCE.replace('rpy="-1.57 0 0"', 'rpy="${-pi/2} 0 0"').replace(
+    "<robot ", f"<robot {NAMESPACE} "
+)
 MACRO = PLAIN.replace("</robot>", '<xacro:macro name="m" params="p"/>\n</robot>')
 
 
@@ -26,7 +28,10 @@ def inserted(text: str, *, at: str = "</robot>", also: str = "") -> str:
 
 def statuses(submission: Submission) -> dict[str, str]:
     """Return the status of each criterion of Task 1."""
-    return {result.criterion.id: result.outcome.status for result in grade(LAB6, submission, ["task1"]).results}
+    return {
+        result.criterion.id: result.outcome.status
+        for result in grade(LAB6, submission, ["task1"]).results
+    }
 
 
 def single(text: str, name: str = "my_robot.urdf.xacro") -> Submission:
@@ -34,7 +39,9 @@ def single(text: str, name: str = "my_robot.urdf.xacro") -> Submission:
     return read_submission(text.encode(), identity="ash", path=name)
 
 
-def package_with(folder: Path, text: str, *, name: str = "my_robot.urdf", command: str = "") -> Submission:
+def package_with(
+    folder: Path, text: str, *, name: str = "my_robot.urdf", command: str = ""
+) -> Submission:
     """Return the reference package with another URDF, whose launch file runs a command on it, or reads it."""
     shutil.copytree(LAB6.path.parent / LAB6.reference, folder / "my_robot")
     (folder / "my_robot" / LAB6.urdf).unlink()
@@ -70,7 +77,13 @@ def test_a_name_that_says_xacro_means_expansion() -> None:
 
     A name with neither means expansion too: nothing loads such a file as a URDF.
     """
-    for name in ("a.urdf.xacro", "a.xacro", "urdf.Xacro file.txt", "urdf.xacro file.py", "a.urdf.xacro.txt"):
+    for name in (
+        "a.urdf.xacro",
+        "a.xacro",
+        "urdf.Xacro file.txt",
+        "urdf.xacro file.py",
+        "a.urdf.xacro.txt",
+    ):
         assert state(single(MACRO, name)) == "expanded", name
     assert state(single(MACRO, "my_robot")) == state(single(MACRO, "robot.xml")) == "expanded"
     for name in ("a.urdf", "A.URDF", "a.urdf.txt", "a.xacro.urdf", "-"):
@@ -91,12 +104,18 @@ def test_xacro_that_makes_no_difference_is_read_as_it_stands() -> None:
 
 def test_launch_arguments_reach_xacro(tmp_path: Path) -> None:
     """The arguments that the launch file gives xacro count before the defaults of the file."""
-    text = PLAIN.replace('name="lidar"', 'name="$(arg sensor)"').replace('link="lidar"', 'link="$(arg sensor)"')
+    text = PLAIN.replace('name="lidar"', 'name="$(arg sensor)"').replace(
+        'link="lidar"', 'link="$(arg sensor)"'
+    )
     text = text.replace("</robot>", '<xacro:arg name="other" default="1"/></robot>')
     text = text.replace(
-        '<link name="base_link">', '<xacro:arg name="sensor" default="scanner"/><link name="base_link">', 1
+        '<link name="base_link">',
+        '<xacro:arg name="sensor" default="scanner"/><link name="base_link">',
+        1,
     )
-    given = package_with(tmp_path / "a", text, command="'xacro ', share + '/my_robot.urdf', ' sensor:=lidar'")
+    given = package_with(
+        tmp_path / "a", text, command="'xacro ', share + '/my_robot.urdf', ' sensor:=lidar'"
+    )
     assert set(statuses(given).values()) == {"passed"}
     default = package_with(tmp_path / "b", text, command="'xacro ', share + '/my_robot.urdf'")
     assert statuses(default)["lidar-shape"] == "failed"
@@ -107,7 +126,9 @@ def test_an_unknown_macro_of_a_missing_include_hides_nothing_of_its_link(tmp_pat
     include = '<xacro:include filename="$(find other_robot)/urdf/inertia.xacro"/>'
     text = inserted(include, at='<link name="base_link">', also='<xacro:inertial_box mass="1"/>')
     found = package_with(tmp_path, text, name="my_robot.urdf.xacro")
-    assert {name for name, status in statuses(found).items() if status != "passed"} == {"urdf-loads"}
+    assert {name for name, status in statuses(found).items() if status != "passed"} == {
+        "urdf-loads"
+    }
 
 
 def test_an_include_that_a_build_installs_elsewhere_is_found(tmp_path: Path) -> None:
@@ -148,13 +169,20 @@ def test_a_refused_expression_costs_what_depends_on_it() -> None:
     assert text != PLAIN
     found = statuses(single(text))
     assert found["urdf-loads"] == found["base-box"] == "failed"
-    assert found["lidar-frame"] == found["left-wheel-forward"] == found["footprint-root"] == "passed"
+    assert (
+        found["lidar-frame"] == found["left-wheel-forward"] == found["footprint-root"] == "passed"
+    )
 
 
 def test_a_failure_names_what_xacro_refuses() -> None:
     """A frame or shape that xacro cannot place fails with xacro's problem, at the attribute."""
-    text = PLAIN.replace('xyz="0.15 0 0.225"', 'xyz="${heigth} 0 0.225"').replace("0.6 0.4 0.2", "${lenght} 0.4 0.2")
-    results = {result.criterion.id: result.outcome for result in grade(LAB6, single(text), ["task1"]).results}
+    text = PLAIN.replace('xyz="0.15 0 0.225"', 'xyz="${heigth} 0 0.225"').replace(
+        "0.6 0.4 0.2", "${lenght} 0.4 0.2"
+    )
+    results = {
+        result.criterion.id: result.outcome
+        for result in grade(LAB6, single(text), ["task1"]).results
+    }
     for name, wrong in (("lidar-frame", "heigth"), ("base-box", "lenght")):
         outcome = results[name]
         assert f"XACRO002: there is no property {wrong} at this place" in outcome.message
@@ -165,7 +193,9 @@ def test_a_failure_names_what_xacro_refuses() -> None:
 
 def test_an_environment_variable_leaves_only_its_element_undecided() -> None:
     """What an environment variable decides needs manual grading, all else is graded."""
-    found = statuses(single(PLAIN.replace('<box size="0.6 0.4 0.2"/>', '<box size="$(env LENGTH) 0.4 0.2"/>')))
+    found = statuses(
+        single(PLAIN.replace('<box size="0.6 0.4 0.2"/>', '<box size="$(env LENGTH) 0.4 0.2"/>'))
+    )
     assert found["urdf-loads"] == found["base-box"] == "pending"
     assert found["lidar-frame"] == found["left-wheel-continuous"] == "passed"
     assert "failed" not in found.values()
@@ -176,9 +206,14 @@ def test_what_an_undecided_condition_defines_is_undecided() -> None:
     condition = '<xacro:if value="$(env REAL)">{}</xacro:if>'
     size = '<box size="0.6 0.4 0.2"/>'
     text = PLAIN.replace(size, '<box size="${long} 0.4 0.2"/>')
-    before, inside = '<xacro:property name="long" value="9"/>', '<xacro:property name="long" value="0.6"/>'
+    before, inside = (
+        '<xacro:property name="long" value="9"/>',
+        '<xacro:property name="long" value="0.6"/>',
+    )
     for start in ("", before):
-        found = statuses(single(text.replace("<link", start + condition.format(inside) + "<link", 1)))
+        found = statuses(
+            single(text.replace("<link", start + condition.format(inside) + "<link", 1))
+        )
         assert found["base-box"] == found["urdf-loads"] == "pending"
         assert "failed" not in found.values()
     macro = condition.format(f'<xacro:macro name="m">{size}</xacro:macro>')
@@ -190,5 +225,7 @@ def test_xml_that_xacro_refuses_hides_nothing_else() -> None:
     """A blank line before the declaration, or no xmlns:xacro, fails urdf-loads, and all else is graded."""
     assert PLAIN.startswith("<?xml")
     for text in ("\n" + PLAIN, MACRO.replace(NAMESPACE, "")):
-        found = {name: status for name, status in statuses(single(text)).items() if status != "passed"}
+        found = {
+            name: status for name, status in statuses(single(text)).items() if status != "passed"
+        }
         assert found == {"urdf-loads": "failed"}

@@ -20,11 +20,17 @@ def manifest(name: str) -> bytes:
 
 def package(folder: str, name: str = "my_robot", *, urdf: bool = True) -> dict[str, bytes]:
     """Return the files of a package."""
-    files = {f"{folder}/package.xml": manifest(name), f"{folder}/setup.py": b"", f"{folder}/launch/a.launch.py": b""}
+    files = {
+        f"{folder}/package.xml": manifest(name),
+        f"{folder}/setup.py": b"",
+        f"{folder}/launch/a.launch.py": b"",
+    }
     return {**files, f"{folder}/urdf/my_robot.urdf": ROBOT} if urdf else files
 
 
-def submission(files: Mapping[str, bytes], *generated: str, folders: tuple[str, ...] = FOLDERS) -> Submission:
+def submission(
+    files: Mapping[str, bytes], *generated: str, folders: tuple[str, ...] = FOLDERS
+) -> Submission:
     """Return the submission that these files make for lab 6; `generated` are paths of a build."""
     found = [File(path, len(data), partial(_read, data)) for path, data in files.items()]
     tree = make_tree("repo", found, (), generated=generated)

@@ -18,7 +18,9 @@ from tests.wheels import offline
 pytestmark = pytest.mark.exhaustive
 
 PAGES = sorted(Path(__file__).parent.glob("*.md"))
-NO_NETWORK = {f"{scheme}_proxy": "http://127.0.0.1:9" for scheme in ("http", "https")}  # no program listens there
+NO_NETWORK = {
+    f"{scheme}_proxy": "http://127.0.0.1:9" for scheme in ("http", "https")
+}  # no program listens there
 
 
 class Walk:
@@ -27,10 +29,17 @@ class Walk:
     def __init__(self, folder: Path) -> None:
         """Build the wheel, and install it."""
         (folder / "wheels").mkdir()
-        self.variables = {**clean_environment(), **NO_NETWORK, **offline(folder / "wheels"), "COLUMNS": "100"}
+        self.variables = {
+            **clean_environment(),
+            **NO_NETWORK,
+            **offline(folder / "wheels"),
+            "COLUMNS": "100",
+        }
         build = (sys.executable, "-m", "hatchling", "build", "-d", folder / "wheels", "-t", "wheel")
         subprocess.run(build, cwd=ROOT, check=True, capture_output=True, timeout=HANG_TIMEOUT)
-        subprocess.run((sys.executable, "-m", "venv", folder / "venv"), check=True, timeout=HANG_TIMEOUT)
+        subprocess.run(
+            (sys.executable, "-m", "venv", folder / "venv"), check=True, timeout=HANG_TIMEOUT
+        )
         self.variables["PATH"] = f"{folder}/venv/bin{os.pathsep}{os.environ['PATH']}"
         self.run("pip install --quiet urdf-grader", folder)
 
@@ -39,9 +48,16 @@ class Walk:
         printed, code = "", 0
         for line in commands.splitlines():
             done = subprocess.run(
-                ("bash", "-c", line), cwd=folder, env=self.variables, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT, text=True, check=False, timeout=HANG_TIMEOUT,
-            )  # fmt: skip
+                ("bash", "-c", line),
+                cwd=folder,
+                env=self.variables,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+                check=False,
+                timeout=HANG_TIMEOUT,
+            )
             printed, code = printed + done.stdout, done.returncode
             assert line.startswith("grader ") or code == 0, (line, printed)
         return printed, code
@@ -67,5 +83,6 @@ if __name__ == "__main__":
         for path in PAGES:
             with TemporaryDirectory() as empty:
                 path.write_text(
-                    follow(path.read_text(encoding="utf-8"), Path(empty), installed.run)[0], encoding="utf-8"
+                    follow(path.read_text(encoding="utf-8"), Path(empty), installed.run)[0],
+                    encoding="utf-8",
                 )

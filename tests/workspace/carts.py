@@ -18,7 +18,11 @@ LAB = Lab("urdf/cart.urdf.xacro")
 @cache
 def cart_files() -> Mapping[str, str]:
     """Return the texts of the workspace by their paths; in it, everything agrees."""
-    paths = [path for path in sorted(FOLDER.rglob("*")) if path.is_file() and "__pycache__" not in path.parts]
+    paths = [
+        path
+        for path in sorted(FOLDER.rglob("*"))
+        if path.is_file() and "__pycache__" not in path.parts
+    ]
     return {path.relative_to(FOLDER).as_posix(): path.read_text(encoding="utf-8") for path in paths}
 
 
@@ -27,7 +31,9 @@ def edited(*edits: Edit) -> dict[str, str]:
     texts = dict(cart_files())
     for end, old, new in edits:
         [path] = [it for it in texts if it.endswith(end)]
-        assert texts[path].count(old) == 1, f"{old!r} occurs {texts[path].count(old)} times in {path}"
+        assert texts[path].count(old) == 1, (
+            f"{old!r} occurs {texts[path].count(old)} times in {path}"
+        )
         texts[path] = texts[path].replace(old, new)
     return texts
 
@@ -35,7 +41,9 @@ def edited(*edits: Edit) -> dict[str, str]:
 def cart(texts: Mapping[str, str], lab: Lab = LAB) -> Submission:
     """Return a submission of these files."""
     return submission_of(
-        overlaid(make_tree("cart", (), ()), {path: text.encode() for path, text in texts.items()}), "cart", lab
+        overlaid(make_tree("cart", (), ()), {path: text.encode() for path, text in texts.items()}),
+        "cart",
+        lab,
     )
 
 

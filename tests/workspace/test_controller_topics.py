@@ -5,17 +5,22 @@ import pytest
 from grader.workspace.names import Mismatch
 from tests.workspace.carts import agreement_of, edited
 
-_ALARM, _LAUNCH, _ROBOT_LAUNCH = "cart_nodes/alarm.py", "launch/cart.launch.py", "launch/robot.launch.py"
-_SPAWNER = 'Node(package="controller_manager", executable="spawner", arguments=["joint_state_broadcaster"]),'
-_CONTROL = (
-    'Node(package="controller_manager", executable="ros2_control_node", remappings=[("{}", "/cmd_vel")]),\n        '
+_ALARM, _LAUNCH, _ROBOT_LAUNCH = (
+    "cart_nodes/alarm.py",
+    "launch/cart.launch.py",
+    "launch/robot.launch.py",
 )
+_SPAWNER = 'Node(package="controller_manager", executable="spawner", arguments=["joint_state_broadcaster"]),'
+_CONTROL = 'Node(package="controller_manager", executable="ros2_control_node", remappings=[("{}", "/cmd_vel")]),\n        '
 _AT = "cart_bringup/config/controllers.yaml:7"
 _STAMPED = "geometry_msgs.msg.TwistStamped"
 
 
 def topic_problems(
-    message: str, *more: tuple[str, str, str], old: str = "/wheel_controller/cmd_vel", topic: str = "cmd_vel"
+    message: str,
+    *more: tuple[str, str, str],
+    old: str = "/wheel_controller/cmd_vel",
+    topic: str = "cmd_vel",
 ) -> list[Mismatch]:
     """Return what is wrong with topics if the alarm sends velocities to the controller, with more edits."""
     publisher = f'self.declare_parameter("volume", 5)\n        self.create_publisher({message}, "{topic}", 10)'
@@ -36,10 +41,15 @@ def test_a_controller_gets_messages_of_its_type() -> None:
     assert topic_problems("TwistStamped", old="/other", topic="/wheel_controller/cmd_vel") == []
 
 
-@pytest.mark.parametrize("rule", ["-r ~/cmd_vel:=/cmd_vel", "--ros-args --remap wheel_controller/cmd_vel:=cmd_vel"])
+@pytest.mark.parametrize(
+    "rule", ["-r ~/cmd_vel:=/cmd_vel", "--ros-args --remap wheel_controller/cmd_vel:=cmd_vel"]
+)
 def test_a_spawner_remaps_the_topics_of_its_controllers(rule: str) -> None:
     """These arguments are for the nodes of the controllers alone."""
-    old, new = (f'["wheel_controller", {more}"--param-file"' for more in ("", f'"--controller-ros-args", "{rule}", '))
+    old, new = (
+        f'["wheel_controller", {more}"--param-file"'
+        for more in ("", f'"--controller-ros-args", "{rule}", ')
+    )
     assert topic_problems("TwistStamped", (_ROBOT_LAUNCH, old, new), old="/other") == []
 
 
@@ -62,7 +72,12 @@ def test_another_type_is_wrong_where_it_is_published() -> None:
 
 def test_a_controller_that_is_not_spawned_subscribes_to_nothing() -> None:
     """Nor does one whose process has remappings that are computed."""
-    assert topic_problems("Twist", (_ROBOT_LAUNCH, '["wheel_controller"', '["joint_state_broadcaster"')) == []
+    assert (
+        topic_problems(
+            "Twist", (_ROBOT_LAUNCH, '["wheel_controller"', '["joint_state_broadcaster"')
+        )
+        == []
+    )
     assert topic_problems("Twist", old='" + name_of() + "') == []
 
 
@@ -70,7 +85,8 @@ def test_a_publisher_that_nothing_subscribes_to() -> None:
     """Without the remapping, the controller waits on its own topic; other nodes may subscribe, so it is a warning."""
     [found] = topic_problems("TwistStamped", old="/other")
     assert (found.message, found.is_sure) == (
-        f"nothing subscribes to /cmd_vel; did you mean /wheel_controller/cmd_vel ({_AT})?", False
-    )  # fmt: skip
+        f"nothing subscribes to /cmd_vel; did you mean /wheel_controller/cmd_vel ({_AT})?",
+        False,
+    )
     assert topic_problems("TwistStamped", old="/other", topic="speed") == []
     assert topic_problems("Twist", old="/other") == []

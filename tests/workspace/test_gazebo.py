@@ -106,7 +106,9 @@ ament_package()
 </package>
 """,
 }
-_LASER = "{topic_name: scan, ros_type_name: sensor_msgs/msg/LaserScan, gz_type_name: gz.msgs.LaserScan"
+_LASER = (
+    "{topic_name: scan, ros_type_name: sensor_msgs/msg/LaserScan, gz_type_name: gz.msgs.LaserScan"
+)
 _AT_BRIDGE, _AT_ROBOT = "scout/bridge.yaml:2", "scout/scout.urdf:10"
 
 
@@ -124,54 +126,144 @@ def problems(*edits: tuple[str, str, str]) -> list[str]:
 @pytest.mark.parametrize(
     ("edits", "message"),
     [
-        ([("bridge.yaml", "gz.msgs.IMU", "gz.msgs.Imu")],
-         "the bridge does not convert sensor_msgs/msg/Imu and gz.msgs.Imu; write gz.msgs.IMU"),
-        ([("bridge.yaml", "gz.msgs.IMU", "IMU")],
-         "the bridge does not convert sensor_msgs/msg/Imu and IMU; write gz.msgs.IMU"),
-        ([("bridge.yaml", "gz_type_name: gz.msgs.IMU", "gz_type_name: ")],
-         "the bridge does not convert sensor_msgs/msg/Imu and an empty type; write gz.msgs.IMU"),
-        ([("bridge.yaml", "sensor_msgs/msg/Imu", "sensor_msgs/msg/Image")],
-         "the bridge does not convert sensor_msgs/msg/Image and gz.msgs.IMU; write sensor_msgs/msg/Imu"),
-        ([("bridge.yaml", "direction: ROS_TO_GZ}", "direction: ROS_TO_GZ")],
-         ("this is not YAML: while parsing a flow mapping did not find expected ',' or '}'")),
-        ([("bridge.yaml", "direction: ROS_TO_GZ", "direction: GZ_TO_ROS")],
-         f"the topic cmd_vel is bridged GZ_TO_ROS, but Gazebo reads it ({_AT_ROBOT}): write ROS_TO_GZ"),
-        ([("bridge.yaml", "gz.msgs.Odometry, direction: GZ_TO_ROS", "gz.msgs.Odometry, direction: ROS_TO_GZ")],
-         f"the topic odom is bridged ROS_TO_GZ, but Gazebo publishes it ({_AT_ROBOT}): write GZ_TO_ROS"),
-        ([("bridge.yaml", "gz.msgs.Odometry,", "gz.msgs.OdometryWithCovariance,")],
-         f"the topic odom of Gazebo has gz.msgs.Odometry ({_AT_ROBOT}), not gz.msgs.OdometryWithCovariance"),
-        ([("bridge.yaml", _LASER, _LASER.replace("{topic_name: scan", "{ros_topic_name: scan, gz_topic_name: lidar"))],
-         "no sensor publishes 'lidar' in Gazebo; did you mean 'scan' (scout/scout.urdf:4)?"),
-        ([("bridge.yaml", "{topic_name: cmd_vel", "{ros_topic_name: cmd_vel, gz_topic_name: command")],
-         f"nothing reads 'command' in Gazebo; did you mean 'cmd_vel' ({_AT_ROBOT})?"),
-        ([("bridge.yaml", _BRIDGE.splitlines(keepends=True)[0], "")],
-         "drive.py waits for the time of the simulation, but no bridge takes clock from Gazebo"),
-        ([("arena.sdf", '    <plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>\n', "")],
-         ("the world has no plugin gz::sim::systems::Sensors, so the sensor 'lidar' (scout/scout.urdf:4) publishes"
-         " nothing")),
-        ([("scout.launch.py", '"-world", "arena"', '"-world", "empty"')],
-         "the robot is created in the world 'empty', but the world of scout/arena.sdf is 'arena'"),
-        ([("scout.launch.py", '"-topic", "robot_description"', '"-topic", "robot"')],
-         "the robot is created from /robot, but robot_state_publisher publishes /robot_description"),
-        ([("scout.launch.py", 'parameters=[{"config_file": PathJoinSubstitution([share, "bridge.yaml"])}]', "name='b'"),
-          ("drive.py", '        self.create_subscription(LaserScan, "scan", print, 10)\n', "")],
-         "the bridge has no topics: neither arguments, nor the parameter config_file"),
-        ([("drive.py", "LaserScan", "PointCloud2")],
-         ("the topic /scan has sensor_msgs.msg.PointCloud2 here, but is published by the bridge with"
-         f" sensor_msgs.msg.LaserScan ({_AT_BRIDGE})")),
-        ([("drive.py", "import Twist", "import TwistStamped as Twist")],
-         ("the topic /cmd_vel has geometry_msgs.msg.TwistStamped here, but is subscribed to by the bridge with"
-         " geometry_msgs.msg.Twist (scout/bridge.yaml:5)")),
-        ([("arena.sdf", "  </world>", "    <include><uri>model://shelv</uri></include>\n  </world>")],
-         "there is no model 'shelv'; did you mean 'shelf'?"),
-        ([("drive.py", "#!/usr/bin/env python3\n", "")],
-         "Linux cannot execute drive.py: its first line is not #!/usr/bin/env python3"),
-        ([("drive.py", "python3\n", "python3\r\n")],
-         "Linux cannot execute drive.py: its first line ends as on Windows, with CR LF"),
-        ([("CMakeLists.txt", "install(PROGRAMS drive.py", "install(FILES drive.py")],
-         "a build installs 'drive.py' without the right to execute it: write install(PROGRAMS ...)"),
+        (
+            [("bridge.yaml", "gz.msgs.IMU", "gz.msgs.Imu")],
+            "the bridge does not convert sensor_msgs/msg/Imu and gz.msgs.Imu; write gz.msgs.IMU",
+        ),
+        (
+            [("bridge.yaml", "gz.msgs.IMU", "IMU")],
+            "the bridge does not convert sensor_msgs/msg/Imu and IMU; write gz.msgs.IMU",
+        ),
+        (
+            [("bridge.yaml", "gz_type_name: gz.msgs.IMU", "gz_type_name: ")],
+            "the bridge does not convert sensor_msgs/msg/Imu and an empty type; write gz.msgs.IMU",
+        ),
+        (
+            [("bridge.yaml", "sensor_msgs/msg/Imu", "sensor_msgs/msg/Image")],
+            "the bridge does not convert sensor_msgs/msg/Image and gz.msgs.IMU; write sensor_msgs/msg/Imu",
+        ),
+        (
+            [("bridge.yaml", "direction: ROS_TO_GZ}", "direction: ROS_TO_GZ")],
+            ("this is not YAML: while parsing a flow mapping did not find expected ',' or '}'"),
+        ),
+        (
+            [("bridge.yaml", "direction: ROS_TO_GZ", "direction: GZ_TO_ROS")],
+            f"the topic cmd_vel is bridged GZ_TO_ROS, but Gazebo reads it ({_AT_ROBOT}): write ROS_TO_GZ",
+        ),
+        (
+            [
+                (
+                    "bridge.yaml",
+                    "gz.msgs.Odometry, direction: GZ_TO_ROS",
+                    "gz.msgs.Odometry, direction: ROS_TO_GZ",
+                )
+            ],
+            f"the topic odom is bridged ROS_TO_GZ, but Gazebo publishes it ({_AT_ROBOT}): write GZ_TO_ROS",
+        ),
+        (
+            [("bridge.yaml", "gz.msgs.Odometry,", "gz.msgs.OdometryWithCovariance,")],
+            f"the topic odom of Gazebo has gz.msgs.Odometry ({_AT_ROBOT}), not gz.msgs.OdometryWithCovariance",
+        ),
+        (
+            [
+                (
+                    "bridge.yaml",
+                    _LASER,
+                    _LASER.replace(
+                        "{topic_name: scan", "{ros_topic_name: scan, gz_topic_name: lidar"
+                    ),
+                )
+            ],
+            "no sensor publishes 'lidar' in Gazebo; did you mean 'scan' (scout/scout.urdf:4)?",
+        ),
+        (
+            [
+                (
+                    "bridge.yaml",
+                    "{topic_name: cmd_vel",
+                    "{ros_topic_name: cmd_vel, gz_topic_name: command",
+                )
+            ],
+            f"nothing reads 'command' in Gazebo; did you mean 'cmd_vel' ({_AT_ROBOT})?",
+        ),
+        (
+            [("bridge.yaml", _BRIDGE.splitlines(keepends=True)[0], "")],
+            "drive.py waits for the time of the simulation, but no bridge takes clock from Gazebo",
+        ),
+        (
+            [
+                (
+                    "arena.sdf",
+                    '    <plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>\n',
+                    "",
+                )
+            ],
+            (
+                "the world has no plugin gz::sim::systems::Sensors, so the sensor 'lidar' (scout/scout.urdf:4) publishes"
+                " nothing"
+            ),
+        ),
+        (
+            [("scout.launch.py", '"-world", "arena"', '"-world", "empty"')],
+            "the robot is created in the world 'empty', but the world of scout/arena.sdf is 'arena'",
+        ),
+        (
+            [("scout.launch.py", '"-topic", "robot_description"', '"-topic", "robot"')],
+            "the robot is created from /robot, but robot_state_publisher publishes /robot_description",
+        ),
+        (
+            [
+                (
+                    "scout.launch.py",
+                    'parameters=[{"config_file": PathJoinSubstitution([share, "bridge.yaml"])}]',
+                    "name='b'",
+                ),
+                (
+                    "drive.py",
+                    '        self.create_subscription(LaserScan, "scan", print, 10)\n',
+                    "",
+                ),
+            ],
+            "the bridge has no topics: neither arguments, nor the parameter config_file",
+        ),
+        (
+            [("drive.py", "LaserScan", "PointCloud2")],
+            (
+                "the topic /scan has sensor_msgs.msg.PointCloud2 here, but is published by the bridge with"
+                f" sensor_msgs.msg.LaserScan ({_AT_BRIDGE})"
+            ),
+        ),
+        (
+            [("drive.py", "import Twist", "import TwistStamped as Twist")],
+            (
+                "the topic /cmd_vel has geometry_msgs.msg.TwistStamped here, but is subscribed to by the bridge with"
+                " geometry_msgs.msg.Twist (scout/bridge.yaml:5)"
+            ),
+        ),
+        (
+            [
+                (
+                    "arena.sdf",
+                    "  </world>",
+                    "    <include><uri>model://shelv</uri></include>\n  </world>",
+                )
+            ],
+            "there is no model 'shelv'; did you mean 'shelf'?",
+        ),
+        (
+            [("drive.py", "#!/usr/bin/env python3\n", "")],
+            "Linux cannot execute drive.py: its first line is not #!/usr/bin/env python3",
+        ),
+        (
+            [("drive.py", "python3\n", "python3\r\n")],
+            "Linux cannot execute drive.py: its first line ends as on Windows, with CR LF",
+        ),
+        (
+            [("CMakeLists.txt", "install(PROGRAMS drive.py", "install(FILES drive.py")],
+            "a build installs 'drive.py' without the right to execute it: write install(PROGRAMS ...)",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_gazebo_does_not_do_is_named(edits: list[tuple[str, str, str]], message: str) -> None:
     """One mistake is one problem, and says what there is."""
     assert problems(*edits) == [message]
@@ -184,23 +276,72 @@ def test_what_gazebo_does_not_do_is_named(edits: list[tuple[str, str, str]], mes
         [("bridge.yaml", "direction: ROS_TO_GZ", "direction: BIDIRECTIONAL")],
         [("bridge.yaml", "gz.msgs.IMU", "ignition.msgs.IMU")],
         [("scout.launch.py", '"-world", "arena", ', "")],
-        [("arena.sdf", "  </world>", "    <include><uri>model://shelf/model.sdf</uri></include>\n  </world>")],
+        [
+            (
+                "arena.sdf",
+                "  </world>",
+                "    <include><uri>model://shelf/model.sdf</uri></include>\n  </world>",
+            )
+        ],
         [("arena.sdf", "  </world>", "    <include><uri>model://sun</uri></include>\n  </world>")],
-        [("arena.sdf", "  </world>", "    <include><uri>https://fuel.example/shelve</uri></include>\n  </world>")],
+        [
+            (
+                "arena.sdf",
+                "  </world>",
+                "    <include><uri>https://fuel.example/shelve</uri></include>\n  </world>",
+            )
+        ],
         [("scout.launch.py", '"-topic", "robot_description"', '"-file", "/tmp/robot.sdf"')],
-        [("arena.sdf", '<plugin filename="gz-sim-physics-system" name="gz::sim::systems::Physics"/>', ""),
-         ("arena.sdf", '<plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>', ""),
-         ("arena.sdf", '<plugin filename="gz-sim-imu-system" name="gz::sim::systems::Imu"/>', "")],
-        [("bridge.yaml", _BRIDGE.splitlines(keepends=True)[0], ""),
-         ("scout.launch.py", '"use_sim_time": True', '"use_sim_time": False')],
-        [("bridge.yaml", _BRIDGE.splitlines(keepends=True)[0], ""),
-         ("scout.launch.py", 'FindPackageShare("ros_gz_sim"), "launch"', 'FindPackageShare("other_sim"), "launch"')],
-        [("bridge.yaml", "{topic_name: cmd_vel", "{ros_topic_name: cmd_vel, gz_topic_name: /model/scout/cmd_vel")],
-        [("CMakeLists.txt", "install(PROGRAMS drive.py", "install(FILES drive.py PERMISSIONS OWNER_EXECUTE"),
-         ("CMakeLists.txt", "PERMISSIONS OWNER_EXECUTE DESTINATION lib/${PROJECT_NAME}",
-          "DESTINATION lib/${PROJECT_NAME} PERMISSIONS OWNER_READ OWNER_EXECUTE")],
+        [
+            (
+                "arena.sdf",
+                '<plugin filename="gz-sim-physics-system" name="gz::sim::systems::Physics"/>',
+                "",
+            ),
+            (
+                "arena.sdf",
+                '<plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>',
+                "",
+            ),
+            (
+                "arena.sdf",
+                '<plugin filename="gz-sim-imu-system" name="gz::sim::systems::Imu"/>',
+                "",
+            ),
+        ],
+        [
+            ("bridge.yaml", _BRIDGE.splitlines(keepends=True)[0], ""),
+            ("scout.launch.py", '"use_sim_time": True', '"use_sim_time": False'),
+        ],
+        [
+            ("bridge.yaml", _BRIDGE.splitlines(keepends=True)[0], ""),
+            (
+                "scout.launch.py",
+                'FindPackageShare("ros_gz_sim"), "launch"',
+                'FindPackageShare("other_sim"), "launch"',
+            ),
+        ],
+        [
+            (
+                "bridge.yaml",
+                "{topic_name: cmd_vel",
+                "{ros_topic_name: cmd_vel, gz_topic_name: /model/scout/cmd_vel",
+            )
+        ],
+        [
+            (
+                "CMakeLists.txt",
+                "install(PROGRAMS drive.py",
+                "install(FILES drive.py PERMISSIONS OWNER_EXECUTE",
+            ),
+            (
+                "CMakeLists.txt",
+                "PERMISSIONS OWNER_EXECUTE DESTINATION lib/${PROJECT_NAME}",
+                "DESTINATION lib/${PROJECT_NAME} PERMISSIONS OWNER_READ OWNER_EXECUTE",
+            ),
+        ],
     ],
-)  # fmt: skip
+)
 def test_what_agrees_or_is_not_known_is_no_problem(edits: list[tuple[str, str, str]]) -> None:
     """Worlds without systems get those of Gazebo; other packages may bridge the time."""
     assert problems(*edits) == []
@@ -215,7 +356,9 @@ def test_what_agrees_or_is_not_known_is_no_problem(edits: list[tuple[str, str, s
 )
 def test_what_is_wrong_is_shown_where_it_is_written(right: str, wrong: str, message: str) -> None:
     """Not at the topic, and with the right word; a launch file may also be one by its folder."""
-    texts = {name: text.replace("scout.launch.py", "launch/scout.py") for name, text in _FILES.items()}
+    texts = {
+        name: text.replace("scout.launch.py", "launch/scout.py") for name, text in _FILES.items()
+    }
     texts["scout/launch/scout.py"] = texts.pop("scout/scout.launch.py")
     texts["scout/bridge.yaml"] = texts["scout/bridge.yaml"].replace(right, wrong)
     [found] = sure(agreement_of(texts))
@@ -229,11 +372,17 @@ def test_what_is_wrong_is_shown_where_it_is_written(right: str, wrong: str, mess
     ("old", "new", "meant"),
     [
         ("gz.msgs.IMU", "gz.msgs.Imu", [("gz.msgs.Imu", "gz.msgs.IMU")]),
-        ("sensor_msgs/msg/Imu", "sensor_msgs/msg/Image", [("sensor_msgs/msg/Image", "sensor_msgs/msg/Imu")]),
+        (
+            "sensor_msgs/msg/Imu",
+            "sensor_msgs/msg/Image",
+            [("sensor_msgs/msg/Image", "sensor_msgs/msg/Imu")],
+        ),
         ("gz_type_name: gz.msgs.IMU", "gz_type_name: ", []),
     ],
 )
-def test_the_type_that_is_wrong_is_corrected(old: str, new: str, meant: list[tuple[str, str]]) -> None:
+def test_the_type_that_is_wrong_is_corrected(
+    old: str, new: str, meant: list[tuple[str, str]]
+) -> None:
     """That of ROS, if the topic of Gazebo has the other; an empty one has no place for the whole type."""
     texts = dict(_FILES)
     texts["scout/bridge.yaml"] = texts["scout/bridge.yaml"].replace(old, new)
@@ -246,7 +395,12 @@ def test_frames_of_odometry_exist() -> None:
     publisher = """Node(package="tf2_ros", executable="static_transform_publisher",
         arguments=["--frame-id", "PARENT", "--child-frame-id", "laser"]),"""
     named = _ROBOT.replace("<tf_topic/>", "<child_frame_id>carriage</child_frame_id>")
-    cases = [("scout/odom", _ROBOT, 0), ("scout/base_link", _ROBOT, 0), ("carriage", named, 0), ("carriage", _ROBOT, 1)]
+    cases = [
+        ("scout/odom", _ROBOT, 0),
+        ("scout/base_link", _ROBOT, 0),
+        ("carriage", named, 0),
+        ("carriage", _ROBOT, 1),
+    ]
     for parent, robot, count in (*cases, ("rover/odom", _ROBOT, 1)):
         at = _LAUNCH.rindex("]")
         launch = _LAUNCH[:at] + publisher.replace("PARENT", parent) + _LAUNCH[at:]
@@ -259,4 +413,6 @@ def test_a_world_in_which_no_robot_is_created_needs_no_systems_for_it() -> None:
     """The robot's sensors need systems only where a launch file creates the robot."""
     world = ("arena.sdf", "Imu", "Other")
     assert len(problems(world)) == 1
-    assert problems(world, ("scout.launch.py", 'executable="create"', 'executable="gzserver"')) == []
+    assert (
+        problems(world, ("scout.launch.py", 'executable="create"', 'executable="gzserver"')) == []
+    )

@@ -38,22 +38,35 @@ _ROBOT = """\
   </ros2_control>
 </robot>
 """
-_SRDF = '<robot name="arm"><group name="arm"><chain base_link="base" tip_link="hand"/></group></robot>'
+_SRDF = (
+    '<robot name="arm"><group name="arm"><chain base_link="base" tip_link="hand"/></group></robot>'
+)
 _JOINT_LIMITS = "joint_limits: {shoulder: {max_velocity: 1.0}}"
 _FILES = {
-    "config/arm.urdf.xacro": _ROBOT, "config/arm.srdf": _SRDF, "config/joint_limits.yaml": _JOINT_LIMITS,
-    "config/ros2_controllers.yaml": _CONTROLLERS, "config/moveit_controllers.yaml": _MOVEIT,
-}  # fmt: skip
+    "config/arm.urdf.xacro": _ROBOT,
+    "config/arm.srdf": _SRDF,
+    "config/joint_limits.yaml": _JOINT_LIMITS,
+    "config/ros2_controllers.yaml": _CONTROLLERS,
+    "config/moveit_controllers.yaml": _MOVEIT,
+}
 
 
-def found_in(changed: dict[str, str], urdf: str = "config/arm.urdf.xacro", *, is_sure: bool = True) -> list[str]:
+def found_in(
+    changed: dict[str, str], urdf: str = "config/arm.urdf.xacro", *, is_sure: bool = True
+) -> list[str]:
     """Return the messages of what certainly is wrong in the package with changed files, or of what may be."""
     paths = [path for path in sorted(_ARM.rglob("*")) if path.is_file()]
-    files = {path.relative_to(_ARM).as_posix().removesuffix(".txt"): path.read_bytes() for path in paths}
+    files = {
+        path.relative_to(_ARM).as_posix().removesuffix(".txt"): path.read_bytes() for path in paths
+    }
     texts = {path: text.encode() for path, text in {**_FILES, **changed}.items() if text}
     tree = overlaid(make_tree("arm", (), ()), {**files, **texts})
     found = read_agreement(submission_of(tree, "arm", Lab(urdf)))
-    return [it.message for it in found.mismatches if it.is_sure == is_sure and it.family != "dependencies"]
+    return [
+        it.message
+        for it in found.mismatches
+        if it.is_sure == is_sure and it.family != "dependencies"
+    ]
 
 
 def test_a_configuration_agrees() -> None:
@@ -64,13 +77,43 @@ def test_a_configuration_agrees() -> None:
 @pytest.mark.parametrize(
     ("path", "old", "new", "message"),
     [
-        ("config/joint_limits.yaml", "shoulder", "sholder", "joint_limits: there is no joint 'sholder'"),
+        (
+            "config/joint_limits.yaml",
+            "shoulder",
+            "sholder",
+            "joint_limits: there is no joint 'sholder'",
+        ),
         ("config/kinematics.yaml", "arm:", "hand:", "kinematics_solver: there is no group 'hand'"),
-        ("config/arm.srdf", 'tip_link="hand"', 'tip_link="tool"', "<chain> tip_link: there is no link 'tool'"),
-        ("config/moveit_controllers.yaml", "[shoulder]", "[elbow]", "arm_controller.joints: there is no joint 'elbow'"),
-        ("config/moveit_controllers.yaml", "arm_controller", "arm_moveit", "controller_names: there is no controller"),
-        ("config/moveit_controllers.yaml", "action_ns: follow", "action_ns: send", "arm_controller.action_ns is"),
-        ("config/moveit_controllers.yaml", "names: [arm", "names: [an_arm", "controller_names: there is no plugin"),
+        (
+            "config/arm.srdf",
+            'tip_link="hand"',
+            'tip_link="tool"',
+            "<chain> tip_link: there is no link 'tool'",
+        ),
+        (
+            "config/moveit_controllers.yaml",
+            "[shoulder]",
+            "[elbow]",
+            "arm_controller.joints: there is no joint 'elbow'",
+        ),
+        (
+            "config/moveit_controllers.yaml",
+            "arm_controller",
+            "arm_moveit",
+            "controller_names: there is no controller",
+        ),
+        (
+            "config/moveit_controllers.yaml",
+            "action_ns: follow",
+            "action_ns: send",
+            "arm_controller.action_ns is",
+        ),
+        (
+            "config/moveit_controllers.yaml",
+            "names: [arm",
+            "names: [an_arm",
+            "controller_names: there is no plugin",
+        ),
     ],
 )
 def test_a_name_that_does_not_exist_is_wrong(path: str, old: str, new: str, message: str) -> None:
@@ -105,21 +148,29 @@ def test_a_description_of_another_robot_is_not_compared() -> None:
 
 def test_neighbours_whose_collisions_are_not_disabled_may_be_wrong_if_others_are() -> None:
     """It is a warning: they may not touch. If few pairs are disabled, it is not even that."""
-    robot = _ROBOT.replace("<ros2_control", "".join(map(_LIMB.format, "abcd", ("hand", *"abc"))) + "<ros2_control")
+    robot = _ROBOT.replace(
+        "<ros2_control", "".join(map(_LIMB.format, "abcd", ("hand", *"abc"))) + "<ros2_control"
+    )
     pairs = [("a", "b"), ("b", "c"), ("c", "d")]
 
     def found(disabled: list[tuple[str, str]]) -> list[str]:
-        rows = "".join(f'<disable_collisions link1="{two}" link2="{one}"/>' for one, two in disabled)
+        rows = "".join(
+            f'<disable_collisions link1="{two}" link2="{one}"/>' for one, two in disabled
+        )
         srdf = {"config/arm.srdf": _SRDF.replace("</robot>", f"{rows}</robot>")}
         return found_in({"config/arm.urdf.xacro": robot, **srdf}, is_sure=False)
 
     assert found(pairs) == found(pairs[:1]) == found([]) == []
-    assert found(pairs[:2]) == ["a joint connects 'c' and 'd', but <disable_collisions> does not name them"]
+    assert found(pairs[:2]) == [
+        "a joint connects 'c' and 'd', but <disable_collisions> does not name them"
+    ]
 
 
 def test_moveit_and_the_controller_have_the_same_joints() -> None:
     """A joint that the robot does not have is said of the frames."""
-    robot = _ROBOT.replace("<ros2_control", _LIMB.format("a", "hand").replace("fixed", "continuous") + "<ros2_control")
+    robot = _ROBOT.replace(
+        "<ros2_control", _LIMB.format("a", "hand").replace("fixed", "continuous") + "<ros2_control"
+    )
     own = {
         "config/arm.urdf.xacro": robot,
         "config/moveit_controllers.yaml": _MOVEIT.replace("[shoulder]", "[shoulder, a_joint]"),
@@ -131,13 +182,19 @@ def test_moveit_and_the_controller_have_the_same_joints() -> None:
 
 def test_a_joint_that_follows_another_is_listed_or_left_out() -> None:
     """MoveIt sends goals for active joints only, and the gripper's controller reads `joint`, not `joints`."""
-    mimic = _LIMB.format("a", "hand").replace('type="fixed">', 'type="continuous"><mimic joint="shoulder"/>')
+    mimic = _LIMB.format("a", "hand").replace(
+        'type="fixed">', 'type="continuous"><mimic joint="shoulder"/>'
+    )
     robot = {"config/arm.urdf.xacro": _ROBOT.replace("<ros2_control", mimic + "<ros2_control")}
     both = {"config/moveit_controllers.yaml": _MOVEIT.replace("[shoulder]", "[shoulder, a_joint]")}
     assert found_in({**robot, **both}) == []
     kind = "joint_trajectory_controller/JointTrajectoryController"
     gripper = _CONTROLLERS.replace(kind, "position_controllers/GripperActionController")
-    two = {"config/arm.urdf.xacro": robot["config/arm.urdf.xacro"].replace('<mimic joint="shoulder"/>', "")}
+    two = {
+        "config/arm.urdf.xacro": robot["config/arm.urdf.xacro"].replace(
+            '<mimic joint="shoulder"/>', ""
+        )
+    }
     for wanted, is_wrong in (("shoulder", False), ("a_joint", True)):
         own = gripper.replace("joints: [shoulder]", f"joint: {wanted}, joints: [shoulder, a_joint]")
         found = found_in({**two, "config/ros2_controllers.yaml": own})
@@ -156,20 +213,31 @@ def test_the_robot_is_the_one_that_the_setup_assistant_names() -> None:
     """Its launch files give the arguments of xacro that the robot declares."""
     launch = (_ARM / "launch/rsp.launch.py.txt").read_text(encoding="utf-8")
     mapped = launch.replace(
-        ".to_moveit_configs()", '.robot_description(mappings={"simulated": "true"}).to_moveit_configs()'
+        ".to_moveit_configs()",
+        '.robot_description(mappings={"simulated": "true"}).to_moveit_configs()',
     )
-    assistant = (
-        "moveit_setup_assistant_config:\n  urdf: {package: arm_moveit_config, relative_path: robots/arm.xacro}\n"
+    assistant = "moveit_setup_assistant_config:\n  urdf: {package: arm_moveit_config, relative_path: robots/arm.xacro}\n"
+    robot = _ROBOT.replace(
+        '<robot name="arm">',
+        '<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+        '<xacro:arg name="simulate" default="false"/>',
     )
-    robot = _ROBOT.replace('<robot name="arm">', '<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">'
-                           '<xacro:arg name="simulate" default="false"/>')  # fmt: skip
     cmake = (_ARM / "CMakeLists.txt").read_text(encoding="utf-8")
-    installed = cmake.replace("ament_package", "install(FILES .setup_assistant DESTINATION share/${PROJECT_NAME})\n"
-                              "install(DIRECTORY robots DESTINATION share/${PROJECT_NAME})\nament_package")  # fmt: skip
-    found = found_in({
-        ".setup_assistant": assistant, "robots/arm.xacro": robot, "config/arm.urdf.xacro": "", "CMakeLists.txt": installed,
-        "launch/rsp.launch.py": mapped,
-    }, "robots/arm.xacro")  # fmt: skip
+    installed = cmake.replace(
+        "ament_package",
+        "install(FILES .setup_assistant DESTINATION share/${PROJECT_NAME})\n"
+        "install(DIRECTORY robots DESTINATION share/${PROJECT_NAME})\nament_package",
+    )
+    found = found_in(
+        {
+            ".setup_assistant": assistant,
+            "robots/arm.xacro": robot,
+            "config/arm.urdf.xacro": "",
+            "CMakeLists.txt": installed,
+            "launch/rsp.launch.py": mapped,
+        },
+        "robots/arm.xacro",
+    )
     assert found == [
         "Command of xacro: there is no xacro argument 'simulated'; did you mean 'simulate' (robots/arm.xacro:1)?"
     ]
@@ -177,7 +245,13 @@ def test_the_robot_is_the_one_that_the_setup_assistant_names() -> None:
 
 def test_nothing_is_said_of_a_robot_that_is_not_known() -> None:
     """A robot whose description is not part of the submission may have any joint."""
-    include = (
-        '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:include filename="$(find other)/a.xacro"/></robot>'
+    include = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:include filename="$(find other)/a.xacro"/></robot>'
+    assert (
+        found_in(
+            {
+                "config/arm.urdf.xacro": include,
+                "config/joint_limits.yaml": "joint_limits: {elbow: {}}",
+            }
+        )
+        == []
     )
-    assert found_in({"config/arm.urdf.xacro": include, "config/joint_limits.yaml": "joint_limits: {elbow: {}}"}) == []

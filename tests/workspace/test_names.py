@@ -12,9 +12,13 @@ from grader.workspace.names import (
     Undecided,
     Use,
     agreement,
-)  # fmt: skip
+)
 
-_HERE, _THERE, _LATER = Location("a.yaml", 3, 5), Location("robot.urdf", 7, 2), Location("a.yaml", 9, 1)
+_HERE, _THERE, _LATER = (
+    Location("a.yaml", 3, 5),
+    Location("robot.urdf", 7, 2),
+    Location("a.yaml", 9, 1),
+)
 _WHEEL = Definition("joint", "left_wheel_joint", _THERE)
 
 
@@ -24,7 +28,9 @@ def _use(name: str, *, optional: bool = False, at: Location = _HERE) -> Use:
 
 def test_a_name_that_is_defined_agrees() -> None:
     """A use of a defined name is no mismatch, and its family is compared."""
-    assert agreement([_WHEEL, _use("left_wheel_joint")]) == Agreement((), {}, frozenset({"frames"}), frozenset())
+    assert agreement([_WHEEL, _use("left_wheel_joint")]) == Agreement(
+        (), {}, frozenset({"frames"}), frozenset()
+    )
 
 
 def test_a_name_that_is_not_defined_is_wrong_and_the_similar_one_is_named() -> None:
@@ -32,7 +38,9 @@ def test_a_name_that_is_not_defined_is_wrong_and_the_similar_one_is_named() -> N
     [found] = agreement([_WHEEL, _use("wheel_left_joint")]).mismatches
     said = "wheels: there is no joint 'wheel_left_joint'; did you mean 'left_wheel_joint' (robot.urdf:7)?"
     use = Correction(_HERE, "wheel_left_joint", "left_wheel_joint")
-    assert found == Mismatch("frames", said, _HERE, _THERE, corrections=(use, Correction(_THERE, use.new, use.old)))
+    assert found == Mismatch(
+        "frames", said, _HERE, _THERE, corrections=(use, Correction(_THERE, use.new, use.old))
+    )
 
 
 def test_a_name_like_no_other_is_wrong_where_everything_was_read() -> None:
@@ -55,13 +63,17 @@ def test_what_was_not_evaluated_leaves_the_family_undecided() -> None:
         Open("joint", reason="line 4 is not evaluated"),
         Open("joint", reason="nor is line 5"),
     ]
-    assert agreement([_WHEEL, *facts, _use("elbow")]).undecided == {"frames": "line 4 is not evaluated"}
+    assert agreement([_WHEEL, *facts, _use("elbow")]).undecided == {
+        "frames": "line 4 is not evaluated"
+    }
     assert agreement([_WHEEL, *facts, _use("left_wheel_joint")]).undecided == {}
 
 
 def test_only_a_similar_name_makes_an_optional_use_wrong() -> None:
     """An argument that nobody declares may be passed; a similar one is meant."""
-    [found] = agreement([_WHEEL, _use("elbow", optional=True), _use("left_weel_joint", optional=True)]).mismatches
+    [found] = agreement(
+        [_WHEEL, _use("elbow", optional=True), _use("left_weel_joint", optional=True)]
+    ).mismatches
     assert (found.is_sure, found.related) == (True, _THERE)
 
 

@@ -43,9 +43,16 @@ _NAMES = [
     _Name("front_camera", "config/bridge.yaml", "gz_topic_name: {}", "topics"),
     _Name("robot.launch", "cart.launch.py", '"launch", "{}.py"', "files"),
     _Name("hall", "worlds/hall.yaml", "image: {}.pgm", "files"),
-    _Name("nav2_controller", "cart_bringup/package.xml", "<exec_depend>{}</exec_depend>", "dependencies"),
+    _Name(
+        "nav2_controller",
+        "cart_bringup/package.xml",
+        "<exec_depend>{}</exec_depend>",
+        "dependencies",
+    ),
 ]
-every_name = pytest.mark.parametrize("name", _NAMES, ids=[f"{it.name} in {it.place}" for it in _NAMES])
+every_name = pytest.mark.parametrize(
+    "name", _NAMES, ids=[f"{it.name} in {it.place}" for it in _NAMES]
+)
 # Made of letters that are in no name of the workspace, so that none of them is similar.
 _others = st.text("jqz", min_size=5, max_size=12)
 _SLIP = "?"
@@ -54,23 +61,42 @@ _SLIP = "?"
 @every_name
 @examples(5)
 @given(new=_others)
-def test_a_name_that_is_used_in_one_place_only_gives_exactly_one_sure_problem(name: _Name, new: str) -> None:
+def test_a_name_that_is_used_in_one_place_only_gives_exactly_one_sure_problem(
+    name: _Name, new: str
+) -> None:
     """A slip in one use of a name is one mistake of its family, in that file or in the one that needs it."""
-    slip = f"{name.name[:2]}{new[0]}{name.name[3:]}" if name.family in ("arguments", "topics", "files") else new
-    found = sure(agreement_of(edited((name.place, name.use.format(name.name), name.use.format(slip)))))
+    slip = (
+        f"{name.name[:2]}{new[0]}{name.name[3:]}"
+        if name.family in ("arguments", "topics", "files")
+        else new
+    )
+    found = sure(
+        agreement_of(edited((name.place, name.use.format(name.name), name.use.format(slip))))
+    )
     assert [it.family for it in found] == [name.family], found
 
 
 def _uses() -> list[tuple[Use, Edit]]:
     """Return every use of a name that is written as a whole, with the edit that makes a slip in its last letter."""
-    facts = {(it.location, it.name): it for it in read_facts(cart(cart_files())) if isinstance(it, Use)}
-    slips = ((use, Correction(use.location, use.name, f"{use.name[:-1]}{_SLIP}")) for use in facts.values())
-    return [(use, edit) for use, slip in slips for edit in correction_edits(cart(cart_files()), slip)[:1]]
+    facts = {
+        (it.location, it.name): it for it in read_facts(cart(cart_files())) if isinstance(it, Use)
+    }
+    slips = (
+        (use, Correction(use.location, use.name, f"{use.name[:-1]}{_SLIP}"))
+        for use in facts.values()
+    )
+    return [
+        (use, edit)
+        for use, slip in slips
+        for edit in correction_edits(cart(cart_files()), slip)[:1]
+    ]
 
 
 @examples(20)
 @given(used=st.sampled_from(_uses()), letter=st.sampled_from("jqz"))
-def test_a_slip_in_any_use_gives_exactly_one_sure_problem(used: tuple[Use, Edit], letter: str) -> None:
+def test_a_slip_in_any_use_gives_exactly_one_sure_problem(
+    used: tuple[Use, Edit], letter: str
+) -> None:
     """Whatever the reader, and wherever the name is written: of its family, and in no other one."""
     use, edit = used
     text = cart_files()[edit.path]
@@ -80,10 +106,27 @@ def test_a_slip_in_any_use_gives_exactly_one_sure_problem(used: tuple[Use, Edit]
 
 
 _RENAMED = [
-    "right_wheel_joint", "camera_link", "base_link", "laser", "wheel_controller", "threshold", "volume", "obstacle_layer",
-    "FollowPath", "sim_time", "controllers_file", "detector", "alarm", "obstacle", "camera/image", "front_camera",
-    "cart_nodes", "cart_bringup", "robot.launch", "hall",
-]  # fmt: skip
+    "right_wheel_joint",
+    "camera_link",
+    "base_link",
+    "laser",
+    "wheel_controller",
+    "threshold",
+    "volume",
+    "obstacle_layer",
+    "FollowPath",
+    "sim_time",
+    "controllers_file",
+    "detector",
+    "alarm",
+    "obstacle",
+    "camera/image",
+    "front_camera",
+    "cart_nodes",
+    "cart_bringup",
+    "robot.launch",
+    "hall",
+]
 
 
 @pytest.mark.parametrize("name", _RENAMED)
@@ -94,7 +137,10 @@ def test_a_name_that_is_changed_everywhere_still_agrees(name: str, new: str) -> 
     whole = re.compile(rf"(?<![A-Za-z]){re.escape(name)}(?![A-Za-z])(?!_layer|_wheel)")
     # The sides of the robot are part of a joint's name: xacro makes it.
     texts = {whole.sub(new, path): whole.sub(new, text) for path, text in cart_files().items()}
-    texts = {path: text.replace("${side}_wheel_joint", _joint_of(name, new)) for path, text in texts.items()}
+    texts = {
+        path: text.replace("${side}_wheel_joint", _joint_of(name, new))
+        for path, text in texts.items()
+    }
     found = agreement_of(texts)
     assert (found.mismatches, found.undecided) == ((), {})
 

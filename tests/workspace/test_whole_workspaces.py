@@ -29,10 +29,14 @@ def generate_launch_description():
 """
 
 
-def package(folder: str, *folders: str, name: str = "", files: Mapping[str, str] | None = None) -> dict[str, str]:
+def package(
+    folder: str, *folders: str, name: str = "", files: Mapping[str, str] | None = None
+) -> dict[str, str]:
     """Return the files of a package whose build installs these folders."""
     name = name or folder.rpartition("/")[2]
-    install = f"install(DIRECTORY {' '.join(folders)} DESTINATION share/{name})\n" if folders else ""
+    install = (
+        f"install(DIRECTORY {' '.join(folders)} DESTINATION share/{name})\n" if folders else ""
+    )
     cmake = f"project({name})\nfind_package(ament_cmake REQUIRED)\n{install}ament_package()\n"
     manifest = f"<package format='3'><name>{name}</name><export><build_type>ament_cmake</build_type></export></package>"
     own = {"package.xml": manifest, "CMakeLists.txt": cmake, **(files or {})}
@@ -57,7 +61,11 @@ def test_a_launch_file_of_any_package_runs_xacro() -> None:
     first = package("a", files={"setup.py": "", "launch/a.launch.py": "", "a.rviz": ""})
     for packages in (
         [first, package("arm", "urdf", "launch", files={**robot, **launch})],
-        [first, package("arm", "urdf", files=robot), package("arm_bringup", "launch", files=launch)],
+        [
+            first,
+            package("arm", "urdf", files=robot),
+            package("arm_bringup", "launch", files=launch),
+        ],
     ):
         assert workspace(*packages).verdict == "clean"
     alone = package("arm", "urdf", files=robot)
@@ -67,9 +75,15 @@ def test_a_launch_file_of_any_package_runs_xacro() -> None:
 
 def test_a_file_means_its_own_package_of_several_of_one_name() -> None:
     """What the robot includes, and what a launch file names, is looked for in the package that the file is in."""
-    robot = _XACRO.replace("<link", '<xacro:include filename="$(find arm)/urdf/more.xacro"/><link', 1)
+    robot = _XACRO.replace(
+        "<link", '<xacro:include filename="$(find arm)/urdf/more.xacro"/><link', 1
+    )
     files = {"urdf/arm.xacro": robot, "urdf/more.xacro": "<robot/>"}
-    packages = [package("a/arm", "urdf", files={"urdf/box.urdf": '<robot name="box"><link name="box"/></robot>'})]
+    packages = [
+        package(
+            "a/arm", "urdf", files={"urdf/box.urdf": '<robot name="box"><link name="box"/></robot>'}
+        )
+    ]
     packages += [package("b/arm", "urdf", files=files)]
     assert workspace(*packages).verdict == "clean"
     assert errors_in(*packages) == []
@@ -77,10 +91,17 @@ def test_a_file_means_its_own_package_of_several_of_one_name() -> None:
 
 def test_a_package_in_another_one_has_its_own_files() -> None:
     """A launch file of the inner package is judged by what the inner package installs."""
-    inner = package("arm/src/arm", "urdf", "launch", files={"urdf/arm.urdf": _XACRO, "launch/a.launch.py": _RUNS_XACRO})
+    inner = package(
+        "arm/src/arm",
+        "urdf",
+        "launch",
+        files={"urdf/arm.urdf": _XACRO, "launch/a.launch.py": _RUNS_XACRO},
+    )
     assert errors_in(package("arm"), inner) == []
     stray = {"arm/urdf/package.xml": "<package format='3'><name>stray</name></package>"}
-    own = package("arm", "urdf", "launch", files={"urdf/arm.urdf": _XACRO, "launch/a.launch.py": _RUNS_XACRO})
+    own = package(
+        "arm", "urdf", "launch", files={"urdf/arm.urdf": _XACRO, "launch/a.launch.py": _RUNS_XACRO}
+    )
     [arm] = [it for it in workspace(own, stray).packages if it.name == "arm"]
     assert "share/arm/urdf/arm.urdf" in arm.installed
 
@@ -91,7 +112,11 @@ def test_a_name_of_several_packages_is_undecided_elsewhere() -> None:
     launch = launch.replace('package="robot_state_publisher"', 'package="arm"')
     third = package("c", "launch", files={"launch/c.launch.py": launch})
     arms = [
-        package(f"{it}/arm", "urdf", files={f"urdf/{it}.xacro": '<robot name="r"><link name="l"/></robot>'})
+        package(
+            f"{it}/arm",
+            "urdf",
+            files={f"urdf/{it}.xacro": '<robot name="r"><link name="l"/></robot>'},
+        )
         for it in "ab"
     ]
     assert len(errors_in(arms[0], third)) == 2
@@ -116,7 +141,9 @@ def generate_launch_description():
     files = {"config/base.yaml": base, "config/overlay.yaml": overlay}
     for given, count in ((("base", "overlay"), 0), (("base",), 0), (("overlay",), 1)):
         text = launch.replace("FILES", ", ".join(f'share + "/config/{it}.yaml"' for it in given))
-        found = errors_in(package("n", "config", "launch", files={**files, "launch/n.launch.py": text}))
+        found = errors_in(
+            package("n", "config", "launch", files={**files, "launch/n.launch.py": text})
+        )
         assert len(found) == count, found
     assert (
         "there is no plugin section 'walls'"
@@ -141,8 +168,12 @@ def generate_launch_description():
              parameters=[{"database_path": share + "/default_warehouse_mongo_db"}])])
 """
     robot = _XACRO.replace("${pi/2}", "1")
-    own = package("m", "launch", "urdf", files={"launch/m.launch.py": nodes, "urdf/arm.urdf": robot})
-    needed = "".join(f"<depend>{it}</depend>" for it in ("gazebo_ros_pkgs", "tf2_ros", "warehouse_ros_mongo"))
+    own = package(
+        "m", "launch", "urdf", files={"launch/m.launch.py": nodes, "urdf/arm.urdf": robot}
+    )
+    needed = "".join(
+        f"<depend>{it}</depend>" for it in ("gazebo_ros_pkgs", "tf2_ros", "warehouse_ros_mongo")
+    )
     own["m/package.xml"] = own["m/package.xml"].replace("<export>", f"{needed}<export>")
     assert [it.message for it in read_agreement(workspace(own)).mismatches] == []
 

@@ -48,7 +48,9 @@ def expand(document: Document, asked: list[str] | None = None, limit: int = READ
     files = {document.path: document.text, **document.files}
 
     workspace = _Workspace(files, Budget(limit), sorted(files), [] if asked is None else asked)
-    return expansion.expand(workspace.read(document.path), document.path, workspace, document.arguments)
+    return expansion.expand(
+        workspace.read(document.path), document.path, workspace, document.arguments
+    )
 
 
 def difference(document: Document, expected: oracle.Accepted | oracle.Refused) -> str | None:
@@ -59,7 +61,9 @@ def difference(document: Document, expected: oracle.Accepted | oracle.Refused) -
     """
     found = expand(document)
     rejected = [problem for problem in found.problems if problem.kind.effect == "rejects"]
-    refusals = [problem.message for problem in rejected if problem.kind is not MISPLACED_DECLARATION]
+    refusals = [
+        problem.message for problem in rejected if problem.kind is not MISPLACED_DECLARATION
+    ]
     reasons = [undetermined.reason for undetermined in found.undetermined]
     if isinstance(expected, oracle.Accepted) and refusals:
         return f"xacro accepts it, the grader refuses it: {refusals[0]}"
@@ -76,17 +80,27 @@ def difference(document: Document, expected: oracle.Accepted | oracle.Refused) -
         return f"xacro writes to stderr: {expected.has_warned}, the grader says: {warned}"
     text = etree.tostring(found.root, encoding="utf-8", with_tail=False)
     for name, folder in PACKAGES.items():
-        text = text.replace(f"/install/{name}/share/{name}".encode(), f"/{folder}".rstrip("/").encode())
-    place = _difference_of_trees(tree(etree.fromstring(expected.text)), tree(etree.fromstring(text)), "")
+        text = text.replace(
+            f"/install/{name}/share/{name}".encode(), f"/{folder}".rstrip("/").encode()
+        )
+    place = _difference_of_trees(
+        tree(etree.fromstring(expected.text)), tree(etree.fromstring(text)), ""
+    )
     if place is not None or not rejected:
         return place or _difference_of_robots(expected.text.encode(), text)
     verdict = read_urdf(expected.text.encode()).verdict
-    return None if verdict == "rejected" else f"the grader refuses it, but what xacro makes of it is {verdict}"
+    return (
+        None
+        if verdict == "rejected"
+        else f"the grader refuses it, but what xacro makes of it is {verdict}"
+    )
 
 
 def _difference_of_robots(expected: bytes, found: bytes) -> str | None:
     readings = [read_urdf(data) for data in (expected, found)]
-    robots = [(reading.verdict, repr(reading.robot)) for reading in readings]  # their representation shows every number
+    robots = [
+        (reading.verdict, repr(reading.robot)) for reading in readings
+    ]  # their representation shows every number
     return None if robots[0] == robots[1] else f"the robots differ: {robots[0]} and {robots[1]}"
 
 
@@ -103,7 +117,10 @@ def tree(element: etree._Element) -> Tree:
         content[-1] += child.tail or ""
     return (
         _name(element, str(element.tag)),
-        {_name(element, str(name)): re.sub(r"\s", " ", str(value)) for name, value in element.items()},
+        {
+            _name(element, str(name)): re.sub(r"\s", " ", str(value))
+            for name, value in element.items()
+        },
         [" ".join(part.split()) if isinstance(part, str) else part for part in content],
     )
 
@@ -111,7 +128,11 @@ def tree(element: etree._Element) -> Tree:
 def _name(element: etree._Element, name: str) -> str:
     """Return a name with its prefix instead of its namespace; the grader's elements have the prefix as their namespace."""
     uri, brace, local = name.removeprefix("{").rpartition("}")
-    prefix = next((prefix for prefix, other in element.nsmap.items() if other == uri), None) if brace else None
+    prefix = (
+        next((prefix for prefix, other in element.nsmap.items() if other == uri), None)
+        if brace
+        else None
+    )
     prefix = uri if prefix is not None and re.fullmatch(r"ns\d+", prefix) else prefix
     return f"{prefix}:{local}" if prefix else local
 
@@ -128,4 +149,8 @@ def _difference_of_trees(expected: Tree, found: Tree, place: str) -> str | None:
         elif (inner := _difference_of_trees(one, other, place)) is not None:
             return inner
     counts = len(expected[2]) // 2, len(found[2]) // 2
-    return None if counts[0] == counts[1] else f"{place}: expected {counts[0]} elements, found {counts[1]}"
+    return (
+        None
+        if counts[0] == counts[1]
+        else f"{place}: expected {counts[0]} elements, found {counts[1]}"
+    )

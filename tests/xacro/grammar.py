@@ -32,13 +32,30 @@ class _Writer(Definitions):
 
     def document(self) -> Document:
         pieces = [self._piece(self._names) for _ in range(self._random.randint(3, 12))]
-        body = "\n".join(['<link name="base"/>', *pieces, self._link(self._names), self._link(self._names)])
+        body = "\n".join(
+            ['<link name="base"/>', *pieces, self._link(self._names), self._link(self._names)]
+        )
         return Document(robot(body), self._files, self._arguments)
 
     def _piece(self, names: Names, depth: int = 2) -> str:
         """Return one of all things that can stand in a robot; definitions add to the names."""
-        pieces = [self._link, self._property, self._property, self._property, self._call, self._call]
-        pieces += [self._comment, self._argument, self._element, self._block, self._later, self._removed, self._text]
+        pieces = [
+            self._link,
+            self._property,
+            self._property,
+            self._property,
+            self._call,
+            self._call,
+        ]
+        pieces += [
+            self._comment,
+            self._argument,
+            self._element,
+            self._block,
+            self._later,
+            self._removed,
+            self._text,
+        ]
         if depth > 0:
             pieces += [
                 lambda names: self._condition(names, depth),
@@ -58,7 +75,9 @@ class _Writer(Definitions):
     def _block(self, names: Names) -> str:
         name = self._name("block_")
         block = f"<xacro:property name='{name}'><in x={quoteattr(self._value(names, 'numbers'))}/>{self._call(names)}</xacro:property>"
-        return block + f"<out><xacro:insert_block name='{name}'/></out>" * self._random.randint(0, 2)
+        return block + f"<out><xacro:insert_block name='{name}'/></out>" * self._random.randint(
+            0, 2
+        )
 
     def _text(self, names: Names) -> str:
         texts = [escape(self._value(names, kind)) for kind in ("texts", "lists", "numbers")]
@@ -89,7 +108,9 @@ class _Writer(Definitions):
         return f"<xacro:{tag} value={quoteattr(value)}>{content}</xacro:{tag}>"
 
     def _macro(self, names: Names, depth: int) -> str:
-        kinds = self._random.choices(("numbers", "numbers", "texts", "flags", "lists"), k=self._random.randint(0, 3))
+        kinds = self._random.choices(
+            ("numbers", "numbers", "texts", "flags", "lists"), k=self._random.randint(0, 3)
+        )
         forwarded = [name for name in names.numbers if name.isidentifier() and self._maybe(0.2)][:1]
         parameters = {self._name("a"): kind for kind in kinds} | dict.fromkeys(forwarded, "numbers")
         name = self._name("m")
@@ -105,9 +126,15 @@ class _Writer(Definitions):
         outside, self._is_in_macro = self._is_in_macro, True
         content = self._inside(inner, depth - 1, self._random.randint(1, 3))
         self._is_in_macro = outside
-        content += [f'<group><xacro:insert_block name="{name}"/></group>' for _, name in blocks if self._maybe(0.9)]
+        content += [
+            f'<group><xacro:insert_block name="{name}"/></group>'
+            for _, name in blocks
+            if self._maybe(0.9)
+        ]
         self._macros.append(macro)
-        params = quoteattr(self._random.choice((" ", "  ", " \t")).join(specified)).replace("&#9;", "\n")
+        params = quoteattr(self._random.choice((" ", "  ", " \t")).join(specified)).replace(
+            "&#9;", "\n"
+        )
         return f"<xacro:macro name='{macro.name}' params={params}>{''.join(content)}</xacro:macro>"
 
     def _parameter(self, macro: Macro, name: str, names: Names) -> str:
@@ -119,20 +146,29 @@ class _Writer(Definitions):
         kind = macro.parameters[name]
         plain = {"numbers": "0.5", "texts": "'a b'", "flags": "true", "lists": "${[1, 2]}"}[kind]
         expression = f"${{{self._write.number(names, 1)}}}" if kind == "numbers" else plain
-        return name + self._random.choice(("=", ":=")) + self._random.choice((plain, expression, f"^|{plain}"))
+        return (
+            name
+            + self._random.choice(("=", ":="))
+            + self._random.choice((plain, expression, f"^|{plain}"))
+        )
 
     def _call(self, names: Names) -> str:
         if not self._macros:
             return "<xacro:nothing/>" if self._maybe(self._defect) else "<plain/>"
         macro = self._random.choice(self._macros)
         given = {
-            name: kind for name, kind in macro.parameters.items() if name not in macro.optional or self._maybe(0.5)
+            name: kind
+            for name, kind in macro.parameters.items()
+            if name not in macro.optional or self._maybe(0.5)
         }
         if given and self._maybe(self._defect):
             given.pop(next(iter(given)))
-        attributes = " ".join(f"{name}={quoteattr(self._value(names, kind))}" for name, kind in given.items())
+        attributes = " ".join(
+            f"{name}={quoteattr(self._value(names, kind))}" for name, kind in given.items()
+        )
         blocks = "".join(
-            f"<block x={quoteattr(self._value(names, 'numbers'))}><in/></block>" for _ in range(macro.blocks)
+            f"<block x={quoteattr(self._value(names, 'numbers'))}><in/></block>"
+            for _ in range(macro.blocks)
         )
         if self._maybe(0.15):
             return f'<xacro:call macro="{macro.name}" {attributes}>{blocks}</xacro:call>'
@@ -155,6 +191,8 @@ class _Writer(Definitions):
         self._files[folder + path] = part(content + self._link(names_of_file))
         for kind in ("numbers", "texts", "lists", "flags"):
             getattr(names, kind).extend(getattr(names_of_file, kind))
-        way = {"urdf/": path, "urdf/parts/": f"parts/{path}", "common/": f"../common/{path}"}[folder]
+        way = {"urdf/": path, "urdf/parts/": f"parts/{path}", "common/": f"../common/{path}"}[
+            folder
+        ]
         way = f"$(find my_robot)/{folder}{path}" if self._maybe(0.3) else way
         return f'<xacro:include filename="{way}"/>'

@@ -20,7 +20,14 @@ CONTROL = "control"
 """The name of a harmless document, during which a file is opened."""
 LIMIT = 30_000_000  # calls
 PARTS, LIMIT_OF_PARTS = READING // 4, 9_000_000  # of the budget, and the calls that they allow
-_HARMLESS = {"compile", "object.__getattr__", "sys._getframe", "gc.collect", "signal.signal", "builtins.id"}
+_HARMLESS = {
+    "compile",
+    "object.__getattr__",
+    "sys._getframe",
+    "gc.collect",
+    "signal.signal",
+    "builtins.id",
+}
 
 _events: list[str] = []
 _is_watched = False
@@ -44,7 +51,9 @@ class _Opening(list[str]):
         open(os.devnull).close()
 
 
-def _watched(document: Document, paths: list[str], parts: int = READING, limit: int = LIMIT) -> dict[str, Any]:
+def _watched(
+    document: Document, paths: list[str], parts: int = READING, limit: int = LIMIT
+) -> dict[str, Any]:
     """Return what happened while a document was expanded; `paths` receives those that it reads."""
     global _is_watched
     _events.clear()
@@ -55,7 +64,9 @@ def _watched(document: Document, paths: list[str], parts: int = READING, limit: 
             _is_watched = True
             found = expand(document, paths, parts)
             _is_watched = False
-        if found.undetermined or any(problem.kind.effect == "rejects" for problem in found.problems):
+        if found.undetermined or any(
+            problem.kind.effect == "rejects" for problem in found.problems
+        ):
             outcome = "refused"
     except TooMuchWork:
         outcome = "too much work"
@@ -85,7 +96,9 @@ def main(step: int) -> None:
     for name, document in list({**HOSTILE, **LARGE}.items())[::step]:
         print(json.dumps([name, _watched(document, [])]), flush=True)
     for name, document in list(COSTS.items())[::step]:
-        print(json.dumps([f"cost-{name}", _watched(document, [], PARTS, LIMIT_OF_PARTS)]), flush=True)
+        print(
+            json.dumps([f"cost-{name}", _watched(document, [], PARTS, LIMIT_OF_PARTS)]), flush=True
+        )
 
 
 if __name__ == "__main__":

@@ -58,8 +58,15 @@ def _process(folder: Path, document: Document) -> tuple[str, bool]:
     xacro: Any = pytest.importorskip("xacro")
     pytest.importorskip("xacro.substitution_args")  # xacro imports it when it is first needed
     errors = io.StringIO()
-    with _fresh(xacro), _packages(xacro, folder), redirect_stderr(errors), redirect_stdout(io.StringIO()):
-        result = xacro.process_file(str(folder / document.path), mappings=dict(document.arguments), verbosity=0)
+    with (
+        _fresh(xacro),
+        _packages(xacro, folder),
+        redirect_stderr(errors),
+        redirect_stdout(io.StringIO()),
+    ):
+        result = xacro.process_file(
+            str(folder / document.path), mappings=dict(document.arguments), verbosity=0
+        )
         text: str = result.toxml()
     return text, bool(errors.getvalue())
 
@@ -67,7 +74,11 @@ def _process(folder: Path, document: Document) -> tuple[str, bool]:
 @contextmanager
 def _fresh(xacro: Any) -> Iterator[None]:
     """Give xacro the state and the environment of a new process: expressions can change its namespace."""
-    state = {"_global_symbols": xacro.create_global_symbols(), "all_includes": [], "substitution_args_context": {}}
+    state = {
+        "_global_symbols": xacro.create_global_symbols(),
+        "all_includes": [],
+        "substitution_args_context": {},
+    }
     functions = dict(xacro.substitution_args._eval_dict)
     with (
         mock.patch.multiple(xacro, **state),
@@ -89,5 +100,8 @@ def _packages(xacro: Any, folder: Path, packages: Mapping[str, str] = PACKAGES) 
         return str(folder / packages[name])
 
     functions = xacro.substitution_args
-    with mock.patch.object(functions, "_eval_find", find), mock.patch.dict(functions._eval_dict, {"find": find}):
+    with (
+        mock.patch.object(functions, "_eval_find", find),
+        mock.patch.dict(functions._eval_dict, {"find": find}),
+    ):
         yield

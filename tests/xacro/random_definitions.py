@@ -46,7 +46,16 @@ class Definitions:
                 return f"${{{self._write.number(names)}}}"
             case "texts" if self._maybe(0.4):
                 return self._random.choice(
-                    ("wheel", "base link", "'quoted'", "0 0 ${1 + 1}", "$${kept}", "a_${2 * 3}", "'5'x", "$5 off")
+                    (
+                        "wheel",
+                        "base link",
+                        "'quoted'",
+                        "0 0 ${1 + 1}",
+                        "$${kept}",
+                        "a_${2 * 3}",
+                        "'5'x",
+                        "$5 off",
+                    )
                 )
             case "texts":
                 return f"${{{self._write.text(names)}}}"
@@ -60,7 +69,11 @@ class Definitions:
         own = [name for name in known if name.isidentifier()] if self._maybe(0.15) else []
         name = self._random.choice(own or [self._name("p")])
         # A new value that is made of the old one is evaluated at once.
-        more = 'lazy_eval="false"' if own else self._random.choice(("", "", "", 'lazy_eval="false"', 'scope="global"'))
+        more = (
+            'lazy_eval="false"'
+            if own
+            else self._random.choice(("", "", "", 'lazy_eval="false"', 'scope="global"'))
+        )
         if not own and self._is_in_macro and self._maybe(0.3):
             more = 'scope="parent"'  # refused outside of macros
         text = named(name, self._value(names, kind), more)
@@ -78,7 +91,10 @@ class Definitions:
     def _removed(self, names: Names) -> str:
         """Return a property that is removed, and perhaps defined again."""
         name = self._name("p")
-        text = named(name, self._value(names, "numbers")) + f'<xacro:property name="{name}" remove="true"/>'
+        text = (
+            named(name, self._value(names, "numbers"))
+            + f'<xacro:property name="{name}" remove="true"/>'
+        )
         if self._maybe(0.5):
             names.numbers.append(name)
             text += f'<xacro:property name="{name}" default="7"/>'
@@ -95,7 +111,12 @@ class Definitions:
     def _yaml(self, names: Names) -> str:
         self._files["config/values.yaml"] = _YAML
         name = self._name("y")
-        names.numbers += [f"{name}.radius", f"{name}['inner']['mass']", f"{name}.angle", f"{name}.sizes[1]"]
+        names.numbers += [
+            f"{name}.radius",
+            f"{name}['inner']['mass']",
+            f"{name}.angle",
+            f"{name}.sizes[1]",
+        ]
         names.texts.append(f"{name}.name")
         names.lists.append(f"{name}.sizes")
         names.flags.append(f"{name}.inner.ok")

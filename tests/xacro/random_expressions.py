@@ -25,9 +25,28 @@ _LITERALS = (
 )
 _CONSTANTS = ("pi", "math.pi", "e", "tau")
 _FUNCTIONS = (
-    "sin", "cos", "tan", "atan", "exp", "radians", "degrees", "fabs", "floor", "ceil", "int", "float", "round", "math.sin", "math.cos",
-    "math.radians", "python.abs", "python.round", "trunc", "bool", "math.floor",
-)  # fmt: skip
+    "sin",
+    "cos",
+    "tan",
+    "atan",
+    "exp",
+    "radians",
+    "degrees",
+    "fabs",
+    "floor",
+    "ceil",
+    "int",
+    "float",
+    "round",
+    "math.sin",
+    "math.cos",
+    "math.radians",
+    "python.abs",
+    "python.round",
+    "trunc",
+    "bool",
+    "math.floor",
+)
 _WORDS = ("left", "right", "wheel", "base link", "a,b;c", "0 0 1", "", "1", "Über", "x_y", "true")
 _METHODS = (
     "upper()",
@@ -103,7 +122,9 @@ class Expressions:
             lambda: f"({inner()} if {self.flag(names, depth - 1)} else {inner()})",
             lambda: f"len({pick((self.text, self.values))(names, depth - 1)})",
             lambda: f"({self.values(names, depth - 1)} + [1])[{pick(('0', '-1', '0'))}]",
-            lambda: f"{pick(('max', 'min', 'python.sum'))}([{pick(_LITERALS)}] + {self.values(names, depth - 1)})",
+            lambda: (
+                f"{pick(('max', 'min', 'python.sum'))}([{pick(_LITERALS)}] + {self.values(names, depth - 1)})"
+            ),
             lambda: f"{pick(('sqrt', 'math.sqrt'))}(fabs({inner()}))",
             lambda: f"{pick(('log', 'log10'))}(1 + fabs({inner()}))",
             lambda: f"{pick(('asin', 'acos'))}(sin({inner()}))",
@@ -171,7 +192,9 @@ class Expressions:
             lambda: f"{number()} < {number()} <= {number()}",
             lambda: f"({inner()} {pick(('and', 'or'))} {inner()})",
             lambda: f"(not {inner()})",
-            lambda: f"{self.text(names, depth - 1)} {pick(('==', '!=', 'in', 'not in'))} {self.text(names, depth - 1)}",
+            lambda: (
+                f"{self.text(names, depth - 1)} {pick(('==', '!=', 'in', 'not in'))} {self.text(names, depth - 1)}"
+            ),
             lambda: f"{pick(_LITERALS)} in {self.values(names, depth - 1)}",
             lambda: f"bool({number()})",
         )

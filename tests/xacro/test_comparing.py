@@ -30,9 +30,13 @@ def difference(
     undetermined: Dependence = "never",
 ) -> str | None:
     """Return the difference of xacro's result and an expansion with this text, problem and reason."""
-    problems = [SimpleNamespace(message="refused", kind=SimpleNamespace(effect=effect))] if effect else []
+    problems = (
+        [SimpleNamespace(message="refused", kind=SimpleNamespace(effect=effect))] if effect else []
+    )
     reasons = [SimpleNamespace(reason=reason)] if reason else []
-    found: Any = SimpleNamespace(root=etree.fromstring(text), problems=problems, undetermined=reasons, warnings=warned)
+    found: Any = SimpleNamespace(
+        root=etree.fromstring(text), problems=problems, undetermined=reasons, warnings=warned
+    )
     monkeypatch.setattr(comparing, "expand", lambda _document: found)
     return comparing.difference(Document(robot(""), undetermined=undetermined), expected)
 
@@ -71,11 +75,17 @@ def test_what_xacro_refuses(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("expected", [_ACCEPTED, _REFUSED])
-def test_what_depends_on_the_outside(monkeypatch: pytest.MonkeyPatch, expected: Accepted | Refused) -> None:
+def test_what_depends_on_the_outside(
+    monkeypatch: pytest.MonkeyPatch, expected: Accepted | Refused
+) -> None:
     """What depends on the outside has to be open, or can be; an accepted document is not refused in either case."""
     assert difference(monkeypatch, expected, reason="open", undetermined="always") is None
     assert difference(monkeypatch, expected, reason="open", undetermined="perhaps") is None
     assert difference(monkeypatch, expected, undetermined="always") is not None
-    assert (difference(monkeypatch, expected, undetermined="perhaps") is None) == (expected == _ACCEPTED)
-    refused = difference(monkeypatch, expected, reason="open", effect="rejects", undetermined="perhaps")
+    assert (difference(monkeypatch, expected, undetermined="perhaps") is None) == (
+        expected == _ACCEPTED
+    )
+    refused = difference(
+        monkeypatch, expected, reason="open", effect="rejects", undetermined="perhaps"
+    )
     assert (refused is None) == (expected == _REFUSED)

@@ -52,13 +52,23 @@ def test_hostile_documents_are_refused_after_bounded_work(results: Results) -> N
 def test_large_documents_take_bounded_work(results: Results) -> None:
     """A document that is only large is expanded or refused after a bounded number of lines."""
     outcomes = {name: results[name]["outcome"] for name in LARGE.keys() & results.keys()}
-    assert {name: outcome for name, outcome in outcomes.items() if outcome not in {"refused", "expanded"}} == {}
+    assert {
+        name: outcome
+        for name, outcome in outcomes.items()
+        if outcome not in {"refused", "expanded"}
+    } == {}
 
 
 def test_costly_documents_take_bounded_work(results: Results) -> None:
     """What the budget of a submission allows takes a bounded number of calls, wherever a document wants the work to be done."""
-    outcomes = {name: results[f"cost-{name}"]["outcome"] for name in COSTS if f"cost-{name}" in results}
-    assert {name: outcome for name, outcome in outcomes.items() if outcome not in {"refused", "expanded"}} == {}
+    outcomes = {
+        name: results[f"cost-{name}"]["outcome"] for name in COSTS if f"cost-{name}" in results
+    }
+    assert {
+        name: outcome
+        for name, outcome in outcomes.items()
+        if outcome not in {"refused", "expanded"}
+    } == {}
     assert outcomes.keys() == COSTS.keys() or len(outcomes) >= 10
     assert len(COSTS) >= 100
 
@@ -80,7 +90,10 @@ def test_nothing_outside_is_read(results: Results) -> None:
     """Every file that is read is named by its path in the submission; the control reads two."""
     paths = {name: found["paths"] for name, found in results.items()}
     assert len(paths[CONTROL]) > 2
-    outside = {name: [path for path in found if path.startswith(("/", "..", "~"))] for name, found in paths.items()}
+    outside = {
+        name: [path for path in found if path.startswith(("/", "..", "~"))]
+        for name, found in paths.items()
+    }
     assert {name: found for name, found in outside.items() if found} == {}
 
 
@@ -103,7 +116,9 @@ def test_a_symlink_out_of_the_submission_is_not_read(tmp_path: Path, target: str
     urdf = tmp_path / "submission" / "urdf"
     urdf.mkdir(parents=True)
     (urdf / "secret.xacro").symlink_to(tmp_path / "secret.xacro")
-    (urdf / "robot.urdf.xacro").write_text(robot(f'<xacro:include filename="{target}"/><link name="base_link"/>'))
+    (urdf / "robot.urdf.xacro").write_text(
+        robot(f'<xacro:include filename="{target}"/><link name="base_link"/>')
+    )
     for command in ("grade", "inspect"):
         done = run((command, tmp_path / "submission"))
         assert b"TOPSECRET" not in done.stdout + done.stderr

@@ -9,7 +9,9 @@ from tests.xacro.comparing import difference, tree
 from tests.xacro.documents import GROUPS
 from tests.xacro.documents.document import Document, robot
 
-_PREFIX = "xacro writes a prefix that is not declared: ROS 2 reads it, the oracle's XML parser does not"
+_PREFIX = (
+    "xacro writes a prefix that is not declared: ROS 2 reads it, the oracle's XML parser does not"
+)
 _CDATA = "the grader does not tell CDATA with $ from other text, and leaves it to manual grading"
 KNOWN_DIFFERENCES = {
     "element-with-unknown-prefix": _PREFIX,
@@ -28,12 +30,17 @@ KNOWN_DIFFERENCES = {
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("group", "step"),
-    light([*((group, 1) for group in GROUPS), ("expressions", 4)], lambda row: row == ("expressions", 1)),
+    light(
+        [*((group, 1) for group in GROUPS), ("expressions", 4)],
+        lambda row: row == ("expressions", 1),
+    ),
 )
 def test_documents(group: str, step: int) -> None:
     """Every document of a group, or each fourth of a large one, is expanded, or refused, as xacro does, but for the known differences."""
     documents = dict(list(GROUPS[group].items())[::step])
-    found = {name: difference(document, oracle.expand(document)) for name, document in documents.items()}
+    found = {
+        name: difference(document, oracle.expand(document)) for name, document in documents.items()
+    }
     different = {name: text for name, text in found.items() if text is not None}
     known = KNOWN_DIFFERENCES.keys() & documents.keys()
     assert {name: text for name, text in different.items() if name not in known} == {}
@@ -54,7 +61,9 @@ def test_the_oracle_forgets_what_a_document_did() -> None:
     shown = robot("<shown x='${math.pi}'/>")
     before = oracle.expand(Document(shown))
     changed = oracle.expand(
-        Document(robot("<shown x='${math.update(pi=3)} ${math.pi}'/><xacro:arg name='a' default='1'/>"))
+        Document(
+            robot("<shown x='${math.update(pi=3)} ${math.pi}'/><xacro:arg name='a' default='1'/>")
+        )
     )
     assert "None 3" in changed[0]
     assert oracle.expand(Document(shown)) == before

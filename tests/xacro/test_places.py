@@ -43,7 +43,11 @@ def test_every_element_is_where_it_is_written() -> None:
         found = expand(document)
         for index, element in enumerate(found.root.iter()):
             text = text_at(document, found.source.tag(index))
-            assert text.startswith((f"<{element.tag}", "<xacro:element")), (seed, element.tag, text[:40])
+            assert text.startswith((f"<{element.tag}", "<xacro:element")), (
+                seed,
+                element.tag,
+                text[:40],
+            )
             count += 1
     assert count > 1_000
 
@@ -51,7 +55,9 @@ def test_every_element_is_where_it_is_written() -> None:
 def test_the_macro_calls_that_led_to_an_element() -> None:
     """An element of a macro names the calls, outermost first; one that a call gives is at the call."""
     found = expand(NESTED)
-    places = {element.tag: found.source.tag(index) for index, element in enumerate(found.root.iter())}
+    places = {
+        element.tag: found.source.tag(index) for index, element in enumerate(found.root.iter())
+    }
     assert text_at(NESTED, places["link"]).startswith('<link name="${side}_wheel">')
     assert [macro for macro, _ in places["link"].calls] == ["wheel"]
     assert text_at(NESTED, places["link"].calls[0][1]).startswith('<xacro:wheel side="left">')
@@ -64,14 +70,20 @@ def test_the_macro_calls_that_led_to_an_element() -> None:
 
 def test_reports_name_the_calls(tmp_path: Path) -> None:
     """The terminal, Markdown, JSON and inspect show the calls that led to a failure."""
-    wheel = '<link name="${side}_wheel"><visual><geometry><box size="1 1"/></geometry></visual></link>'
-    text = robot(f'<xacro:macro name="wheel" params="side">{wheel}</xacro:macro>\n<xacro:wheel side="left"/>')
+    wheel = (
+        '<link name="${side}_wheel"><visual><geometry><box size="1 1"/></geometry></visual></link>'
+    )
+    text = robot(
+        f'<xacro:macro name="wheel" params="side">{wheel}</xacro:macro>\n<xacro:wheel side="left"/>'
+    )
     (tmp_path / "my_robot.urdf.xacro").write_text(text)
     column = text.split("\n")[2].index("size=") + 1
     place = f"my_robot.urdf.xacro:3:{column}, in macro wheel, called at my_robot.urdf.xacro:4"
     for options in (("--verbose",), ("--format", "markdown")):
         done = run(("grade", tmp_path / "my_robot.urdf.xacro", *options))
         assert place in " ".join(done.stdout.decode().split()), options
-    problem = json.loads(run(("inspect", tmp_path / "my_robot.urdf.xacro", "--format", "json")).stdout)["problems"][0]
+    problem = json.loads(
+        run(("inspect", tmp_path / "my_robot.urdf.xacro", "--format", "json")).stdout
+    )["problems"][0]
     called = {"path": "my_robot.urdf.xacro", "line": 4, "column": 1}
     assert problem["location"]["calls"] == [{"macro": "wheel", "location": called}]

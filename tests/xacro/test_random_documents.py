@@ -20,7 +20,9 @@ def test_random_documents(part: int) -> None:
 
 
 @pytest.mark.parametrize(("write", "accepted"), [(grammar.document, 15), (collisions.document, 2)])
-def test_random_documents_are_the_same_in_every_run_and_often_accepted(write: type, accepted: int) -> None:
+def test_random_documents_are_the_same_in_every_run_and_often_accepted(
+    write: type, accepted: int
+) -> None:
     """A seed gives one document; xacro accepts some of them and refuses some."""
     documents = [write(seed) for seed in range(25)]
     assert documents == [write(seed) for seed in range(25)]
@@ -32,5 +34,15 @@ def test_random_documents_are_the_same_in_every_run_and_often_accepted(write: ty
 def test_random_documents_use_every_tag(write: type) -> None:
     """Every tag of xacro is in some random document."""
     text = "".join(write(seed).text for seed in range(100))
-    tags = ("property", "macro", "call", "if", "unless", "insert_block", "include", "arg", "element")
+    tags = (
+        "property",
+        "macro",
+        "call",
+        "if",
+        "unless",
+        "insert_block",
+        "include",
+        "arg",
+        "element",
+    )
     assert [tag for tag in tags if f"<xacro:{tag} " not in text] == []

@@ -41,7 +41,9 @@ def test_recovery_is_linear_in_the_size_of_the_text(name: str, tmp_path: Path) -
 
 def test_a_path_without_quotes_is_read_whole() -> None:
     """A value without quotes ends at a space or at the end of the tag, not at its first slash."""
-    found = repair('<robot name="r"><link name="a"/><mesh filename=package://my_robot/caster.stl /></robot>')
+    found = repair(
+        '<robot name="r"><link name="a"/><mesh filename=package://my_robot/caster.stl /></robot>'
+    )
     assert b'<mesh filename="package://my_robot/caster.stl"/>' in found.xml
 
 

@@ -70,10 +70,37 @@ def test_any_text_is_translated_or_refused(text: str) -> None:
 _tag = st.sampled_from(("link", "joint", "a", "_b", "c.d-e", "visual", "box", "A1"))
 _value = st.lists(
     st.sampled_from(
-        ("base", " ", "  ", "0.5", "&amp;", "&lt;", "&gt;", "&quot;", "&apos;", "&#65;", "&#x41;", "é", "&#233;")
+        (
+            "base",
+            " ",
+            "  ",
+            "0.5",
+            "&amp;",
+            "&lt;",
+            "&gt;",
+            "&quot;",
+            "&apos;",
+            "&#65;",
+            "&#x41;",
+            "é",
+            "&#233;",
+        )
     )
     | st.sampled_from(
-        ("&#9;", "&#10;", "&#13;", "&#x20;", "'", ">", "=", "/", "&#128;", "&#x1F916;", "\U0001f916", "]]")
+        (
+            "&#9;",
+            "&#10;",
+            "&#13;",
+            "&#x20;",
+            "'",
+            ">",
+            "=",
+            "/",
+            "&#128;",
+            "&#x1F916;",
+            "\U0001f916",
+            "]]",
+        )
     ),
     max_size=4,
 ).map("".join)
@@ -98,13 +125,25 @@ _between = st.sampled_from(
     )
 )
 _start = st.sampled_from(
-    ("", "\ufeff", '<?xml version="1.0"?>', "<?xml version='1.0' encoding='utf-8'?>\n", "<!-- first -->", "\n", " \r\n")
+    (
+        "",
+        "\ufeff",
+        '<?xml version="1.0"?>',
+        "<?xml version='1.0' encoding='utf-8'?>\n",
+        "<!-- first -->",
+        "\n",
+        " \r\n",
+    )
 )
 
 
 @st.composite
 def _elements(draw: st.DrawFn, tag: str, depth: int) -> str:
-    names = draw(st.lists(st.sampled_from(("name", "xyz", "type", "a", "b-c", "_d")), unique=True, max_size=3))
+    names = draw(
+        st.lists(
+            st.sampled_from(("name", "xyz", "type", "a", "b-c", "_d")), unique=True, max_size=3
+        )
+    )
     attributes = "".join(
         f'{draw(_gap)}{name}{draw(_blank)}={draw(_blank)}"{draw(_value)}"'
         if draw(st.booleans())
@@ -114,7 +153,10 @@ def _elements(draw: st.DrawFn, tag: str, depth: int) -> str:
     opening = f"<{tag}{attributes}{draw(_blank)}"
     if depth == 0 or (tag != "robot" and draw(st.booleans())):
         return f"{opening}/>"
-    children = [draw(_elements(draw(_tag), depth - 1)) + draw(_between) for _ in range(draw(st.integers(0, 3)))]
+    children = [
+        draw(_elements(draw(_tag), depth - 1)) + draw(_between)
+        for _ in range(draw(st.integers(0, 3)))
+    ]
     return f"{opening}>{draw(_between)}{''.join(children)}</{tag}{draw(_blank)}>"
 
 
@@ -123,7 +165,10 @@ _robots = st.builds("{}{}{}".format, _start, _elements("robot", 3), _blank)
 
 def tree(root: etree._Element) -> list[tuple[str, dict[str, str]]]:
     """Return tags and attributes in document order."""
-    return [(str(element.tag), {str(k): str(v) for k, v in element.attrib.items()}) for element in root.iter()]
+    return [
+        (str(element.tag), {str(k): str(v) for k, v in element.attrib.items()})
+        for element in root.iter()
+    ]
 
 
 def assert_same_if_plain(text: str) -> None:
@@ -155,10 +200,16 @@ def test_plain_text_means_the_same_to_lxml(text: str) -> None:
 @example(values=["a\nb"], quote="'", gap=" ", between="")
 @example(values=["=", "a\nb"], quote="'", gap="", between="")
 @example(values=["='", "\n"], quote='"', gap="", between='="')
-def test_values_with_line_breaks_are_not_plain(values: list[str], quote: str, gap: str, between: str) -> None:
+def test_values_with_line_breaks_are_not_plain(
+    values: list[str], quote: str, gap: str, between: str
+) -> None:
     """lxml turns a line break or tab in a value into a space, TinyXML2 keeps it: such a text needs the translation."""
-    attributes = "".join(f" a{n}={gap}{quote}{value.replace(quote, '')}{quote}" for n, value in enumerate(values))
-    assert_same_if_plain(f"<robot{attributes}><!--{between}-->{between}<b{attributes}/>{between}</robot>")
+    attributes = "".join(
+        f" a{n}={gap}{quote}{value.replace(quote, '')}{quote}" for n, value in enumerate(values)
+    )
+    assert_same_if_plain(
+        f"<robot{attributes}><!--{between}-->{between}<b{attributes}/>{between}</robot>"
+    )
 
 
 def assert_alike_if_plain(raw: bytes) -> None:
@@ -169,7 +220,9 @@ def assert_alike_if_plain(raw: bytes) -> None:
         root = etree.fromstring(raw, _PARSER)
     except etree.XMLSyntaxError:
         return
-    if root.tag != "robot" or root.xpath("//*[count(ancestor::*) > 30]"):  # deeper ones are not translated
+    if root.tag != "robot" or root.xpath(
+        "//*[count(ancestor::*) > 30]"
+    ):  # deeper ones are not translated
         return
     translated = tree(etree.fromstring(scan(decoded(raw)).xml, _PARSER))
     for (tag, attributes), (other, others) in zip(tree(root), translated, strict=True):
@@ -184,7 +237,12 @@ def _plain_names(attributes: dict[str, str]) -> dict[str, str]:
 
 def _is_plain_name(name: str) -> bool:
     """Return whether a name is kept: long ones, and those that XML reserves, are replaced or omitted."""
-    return name.isascii() and name.isalnum() and len(name) < MAX_NAME_LENGTH and not name.lower().startswith("xml")
+    return (
+        name.isascii()
+        and name.isalnum()
+        and len(name) < MAX_NAME_LENGTH
+        and not name.lower().startswith("xml")
+    )
 
 
 @examples(60)
@@ -241,8 +299,31 @@ def test_a_declaration_and_a_comment_are_plain() -> None:
     assert_same_if_plain(text)
 
 
-_PIECES = ("<", ">", "&", "&#", "&#x", '="', "='", "<!", "<!--", "<?", "<a", "<a ", "<a>", "</a>", "\r")
-_FRAMES = ("{}", "<robot {}", "<robot a='{}'/>", "<robot>{}</robot>", "<robot/>{}", "<robot/></x>{}")
+_PIECES = (
+    "<",
+    ">",
+    "&",
+    "&#",
+    "&#x",
+    '="',
+    "='",
+    "<!",
+    "<!--",
+    "<?",
+    "<a",
+    "<a ",
+    "<a>",
+    "</a>",
+    "\r",
+)
+_FRAMES = (
+    "{}",
+    "<robot {}",
+    "<robot a='{}'/>",
+    "<robot>{}</robot>",
+    "<robot/>{}",
+    "<robot/></x>{}",
+)
 
 
 @pytest.mark.slow

@@ -1,7 +1,8 @@
-"""Grade the submission in the current folder, as Gradescope lays it out, and write results/results.json.
+"""Grade the submission in the current folder, as Gradescope lays it out, and write
+results/results.json.
 
-There is always a results.json: run_autograder writes one that says that nothing was graded, and this script replaces it
-if the grader wrote a report. It needs only the standard library.
+There is always a results.json: run_autograder writes one that says that nothing was graded, and
+this script replaces it if the grader wrote a report. It needs only the standard library.
 """
 
 import json
@@ -13,14 +14,16 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import IO, Any, NamedTuple
 
-# Isolated (-I): Python imports nothing from the current folder, the submission or PYTHON* variables.
+# Isolated (-I): Python imports nothing from the current folder, the submission or PYTHON*
+# variables.
 _GRADER = (sys.executable, "-I", "-X", "utf8", "-m", "grader")
 _ENVIRONMENT = {"PATH": os.defpath, "LC_ALL": "C.UTF-8"}
 _GRADED, _NOT_GRADED = (0, 1, 3), 2  # the grader's exit codes
 _MAX_BYTES = 32 * 1024 * 1024
 _MAX_CHARACTERS = 2000
 _ADVICE = (
-    "Nothing was graded. Check your submission and submit again. If you cannot find the fault, ask your instructor."
+    "Nothing was graded. Check your submission and submit again. If you cannot find the fault, "
+    "ask your instructor."
 )
 
 
@@ -33,13 +36,24 @@ class _Completed(NamedTuple):
 
 
 def _main(arguments: list[str]) -> int:
-    """Grade, or with --check only test that the grader runs and loads the rubric. Return the exit code."""
+    """Grade, or with --check only test that the grader runs and loads the rubric. Return the exit
+    code.
+    """
     settings = json.loads(Path("source", "autograder.json").read_text(encoding="utf-8"))
     if arguments == ["--check"]:
         return subprocess.call([*_GRADER, "rubric", "show", settings["rubric"]], env=_ENVIRONMENT)
-    options = ["--rubric", settings["rubric"], "--expect-rubric", settings["sha256"], "--format", "gradescope"]
+    options = [
+        "--rubric",
+        settings["rubric"],
+        "--expect-rubric",
+        settings["sha256"],
+        "--format",
+        "gradescope",
+    ]
     completed = _run([*_GRADER, "grade", "submission", *options], settings["seconds"])
-    print(f"the grader ended with exit code {completed.code}\n{_printable(completed.errors)}".rstrip())
+    print(
+        f"the grader ended with exit code {completed.code}\n{_printable(completed.errors)}".rstrip()
+    )
     results = _results_of(completed, settings["seconds"])
     if results is None:
         print("its output is not a report; the results say that nothing was graded")
@@ -53,7 +67,12 @@ def _run(command: list[str], seconds: float) -> _Completed:
     # Files instead of pipes: a child that keeps a pipe open would block the reader.
     with TemporaryFile() as output, TemporaryFile() as errors:
         process = subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=output, stderr=errors, env=_ENVIRONMENT, start_new_session=True
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=output,
+            stderr=errors,
+            env=_ENVIRONMENT,
+            start_new_session=True,
         )
         code: int | None
         try:
@@ -74,9 +93,13 @@ def _read_start(file: IO[bytes]) -> bytes:
 def _results_of(completed: _Completed, seconds: float) -> dict[str, Any] | None:
     """Return what students see; None if the grader failed."""
     if completed.code is None:
-        return _nothing_graded(f"The grader was stopped because it took longer than {seconds:g} seconds.")
+        return _nothing_graded(
+            f"The grader was stopped because it took longer than {seconds:g} seconds."
+        )
     if completed.code == _NOT_GRADED:
-        return _nothing_graded(f"The grader could not grade your submission:\n\n{_messages(completed.errors)}")
+        return _nothing_graded(
+            f"The grader could not grade your submission:\n\n{_messages(completed.errors)}"
+        )
     return _report(completed.output) if completed.code in _GRADED else None
 
 
@@ -111,7 +134,9 @@ def _report(output: bytes) -> dict[str, Any] | None:
         found = json.loads(output.decode(), parse_constant=_refuse_constant)
     except (ValueError, RecursionError):
         return None
-    return found if isinstance(found, dict) and isinstance(found.get("score"), int | float) else None
+    return (
+        found if isinstance(found, dict) and isinstance(found.get("score"), int | float) else None
+    )
 
 
 def _refuse_constant(constant: str) -> float:
@@ -123,7 +148,9 @@ def _write(path: Path, results: dict[str, Any]) -> None:
     """Write the results atomically."""
     temporary = path.with_name("results.json.tmp")
     # An unpaired surrogate is not a character, and not every JSON parser accepts it.
-    temporary.write_bytes(json.dumps(results, ensure_ascii=False, indent=1).encode("utf-8", "replace"))
+    temporary.write_bytes(
+        json.dumps(results, ensure_ascii=False, indent=1).encode("utf-8", "replace")
+    )
     temporary.replace(path)
 
 

@@ -1,1 +1,3 @@
-"""Files of learning management systems: a gradebook filled with the grades, and feedback for the students."""
+"""Files of learning management systems: a gradebook filled with the grades, and feedback for the
+students.
+"""

@@ -1,14 +1,18 @@
-"""What students get back through an LMS: a comment in HTML on their grade, or their report in a zip of all.
+"""What students get back through an LMS: a comment in HTML on their grade, or their report in a zip
+of all.
 
-Moodle stores the comment unchanged and has it in the next worksheet (mod/assign/feedback/comments/locallib.php). An
-HTML comment at its end holds a hash of the words: without a match, a person has changed or added some.
+Moodle stores the comment unchanged and has it in the next worksheet
+(mod/assign/feedback/comments/locallib.php). An HTML comment at its end holds a hash of the words:
+without a match, a person has changed or added some.
 
-Moodle, "Upload multiple feedback files in a zip" (mod/assign/feedback/file/importziplib.php): the folder
-`name_participant_type_plugin_` has the files of one student; before Moodle 4.1 only with the last underscore.
+Moodle, "Upload multiple feedback files in a zip" (mod/assign/feedback/file/importziplib.php): the
+folder `name_participant_type_plugin_` has the files of one student; before Moodle 4.1 only with the
+last underscore.
 
-Canvas, "Upload Submissions" (app/models/abstract_assignment.rb, infer_comment_context_from_filename): the first two
-numbers between underscores are the user and an attachment of the newest submission. The student sees the file under the
-attachment's name, each member of a group, too.
+Canvas, "Upload Submissions" (app/models/abstract_assignment.rb,
+infer_comment_context_from_filename): the first two numbers between underscores are the user and an
+attachment of the newest submission. The student sees the file under the attachment's name, each
+member of a group, too.
 """
 
 import html
@@ -29,20 +33,28 @@ _MAX_LINE = 700  # characters: with all lines less than a cell of Excel has
 _OPENING = "Grade"
 _MARK = re.compile(r"<!-- grader ([0-9a-f]{12}) -->")
 _TAG = re.compile(r"<[^>]*+>")
-_Names = tuple[dict[str, str], dict[str, str]]  # by the student's key: the path in the zip, or why there is none
+_Names = tuple[
+    dict[str, str], dict[str, str]
+]  # by the student's key: the path in the zip, or why there is none
 _NOT_UTF8 = re.compile(r"[\ud800-\udfff]")  # no name that Canvas has given, and no zip can have it
 _ARCHIVES = (".zip", ".tar.gz", ".tgz")
 
 
 def lost_points(results: Iterable[Result]) -> Iterator[str]:
-    """Yield a line for each criterion below its maximum, with a comment, or with points that no check decides."""
+    """Yield a line for each criterion below its maximum, with a comment, or with points that no
+    check decides.
+    """
     for result in results:
         mark, criterion = result.manual_mark, result.criterion
         comment = result.comment.text if result.comment is not None else ""
         if mark is not None:
             comment = mark.comment
         if result.points < criterion.points or comment or result.why_given:
-            is_hidden = mark is not None or result.is_adjusted or (comment and result.outcome.status == "passed")
+            is_hidden = (
+                mark is not None
+                or result.is_adjusted
+                or (comment and result.outcome.status == "passed")
+            )
             points = "–" if result.is_open else format_points(result.points)
             extra = " (extra credit)" if criterion.bonus else ""
             about = f"{criterion.title}{extra}: {points} of {format_points(criterion.points)}"
@@ -53,7 +65,9 @@ def lost_points(results: Iterable[Result]) -> Iterator[str]:
 
 
 def comment_html(opening: str, lines: Sequence[str]) -> str:
-    """Return a comment in one line: `opening`, which begins with Grade, then a list of lines, of many the first."""
+    """Return a comment in one line: `opening`, which begins with Grade, then a list of lines, of
+    many the first.
+    """
     items = "".join(f"<li>{_escape(line)}</li>" for line in first_lines(lines, MAX_LINES))
     text = f"<p>{_escape(opening)}</p>"
     if items:
@@ -63,10 +77,16 @@ def comment_html(opening: str, lines: Sequence[str]) -> str:
 
 
 def is_own_comment(text: str) -> bool:
-    """Return whether a comment is from `comment_html`, its words unchanged; tags and spaces may have changed."""
+    """Return whether a comment is from `comment_html`, its words unchanged; tags and spaces may
+    have changed.
+    """
     mark = _MARK.search(text)
     rest = _MARK.sub("", text, count=1)
-    return mark is not None and _words_of(rest).startswith(_OPENING) and mark[1] == _hash_of_words(rest)
+    return (
+        mark is not None
+        and _words_of(rest).startswith(_OPENING)
+        and mark[1] == _hash_of_words(rest)
+    )
 
 
 def _escape(text: str) -> str:
@@ -85,26 +105,44 @@ def _words_of(text: str) -> str:
 
 def moodle_names(students: Collection[Student], report: str) -> _Names:
     """Return the paths of files called `report`, by the participant numbers of students."""
-    names, without, counts = dict[str, str](), dict[str, str](), Counter(student.moodle for student in students)
+    names, without, counts = (
+        dict[str, str](),
+        dict[str, str](),
+        Counter(student.moodle for student in students),
+    )
     for student in students:
         if student.moodle and counts[student.moodle] == 1:
             names[student.key] = f"Participant_{student.moodle}_assignfeedback_file_/{report}"
         elif student.moodle:
             without[student.key] = f"another student has participant number {student.moodle}, too"
         else:
-            without[student.key] = "has no participant number, and no row of a grading worksheet (--into)"
+            without[student.key] = (
+                "has no participant number, and no row of a grading worksheet (--into)"
+            )
     return names, without
 
 
 def canvas_names(submissions: Collection[tuple[Student, tuple[str, ...]]], report: str) -> _Names:
-    """Return the names for students and the paths of their files; a group that has the same files shares one."""
-    names, users, ending = dict[str, str](), defaultdict[tuple[str, ...], set[str]](set), PurePosixPath(report).suffix
+    """Return the names for students and the paths of their files; a group that has the same files
+    shares one.
+    """
+    names, users, ending = (
+        dict[str, str](),
+        defaultdict[tuple[str, ...], set[str]](set),
+        PurePosixPath(report).suffix,
+    )
     for student, paths in submissions:
         users[paths].add(student.canvas)
     for student, paths in submissions:
-        files = [PurePosixPath(path).name for path in paths if path.lower().endswith((ending, *_ARCHIVES))]
+        files = [
+            PurePosixPath(path).name
+            for path in paths
+            if path.lower().endswith((ending, *_ARCHIVES))
+        ]
         if certain := [file for file in files if _is_certain(file, users[paths])]:
-            names[student.key] = min(certain, key=lambda file: (not file.lower().endswith(ending), file))
+            names[student.key] = min(
+                certain, key=lambda file: (not file.lower().endswith(ending), file)
+            )
     why = f"submitted no {ending} file or archive with the Canvas user id in its name"
     without = {
         student.key: why if paths else "nothing was submitted"
@@ -114,14 +152,20 @@ def canvas_names(submissions: Collection[tuple[Student, tuple[str, ...]]], repor
     return names, without
 
 
-def write_feedback(reports: Mapping[str, bytes], names: Mapping[str, str], report: str) -> tuple[bytes, dict[str, str]]:
-    """Return the zip of the reports by key, whose bytes depend on them only, and why a student's is not in it."""
+def write_feedback(
+    reports: Mapping[str, bytes], names: Mapping[str, str], report: str
+) -> tuple[bytes, dict[str, str]]:
+    """Return the zip of the reports by key, whose bytes depend on them only, and why a student's is
+    not in it.
+    """
     contents = defaultdict[str, set[bytes]](set)
     for key, data in reports.items():
         contents[names[key]].add(data)
     why = "the members of the group have different reports, and Canvas gives one to all of them"
     without = {key: why for key in reports if len(contents[names[key]]) > 1}
-    files = {name: _packed(name, report, *found) for name, found in contents.items() if len(found) == 1}
+    files = {
+        name: _packed(name, report, *found) for name, found in contents.items() if len(found) == 1
+    }
     return zip_of(files), without
 
 

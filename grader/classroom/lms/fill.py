@@ -1,8 +1,9 @@
 """Fill a grade file of an LMS with the grades of a class, and say what importing it changes.
 
-Only the cells of the grade, and Moodle's comments, are written; every other byte stays. An empty cell may be imported
-as a change, and Moodle's worksheets have rounded grades. So rows of students without a grade are removed. In matching
-rows with students, ids decide over names, and nothing is guessed.
+Only the cells of the grade, and Moodle's comments, are written; every other byte stays. An empty
+cell may be imported as a change, and Moodle's worksheets have rounded grades. So rows of students
+without a grade are removed. In matching rows with students, ids decide over names, and nothing is
+guessed.
 """
 
 import re
@@ -22,7 +23,9 @@ from grader.text import enumerated, first_lines, format_points, named, people_te
 _Note = tuple[str, str, str]  # a kind, which begins the message, who is concerned, and why
 _OPEN, _KEPT, _REFUSED = "without a grade", "kept the comment", "the LMS would refuse the grade"
 _UNKNOWN, _MISSING = "in the file, but not in the class", "in the class, but not in the file"
-_TEST_STUDENT = re.compile(r"(?i)student, test|test student|.*_previewuser\d*")  # of Canvas and Blackboard
+_TEST_STUDENT = re.compile(
+    r"(?i)student, test|test student|.*_previewuser\d*"
+)  # of Canvas and Blackboard
 _NOT_GRADED = frozenset({"", "-", "needs grading"})  # the last in Blackboard
 _POINTS_ROW = "Points Possible"  # in the first cell, of Canvas
 _THOUSANDS = re.compile(r"\s|[.,](?=.*[.,])")  # in 1.000,00: the last comma or point is decimal
@@ -57,11 +60,15 @@ class Filled(NamedTuple):
     data: bytes = b""
     lines: Sequence[str] = ()  # what importing it does
     is_complete: bool = True  # whether each row has its student, and each grade its row
-    numbers: Mapping[str, str] = {}  # the ids of students in Moodle as the file has them, by the key of the student
+    numbers: Mapping[
+        str, str
+    ] = {}  # the ids of students in Moodle as the file has them, by the key of the student
 
 
 class _GradeFile(NamedTuple):
-    """A grade file: the columns by role (`grade` is that of the lab), and its maximum as it is written."""
+    """A grade file: the columns by role (`grade` is that of the lab), and its maximum as it is
+    written.
+    """
 
     table: Table
     form: Form
@@ -70,13 +77,17 @@ class _GradeFile(NamedTuple):
     maximum: str
 
     def changed(self, row: TableRow, grade: PublishedGrade) -> tuple[TableRow | None, list[_Note]]:
-        """Return a row with its grade and comment, or None; and notes on it, a change's without a kind."""
+        """Return a row with its grade and comment, or None; and notes on it, a change's without a
+        kind.
+        """
         new, who = _grade_text(grade, self), self.who(row)
         at, comment_at = self.roles["grade"], self.roles.get("comment")
         if why := next(self._why_not(row, new, grade.why_open or "has no grade"), None):
             return None, [(why[0], who, why[1])]
         notes, old, comment = list[_Note](), row.value(at), row.value(comment_at)
-        if old.casefold() != new.casefold() and (number_in(old) is None or number_in(old) != number_in(new)):
+        if old.casefold() != new.casefold() and (
+            number_in(old) is None or number_in(old) != number_in(new)
+        ):
             if old.casefold() not in _NOT_GRADED:
                 notes.append(("", who, f"was {old}, becomes {new}"))
             row = self.table.changed(row, at, new)
@@ -98,7 +109,10 @@ class _GradeFile(NamedTuple):
             if cell.casefold() in words.split() and cell.casefold() != new.casefold():
                 yield _OPEN, f"{titles[self.roles[role]]!r} is {cell!r} in {self.form.lms}"
         if self.form.above and (number_in(new) or 0) > (number_in(self.maximum) or 0):
-            yield _REFUSED, f"{new} points are above the maximum of {self.maximum}: {self.form.above}"
+            yield (
+                _REFUSED,
+                f"{new} points are above the maximum of {self.maximum}: {self.form.above}",
+            )
 
     def who(self, row: TableRow) -> str:
         """Return the number of a row, and the name or an id of its student."""
@@ -106,7 +120,9 @@ class _GradeFile(NamedTuple):
 
 
 def fill(data: bytes, grades: Sequence[PublishedGrade], form: Form, options: FillOptions) -> Filled:
-    """Return a grade file with the grades in the column of the lab; raises InputError if it is not such a file."""
+    """Return a grade file with the grades in the column of the lab; raises InputError if it is not
+    such a file.
+    """
     file = _read_grade_file(data, form, options)
     people, titles = [*file.people.values()], file.table.titles
     header = titles[file.roles["grade"]]
@@ -123,18 +139,34 @@ def fill(data: bytes, grades: Sequence[PublishedGrade], form: Form, options: Fil
             notes.append((_UNKNOWN, file.who(row), "matches no student for certain"))
     rest = [grades[at] for at in sorted({*range(len(grades))}.difference(of_row.values()))]
     missing = (one for one in rest if _grade_text(one, file))
-    notes += ((_MISSING, named(*one.student[:2]), "has a grade or an excuse, but matches no row") for one in missing)
+    notes += (
+        (_MISSING, named(*one.student[:2]), "has a grade or an excuse, but matches no row")
+        for one in missing
+    )
     kept = [row for row in rows.values() if row is not None]
     graded = [rows[row] is not row for row in file.people if rows[row] is not None]
     if options.only and "maximum" not in file.roles:
-        places = {*file.roles.values(), *(at for at, title in enumerate(titles) if title.lower() in form.kept)}
-        kept = [row._replace(cells=tuple(cell for at, cell in enumerate(row.cells) if at in places)) for row in kept]
-    lines = [f"column {header!r}: {sum(graded)} filled in, {len(graded) - sum(graded)} already the same"]
+        places = {
+            *file.roles.values(),
+            *(at for at, title in enumerate(titles) if title.lower() in form.kept),
+        }
+        kept = [
+            row._replace(cells=tuple(cell for at, cell in enumerate(row.cells) if at in places))
+            for row in kept
+        ]
+    lines = [
+        f"column {header!r}: {sum(graded)} filled in, {len(graded) - sum(graded)} already the same"
+    ]
     lines += first_lines([f"{who}: {why}" for kind, who, why in notes if not kind], _MAX_CHANGES)
     lines += [*by_reason(note for note in notes if note[0]), *warnings]
     is_complete = all(note[0] in ("", _OPEN, _KEPT) for note in notes)
     numbers = {grades[at].student.key: people[index].moodle for index, at in of_row.items()}
-    return Filled(file.table._replace(rows=tuple(kept)).encoded(), [*map(printable, lines)], is_complete, numbers)
+    return Filled(
+        file.table._replace(rows=tuple(kept)).encoded(),
+        [*map(printable, lines)],
+        is_complete,
+        numbers,
+    )
 
 
 def by_reason(notes: Iterable[_Note]) -> list[str]:
@@ -143,15 +175,19 @@ def by_reason(notes: Iterable[_Note]) -> list[str]:
     for kind, who, why in notes:
         names[kind, why].append(who)
     groups = (
-        (*key, f"{len(who)} ({people_text(who, _MAX_NAMED)})" if who[1:] else who[0]) for key, who in names.items()
+        (*key, f"{len(who)} ({people_text(who, _MAX_NAMED)})" if who[1:] else who[0])
+        for key, who in names.items()
     )
     return first_lines(
-        [printable(": ".join(filter(None, (kind, who, why)))) for kind, why, who in groups], _MAX_REASONS
+        [printable(": ".join(filter(None, (kind, who, why)))) for kind, why, who in groups],
+        _MAX_REASONS,
     )
 
 
 def _grade_text(grade: PublishedGrade, file: _GradeFile) -> str:
-    """Return the points, rounded down, for 99.996 of 100 is not the maximum, with the file's comma; or an excuse."""
+    """Return the points, rounded down, for 99.996 of 100 is not the maximum, with the file's comma;
+    or an excuse.
+    """
     if grade.total is None:
         return file.form.excuse if grade.is_excused else ""
     text = format(grade.total.quantize(Decimal("0.01"), ROUND_FLOOR), "f")
@@ -159,56 +195,92 @@ def _grade_text(grade: PublishedGrade, file: _GradeFile) -> str:
 
 
 def _check_maximum(text: str, what: str, options: FillOptions) -> list[str]:
-    """Return a warning about an unknown maximum; raises InputError for another one: 9.33 of 100 is not 9.33 of 10."""
+    """Return a warning about an unknown maximum; raises InputError for another one: 9.33 of 100 is
+    not 9.33 of 10.
+    """
     maximum = number_in(text)
     if maximum is not None and maximum != options.out_of and not options.any_maximum:
-        others = f"{format_points(maximum)}, but that of the rubric is {format_points(options.out_of)}"
-        advice = "change it in the LMS and export again, or pass --any-maximum to write the points unchanged"
+        others = (
+            f"{format_points(maximum)}, but that of the rubric is {format_points(options.out_of)}"
+        )
+        advice = (
+            "change it in the LMS and export again, or pass --any-maximum to write the points "
+            "unchanged"
+        )
         raise InputError(f"the maximum of {what} is {others}: {advice}")
     return [] if maximum is not None else [f"the file does not state the maximum of {what}"]
 
 
 def _read_grade_file(data: bytes, form: Form, options: FillOptions) -> _GradeFile:
-    """Return a grade file; raises InputError if it is another file, or if the column of the lab is ambiguous."""
+    """Return a grade file; raises InputError if it is another file, or if the column of the lab is
+    ambiguous.
+    """
     table = read_table(data, options.shown)
     titles, roles = table.titles, form.roles(table.titles)
     if not (roles.keys() >= {*form.needed} and roles.keys() & {*IDS}):
         has = _listed(titles) or "nothing"
-        raise InputError(f"{options.shown} is not a grade file of {form.lms}: its first row has {has}")
-    points = next((row for row in table.rows[1:] if _POINTS_ROW in row.value(0)), TableRow(0, 0, (), ""))
-    columns = {at: found for at, title in enumerate(titles) if (found := form.grade.fullmatch(title))}
+        raise InputError(
+            f"{options.shown} is not a grade file of {form.lms}: its first row has {has}"
+        )
+    points = next(
+        (row for row in table.rows[1:] if _POINTS_ROW in row.value(0)), TableRow(0, 0, (), "")
+    )
+    columns = {
+        at: found for at, title in enumerate(titles) if (found := form.grade.fullmatch(title))
+    }
     if "maximum" in roles:
         columns = {at: found for at, found in columns.items() if at + 1 == roles["maximum"]}
     grade = roles["grade"] = _choose(columns, form, options)
-    people = {row: one for row in table.rows[1:] if row is not points and any((one := _student_in(row, roles))[:7])}
+    people = {
+        row: one
+        for row in table.rows[1:]
+        if row is not points and any((one := _student_in(row, roles))[:7])
+    }
     places = (columns[grade].groupdict().get("maximum"), points.value(grade))
     maxima = (*places, *(row.value(roles.get("maximum")) for row in people))
-    return _GradeFile(table, form, roles, people, _THOUSANDS.sub("", next(filter(None, maxima), "")))
+    return _GradeFile(
+        table, form, roles, people, _THOUSANDS.sub("", next(filter(None, maxima), ""))
+    )
 
 
 def _student_in(row: TableRow, roles: Mapping[str, int]) -> Student:
     """Return the student in a row."""
-    login, sis, email, canvas, moodle, name = (row.value(roles.get(role)).removeprefix("#") for role in (*IDS, "name"))
-    return Student("", name, email, login, sis, canvas, re.split(r"\D", moodle)[-1])  # of Participant 123
+    login, sis, email, canvas, moodle, name = (
+        row.value(roles.get(role)).removeprefix("#") for role in (*IDS, "name")
+    )
+    return Student(
+        "", name, email, login, sis, canvas, re.split(r"\D", moodle)[-1]
+    )  # of Participant 123
 
 
 def _choose(columns: Mapping[int, re.Match[str]], form: Form, options: FillOptions) -> int:
-    """Return the column that is named, else the one whose title is most like the title or the id of the lab."""
+    """Return the column that is named, else the one whose title is most like the title or the id of
+    the lab.
+    """
     names = [options.column.strip()] if options.column.strip() else options.names
-    ranks = {at: rank for at, one in columns.items() if (rank := _likeness(one, options)) is not None}
+    ranks = {
+        at: rank for at, one in columns.items() if (rank := _likeness(one, options)) is not None
+    }
     found = [at for at, rank in ranks.items() if rank == min(ranks.values())]
     if "maximum" in form.columns and not options.column:
         found = [*columns]
     if len(found) == 1:
         return found[0]
     listed = _listed([columns[at][0] for at in found or columns])
-    advice = f"choose one with --column: {listed}" if listed else f"create it in {form.lms}, and export again"
+    advice = (
+        f"choose one with --column: {listed}"
+        if listed
+        else f"create it in {form.lms}, and export again"
+    )
     what = f"{'' if options.column.strip() else 'for '}{' or '.join(map(repr, names))}"
-    raise InputError(f"{options.shown} has {'several columns' if found else 'no column'} {what}; {advice}")
+    raise InputError(
+        f"{options.shown} has {'several columns' if found else 'no column'} {what}; {advice}"
+    )
 
 
 def _likeness(found: re.Match[str], options: FillOptions) -> int | None:
-    """Return how much a column is like the lab, 0 is best: it has the header, title or number that is wanted.
+    """Return how much a column is like the lab, 0 is best: it has the header, title or number that
+    is wanted.
 
     Else its title is, or contains, each of the lab's names, in this order; last, it is part of one.
     """
@@ -216,7 +288,11 @@ def _likeness(found: re.Match[str], options: FillOptions) -> int | None:
         tests = [wanted in (found[0], found["title"], found.groupdict().get("number"))]
     else:
         own, known = _spaced_words(found["title"]), [_spaced_words(name) for name in options.names]
-        tests = [is_so for name in known for is_so in (own.replace(" ", "") == name.replace(" ", ""), name in own)]
+        tests = [
+            is_so
+            for name in known
+            for is_so in (own.replace(" ", "") == name.replace(" ", ""), name in own)
+        ]
         tests.append(any(own in name for name in known))
     return tests.index(True) if True in tests else None
 
@@ -232,15 +308,24 @@ def _listed(headers: Sequence[str]) -> str:
 
 def _match_rows(rows: Sequence[Student], students: Sequence[Student], lms: str) -> dict[int, int]:
     """Return the student of each row that fits only one, whom no other row fits."""
-    theirs, ours = [_clues(row, lms) for row in rows], [_clues(student, lms) for student in students]
+    theirs, ours = (
+        [_clues(row, lms) for row in rows],
+        [_clues(student, lms) for student in students],
+    )
     students_of, rows_of = _fitting(theirs, ours), _fitting(ours, theirs)
-    return {row: some[0] for row, some in enumerate(students_of) if [rows_of[at] for at in some] == [[row]]}
+    return {
+        row: some[0]
+        for row, some in enumerate(students_of)
+        if [rows_of[at] for at in some] == [[row]]
+    }
 
 
 def _clues(student: Student, lms: str) -> list[set[str]]:
-    """Return what identifies a student, the most reliable first: the id in the LMS, other ids, the name.
+    """Return what identifies a student, the most reliable first: the id in the LMS, other ids, the
+    name.
 
-    Of a student who is not on the roster it is the id in the LMS alone, for who submits chooses the names.
+    Of a student who is not on the roster it is the id in the LMS alone, for who submits chooses the
+    names.
     """
     lms_id = {"Canvas": student.canvas, "Moodle": student.moodle}.get(lms, "")
     ids, name = [student.key, student.login, student.sis, student.email], student.name
@@ -250,7 +335,9 @@ def _clues(student: Student, lms: str) -> list[set[str]]:
 
 
 def _fitting(some: Sequence[list[set[str]]], others: Sequence[list[set[str]]]) -> list[list[int]]:
-    """Return for each of some the others with its most reliable clue that is known, and no other id in the LMS."""
+    """Return for each of some the others with its most reliable clue that is known, and no other id
+    in the LMS.
+    """
     having = defaultdict[tuple[int, str], set[int]](set)
     for at, clues in enumerate(others):
         for kind, words in enumerate(clues):
@@ -258,7 +345,12 @@ def _fitting(some: Sequence[list[set[str]]], others: Sequence[list[set[str]]]) -
                 having[kind, word].add(at)
     found = []
     for clues in some:
-        kinds = (set[int]().union(*(having[kind, word] for word in words)) for kind, words in enumerate(clues))
+        kinds = (
+            set[int]().union(*(having[kind, word] for word in words))
+            for kind, words in enumerate(clues)
+        )
         fitting = sorted(next(filter(None, kinds), ()))
-        found.append([at for at in fitting if clues[0] == others[at][0] or not (clues[0] and others[at][0])])
+        found.append(
+            [at for at in fitting if clues[0] == others[at][0] or not (clues[0] and others[at][0])]
+        )
     return found

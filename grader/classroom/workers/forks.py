@@ -1,4 +1,6 @@
-"""How worker processes start: forked from a server that loads the grader once, beside the command's own imports."""
+"""How worker processes start: forked from a server that loads the grader once, beside the command's
+own imports.
+"""
 
 import multiprocessing
 import os
@@ -16,9 +18,14 @@ _PRELOAD = (
 
 
 def worker_context() -> Any:
-    """Return the multiprocessing context: a fork server with the grader's modules, else spawned processes."""
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # each worker is one thread; there are enough of them
-    # Python looks for modules in the current folder first, which may be a class's: nothing there may be imported.
+    """Return the multiprocessing context: a fork server with the grader's modules, else spawned
+    processes.
+    """
+    os.environ.setdefault(
+        "OPENBLAS_NUM_THREADS", "1"
+    )  # each worker is one thread; there are enough of them
+    # Python looks for modules in the current folder first, which may be a class's: nothing there
+    # may be imported.
     os.environ["PYTHONSAFEPATH"] = "1"
     is_forked = "forkserver" in multiprocessing.get_all_start_methods()
     context: Any = multiprocessing.get_context("forkserver" if is_forked else "spawn")
@@ -28,7 +35,9 @@ def worker_context() -> Any:
 
 
 def start_server() -> None:
-    """Start the fork server with Ctrl-C blocked: while it loads modules it would print a traceback of its own."""
+    """Start the fork server with Ctrl-C blocked: while it loads modules it would print a traceback
+    of its own.
+    """
     if worker_context().get_start_method() == "forkserver":
         from multiprocessing import forkserver, resource_tracker
 

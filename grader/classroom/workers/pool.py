@@ -1,4 +1,6 @@
-"""Worker processes on this machine: an executor as in `concurrent.futures` whose tasks end in any case."""
+"""Worker processes on this machine: an executor as in `concurrent.futures` whose tasks end in any
+case.
+"""
 
 import errno
 import gc
@@ -20,12 +22,16 @@ from grader.errors import GraderError
 
 MAX_MEMORY = 2 * 1024**3  # bytes for each worker
 NO_MEMORY = f"grading it needs more memory than a worker has (at most {MAX_MEMORY // 1024**3} GiB)"
-_NOT_STARTED = "the worker processes cannot be started: there may be too many processes, or too little memory"
+_NOT_STARTED = (
+    "the worker processes cannot be started: there may be too many processes, or too little memory"
+)
 _POOL_ENDED = "the worker processes ended"
-# The exit codes of a worker that waited too long for the channel to its parent, or could not use it.
+# The exit codes of a worker that waited too long for the channel to its parent, or could not use
+# it.
 _EXIT_CHANNEL_LOST = (1, errno.EPIPE)
 _EXIT_ENDED = 70  # the exit code of a worker that exited unexpectedly with exit code 0
-_CHANNEL_TIMEOUT = 3.0  # seconds to wait for the channel: a worker that is killed while it sends never releases it
+# seconds to wait for the channel: a worker that is killed while it sends never releases it
+_CHANNEL_TIMEOUT = 3.0
 _CHECK_INTERVAL = 0.5  # seconds
 _MAX_IDLE = 30.0  # seconds beyond the timeout in which a task must be completed
 _MAX_END = 5.0  # seconds in which a pool must end
@@ -33,7 +39,9 @@ _MAX_TRIES = 3  # to submit a task to a pool, which may break at any moment
 
 
 class WorkerError(GraderError):
-    """Why a task has no result, as a message for a report. `is_own_fault` is False if another task may be the cause."""
+    """Why a task has no result, as a message for a report. `is_own_fault` is False if another task
+    may be the cause.
+    """
 
     def __init__(self, reason: str, *, is_own_fault: bool = True) -> None:
         super().__init__(reason)
@@ -41,10 +49,11 @@ class WorkerError(GraderError):
 
 
 class Processes(Executor):
-    """Worker processes. The future of a task that exceeds `timeout` seconds, or ends its worker, raises WorkerError.
+    """Worker processes. The future of a task that exceeds `timeout` seconds, or ends its worker,
+    raises WorkerError.
 
-    Another worker then replaces the one that ended. All of them end with the process that started them, however that
-    ends. `memory` is the limit for each worker, in bytes.
+    Another worker then replaces the one that ended. All of them end with the process that started
+    them, however that ends. `memory` is the limit for each worker, in bytes.
     """
 
     def __init__(self, workers: int, timeout: float, memory: int = MAX_MEMORY) -> None:
@@ -59,12 +68,18 @@ class Processes(Executor):
         self._watch = threading.Thread(target=self._watch_pool, daemon=True)
         self._watch.start()
 
-    def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> "Future[Any]":
+    def submit(
+        self, function: Callable[..., Any], /, *arguments: Any, **named: Any
+    ) -> "Future[Any]":
         """Run a function in a worker."""
         return self.submit_within(self._timeout, function, arguments, named)
 
     def submit_within(
-        self, timeout: float, function: Callable[..., Any], arguments: tuple[Any, ...], named: dict[str, Any]
+        self,
+        timeout: float,
+        function: Callable[..., Any],
+        arguments: tuple[Any, ...],
+        named: dict[str, Any],
     ) -> "Future[Any]":
         """Run a function in a worker with its own timeout, in seconds."""
         outer: Future[Any] = Future()
@@ -90,7 +105,8 @@ class Processes(Executor):
         self._is_shut.set()
         self._pool.stop()  # type: ignore[no-untyped-call]
         if wait:
-            # Ctrl-C while the pool takes a task can leave one of its threads waiting forever; its workers end before.
+            # Ctrl-C while the pool takes a task can leave one of its threads waiting forever; its
+            # workers end before.
             ending = threading.Thread(target=self._pool.join, daemon=True)
             with suppress(RuntimeError):  # no thread can be started
                 ending.start()
@@ -101,18 +117,24 @@ class Processes(Executor):
         return ProcessPool(self._workers, 0, _start_worker, (self._memory,), self._context)
 
     def _watch_pool(self) -> None:
-        """Replace a broken pool: it never completes a task whose worker ended while it sent, or before it began."""
+        """Replace a broken pool: it never completes a task whose worker ended while it sent, or
+        before it began.
+        """
         while not self._is_shut.wait(_CHECK_INTERVAL):
             with self._lock:
                 if self._pending:
                     idle = time.monotonic() - self._progress
-                    self._replace_broken_pool(is_stuck=idle > max(self._pending.values()) + _MAX_IDLE)
+                    self._replace_broken_pool(
+                        is_stuck=idle > max(self._pending.values()) + _MAX_IDLE
+                    )
 
     def _replace_broken_pool(self, *, is_stuck: bool = False) -> None:
         if (self._pool.active and not is_stuck) or self._is_shut.is_set():
             return
         self._pool.stop()  # type: ignore[no-untyped-call]
-        threading.Thread(target=self._pool.join, daemon=True).start()  # ends the workers that are left
+        threading.Thread(
+            target=self._pool.join, daemon=True
+        ).start()  # ends the workers that are left
         self._pool = self._new_pool()
         for outer in tuple(self._pending):
             self._complete(outer, WorkerError(_POOL_ENDED, is_own_fault=False))
@@ -122,7 +144,10 @@ class Processes(Executor):
             self._complete(outer, result=inner.result())
         except TimeoutError:
             self._complete(
-                outer, WorkerError(f"grading it took longer than {timeout:g} s (--timeout raises the limit)")
+                outer,
+                WorkerError(
+                    f"grading it took longer than {timeout:g} s (--timeout raises the limit)"
+                ),
             )
         except ProcessExpired as error:
             is_own_fault = error.exitcode not in _EXIT_CHANNEL_LOST
@@ -135,7 +160,9 @@ class Processes(Executor):
         except Exception as error:  # noqa: BLE001  the caller decides what to do with it
             self._complete(outer, error)
 
-    def _complete(self, outer: "Future[Any]", error: Exception | None = None, *, result: Any = None) -> None:
+    def _complete(
+        self, outer: "Future[Any]", error: Exception | None = None, *, result: Any = None
+    ) -> None:
         """Complete a future, once."""
         with self._lock:
             if outer not in self._pending:
@@ -155,7 +182,9 @@ def processors() -> int:
 
 
 def _start_worker(memory: int) -> None:
-    """Prepare a worker process: its memory is limited, it ignores Ctrl-C, and always ends with its parent."""
+    """Prepare a worker process: its memory is limited, it ignores Ctrl-C, and always ends with its
+    parent.
+    """
     leave = os._exit
     # pebble does not notice a worker that ends with exit code 0.
     os._exit = lambda status: leave(status or _EXIT_ENDED)
@@ -172,11 +201,13 @@ def _start_worker(memory: int) -> None:
     with suppress(ImportError, AttributeError, OSError):
         import fcntl
 
-        # Ask for a signal (SIGIO) when the pipe to the parent closes: a thread could not stop an interpreter that is
-        # stuck.
+        # Ask for a signal (SIGIO) when the pipe to the parent closes: a thread could not stop an
+        # interpreter that is stuck.
         assert parent is not None
         fcntl.fcntl(parent.sentinel, fcntl.F_SETOWN, os.getpid())
-        fcntl.fcntl(parent.sentinel, fcntl.F_SETFL, fcntl.fcntl(parent.sentinel, fcntl.F_GETFL) | os.O_ASYNC)
+        fcntl.fcntl(
+            parent.sentinel, fcntl.F_SETFL, fcntl.fcntl(parent.sentinel, fcntl.F_GETFL) | os.O_ASYNC
+        )
 
 
 def _exit_words(code: int) -> str:

@@ -1,4 +1,6 @@
-"""Tasks in an executor: in groups as long as none fails, one by one after a failure; and the progress of a run."""
+"""Tasks in an executor: in groups as long as none fails, one by one after a failure; and the
+progress of a run.
+"""
 
 import time
 from collections import deque
@@ -20,7 +22,9 @@ _Result = TypeVar("_Result")
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """The progress of a run. `errored` and `unreadable` count submissions that were graded in this run."""
+    """The progress of a run. `errored` and `unreadable` count submissions that were graded in this
+    run.
+    """
 
     total: int
     graded: int = 0
@@ -48,9 +52,9 @@ class Progress:
 class Queue(Generic[_Task, _Result]):
     """Submits tasks and collects results.
 
-    `work` returns the results of tasks in a worker. Where a task fails alone, `retried` returns another one to be tried
-    in its place, or None, and `given_up` its result then. `size` is the number of tasks in a group; default: as many as
-    take `_GROUP_TIME`.
+    `work` returns the results of tasks in a worker. Where a task fails alone, `retried` returns
+    another one to be tried in its place, or None, and `given_up` its result then. `size` is the
+    number of tasks in a group; default: as many as take `_GROUP_TIME`.
     """
 
     def __init__(
@@ -106,7 +110,9 @@ class Queue(Generic[_Task, _Result]):
         if self._size or not self._done:
             return self._size or 1
         seconds = (time.perf_counter() - self._began) * self._workers / self._done  # for one task
-        share = self._done // (self._workers * _AHEAD)  # few tasks wait behind one that hangs in their group
+        share = self._done // (
+            self._workers * _AHEAD
+        )  # few tasks wait behind one that hangs in their group
         return max(1, min(_MAX_GROUP, share, int(_GROUP_TIME / seconds)))
 
     def _results(self, future: "Future[list[_Result]]") -> list[_Result]:
@@ -118,7 +124,10 @@ class Queue(Generic[_Task, _Result]):
                 self._waiting_alone += [(task, 1) for task in tasks]
             elif isinstance(error, WorkerError) and not error.is_own_fault and tries < _MAX_TRIES:
                 self._waiting_alone.append((tasks[0], tries + 1))
-            elif isinstance(error, WorkerError) and (other := self._retried(tasks[0], error)) is not None:
+            elif (
+                isinstance(error, WorkerError)
+                and (other := self._retried(tasks[0], error)) is not None
+            ):
                 self._waiting_alone.append((other, 1))
             else:
                 return [self._given_up(tasks[0], error)]

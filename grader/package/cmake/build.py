@@ -19,10 +19,21 @@ from grader.python.values import Undetermined, Unknown
 from grader.source import Source
 
 _MANIFEST = "package.xml"
-_OF_INTERFACES = frozenset({"DEPENDENCIES", "LIBRARY_NAME", "SKIP_INSTALL", "ADD_LINTER_TESTS",
-                            "SKIP_GROUP_MEMBERSHIP_CHECK"})  # fmt: skip
-_OF_PYTHON = frozenset({"PACKAGE_DIR", "SETUP_CFG", "DESTINATION", "SCRIPTS_DESTINATION", "VERSION", "SKIP_COMPILE"})
-_ARTIFACTS = frozenset({"ARCHIVE", "LIBRARY", "RUNTIME", "INCLUDES", "PUBLIC_HEADER", "PRIVATE_HEADER"})
+_OF_INTERFACES = frozenset(
+    {
+        "DEPENDENCIES",
+        "LIBRARY_NAME",
+        "SKIP_INSTALL",
+        "ADD_LINTER_TESTS",
+        "SKIP_GROUP_MEMBERSHIP_CHECK",
+    }
+)
+_OF_PYTHON = frozenset(
+    {"PACKAGE_DIR", "SETUP_CFG", "DESTINATION", "SCRIPTS_DESTINATION", "VERSION", "SKIP_COMPILE"}
+)
+_ARTIFACTS = frozenset(
+    {"ARCHIVE", "LIBRARY", "RUNTIME", "INCLUDES", "PUBLIC_HEADER", "PRIVATE_HEADER"}
+)
 _Options = Mapping[str, list[str]]
 
 
@@ -47,7 +58,10 @@ class Build:
     def result(self, source: Source) -> Installation:
         """Return what is known at the end."""
         if self._package_at is None and not self.doubts:
-            self.stop("CMakeLists.txt does not call ament_package(), so ROS 2 does not find the package", self.last)
+            self.stop(
+                "CMakeLists.txt does not call ament_package(), so ROS 2 does not find the package",
+                self.last,
+            )
         project = self.values.variables.get("PROJECT_NAME")
         return Installation(
             source,
@@ -64,7 +78,9 @@ class Build:
         )
 
     def give_up(self, reason: str, at: Position) -> None:
-        """Note that something is not evaluated that may set variables, install files or stop the build."""
+        """Note that something is not evaluated that may set variables, install files or stop the
+        build.
+        """
         self.doubts.append(self.values.uncertain or Unknown(reason, at))
         self.values.is_opaque = True
 
@@ -75,7 +91,8 @@ class Build:
         else:
             self.stops.append(InstallError(path, reason, at, hint, by="install()"))
 
-    # --- Files --------------------------------------------------------------------------------------------------------
+    # --- Files
+    # ----------------------------------------------------------------------
 
     def inside(self, text: str) -> str | None:
         """Return a path as one in the package, without dots; None for one outside of it."""
@@ -85,7 +102,9 @@ class Build:
         return None if path.startswith(("/", "..")) else path
 
     def _has(self, path: str) -> bool | None:
-        """Return whether the package has a file or folder at a path; None where that is not known."""
+        """Return whether the package has a file or folder at a path; None where that is not
+        known.
+        """
         try:
             is_there = not path or self.listing.real(path) is not None
         except Undetermined:
@@ -117,17 +136,22 @@ class Build:
         return ";".join(f"{start}{path}" for path in sorted(found))
 
     def _matching(self, pattern: str, *, recursive: bool) -> list[str]:
-        """Return the files that a pattern of CMake matches; without `recursive` the folders, too."""
+        """Return the files that a pattern of CMake matches; without `recursive` the folders,
+        too.
+        """
         if not recursive:
             with suppress(Undetermined):
                 return self.listing.glob(pattern)
             return []
         folder, _, name = pattern.rpartition("/")
         matches = re.compile(translate(name)).match
-        below = (path for path in self.listing.files if path.startswith(f"{folder}/" if folder else ""))
+        below = (
+            path for path in self.listing.files if path.startswith(f"{folder}/" if folder else "")
+        )
         return [path for path in below if matches(posixpath.basename(path))]
 
-    # --- Targets ------------------------------------------------------------------------------------------------------
+    # --- Targets
+    # ----------------------------------------------------------------------
 
     def add_target(self, command: Command) -> None:
         """Add an executable or a library, whose sources must exist."""
@@ -153,7 +177,9 @@ class Build:
 
     def _stop_missing(self, command: Command, path: str) -> None:
         hint = did_you_mean(path, self.listing.files)
-        self.stop(f"{command.name}() lists {path!r}, but there is no such file", command.at, hint=hint)
+        self.stop(
+            f"{command.name}() lists {path!r}, but there is no such file", command.at, hint=hint
+        )
 
     def use_target(self, command: Command) -> None:
         """Note a target that is not defined, and a package that was not found."""
@@ -164,14 +190,23 @@ class Build:
             self._stop_target(command, name)
         for text in rest if command.name == "ament_target_dependencies" else ():
             if isinstance(text, str) and text.islower() and text not in self.values.packages:
-                self.stop(f"{command.name}() names the package {text!r}, without find_package({text})", command.at)
+                self.stop(
+                    f"{command.name}() names the package {text!r}, without find_package({text})",
+                    command.at,
+                )
 
     def _stop_target(self, command: Command, name: str) -> None:
         hint = did_you_mean(name, self.targets)
-        self.stop(f"{command.name}() names the target {name!r}, which is not defined", command.at, hint=hint)
+        self.stop(
+            f"{command.name}() names the target {name!r}, which is not defined",
+            command.at,
+            hint=hint,
+        )
 
     def register_component(self, command: Command) -> None:
-        """Install the program that rclcpp_components_register_node() makes, which its EXECUTABLE names."""
+        """Install the program that rclcpp_components_register_node() makes, which its EXECUTABLE
+        names.
+        """
         texts = self.values.texts(command.arguments)
         after = dict(pairwise(texts))
         name = after.get("EXECUTABLE", "")
@@ -185,7 +220,11 @@ class Build:
     def generate_interfaces(self, command: Command) -> None:
         """Install the message, service and action files of a package."""
         texts = self.values.texts(command.arguments)
-        texts = texts[: next((index for index, text in enumerate(texts) if text in _OF_INTERFACES), len(texts))]
+        texts = texts[
+            : next(
+                (index for index, text in enumerate(texts) if text in _OF_INTERFACES), len(texts)
+            )
+        ]
         known = [text for text in texts if isinstance(text, str)]
         if not texts or len(known) < len(texts):
             self.give_up("the arguments of rosidl_generate_interfaces() are not known", command.at)
@@ -201,17 +240,23 @@ class Build:
             else:
                 self._copy(path, f"{self._share()}/{path}", command.at)
 
-    # --- Installed files ----------------------------------------------------------------------------------------------
+    # --- Installed files
+    # ----------------------------------------------------------------------
 
     def package(self, command: Command) -> None:
-        """End the package, as ament_package() does; the name of the project must be that in package.xml."""
+        """End the package, as ament_package() does; the name of the project must be that in
+        package.xml.
+        """
         if self.values.uncertain is not None:
             self.give_up("it is not known whether ament_package() is called", command.at)
             return
         self._package_at = command.at
         project = self.values.variables.get("PROJECT_NAME", "")
         if isinstance(project, str) and self.name and project != self.name:
-            self.stop(f"project() names the package {project!r}, package.xml names it {self.name!r}", command.at)
+            self.stop(
+                f"project() names the package {project!r}, package.xml names it {self.name!r}",
+                command.at,
+            )
         if _MANIFEST in self.listing.files:
             self._copy(_MANIFEST, f"{self._share()}/{_MANIFEST}", command.at)
 
@@ -223,7 +268,9 @@ class Build:
             return
         executables = (name for name in self._automatic if self.targets[name] == "executable")
         self.programs.update(f"lib/{self._project()}/{name}" for name in executables)
-        for keyword, folders in _groups(texts, frozenset({"INSTALL_TO_SHARE", "INSTALL_TO_PATH"}))[1:]:
+        for keyword, folders in _groups(texts, frozenset({"INSTALL_TO_SHARE", "INSTALL_TO_PATH"}))[
+            1:
+        ]:
             target = self._share() if keyword == "INSTALL_TO_SHARE" else "bin"
             for folder in folders:
                 self._copy_folder(folder, target, command, {})
@@ -233,16 +280,23 @@ class Build:
         """Install a Python package, whose folder must have an __init__.py."""
         texts = self.values.known(command)
         if not texts:
-            self.give_up("the arguments of ament_python_install_package() are not known", command.at)
+            self.give_up(
+                "the arguments of ament_python_install_package() are not known", command.at
+            )
             return
         options = dict(_groups(texts, _OF_PYTHON))
         folder = self.inside((options.get("PACKAGE_DIR") or texts)[0])
         self.modules.append(texts[0])
         if "SCRIPTS_DESTINATION" in options or "setup.cfg" in self.listing.files:
-            self.unknown.append(Unknown("the programs of a setup.cfg are not evaluated", command.at))
+            self.unknown.append(
+                Unknown("the programs of a setup.cfg are not evaluated", command.at)
+            )
         if folder is not None and self._has(f"{folder}/__init__.py") is False:
             what = "has no __init__.py" if self._has(folder) else "does not exist"
-            self.stop(f"ament_python_install_package() needs the folder {folder!r}, which {what}", command.at)
+            self.stop(
+                f"ament_python_install_package() needs the folder {folder!r}, which {what}",
+                command.at,
+            )
 
     def plugin_description(self, command: Command) -> None:
         """Install the description of plugins in the package's share folder."""
@@ -261,7 +315,9 @@ class Build:
             self.stop("install() has no arguments", command.at)
             return
         if unknown is not None or kind not in ("DIRECTORY", "FILES", "PROGRAMS", "TARGETS"):
-            self._leave_open(unknown or Unknown(f"install({kind} ...) is not evaluated", command.at))
+            self._leave_open(
+                unknown or Unknown(f"install({kind} ...) is not evaluated", command.at)
+            )
             return
         groups = _groups(words, known_words("install_keywords"))
         if kind == "TARGETS":
@@ -283,7 +339,9 @@ class Build:
         self.unknown.append(self.values.uncertain or reason)
 
     def _destination(self, options: _Options, command: Command) -> str | None:
-        """Return the path below the prefix where files go; None where it is not known, or there is none."""
+        """Return the path below the prefix where files go; None where it is not known, or there is
+        none.
+        """
         values = options.get("DESTINATION", [])
         if len(values) != 1:
             if "TYPE" in options:
@@ -315,7 +373,9 @@ class Build:
             elif known == "executable":
                 self.programs.add(f"{target}/{name}")
 
-    def _copy_files(self, texts: Sequence[str], target: str, command: Command, options: _Options) -> None:
+    def _copy_files(
+        self, texts: Sequence[str], target: str, command: Command, options: _Options
+    ) -> None:
         names = options.get("RENAME", [])
         if names and len(texts) > 1:
             self.stop("install() gives several files one name with RENAME", command.at)
@@ -329,35 +389,64 @@ class Build:
             elif state is None:
                 self._leave_open(Unknown(f"{text} is not a file of the package", command.at))
             elif state or "OPTIONAL" not in options:
-                reason = "it is a folder: write install(DIRECTORY ...)" if state else "there is no such file"
+                reason = (
+                    "it is a folder: write install(DIRECTORY ...)"
+                    if state
+                    else "there is no such file"
+                )
                 hint = "" if state else did_you_mean(path or "", self.listing.files)
                 self.stop(reason, command.at, path or text, hint)
 
     def _copy_folder(
-        self, text: str, target: str, command: Command, options: _Options, patterns: "_Patterns | None" = None
+        self,
+        text: str,
+        target: str,
+        command: Command,
+        options: _Options,
+        patterns: "_Patterns | None" = None,
     ) -> None:
         """Install the files of a folder; with a slash at its end without its own name."""
         path = self.inside(text)
         state = self._has(path) if path is not None else None
-        if path is None or state is None or (patterns is not None and patterns.has_regex) or text == ".":
-            self._leave_open(Unknown(f"which files of {text} are installed is not known", command.at))
+        if (
+            path is None
+            or state is None
+            or (patterns is not None and patterns.has_regex)
+            or text == "."
+        ):
+            self._leave_open(
+                Unknown(f"which files of {text} are installed is not known", command.at)
+            )
         elif path in self.listing.files:
             self.stop("it is a file: write install(FILES ...)", command.at, path)
         elif not state and (patterns is not None and patterns.is_limited):
             pass  # CMake takes it for a file that no pattern matches
         elif not state and "OPTIONAL" not in options:
-            self.stop("there is no such folder", command.at, path, did_you_mean(path, self.listing.folders))
+            self.stop(
+                "there is no such folder",
+                command.at,
+                path,
+                did_you_mean(path, self.listing.folders),
+            )
         else:
-            above = target if text.endswith("/") else posixpath.join(target, posixpath.basename(path))
+            above = (
+                target if text.endswith("/") else posixpath.join(target, posixpath.basename(path))
+            )
             for file in self._below(path, patterns):
-                self._copy(posixpath.join(path, file), posixpath.normpath(posixpath.join(above, file)), command.at)
+                self._copy(
+                    posixpath.join(path, file),
+                    posixpath.normpath(posixpath.join(above, file)),
+                    command.at,
+                )
 
     def _below(self, folder: str, patterns: "_Patterns | None") -> Iterator[str]:
         """Yield the paths of the files below a folder, as seen from it."""
         start = f"{folder}/" if folder else ""
         for file in self.listing.files:
             self.listing.budget.charge(1)
-            if file.startswith(start) and (patterns is None or patterns.include(folder, file[len(start) :])):
+            if file.startswith(start) and (
+                patterns is None or patterns.include(folder, file[len(start) :])
+            ):
                 yield file[len(start) :]
 
     def _copy(self, path: str, target: str, at: Position) -> None:
@@ -375,7 +464,9 @@ class Build:
 
 
 class _Patterns:
-    """The options PATTERN of install(DIRECTORY ...): what they match is excluded, or with FILES_MATCHING included."""
+    """The options PATTERN of install(DIRECTORY ...): what they match is excluded, or with
+    FILES_MATCHING included.
+    """
 
     def __init__(self, groups: Sequence[tuple[str, list[str]]]) -> None:
         keywords = [keyword for keyword, _ in groups]
@@ -386,10 +477,14 @@ class _Patterns:
         for (keyword, values), after in zip(groups, [*keywords[1:], ""], strict=True):
             if keyword == "PATTERN" and values:
                 glob = translate(values[0]).replace(".*", "[^/]*")
-                (self._excluded if after == "EXCLUDE" else self._included).append(re.compile(f"(?:.*/)?{glob}"))
+                (self._excluded if after == "EXCLUDE" else self._included).append(
+                    re.compile(f"(?:.*/)?{glob}")
+                )
 
     def include(self, folder: str, path: str) -> bool:
-        """Return whether a file at a path below an installed folder is installed; the folder itself may be excluded."""
+        """Return whether a file at a path below an installed folder is installed; the folder itself
+        may be excluded.
+        """
         parts = f"{folder}/{path}".split("/")
         above = len(parts) - path.count("/") - 1
         reached = ["/".join(parts[:count]) for count in range(above, len(parts) + 1)]
@@ -410,12 +505,17 @@ def _groups(texts: Sequence[str], keywords: frozenset[str]) -> list[tuple[str, l
 
 
 BUILD_COMMANDS: dict[str, Callable[[Build, Command], None]] = {
-    **dict.fromkeys(("add_executable", "add_library", "ament_auto_add_executable", "ament_auto_add_library"),
-                    Build.add_target),
+    **dict.fromkeys(
+        ("add_executable", "add_library", "ament_auto_add_executable", "ament_auto_add_library"),
+        Build.add_target,
+    ),
     **dict.fromkeys(("target_link_libraries", "ament_target_dependencies"), Build.use_target),
     "generate_parameter_library": Build.add_target,  # its YAML file is a source
     "rclcpp_components_register_node": Build.register_component,
-    "rosidl_generate_interfaces": Build.generate_interfaces, "ament_package": Build.package,
-    "ament_auto_package": Build.auto_package, "ament_python_install_package": Build.python_package,
-    "pluginlib_export_plugin_description_file": Build.plugin_description, "install": Build.install,
-}  # fmt: skip
+    "rosidl_generate_interfaces": Build.generate_interfaces,
+    "ament_package": Build.package,
+    "ament_auto_package": Build.auto_package,
+    "ament_python_install_package": Build.python_package,
+    "pluginlib_export_plugin_description_file": Build.plugin_description,
+    "install": Build.install,
+}

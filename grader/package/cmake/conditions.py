@@ -13,18 +13,27 @@ _FALSE = frozenset({"0", "OFF", "NO", "FALSE", "N", "IGNORE", "NOTFOUND", ""})
 _MAX_DEPTH = 30  # parentheses and NOT in each other
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 _COMPARE: dict[str, Callable[[float, float], bool]] = {
-    "EQUAL": operator.eq, "LESS": operator.lt, "GREATER": operator.gt, "LESS_EQUAL": operator.le,
+    "EQUAL": operator.eq,
+    "LESS": operator.lt,
+    "GREATER": operator.gt,
+    "LESS_EQUAL": operator.le,
     "GREATER_EQUAL": operator.ge,
-}  # fmt: skip
+}
 _OF_FILES = ("EXISTS", "IS_DIRECTORY")
 _UNARY = ("DEFINED", "TARGET", "COMMAND", "POLICY", "TEST", "IS_ABSOLUTE", "IS_SYMLINK", *_OF_FILES)
 
 
 class Condition:
-    """A condition: texts, and whether each is written without quotes, so that it may name a variable."""
+    """A condition: texts, and whether each is written without quotes, so that it may name a
+    variable.
+    """
 
     def __init__(
-        self, tokens: Sequence[tuple[Text, bool]], values: Values, exists: Callable[[str], bool | None], at: Position
+        self,
+        tokens: Sequence[tuple[Text, bool]],
+        values: Values,
+        exists: Callable[[str], bool | None],
+        at: Position,
     ) -> None:
         """`exists` says whether there is a file or folder at a path."""
         self._tokens, self._values, self._exists, self._at = tokens, values, exists, at
@@ -78,10 +87,14 @@ class Condition:
             operand = self._next()
             return self._test(str(text), operand[0]) if operand is not None else None
         word = self._peek()
-        if isinstance(word, str) and (word in _COMPARE or word.startswith(("STR", "VERSION_", "MATCHES", "IN_LIST"))):
+        if isinstance(word, str) and (
+            word in _COMPARE or word.startswith(("STR", "VERSION_", "MATCHES", "IN_LIST"))
+        ):
             self._index += 1
             second = self._next()
-            return self._compare(self._operand(*first), word, second) if second is not None else None
+            return (
+                self._compare(self._operand(*first), word, second) if second is not None else None
+            )
         return self._truth(text, is_plain)
 
     def _next(self) -> tuple[Text, bool] | None:
@@ -112,7 +125,9 @@ class Condition:
             value = self._values.lookup(operand, self._at)
             if value == "" and operand not in self._values.variables:
                 return False
-            return True if value and isinstance(value, str) else None  # one that is set to nothing may be defined
+            return (
+                True if value and isinstance(value, str) else None
+            )  # one that is set to nothing may be defined
         return None
 
     def _compare(self, left: Text, word: str, second: tuple[Text, bool]) -> bool | None:

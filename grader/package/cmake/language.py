@@ -15,12 +15,20 @@ _ARGUMENT = re.compile(
     r'|(?P<unquoted>(?:[^\s()#"\\]|\\.)(?:[^\s()#"\\]|\\.|"(?:[^"\\]|\\.)*+")*+)',
     re.DOTALL,
 )
-_ENDS = {"if": "endif", "foreach": "endforeach", "while": "endwhile", "function": "endfunction", "macro": "endmacro",
-         "block": "endblock"}  # fmt: skip
+_ENDS = {
+    "if": "endif",
+    "foreach": "endforeach",
+    "while": "endwhile",
+    "function": "endfunction",
+    "macro": "endmacro",
+    "block": "endblock",
+}
 
 
 class CMakeFault(Exception):
-    """What CMake cannot parse, and where; `sure` is False for what only this reader does not parse."""
+    """What CMake cannot parse, and where; `sure` is False for what only this reader does not
+    parse.
+    """
 
     def __init__(self, message: str, at: Position, *, sure: bool = True) -> None:
         super().__init__(message)
@@ -36,7 +44,9 @@ class Argument(NamedTuple):
 
 
 class Command(NamedTuple):
-    """A command, with the commands in it if it begins a block; of `if`, `elseif` and `else` are in `others`."""
+    """A command, with the commands in it if it begins a block; of `if`, `elseif` and `else` are in
+    `others`.
+    """
 
     name: str  # in lower case
     arguments: tuple[Argument, ...]
@@ -54,7 +64,9 @@ def parse_cmake(source: Source) -> tuple[Command, ...]:
     return found
 
 
-def _block(commands: list[Command], index: int, end: str, depth: int) -> tuple[tuple[Command, ...], int]:
+def _block(
+    commands: list[Command], index: int, end: str, depth: int
+) -> tuple[tuple[Command, ...], int]:
     """Return the commands up to the end of a block, and the index of that end."""
     found: list[Command] = []
     while index < len(commands):
@@ -71,7 +83,9 @@ def _block(commands: list[Command], index: int, end: str, depth: int) -> tuple[t
 
 
 def _opened(commands: list[Command], start: int, depth: int) -> tuple[Command, int]:
-    """Return the command that begins a block, with what is in it, and the index of its end. Raises CMakeFault."""
+    """Return the command that begins a block, with what is in it, and the index of its end. Raises
+    CMakeFault.
+    """
     first, end = commands[start], _ENDS[commands[start].name]
     if depth > _MAX_DEPTH:
         raise CMakeFault("the blocks are too deeply nested to read", first.at, sure=False)
@@ -93,8 +107,10 @@ def _commands(source: Source) -> Iterator[Command]:
         name = _NAME.match(text, offset)
         if name is None:
             word = re.match(r"\S{1,30}", text[offset:])
-            raise CMakeFault(f"CMake expects a command such as install(...), not {word and word[0]!r}",
-                             _position(source, offset))  # fmt: skip
+            raise CMakeFault(
+                f"CMake expects a command such as install(...), not {word and word[0]!r}",
+                _position(source, offset),
+            )
         arguments, end = _arguments(source, name.end())
         yield Command(name[1].lower(), arguments, _position(source, offset))
         offset = end
@@ -108,7 +124,11 @@ def _arguments(source: Source, offset: int) -> tuple[tuple[Argument, ...], int]:
         offset = _skip(text, offset)
         match = _ARGUMENT.match(text, offset)
         if match is None:
-            reason = "a quote is not closed" if text[offset : offset + 1] == '"' else "a parenthesis is not closed"
+            reason = (
+                "a quote is not closed"
+                if text[offset : offset + 1] == '"'
+                else "a parenthesis is not closed"
+            )
             raise CMakeFault(reason, _position(source, start))
         offset = match.end()
         kind: Literal["paren", "bracket", "quoted", "unquoted"] = match.lastgroup  # type: ignore[assignment]
@@ -129,4 +149,6 @@ def _skip(text: str, offset: int) -> int:
 def _position(source: Source, offset: int) -> Position:
     """Return the position of an offset, whose column counts bytes, as Python counts them."""
     at = source.at(offset)
-    return Position(at.line, len(source.line(at.line)[: at.column - 1].encode("utf-8", "surrogateescape")) + 1)
+    return Position(
+        at.line, len(source.line(at.line)[: at.column - 1].encode("utf-8", "surrogateescape")) + 1
+    )

@@ -1,7 +1,7 @@
 """Evaluates a package's CMakeLists.txt for what a build installs.
 
-What CMake and ament_cmake certainly do is known; modules, and commands that are not known, leave undecided what they
-could touch.
+What CMake and ament_cmake certainly do is known; modules, and commands that are not known, leave
+undecided what they could touch.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -24,13 +24,19 @@ class _Returns(Exception):
     """The file is evaluated no further."""
 
 
-def read_cmake(text: str, path: str, tree: Tree, name: str, budget: Budget | None = None) -> Installation:
-    """Evaluate the CMakeLists.txt of a package with these files, which package.xml gives this name. Never raises."""
+def read_cmake(
+    text: str, path: str, tree: Tree, name: str, budget: Budget | None = None
+) -> Installation:
+    """Evaluate the CMakeLists.txt of a package with these files, which package.xml gives this
+    name. Never raises.
+    """
     source = Source(path, text)
     try:
         commands = parse_cmake(source)
     except CMakeFault as fault:
-        return Installation(source, SyntaxFault(source, str(fault), location_in(source, fault.at), fault.sure))
+        return Installation(
+            source, SyntaxFault(source, str(fault), location_in(source, fault.at), fault.sure)
+        )
     listing = PackageListing(tree, budget)
     build = Build(listing, Values(listing.budget), name)
     try:
@@ -76,7 +82,8 @@ class _Evaluation:
         names = texts if index < 0 else texts[index : index + 1]
         self.values.forget(names, f"the result of {command.name}() is not evaluated", command.at)
 
-    # --- Control flow -------------------------------------------------------------------------------------------------
+    # --- Control flow
+    # ----------------------------------------------------------------------
 
     def _maybe(self, commands: Sequence[Command], reason: Unknown) -> None:
         """Evaluate commands that may run, or may run several times."""
@@ -92,7 +99,9 @@ class _Evaluation:
         for branch in (command, *command.others):
             holds = True if branch.name == "else" else self._holds(branch)
             if holds is None:
-                doubt = doubt or Unknown(f"the condition of {branch.name}() is not known", branch.at)
+                doubt = doubt or Unknown(
+                    f"the condition of {branch.name}() is not known", branch.at
+                )
             if holds is not False and doubt is not None:
                 self._maybe(branch.body, doubt)
             elif holds:
@@ -147,7 +156,9 @@ class _Evaluation:
         self.own[str(self.values.first(command)).lower()] = command
 
     def _call(self, command: Command) -> None:
-        """Evaluate the body of an own function or macro; the variables of a function are its own."""
+        """Evaluate the body of an own function or macro; the variables of a function are its
+        own.
+        """
         definition, values = self.own.pop(command.name), self.values  # so that none calls itself
         texts, outside = values.texts(command.arguments), dict(values.variables)
         names = [str(text) for text in values.texts(definition.arguments[1:])]
@@ -170,7 +181,8 @@ class _Evaluation:
             raise _Returns
         self.build.give_up("return() may end the file", command.at)
 
-    # --- Variables ----------------------------------------------------------------------------------------------------
+    # --- Variables
+    # ----------------------------------------------------------------------
 
     def project(self, command: Command) -> None:
         """Set the name of the project."""
@@ -185,7 +197,10 @@ class _Evaluation:
         if isinstance(name, Unknown):
             self.values.is_opaque = True
             return
-        end = next((index for index, value in enumerate(values) if value in ("CACHE", "PARENT_SCOPE")), len(values))
+        end = next(
+            (index for index, value in enumerate(values) if value in ("CACHE", "PARENT_SCOPE")),
+            len(values),
+        )
         value = joined(values[:end] if command.name == "set" else (), ";")
         if values[end:] == ["PARENT_SCOPE"]:
             self._for_outside[name] = self.values.uncertain or value
@@ -211,7 +226,9 @@ class _Evaluation:
         """Set what a well-known module does; another one may do anything."""
         name = self.values.first(command)
         if name == "GNUInstallDirs":
-            self.values.variables |= {key: str(value) for key, value in known_table("install_dirs").items()}
+            self.values.variables |= {
+                key: str(value) for key, value in known_table("install_dirs").items()
+            }
         elif name not in known_words("modules"):
             self.build.give_up("include() is not evaluated", command.at)
 
@@ -232,14 +249,26 @@ class _Evaluation:
                 found = self.build.searched(patterns, command.at, recursive=word != "GLOB")
                 self.values.assign(name, found)
             case _:
-                names = [text for text in texts[1:] if isinstance(text, str) and text.isidentifier()]
+                names = [
+                    text for text in texts[1:] if isinstance(text, str) and text.isidentifier()
+                ]
                 self.values.forget(names, "the result of file() is not evaluated", command.at)
 
 
 _COMMANDS: dict[str, Callable[[_Evaluation, Command], None]] = {
-    "if": _Evaluation.if_, "foreach": _Evaluation.foreach, "while": _Evaluation.repeat, "block": _Evaluation.repeat,
-    "function": _Evaluation.define, "macro": _Evaluation.define, "return": _Evaluation.return_,
-    "project": _Evaluation.project, "set": _Evaluation.set_, "unset": _Evaluation.set_, "option": _Evaluation.option,
-    "list": _Evaluation.list_, "include": _Evaluation.include, "find_package": _Evaluation.find_package,
+    "if": _Evaluation.if_,
+    "foreach": _Evaluation.foreach,
+    "while": _Evaluation.repeat,
+    "block": _Evaluation.repeat,
+    "function": _Evaluation.define,
+    "macro": _Evaluation.define,
+    "return": _Evaluation.return_,
+    "project": _Evaluation.project,
+    "set": _Evaluation.set_,
+    "unset": _Evaluation.set_,
+    "option": _Evaluation.option,
+    "list": _Evaluation.list_,
+    "include": _Evaluation.include,
+    "find_package": _Evaluation.find_package,
     "file": _Evaluation.file_,
-}  # fmt: skip
+}

@@ -20,7 +20,7 @@ _FOLDERS = {
     "CMAKE_CURRENT_LIST_DIR": ROOT,
     **dict.fromkeys(("CMAKE_BINARY_DIR", "CMAKE_CURRENT_BINARY_DIR", "PROJECT_BINARY_DIR"), _BUILD),
     "CMAKE_INSTALL_PREFIX": PREFIX,
-}  # fmt: skip
+}
 _PIECES = re.compile(r"\\(.)|(\$\{)|(\})|\$(?:ENV|CACHE)\{[^}]*\}?|\$<|[^\\$}]+|.", re.DOTALL)
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", ";": "\\;"}
 _SEPARATOR = re.compile(r"(?<!\\);")
@@ -51,10 +51,13 @@ class Values:
 
     def __init__(self, budget: Budget) -> None:
         self.budget = budget
-        self.variables: dict[str, Text] = {name: str(value) for name, value in known_table("variables").items()}
+        self.variables: dict[str, Text] = {
+            name: str(value) for name, value in known_table("variables").items()
+        }
         self.variables |= _FOLDERS
         self.packages: set[str] = set()  # that were found, in lower case
-        self.uncertain: Unknown | None = None  # why it is not known whether the current command is run
+        # why it is not known whether the current command is run
+        self.uncertain: Unknown | None = None
         self.is_opaque = False  # whether something that is not evaluated may have set any variable
 
     def texts(self, arguments: Sequence[Argument]) -> list[Text]:
@@ -76,7 +79,11 @@ class Values:
         if argument.kind in ("bracket", "paren"):
             return [argument.text]
         text = self._value(argument.text, argument.at)
-        return [text] if isinstance(text, Unknown) or argument.kind == "quoted" else [*split_list(text)]
+        return (
+            [text]
+            if isinstance(text, Unknown) or argument.kind == "quoted"
+            else [*split_list(text)]
+        )
 
     def _value(self, text: str, at: Position) -> Text:
         """Return a text with the values of variables, whose names may be made of variables."""
@@ -96,7 +103,11 @@ class Values:
                 stack[-1].append(piece[0])
         found = joined(part for parts in stack for part in parts)
         self.budget.charge(1, len(text) if isinstance(found, Unknown) else len(found))
-        return Unknown("a value is too long", at) if isinstance(found, str) and len(found) > _MAX_TEXT else found
+        return (
+            Unknown("a value is too long", at)
+            if isinstance(found, str) and len(found) > _MAX_TEXT
+            else found
+        )
 
     def lookup(self, name: str, at: Position) -> Text:
         """Return the value of a variable: an empty text if it is certainly not set."""
@@ -104,7 +115,9 @@ class Values:
             return self.variables[name]
         of_packages = (f"{package}_" for package in self.packages)
         is_foreign = name.lower().startswith((*known_words("foreign"), *of_packages))
-        return Unknown(f"the value of {name} is not known", at) if self.is_opaque or is_foreign else ""
+        return (
+            Unknown(f"the value of {name} is not known", at) if self.is_opaque or is_foreign else ""
+        )
 
     def assign(self, name: str, value: Text) -> None:
         """Set a variable; to what is not known if the command may not run."""
@@ -112,7 +125,9 @@ class Values:
 
     def forget(self, names: Iterable[Text], reason: str, at: Position) -> None:
         """Set variables to a value that is not known."""
-        self.variables |= dict.fromkeys((name for name in names if isinstance(name, str)), Unknown(reason, at))
+        self.variables |= dict.fromkeys(
+            (name for name in names if isinstance(name, str)), Unknown(reason, at)
+        )
 
 
 def split_list(text: str) -> list[str]:

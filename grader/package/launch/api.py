@@ -1,4 +1,6 @@
-"""The classes of launch, launch_ros, launch_xml and launch_yaml (ROS 2 Jazzy), as `api.json` lists them."""
+"""The classes of launch, launch_ros, launch_xml and launch_yaml (ROS 2 Jazzy), as `api.json` lists
+them.
+"""
 
 import json
 from collections.abc import Mapping
@@ -26,7 +28,9 @@ class _ConstructorParameter(NamedTuple):
 
 
 class LaunchClass(NamedTuple):
-    """A class: the parameters of its constructor, with those that it passes on, and the names of its methods."""
+    """A class: the parameters of its constructor, with those that it passes on, and the names of
+    its methods.
+    """
 
     name: str
     base: str
@@ -58,9 +62,16 @@ def class_named(name: str) -> LaunchClass | None:
             is_positional = False
         else:
             named = own.removesuffix("!")
-            parameters[named] = _ConstructorParameter(named, check, own.endswith("!"), is_positional)
+            parameters[named] = _ConstructorParameter(
+                named, check, own.endswith("!"), is_positional
+            )
     inherited = class_named(base)
-    return LaunchClass(name, base, parameters, frozenset(methods.split()) | (inherited.methods if inherited else set()))
+    return LaunchClass(
+        name,
+        base,
+        parameters,
+        frozenset(methods.split()) | (inherited.methods if inherited else set()),
+    )
 
 
 def is_a(name: str, base: str) -> bool:
@@ -75,16 +86,22 @@ def is_a(name: str, base: str) -> bool:
 
 @cache
 def exports() -> Mapping[str, Mapping[str, str]]:
-    """Return for each module the names that it exports, with the full name of the class, if it is one."""
+    """Return for each module the names that it exports, with the full name of the class, if it is
+    one.
+    """
     found: dict[str, dict[str, str]] = {}
     for module, words in _table()["exports"].items():
         pairs = (word.partition("=") for word in words.split())
         own = {name: full or f"{module}.{name}" for name, _, full in pairs}
-        found[module] = {name: full if full in _table()["classes"] else "" for name, full in own.items()}
+        found[module] = {
+            name: full if full in _table()["classes"] else "" for name, full in own.items()
+        }
     return found
 
 
 def front_end(kind: str) -> Mapping[str, str]:
-    """Return the classes by the names that XML and YAML have for them; `kind` is action or substitution."""
+    """Return the classes by the names that XML and YAML have for them; `kind` is action or
+    substitution.
+    """
     names: Mapping[str, str] = _table()[kind]
     return names

@@ -1,7 +1,8 @@
-"""The constructors of launch's classes, and what they require of their arguments, as they check it themselves.
+"""The constructors of launch's classes, and what they require of their arguments, as they check it
+themselves.
 
-An argument is a text (a string or substitutions), a list of them, a parameter of a node, and so on: `_CHECKS` has a
-check of each kind, which returns what is wrong.
+An argument is a text (a string or substitutions), a list of them, a parameter of a node, and so on:
+`_CHECKS` has a check of each kind, which returns what is wrong.
 """
 
 from ast import expr, unparse
@@ -42,30 +43,68 @@ from grader.python.values import (
 )
 
 SCALARS = (bool, int, float, str)
-TYPED = ("launch_ros.parameter_descriptions.ParameterValue", "launch_ros.parameter_descriptions.Parameter")
+TYPED = (
+    "launch_ros.parameter_descriptions.ParameterValue",
+    "launch_ros.parameter_descriptions.Parameter",
+)
 FILE = "launch_ros.parameter_descriptions.ParameterFile"
 # What is no text yet: the calls that give it, and what is missing.
 OPENED = {
-    "builtins.open": "an open file: add .read()", "xacro.process_file": "a document, not its text: add .toxml()",
+    "builtins.open": "an open file: add .read()",
+    "xacro.process_file": "a document, not its text: add .toxml()",
     "xacro.parse": "a document, not its text: add .toxml()",
-}  # fmt: skip
+}
 _COLLECTIONS: Any = (list, tuple, dict, set, frozenset, *VIEWS)
 _NAMES = {
-    type(None): "None", bool: "a boolean", int: "a number", float: "a number", dict: "a dict", Function: "a function",
-    BoundMethod: "a method that is not called", UnknownText: "a text",
-}  # fmt: skip
-_WANTED = {bool: "True, False", float: "a decimal number such as 2.0", int: "an integer", str: "a string"}
+    type(None): "None",
+    bool: "a boolean",
+    int: "a number",
+    float: "a number",
+    dict: "a dict",
+    Function: "a function",
+    BoundMethod: "a method that is not called",
+    UnknownText: "a text",
+}
+_WANTED = {
+    bool: "True, False",
+    float: "a decimal number such as 2.0",
+    int: "an integer",
+    str: "a string",
+}
 _ACTIONS = (
-    "Node", "ExecuteProcess", "LogInfo", "LaunchDescription", "DeclareLaunchArgument", "SetLaunchConfiguration",
-    "GroupAction", "SetEnvironmentVariable", "AppendEnvironmentVariable", "IncludeLaunchDescription", "OpaqueFunction",
-    "TimerAction", "RegisterEventHandler", "OnProcessExit", "OnProcessStart", "Shutdown", "EmitEvent",
-    "LifecycleNode", "PushROSNamespace", "SetParameter", "SetParametersFromFile", "SetRemap", "SetUseSimTime",
-)  # fmt: skip
+    "Node",
+    "ExecuteProcess",
+    "LogInfo",
+    "LaunchDescription",
+    "DeclareLaunchArgument",
+    "SetLaunchConfiguration",
+    "GroupAction",
+    "SetEnvironmentVariable",
+    "AppendEnvironmentVariable",
+    "IncludeLaunchDescription",
+    "OpaqueFunction",
+    "TimerAction",
+    "RegisterEventHandler",
+    "OnProcessExit",
+    "OnProcessStart",
+    "Shutdown",
+    "EmitEvent",
+    "LifecycleNode",
+    "PushROSNamespace",
+    "SetParameter",
+    "SetParametersFromFile",
+    "SetRemap",
+    "SetUseSimTime",
+)
 _MAX_DEPTH = 20  # of lists in others
 _OF_ONE_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")
-# The classes that are evaluated, besides the sources of included files; what is wrong with their arguments.
-_EVALUATED = frozenset({*_ACTIONS, *PERFORMS, *CONDITIONS, "ParameterValue", "ParameterFile", "LaunchContext"})
-# The arguments that are kept as they are: of all others launch makes a copy when the object is made.
+# The classes that are evaluated, besides the sources of included files; what is wrong with their
+# arguments.
+_EVALUATED = frozenset(
+    {*_ACTIONS, *PERFORMS, *CONDITIONS, "ParameterValue", "ParameterFile", "LaunchContext"}
+)
+# The arguments that are kept as they are: of all others launch makes a copy when the object is
+# made.
 _KEPT_AS_IT_IS = {"GroupAction": "actions", "TimerAction": "actions", "OpaqueFunction": "args"}
 
 
@@ -82,13 +121,17 @@ class LaunchFunctions(dict[str, Any]):
 
 
 def _function_of(name: str) -> "Callable[[Evaluation, Call], Value] | None":
-    """Return the constructor of a class of launch, or one that fails: of a name that is not there."""
+    """Return the constructor of a class of launch, or one that fails: of a name that is not
+    there.
+    """
     owner, _, own = name.rpartition(".")
     names, cls = exports().get(owner), class_named(owner)
     if names is not None and own in names:
         made = class_named(names[own])
         return partial(_record_constructor, made) if made is not None else None
-    if names is not None or (cls is not None and own not in cls.methods and not own.startswith("_")):
+    if names is not None or (
+        cls is not None and own not in cls.methods and not own.startswith("_")
+    ):
         return partial(_fail_missing, f"{cls.short if cls is not None else owner} has no {own!r}")
     return None
 
@@ -130,7 +173,9 @@ def _fail_missing(message: str, *_: object) -> Value:
 
 
 def check(cls: LaunchClass, call: Call) -> Unknown | None:
-    """Name and check the arguments of a constructor; return what is not evaluated. Raises EvaluationFails."""
+    """Name and check the arguments of a constructor; return what is not evaluated. Raises
+    EvaluationFails.
+    """
     if cls.short not in _EVALUATED and not is_a(cls.name, SOURCE):
         return Unknown(f"{cls.short} is not evaluated", call.at)
     _name_arguments(cls, call)
@@ -150,7 +195,9 @@ def _name_arguments(cls: LaunchClass, call: Call) -> None:
     if len(call.args) > len(positional):
         names = ", ".join(f"{name}=..." for name in cls.parameters if name not in positional)
         hint = "put [ ] around them" if cls.short in _OF_ONE_LIST else f"write {names[:100]}"
-        raise EvaluationFails(f"{cls.short} takes {len(positional)} argument without a name: {hint}", call.at)
+        raise EvaluationFails(
+            f"{cls.short} takes {len(positional)} argument without a name: {hint}", call.at
+        )
     given = dict(zip(positional, call.args, strict=False))
     if twice := given.keys() & call.kwargs.keys():
         raise EvaluationFails(f"{cls.short} is given {min(twice)!r} twice", call.at)
@@ -159,14 +206,20 @@ def _name_arguments(cls: LaunchClass, call: Call) -> None:
         raise EvaluationFails(message, call.at)
     kwargs = {**given, **call.kwargs}.items()
     call.args = []
-    call.kwargs = {name: list(iterate(value)) if isinstance(value, Items) else value for name, value in kwargs}
-    missing = [name for name, it in cls.parameters.items() if it.is_required and name not in call.kwargs]
+    call.kwargs = {
+        name: list(iterate(value)) if isinstance(value, Items) else value for name, value in kwargs
+    }
+    missing = [
+        name for name, it in cls.parameters.items() if it.is_required and name not in call.kwargs
+    ]
     if missing:
         raise EvaluationFails(f"{cls.short} needs the argument {missing[0]}=...", call.at)
 
 
 def _wrong_argument(cls: LaunchClass, call: Call, name: str, value: Value) -> str:
-    """Return what is wrong with an argument, or, without a name, with all together. Raises Undetermined."""
+    """Return what is wrong with an argument, or, without a name, with all together. Raises
+    Undetermined.
+    """
     if bound := _find_bound(value):
         text = unparse(bound)[:60]
         raise EvaluationFails(f"{text} without (): write {text}()", position_of(bound))
@@ -251,7 +304,9 @@ def _check_of_type(kind: type) -> Callable[[Value], str]:
     def checked(value: Value) -> str:
         if isinstance(value, str | int | float):
             return "" if isinstance(value, kind) else f"takes {_WANTED[kind]} or a substitution"
-        if isinstance(value, list | tuple) and any(isinstance(item, Call | Unknown) for item in value):
+        if isinstance(value, list | tuple) and any(
+            isinstance(item, Call | Unknown) for item in value
+        ):
             return _wrong_text(value)
         return (
             ""
@@ -278,7 +333,10 @@ def _wrong_item(item: Value) -> str:
 
 
 def _wrong_dict(table: dict[Any, Value]) -> str:
-    return next(filter(None, (_wrong_text(key) or _wrong_parameter(value) for key, value in table.items())), "")
+    return next(
+        filter(None, (_wrong_text(key) or _wrong_parameter(value) for key, value in table.items())),
+        "",
+    )
 
 
 def _wrong_parameter(value: Value) -> str:
@@ -302,7 +360,11 @@ def _wrong_typed(call: Call) -> str:
     if isinstance(value, UnknownText):
         return "" if kind in (None, str) else "the value is a text"
     if isinstance(value, SCALARS):
-        return "" if kind is None or isinstance(value, kind) else f"the value is {kind_of(value)}, not {kind.__name__}"
+        return (
+            ""
+            if kind is None or isinstance(value, kind)
+            else f"the value is {kind_of(value)}, not {kind.__name__}"
+        )
     if isinstance(value, list | tuple) and not any(isinstance(it, Call | Unknown) for it in value):
         is_wrong = kind is not None or not all(isinstance(it, SCALARS) for it in value)
         return f"the value is {kind_of(value)}" if is_wrong else ""
@@ -310,7 +372,9 @@ def _wrong_typed(call: Call) -> str:
 
 
 def type_of(call: Call) -> "type | None":
-    """Return the type that ParameterValue is given; None for none. Raises Undetermined for the type of a list."""
+    """Return the type that ParameterValue is given; None for none. Raises Undetermined for the type
+    of a list.
+    """
     given = call.kwargs.get("value_type")
     if given is None:
         return None
@@ -325,7 +389,9 @@ def _wrong_texts(value: Value) -> str:
     items = items_in(value)
     if items is None:
         return "has to be a list: put [ ] around it"
-    wrong = next((item for item in items if not isinstance(item, _COLLECTIONS) and not _is_text(item)), "")
+    wrong = next(
+        (item for item in items if not isinstance(item, _COLLECTIONS) and not _is_text(item)), ""
+    )
     if wrong != "":
         return f"has an item that is {kind_of(wrong)}{_in_quotes(wrong)}"
     return next(filter(None, map(_wrong_text, items)), "")
@@ -338,7 +404,9 @@ def _wrong_mapping(value: Value) -> str:
 
 
 def _wrong_period(value: Value) -> str:
-    return "" if isinstance(value, str) else _check_of_type(float)(value)  # a string is read as a number
+    return (
+        "" if isinstance(value, str) else _check_of_type(float)(value)
+    )  # a string is read as a number
 
 
 def _wrong_actions(value: Value) -> str:
@@ -380,10 +448,13 @@ def _wrong_declaration(call: Call) -> str:
 
 def _wrong_include(call: Call) -> str:
     source, given = call.kwargs["launch_description_source"], call.kwargs.get("launch_arguments")
-    if not (isinstance(source, Call) and is_a(source.name, SOURCE)) and (wrong := _wrong_text(source)):
+    if not (isinstance(source, Call) and is_a(source.name, SOURCE)) and (
+        wrong := _wrong_text(source)
+    ):
         return f"the first argument {wrong}, not {kind_of(source)}"
     if isinstance(given, dict) and not all(isinstance(key, str) and len(key) == 2 for key in given):
-        return "launch_arguments is given a dict: add .items() to it"  # Python takes a key of two letters for a pair
+        # Python takes a key of two letters for a pair
+        return "launch_arguments is given a dict: add .items() to it"
     return "launch_arguments takes pairs" if given is not None and items_in(given) is None else ""
 
 
@@ -396,13 +467,20 @@ def _wrong_opaque_function(call: Call) -> str:
 
 
 def _wrong_event_handler(call: Call) -> str:
-    value, target = call.kwargs.get("on_exit", call.kwargs.get("on_start")), call.kwargs.get("target_action")
+    value, target = (
+        call.kwargs.get("on_exit", call.kwargs.get("on_start")),
+        call.kwargs.get("target_action"),
+    )
     items = value if isinstance(value, list) else [value]
-    if not isinstance(value, Function) and not all(isinstance(it, Call) and _is_entity(it) for it in items):
+    if not isinstance(value, Function) and not all(
+        isinstance(it, Call) and _is_entity(it) for it in items
+    ):
         raise Undetermined("what this event handler executes")
     if isinstance(target, str | list | dict | int | float):
         return f"target_action is {kind_of(target)}, not an action such as Node(...)"
-    if not isinstance(target, Call | None) or (target is not None and not is_a(target.name, PROCESS)):
+    if not isinstance(target, Call | None) or (
+        target is not None and not is_a(target.name, PROCESS)
+    ):
         raise Undetermined("the target of this event handler")
     return ""
 
@@ -415,7 +493,9 @@ def _wrong_description(call: Call) -> str:
 def _wrong_text_substitution(call: Call) -> str:
     text = call.kwargs["text"]
     return (
-        "" if isinstance(text, str) or (_is_text(text) and not isinstance(text, Call)) else f"text is {kind_of(text)}"
+        ""
+        if isinstance(text, str) or (_is_text(text) and not isinstance(text, Call))
+        else f"text is {kind_of(text)}"
     )
 
 
@@ -430,7 +510,9 @@ def _wrong_timer(call: Call) -> str:
 
 
 def _wrong_group(call: Call) -> str:
-    if call.kwargs.keys() - {"actions", "scoped", "condition"} or not isinstance(call.kwargs.get("scoped", True), bool):
+    if call.kwargs.keys() - {"actions", "scoped", "condition"} or not isinstance(
+        call.kwargs.get("scoped", True), bool
+    ):
         raise Undetermined("what this group keeps")
     return ""
 

@@ -1,4 +1,5 @@
-"""Launch files in XML and YAML: read as entities, which become the actions that a Python launch file would create.
+"""Launch files in XML and YAML: read as entities, which become the actions that a Python launch
+file would create.
 
 Their values are texts with substitutions, by launch's grammar, and texts that are numbers.
 """
@@ -15,13 +16,25 @@ from grader.package.launch.arguments import TYPED, check
 from grader.package.launch.model import Findings, LaunchFault
 from grader.package.yaml_nodes import YamlFault, YamlNode, check_one_document, read_yaml, yaml_value
 from grader.python.parse import START, Position
-from grader.python.values import Call, EvaluationFails, EvaluationSignal, Undetermined, Unknown, Value
+from grader.python.values import (
+    Call,
+    EvaluationFails,
+    EvaluationSignal,
+    Undetermined,
+    Unknown,
+    Value,
+)
 from grader.source import Location, Source
 from grader.xml.parsing import Element, XmlFault, XmlFile
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
-_BEFORE_NEXT = {"": " '\"()", "'": " '()", '"': ' "()'}  # what ends a value, in no quotes and in each kind of quotes
-# The names of the arguments of each substitution that is evaluated; those in brackets may be missing.
+_BEFORE_NEXT = {
+    "": " '\"()",
+    "'": " '()",
+    '"': ' "()',
+}  # what ends a value, in no quotes and in each kind of quotes
+# The names of the arguments of each substitution that is evaluated; those in brackets may be
+# missing.
 _SUBSTITUTIONS = {
     "var": "variable_name [default]",
     "env": "name [default_value]",
@@ -45,30 +58,57 @@ _PROCESS = (
     "cwd name on_exit launch-prefix output respawn shell:bool emulate_tty:bool"
     " -respawn_max_retries -respawn_delay -sigkill_timeout -sigterm_timeout -env"
 )
-# The attributes of each element that is evaluated: ! is required, : precedes a type that is not text, [] are elements
-# in it; what launch accepts, but is not evaluated, begins with -.
+# The attributes of each element that is evaluated: ! is required, : precedes a type that is not
+# text, [] are elements in it; what launch accepts, but is not evaluated, begins with -.
 _ACTIONS: Mapping[str, str] = {
-    "arg": "name! default description choice[]", "executable": f"cmd! {_PROCESS}",
-    "group": "scoped:bool -forwarding -keep children", "include": "file! arg[]", "log": "message!",
-    "set_env": "name! value!", "let": "name! value!", "timer": "period!:float -cancel_on_shutdown children",
+    "arg": "name! default description choice[]",
+    "executable": f"cmd! {_PROCESS}",
+    "group": "scoped:bool -forwarding -keep children",
+    "include": "file! arg[]",
+    "log": "message!",
+    "set_env": "name! value!",
+    "let": "name! value!",
+    "timer": "period!:float -cancel_on_shutdown children",
     "node": f"exec! pkg args ros_args -node-name -exec_name namespace remap[] param[] {_PROCESS}",
-    **dict.fromkeys(("push_ros_namespace", "push-ros-namespace"), "namespace!"), "set_parameter": "name! value!",
-    "set_remap": "from! to!", "set_parameters_from_file": "filename!",
-}  # fmt: skip
+    **dict.fromkeys(("push_ros_namespace", "push-ros-namespace"), "namespace!"),
+    "set_parameter": "name! value!",
+    "set_remap": "from! to!",
+    "set_parameters_from_file": "filename!",
+}
 _NESTED: Mapping[str, str] = {
-    "arg": "name! value!", "choice": "value!", "remap": "from! to!",
+    "arg": "name! value!",
+    "choice": "value!",
+    "remap": "from! to!",
     "param": "name from value:any value-sep type:any -allow_substs param[]",
-}  # fmt: skip
+}
 _TYPES: Mapping[str, type | None] = {"float": float, "bool": bool, "any": None}
-_VALUE_TYPES = ("str", "bool", "float", "int", "list_of_str", "list_of_bool", "list_of_float", "list_of_int", "yaml")
+_VALUE_TYPES = (
+    "str",
+    "bool",
+    "float",
+    "int",
+    "list_of_str",
+    "list_of_bool",
+    "list_of_float",
+    "list_of_int",
+    "yaml",
+)
 # The argument of the constructor, where it has another name than the attribute.
 _ARGUMENTS = {
-    "pkg": "package", "exec": "executable", "default": "default_value", "message": "msg", "launch-prefix": "prefix",
-    "file": "launch_description_source", "args": "arguments", "from": "src", "to": "dst",
+    "pkg": "package",
+    "exec": "executable",
+    "default": "default_value",
+    "message": "msg",
+    "launch-prefix": "prefix",
+    "file": "launch_description_source",
+    "args": "arguments",
+    "from": "src",
+    "to": "dst",
     "ros_args": "ros_arguments",
-}  # fmt: skip
+}
 _ROS1 = (
-    "this is a launch file of ROS 1; in ROS 2 write exec= for type=, $(find-pkg-share ...) for $(find ...),"
+    "this is a launch file of ROS 1; in ROS 2 write exec= for type=, $(find-pkg-share ...) "
+    "for $(find ...),"
     " $(var ...) for $(arg ...), and <param> inside of <node>"
 )
 _RAW = ("shell", "emulate_tty", "scoped")
@@ -78,8 +118,8 @@ _RAW = ("shell", "emulate_tty", "scoped")
 class _Entity:
     """One element of a launch file: <node pkg="..."/>, or `- node: {pkg: ...}`.
 
-    `attributes` are texts in XML, values in YAML. `nested` has the elements in it by their names, `actions` those that
-    are actions of a group.
+    `attributes` are texts in XML, values in YAML. `nested` has the elements in it by their names,
+    `actions` those that are actions of a group.
     """
 
     kind: str
@@ -98,15 +138,23 @@ class _Entity:
 
 
 def read_frontend(data: bytes, source: Source, *, is_yaml: bool) -> _Entity | LaunchFault:
-    """Return the root entity of a launch file in XML or YAML, or why it cannot be read. Never raises."""
+    """Return the root entity of a launch file in XML or YAML, or why it cannot be read. Never
+    raises.
+    """
     try:
         data.decode()  # as open does, whatever the file itself says of its encoding
-        root = _YamlReader().root(data, source.path) if is_yaml else _xml_root(XmlFile(data, source))
+        root = (
+            _YamlReader().root(data, source.path) if is_yaml else _xml_root(XmlFile(data, source))
+        )
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        return LaunchFault("the file is not UTF-8 text: save it as UTF-8", Location(source.path, line, 1))
+        return LaunchFault(
+            "the file is not UTF-8 text: save it as UTF-8", Location(source.path, line, 1)
+        )
     except (YamlFault, XmlFault) as fault:
-        return LaunchFault(f"not readable as {'YAML' if is_yaml else 'XML'}: {fault}", fault.location)
+        return LaunchFault(
+            f"not readable as {'YAML' if is_yaml else 'XML'}: {fault}", fault.location
+        )
     except EvaluationFails as error:
         line, column = error.at or START
         return LaunchFault(str(error), Location(source.path, line, column))
@@ -114,7 +162,11 @@ def read_frontend(data: bytes, source: Source, *, is_yaml: bool) -> _Entity | La
         if not is_yaml and _is_of_ros1(root):
             root.error = _ROS1
         return root
-    what = "the file is not a list of actions below launch:" if is_yaml else "the root of the file is not <launch>"
+    what = (
+        "the file is not a list of actions below launch:"
+        if is_yaml
+        else "the root of the file is not <launch>"
+    )
     return LaunchFault(f"{what}; ros2 launch starts nothing", Location(source.path, 1, 1))
 
 
@@ -124,7 +176,11 @@ def _is_of_ros1(root: _Entity) -> bool:
     while pending:
         entity = pending.pop()
         pending += entity.actions
-        if entity.kind == "node" and "type" in entity.attributes and "exec" not in entity.attributes:
+        if (
+            entity.kind == "node"
+            and "type" in entity.attributes
+            and "exec" not in entity.attributes
+        ):
             return True
     return False
 
@@ -136,7 +192,9 @@ def _xml_root(file: XmlFile) -> _Entity:
         found = _Entity(str(element.tag), Position(location.line, location.column), attributes)
         placed = [*attributes][:_MAX_PLACES]
         found.places = {name: _position_at(file.location(element, name)) for name in placed}
-        found.actions = [entity(it, depth + 1) for it in element.iterchildren("*") if depth < _MAX_DEPTH]
+        found.actions = [
+            entity(it, depth + 1) for it in element.iterchildren("*") if depth < _MAX_DEPTH
+        ]
         for inner in found.actions:
             found.nested.setdefault(inner.kind, []).append(inner)
         return found
@@ -146,7 +204,9 @@ def _xml_root(file: XmlFile) -> _Entity:
 
 @dataclass(slots=True)
 class _YamlReader:
-    """A reader of entities from YAML's lists and mappings; aliases can multiply them, so they are counted."""
+    """A reader of entities from YAML's lists and mappings; aliases can multiply them, so they are
+    counted.
+    """
 
     count: int = 0
 
@@ -166,7 +226,9 @@ class _YamlReader:
             table = item.value if isinstance(item.value, dict) else {}
             if len(table) != 1:
                 names = ", ".join(list(table)[:4]) or "nothing"
-                message = f"expected one action below one key, found {names}. Is it indented far enough?"
+                message = (
+                    f"expected one action below one key, found {names}. Is it indented far enough?"
+                )
                 raise EvaluationFails(message, _position_of(item))
             found += [self.entity(kind, value, depth + 1) for kind, value in table.items()]
         return found
@@ -205,7 +267,11 @@ def _plain_value(node: YamlNode) -> Any:
         found = yaml_value(text) if len(text) < 50 else text  # longer ones are no numbers
     except ValueError:
         return text
-    return text if isinstance(found, dict | list) or (isinstance(found, str) and found != text) else found
+    return (
+        text
+        if isinstance(found, dict | list) or (isinstance(found, str) and found != text)
+        else found
+    )
 
 
 def _position_of(node: YamlNode) -> Position:
@@ -234,10 +300,15 @@ def _action_of(entity: _Entity, findings: Findings) -> Call:
     if kind not in _ACTIONS:
         if kind in front_end("action"):
             raise Undetermined(f"the action {kind} is not evaluated", entity.at)
-        raise EvaluationFails(f"there is no action {kind!r}{did_you_mean(kind, _ACTIONS)}", entity.at)
+        raise EvaluationFails(
+            f"there is no action {kind!r}{did_you_mean(kind, _ACTIONS)}", entity.at
+        )
     given = _attributes_of(entity, f"if unless {_ACTIONS[kind]}")
     condition = _condition_of(given, entity)
-    kwargs = {_ARGUMENTS.get(name, name): _argument_value(entity, name, value) for name, value in given.items()}
+    kwargs = {
+        _ARGUMENTS.get(name, name): _argument_value(entity, name, value)
+        for name, value in given.items()
+    }
     if condition is not None:
         kwargs["condition"] = condition
     _add_elements(entity, kwargs)
@@ -260,17 +331,27 @@ def _attributes_of(entity: _Entity, known: str) -> dict[str, Any]:
         if (
             name == "<<"
             or names.get(name, "").startswith("-")
-            or (name.endswith("-sep") and name[:-4] in names and (name not in names or entity.is_yaml))
+            or (
+                name.endswith("-sep")
+                and name[:-4] in names
+                and (name not in names or entity.is_yaml)
+            )
         ):
             raise Undetermined(f"{name} of <{entity.kind}> is not evaluated", entity.at)
     for name in inner:
         if "children" not in names and name not in lists:
-            raise EvaluationFails(f"<{entity.kind}> contains no <{name}>{did_you_mean(name, lists)}", entity.at)
+            raise EvaluationFails(
+                f"<{entity.kind}> contains no <{name}>{did_you_mean(name, lists)}", entity.at
+            )
     for name in entity.attributes:
         if name not in names or name in lists or name == "children":
             message = f"<{entity.kind}> has no attribute {name!r}{did_you_mean(name, names)}"
             raise EvaluationFails(message, entity.place(name))
-    missing = [name for name, word in names.items() if "!" in word and name not in {*entity.attributes, *entity.nested}]
+    missing = [
+        name
+        for name, word in names.items()
+        if "!" in word and name not in {*entity.attributes, *entity.nested}
+    ]
     if missing:
         raise EvaluationFails(f"<{entity.kind}> needs the attribute {missing[0]!r}", entity.at)
     return {
@@ -341,7 +422,10 @@ def _add_elements(entity: _Entity, kwargs: dict[str, Value]) -> None:
             case "remap" | "arg":
                 pair = ("from", "to") if name == "remap" else ("name", "value")
                 given = [(it, _attributes_of(it, _NESTED[name])) for it in inner]
-                found = [tuple(_parse_value(values[key], it.place(key)) for key in pair) for it, values in given]
+                found = [
+                    tuple(_parse_value(values[key], it.place(key)) for key in pair)
+                    for it, values in given
+                ]
                 kwargs["remappings" if name == "remap" else "launch_arguments"] = found
             case "choice":
                 kwargs["choices"] = [_attributes_of(it, _NESTED[name])["value"] for it in inner]
@@ -361,15 +445,29 @@ def _parameter_of(entity: _Entity) -> Value:
         if "value" in given or "type" in given:
             raise EvaluationFails("a <param> has either a value or other <param> in it", entity.at)
         tables = (_parameter_of(it) for it in inner)
-        return {name: {key: value for table in tables if isinstance(table, dict) for key, value in table.items()}}
+        return {
+            name: {
+                key: value
+                for table in tables
+                if isinstance(table, dict)
+                for key, value in table.items()
+            }
+        }
     if "value" not in given:
         raise EvaluationFails("a <param> needs a value", entity.at)
     if kind is not None and kind not in _VALUE_TYPES:
-        raise EvaluationFails(f"a <param> has the type {kind!r}, which is none of {', '.join(_VALUE_TYPES)}", entity.at)
+        raise EvaluationFails(
+            f"a <param> has the type {kind!r}, which is none of {', '.join(_VALUE_TYPES)}",
+            entity.at,
+        )
     if kind not in (None, "str", "yaml"):
         raise Undetermined(f"a <param> of the type {kind} is not evaluated", entity.at)
     if "value-sep" in given:
-        return {name: _checked_call(Call(TYPED[0], [], {"value": _separated_values(entity, kind)}, entity.at))}
+        return {
+            name: _checked_call(
+                Call(TYPED[0], [], {"value": _separated_values(entity, kind)}, entity.at)
+            )
+        }
     value = entity.attributes["value"] if not entity.is_yaml and kind == "str" else given["value"]
     kwargs: dict[str, Value] = {"value": _parse_if_text(value, entity.place("value"))}
     if kind == "str":
@@ -378,7 +476,9 @@ def _parameter_of(entity: _Entity) -> Value:
 
 
 def _separated_values(entity: _Entity, kind: str | None) -> list[Value]:
-    """Return the list that a value in XML is with the attribute value-sep, as launch_xml's entity.py splits it."""
+    """Return the list that a value in XML is with the attribute value-sep, as launch_xml's
+    entity.py splits it.
+    """
     text, separator = str(entity.attributes["value"]), str(entity.attributes["value-sep"])
     if not separator:
         raise EvaluationFails("value-sep is empty", entity.at)
@@ -402,7 +502,9 @@ def _parse_if_text(value: Any, at: Position) -> Any:
 
 
 def _command_line(text: str, at: Position) -> list[list[Value]]:
-    """Return the words of a line as launch splits it: strings are split, the values of substitutions are not."""
+    """Return the words of a line as launch splits it: strings are split, the values of
+    substitutions are not.
+    """
     words: list[list[Value]] = [[]]
     for piece in _parse_value(text, at):
         if not isinstance(piece, str):
@@ -424,7 +526,9 @@ def _command_line(text: str, at: Position) -> list[list[Value]]:
 
 
 def _typed_text(text: str, kind: type | None, at: Position) -> Any:
-    """Return the value of a text in XML as a type, by default any scalar; a text that is none of it stays a text."""
+    """Return the value of a text in XML as a type, by default any scalar; a text that is none of it
+    stays a text.
+    """
     if kind is float:
         try:
             return float(text)
@@ -436,12 +540,16 @@ def _typed_text(text: str, kind: type | None, at: Position) -> Any:
     except ValueError:
         return text
     if not _is_typed(found, kind, at):
-        raise EvaluationFails(f"{text[:40]!r} is of no type that is accepted here: put quotes in it", at)
+        raise EvaluationFails(
+            f"{text[:40]!r} is of no type that is accepted here: put quotes in it", at
+        )
     return found
 
 
 def _is_typed(value: Any, kind: type | None, at: Position) -> bool:
-    """Return whether a value is a text or of a type; with None, whether it is a scalar. Raises Undetermined."""
+    """Return whether a value is a text or of a type; with None, whether it is a scalar. Raises
+    Undetermined.
+    """
     if isinstance(value, list) and kind is None:
         raise Undetermined("a list in this place is not evaluated", at)
     return isinstance(value, str | (kind or float) | (kind or int))
@@ -476,9 +584,13 @@ class _ValueParser:
             return self.substitution(quote, depth + 1)
         start = self.position
         while (
-            self.position < len(self.text) and not self.text.startswith("$(", self.position) and self.next not in ends
+            self.position < len(self.text)
+            and not self.text.startswith("$(", self.position)
+            and self.next not in ends
         ):
-            is_escape = self.next == "\\" and self.text[self.position + 1 : self.position + 2] not in ("", " ", "\n")
+            is_escape = self.next == "\\" and self.text[
+                self.position + 1 : self.position + 2
+            ] not in ("", " ", "\n")
             self.position += 2 if is_escape else 1
         return re.sub(r"\\(.)", r"\1", self.text[start : self.position])
 
@@ -486,13 +598,19 @@ class _ValueParser:
         """Return the substitution in brackets: a name, and values separated by one space each."""
         name = _NAME.match(self.text, self.position)
         if name is None or depth > _MAX_DEPTH:
-            raise EvaluationFails(f"there is no name of a substitution after $( in {self.text[:60]!r}", self.at)
+            raise EvaluationFails(
+                f"there is no name of a substitution after $( in {self.text[:60]!r}", self.at
+            )
         self.position, values = name.end(), list[list[Value]]()
         while self.next == " ":
             self.position += 1
             values.append(self.value(quote, depth))
         if self.next != ")":
-            what = "is not closed" if not self.next else f"has {self.next!r} in an argument without quotes"
+            what = (
+                "is not closed"
+                if not self.next
+                else f"has {self.next!r} in an argument without quotes"
+            )
             raise EvaluationFails(f"the bracket of $({name[0][:40]} {what}", self.at)
         self.position += 1
         return self.call(name[0], values)
@@ -507,26 +625,35 @@ class _ValueParser:
             found.append(self.part(_BEFORE_NEXT[quote], quote, depth))
         if not found:
             raise EvaluationFails(
-                f"an argument is missing in {self.text[:60]!r}: write one space between arguments", self.at
+                f"an argument is missing in {self.text[:60]!r}: write one space between arguments",
+                self.at,
             )
         return found
 
     def call(self, name: str, values: list[list[Value]]) -> Call:
         """Return a substitution as the call that it is in Python. Raises EvaluationFails."""
         if name == "command" and len(values) > 1 and values[1] not in _ON_STDERR:
-            raise EvaluationFails("$(command ...) needs quotes around its command: $(command 'xacro ...')", self.at)
+            raise EvaluationFails(
+                "$(command ...) needs quotes around its command: $(command 'xacro ...')", self.at
+            )
         if name not in _SUBSTITUTIONS:
             if name in front_end("substitution"):
                 raise Undetermined(f"the substitution $({name} ...) is not evaluated", self.at)
             similar = closest(name, _SUBSTITUTIONS)
             raise EvaluationFails(
-                f"there is no substitution $({name} ...){f'; did you mean $({similar} ...)?' if similar else ''}",
+                (
+                    f"there is no substitution $({name} "
+                    f"...){f'; did you mean $({similar} ...)?' if similar else ''}"
+                ),
                 self.at,
             )
         names = _SUBSTITUTIONS[name].split()
         if not len([it for it in names if it[0] != "["]) <= len(values) <= len(names):
             count = "1 argument" if len(names) == 1 else f"{len(names) or 'no'} arguments"
             raise EvaluationFails(f"$({name} ...) takes {count}", self.at)
-        plain = ("".join(value) if all(isinstance(it, str) for it in value) else value for value in values)
+        plain = (
+            "".join(value) if all(isinstance(it, str) for it in value) else value
+            for value in values
+        )
         kwargs: dict[str, Value] = dict(zip((it.strip("[]") for it in names), plain, strict=False))
         return Call(front_end("substitution")[name], [], kwargs, self.at)

@@ -1,4 +1,6 @@
-"""The nodes that a launch file starts and the files that it names, and the state while its actions are visited."""
+"""The nodes that a launch file starts and the files that it names, and the state while its actions
+are visited.
+"""
 
 import posixpath
 from collections.abc import Callable, Mapping, Sequence
@@ -14,7 +16,8 @@ from grader.source import Location, Source
 
 _MAX_STEPS = 50_000
 ANY = "**"
-NAMESPACE = "ros_namespace"  # the launch configuration that has the namespace of what follows, as in launch_ros
+# the launch configuration that has the namespace of what follows, as in launch_ros
+NAMESPACE = "ros_namespace"
 STATE_PUBLISHER = "robot_state_publisher"
 Purpose = Literal["urdf", "rviz", "include", "read", "parameters"]
 
@@ -58,16 +61,22 @@ def not_evaluated(reason: str) -> str:
 
 
 class Installation(Protocol):
-    """What is installed on the machine of a launch file: what builds of the submitted packages install, and ROS 2."""
+    """What is installed on the machine of a launch file: what builds of the submitted packages
+    install, and ROS 2.
+    """
 
     def open_installed(self, path: str) -> tuple[bytes, str] | None:
-        """Return an installed file by its path below the prefix: its bytes, and its path in the submission."""
+        """Return an installed file by its path below the prefix: its bytes, and its path in the
+        submission.
+        """
 
     def has_package(self, name: str) -> bool:
         """Return whether a package certainly is on the machine."""
 
     def files_in(self, folder: str) -> "Sequence[str] | None":
-        """Return the names of the installed files in a folder below the prefix; None where they are not all known."""
+        """Return the names of the installed files in a folder below the prefix; None where they are
+        not all known.
+        """
 
     def has_program(self, package: str, name: str) -> bool | None:
         """Return whether a package has a program; None where this is not known."""
@@ -84,23 +93,33 @@ class Context:
     installation: Installation
     arguments: dict[str, Resolved] = field(default_factory=dict)
     when: bool | None = True  # whether the file is launched at all
-    # What SetRemap and SetParameter give to all nodes, by the configurations that launch_ros keeps them in: lists,
-    # which groups share, as there. None is one that is not known.
+    # What SetRemap and SetParameter give to all nodes, by the configurations that launch_ros keeps
+    # them in: lists, which groups share, as there. None is one that is not known.
     to_all: "dict[str, list[Any]]" = field(default_factory=dict)
-    included_by: tuple[str, ...] = ()  # the paths of the launch files that include this one, the first one first
+    included_by: tuple[
+        str, ...
+    ] = ()  # the paths of the launch files that include this one, the first one first
     given: frozenset[str] = frozenset()  # the launch arguments that the file is included with
-    reads: list[tuple[Contents, Position]] = field(default_factory=list)  # that the current action needs
-    budget: Budget = field(default_factory=partial(Budget, _MAX_STEPS))  # of all files that are launched
+    reads: list[tuple[Contents, Position]] = field(
+        default_factory=list
+    )  # that the current action needs
+    budget: Budget = field(
+        default_factory=partial(Budget, _MAX_STEPS)
+    )  # of all files that are launched
 
     def copy(self) -> "Context":
         """Return a context whose launch configurations change on their own."""
         return replace(self, arguments=dict(self.arguments), to_all=dict(self.to_all))
 
     def text_of(self, path: str) -> str | None:
-        """Return the text of a file; None for one that is not installed below the prefix, or is no text."""
+        """Return the text of a file; None for one that is not installed below the prefix, or is no
+        text.
+        """
         if not path.startswith(f"{PREFIX}/"):
             return None
-        found = self.installation.open_installed(posixpath.normpath(path).removeprefix(f"{PREFIX}/"))
+        found = self.installation.open_installed(
+            posixpath.normpath(path).removeprefix(f"{PREFIX}/")
+        )
         try:
             return found[0].decode().replace("\r\n", "\n") if found is not None else None
         except UnicodeDecodeError:
@@ -108,19 +127,24 @@ class Context:
 
 
 class ParameterValue(NamedTuple):
-    """The value that a parameter is given, a scalar or a list of them or Unknown, and where it is written."""
+    """The value that a parameter is given, a scalar or a list of them or Unknown, and where it is
+    written.
+    """
 
     value: Any
     location: Location
 
 
 class GivenParameters(NamedTuple):
-    """Parameters that a node is given at once: those of a file, by the path that launch has of it, or `values`."""
+    """Parameters that a node is given at once: those of a file, by the path that launch has of it,
+    or `values`.
+    """
 
     location: Location
     path: str = ""
     values: Mapping[str, ParameterValue] = {}
-    is_named: bool = False  # whether the values are for the node by its full name, not for every node of the process
+    # whether the values are for the node by its full name, not for every node of the process
+    is_named: bool = False
     node: str = ""  # or for the node of this name only
     is_plain: bool = True  # whether launch replaces no substitutions in the file
     unknown: str = ""  # why they are not known
@@ -128,10 +152,12 @@ class GivenParameters(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class StartedNode:
-    """A program that is started. `when` is True, False where a condition prevents it, None if known at run time only.
+    """A program that is started. `when` is True, False where a condition prevents it, None if known
+    at run time only.
 
-    `frame_prefix` is what robot_state_publisher puts before the name of each link; None where it is known at run time.
-    The same holds for `namespace`, for the `remaps` of names, and for all that follows.
+    `frame_prefix` is what robot_state_publisher puts before the name of each link; None where it is
+    known at run time. The same holds for `namespace`, for the `remaps` of names, and for all that
+    follows.
     """
 
     package: str
@@ -145,32 +171,52 @@ class StartedNode:
     node_name: str | None = ""  # the one that it is given; empty if it keeps that of its program
     arguments: tuple[str | None, ...] | None = None  # the words after the program
     parameters: tuple[GivenParameters, ...] | None = None  # later ones count; see parameters_of
-    included_by: tuple[str, ...] = ()  # the paths below the prefix of the launch files by which its own is included
+    included_by: tuple[
+        str, ...
+    ] = ()  # the paths below the prefix of the launch files by which its own is included
 
     def topic(self, name: str) -> str | None:
-        """Return the topic that the node has for a name in its program; None where it is known at run time."""
+        """Return the topic that the node has for a name in its program; None where it is known at
+        run time.
+        """
         # A rule for one node of the process, node:name:=other, is not resolved.
-        if self.namespace is None or self.remaps is None or any(":" in rule[0] for rule in self.remaps):
+        if (
+            self.namespace is None
+            or self.remaps is None
+            or any(":" in rule[0] for rule in self.remaps)
+        ):
             return None
         full = self.full_name(name)
         rules = (rule[1] for rule in self.remaps if self.full_name(rule[0]) == full)
         return self.full_name(next(rules, full))
 
     def full_name(self, name: str) -> str:
-        """Return a name with the namespace; ~ is the name that the node is given, and stays if it is given none."""
+        """Return a name with the namespace; ~ is the name that the node is given, and stays if it
+        is given none.
+        """
         if name.startswith("~/") and self.node_name:
             name = f"{self.node_name}{name[1:]}"
-        return name if name.startswith("/") else f"/{(self.namespace or '').strip('/')}/{name}".replace("//", "/")
+        return (
+            name
+            if name.startswith("/")
+            else f"/{(self.namespace or '').strip('/')}/{name}".replace("//", "/")
+        )
 
     @property
     def name(self) -> str:
         """The package and the program, once where they are called the same."""
-        return self.executable if self.package == self.executable else f"{self.package}/{self.executable}"
+        return (
+            self.executable
+            if self.package == self.executable
+            else f"{self.package}/{self.executable}"
+        )
 
 
 @dataclass(frozen=True, slots=True)
 class NamedFile:
-    """A file that the launch file names. `path` begins with a stand-in where a folder depends on the machine."""
+    """A file that the launch file names. `path` begins with a stand-in where a folder depends on
+    the machine.
+    """
 
     purpose: Purpose
     path: str | None
@@ -186,7 +232,8 @@ class NamedFile:
 class PassedArguments(NamedTuple):
     """The launch arguments that an include passes to a launch file, by its path below the prefix.
 
-    The value of one is None where it is not known. `when` is None where it is not known whether the file is included.
+    The value of one is None where it is not known. `when` is None where it is not known whether the
+    file is included.
     """
 
     path: str
@@ -214,10 +261,14 @@ class Launch:
     faults: tuple[LaunchFault, ...] = ()
     unknown: tuple[LaunchFault, ...] = ()  # what may start more
     doubts: tuple[LaunchFault, ...] = ()  # what may stop the launch
-    declared: tuple[str, ...] = ()  # the launch arguments that it and the files that it includes declare
+    declared: tuple[
+        str, ...
+    ] = ()  # the launch arguments that it and the files that it includes declare
     values: tuple[tuple[str, str], ...] = ()  # of these, as far as they are known
     passed: tuple[PassedArguments, ...] = ()
-    forgotten: tuple[StartedNode, ...] = ()  # created in the file, but not part of its LaunchDescription
+    forgotten: tuple[
+        StartedNode, ...
+    ] = ()  # created in the file, but not part of its LaunchDescription
     unread: str = ""  # why the file was not read at all: too large, damaged
 
     def named(self, *purposes: Purpose) -> tuple[NamedFile, ...]:
@@ -228,21 +279,36 @@ class Launch:
     def more(self) -> str:
         """Why it may start more than is known; empty where it does not."""
         is_read = self.syntax is None and not self.unread
-        return self.unknown[0].message if self.unknown else "" if is_read else "a launch file cannot be read"
+        return (
+            self.unknown[0].message
+            if self.unknown
+            else ""
+            if is_read
+            else "a launch file cannot be read"
+        )
 
     def frames_of(self, link: str) -> tuple[str | None, ...]:
-        """Return the frames of a link that robot_state_publisher publishes (a rubric may prefix it); None if unknown.
+        """Return the frames of a link that robot_state_publisher publishes (a rubric may prefix
+        it); None if unknown.
 
         tf2 ignores a slash at the start.
         """
-        publishers = [node for node in self.nodes if node.executable == STATE_PUBLISHER and node.when is not False]
+        publishers = [
+            node
+            for node in self.nodes
+            if node.executable == STATE_PUBLISHER and node.when is not False
+        ]
         prefixes = dict.fromkeys(node.frame_prefix for node in publishers) or [""]
-        return tuple(it if it is None else (it + link.removeprefix(it)).removeprefix("/") for it in prefixes)
+        return tuple(
+            it if it is None else (it + link.removeprefix(it)).removeprefix("/") for it in prefixes
+        )
 
 
 @dataclass(slots=True)
 class Findings:
-    """The findings so far in one launch file. `sets_parameters`: an action gives parameters to all nodes."""
+    """The findings so far in one launch file. `sets_parameters`: an action gives parameters to all
+    nodes.
+    """
 
     locate: Callable[[Position], Location]
     nodes: list[StartedNode] = field(default_factory=list)
@@ -274,7 +340,9 @@ class Findings:
         self.add_doubt(reason, at)
 
     def add(self, signal: EvaluationSignal, at: Position, when: bool | None) -> None:
-        """Add what ends an action: an error only if it certainly is executed. `at` is the position of the action."""
+        """Add what ends an action: an error only if it certainly is executed. `at` is the position
+        of the action.
+        """
         if self.is_silent or when is False:
             return
         at = signal.at or at
@@ -285,15 +353,26 @@ class Findings:
         else:
             self.add_doubt(f"whether this is executed is not evaluated: {signal}", at)
 
-    def refer(self, purpose: Purpose, path: Resolved | None, call: Call, value: Value = None, wrong: str = "") -> None:
+    def refer(
+        self,
+        purpose: Purpose,
+        path: Resolved | None,
+        call: Call,
+        value: Value = None,
+        wrong: str = "",
+    ) -> None:
         """Add the file that an action names, why it is unknown which, or what is wrong with it."""
         location = self.locate(_position(value, call))
         match path:
             case Unknown(reason=reason):
                 self.references.append(NamedFile(purpose, None, location, reason, sure=False))
             case Contents():
-                found = NamedFile(purpose, path.path, location, "", by=path.by, arguments=path.arguments)
-                found = replace(found, stops_at_stderr=path.stops_at_stderr, is_deprecated=path.is_deprecated)
+                found = NamedFile(
+                    purpose, path.path, location, "", by=path.by, arguments=path.arguments
+                )
+                found = replace(
+                    found, stops_at_stderr=path.stops_at_stderr, is_deprecated=path.is_deprecated
+                )
                 self.references.append(found)
             case _:
                 self.references.append(NamedFile(purpose, path, location, wrong))

@@ -1,7 +1,8 @@
-"""The package moveit_configs_utils of ROS 2 Jazzy: MoveItConfigsBuilder, and the nodes that its launch functions start.
+"""The package moveit_configs_utils of ROS 2 Jazzy: MoveItConfigsBuilder, and the nodes that its
+launch functions start.
 
-The builder reads the files of a MoveIt configuration while the launch file is loaded; one that it needs and that is not
-installed stops it.
+The builder reads the files of a MoveIt configuration while the launch file is loaded; one that it
+needs and that is not installed stops it.
 """
 
 import posixpath
@@ -40,45 +41,85 @@ _NODE = "launch_ros.actions.node.Node"
 _INCLUDE = "launch.actions.include_launch_description.IncludeLaunchDescription"
 _DECLARED = "launch.actions.declare_launch_argument.DeclareLaunchArgument"
 _CONFIGURATION = "launch.substitutions.launch_configuration.LaunchConfiguration"
-_IF, _UNLESS = (f"launch.conditions.{it}" for it in ("if_condition.IfCondition", "unless_condition.UnlessCondition"))
+_IF, _UNLESS = (
+    f"launch.conditions.{it}"
+    for it in ("if_condition.IfCondition", "unless_condition.UnlessCondition")
+)
 _MAX_DEPTH, _MAX_NUMBER = 40, 50
-_DEFAULT_PIPELINES = ("chomp", "ompl", "pilz_industrial_motion_planner", "stomp")  # of moveit_configs_utils
+_DEFAULT_PIPELINES = (
+    "chomp",
+    "ompl",
+    "pilz_industrial_motion_planner",
+    "stomp",
+)  # of moveit_configs_utils
 _PILZ = "pilz_industrial_motion_planner"
 _MONITOR = {
-    "publish_planning_scene": True, "publish_geometry_updates": True, "publish_state_updates": True,
-    "publish_transforms_updates": True, "publish_robot_description": False, "publish_robot_description_semantic": False,
-}  # fmt: skip
+    "publish_planning_scene": True,
+    "publish_geometry_updates": True,
+    "publish_state_updates": True,
+    "publish_transforms_updates": True,
+    "publish_robot_description": False,
+    "publish_robot_description_semantic": False,
+}
 # The parts of a configuration in the order of to_dict. All but the last are made by default.
 _PARTS = (
-    "robot_description", "robot_description_semantic", "robot_description_kinematics", "planning_pipelines",
-    "trajectory_execution", "planning_scene_monitor", "sensors_3d", "joint_limits", "moveit_cpp",
-)  # fmt: skip
+    "robot_description",
+    "robot_description_semantic",
+    "robot_description_kinematics",
+    "planning_pipelines",
+    "trajectory_execution",
+    "planning_scene_monitor",
+    "sensors_3d",
+    "joint_limits",
+    "moveit_cpp",
+)
 _BY_DEFAULT = _PARTS[:-1]
 _PARAMETERS: Mapping[str, Sequence[str]] = {
-    "robot_description": ("file_path", "mappings"), "robot_description_semantic": ("file_path", "mappings"),
-    "trajectory_execution": ("file_path", "moveit_manage_controllers"), "planning_scene_monitor": tuple(_MONITOR),
+    "robot_description": ("file_path", "mappings"),
+    "robot_description_semantic": ("file_path", "mappings"),
+    "trajectory_execution": ("file_path", "moveit_manage_controllers"),
+    "planning_scene_monitor": tuple(_MONITOR),
     "planning_pipelines": ("default_planning_pipeline", "pipelines", "load_all"),
     **dict.fromkeys(
-        ("robot_description_kinematics", "joint_limits", "moveit_cpp", "sensors_3d", "pilz_cartesian_limits"),
+        (
+            "robot_description_kinematics",
+            "joint_limits",
+            "moveit_cpp",
+            "sensors_3d",
+            "pilz_cartesian_limits",
+        ),
         ("file_path",),
     ),
-}  # fmt: skip
-# What a part is called in the parameters after the name of the robot's, and the file that it is read from by default.
+}
+# What a part is called in the parameters after the name of the robot's, and the file that it is
+# read from by default.
 _OF_YAML = {
-    "robot_description_kinematics": ("_kinematics", "kinematics"), "joint_limits": ("_planning", "joint_limits"),
-    "pilz_cartesian_limits": ("_planning", "pilz_cartesian_limits"), "moveit_cpp": ("", "moveit_cpp"),
-}  # fmt: skip
+    "robot_description_kinematics": ("_kinematics", "kinematics"),
+    "joint_limits": ("_planning", "joint_limits"),
+    "pilz_cartesian_limits": ("_planning", "pilz_cartesian_limits"),
+    "moveit_cpp": ("", "moveit_cpp"),
+}
 
 
 def moveit_exports() -> Mapping[str, Sequence[str]]:
     """Return the names of the modules of moveit_configs_utils."""
     of_launch = ("DeclareLaunchArgument", "IfCondition", "LaunchConfiguration", "Node")
     of_utils = (*of_launch, "UnlessCondition", "add_debuggable_node", "DeclareBooleanLaunchArg")
-    of_launches = (*of_utils[:4], *of_utils[5:], "LaunchDescription", "IncludeLaunchDescription", "ParameterValue")
+    of_launches = (
+        *of_utils[:4],
+        *of_utils[5:],
+        "LaunchDescription",
+        "IncludeLaunchDescription",
+        "ParameterValue",
+    )
     modules = ("launches", "launch_utils", "moveit_configs_builder", "substitutions")
     return {
         _PACKAGE: (*_OF_BUILDER, *modules),
-        f"{_PACKAGE}.moveit_configs_builder": (*_OF_BUILDER, "get_pattern_matches", "moveit_configs_utils_path"),
+        f"{_PACKAGE}.moveit_configs_builder": (
+            *_OF_BUILDER,
+            "get_pattern_matches",
+            "moveit_configs_utils_path",
+        ),
         f"{_PACKAGE}.launch_utils": of_utils,
         _LAUNCHES: (*_launches(), *of_launches, "PythonLaunchDescriptionSource", "SRDF", "os"),
     }
@@ -103,7 +144,9 @@ class _Configuration:
 
 @dataclass(slots=True)
 class MoveItConfigurations:
-    """The functions of moveit_configs_utils, in a launch file whose context is `context()`; `reads` are its files."""
+    """The functions of moveit_configs_utils, in a launch file whose context is `context()`;
+    `reads` are its files.
+    """
 
     context: Callable[[], Context]
     reads: list[tuple[Contents, Position]]
@@ -117,22 +160,30 @@ class MoveItConfigurations:
             _BUILDER: self._build,
             **steps,
             f"{_BUILDER}.to_moveit_configs": self._finish,
-            f"{_BUILDER}.to_dict": lambda evaluation, call: self._finish(evaluation, call).find("to_dict").run(),
+            f"{_BUILDER}.to_dict": lambda evaluation, call: (
+                self._finish(evaluation, call).find("to_dict").run()
+            ),
             **{f"{_LAUNCHES}.{name}": partial(self._start, name) for name in _launches()},
         }
 
     def _build(self, evaluation: Evaluation, call: Call) -> Call:
         given = _named(call, ("robot_name", "robot_description", "package_name"))
-        robot, description = (known(given.get(it, "robot_description")) for it in ("robot_name", "robot_description"))
+        robot, description = (
+            known(given.get(it, "robot_description")) for it in ("robot_name", "robot_description")
+        )
         if "robot_name" not in given or not isinstance(robot, str):
             raise EvaluationFails("MoveItConfigsBuilder needs the name of the robot")
         package = known(given.get("package_name")) or f"{robot}_moveit_config"
         for name in (_PACKAGE, package):
             if not self.context().installation.has_package(name):
-                evaluation.doubted(Unknown(f"whether the package {name!r} is installed is not evaluated", call.at))
+                evaluation.doubted(
+                    Unknown(f"whether the package {name!r} is installed is not evaluated", call.at)
+                )
         made = Call(_BUILDER, [], {}, call.at)
         made.is_object = True
-        self._built[made] = _Configuration(robot, f"{SHARE}/{package}", description, evaluation.doubted)
+        self._built[made] = _Configuration(
+            robot, f"{SHARE}/{package}", description, evaluation.doubted
+        )
         return made
 
     def _step(self, name: str, _: Evaluation, call: Call) -> Call:
@@ -149,7 +200,9 @@ class MoveItConfigurations:
                 self._made(own, name, call.at, {})
         if _PILZ in own.parts["planning_pipelines"] and "pilz_cartesian_limits" not in own.parts:
             self._made(own, "pilz_cartesian_limits", call.at, {})
-        parts: dict[str, Value] = {name: own.parts.get(name, {}) for name in (*_PARTS, "pilz_cartesian_limits")}
+        parts: dict[str, Value] = {
+            name: own.parts.get(name, {}) for name in (*_PARTS, "pilz_cartesian_limits")
+        }
         parts["package_path"] = PurePosixPath(own.folder)
         parts["move_group_capabilities"] = {"capabilities": "", "disable_capabilities": ""}
         parts["to_dict"] = PlainFunction("to_dict", partial(_as_dict, parts), "holds")
@@ -161,7 +214,9 @@ class MoveItConfigurations:
 
         return Namespace("MoveItConfigs", find)
 
-    def _made(self, own: _Configuration, name: str, at: Position, given: Mapping[str, Value]) -> None:
+    def _made(
+        self, own: _Configuration, name: str, at: Position, given: Mapping[str, Value]
+    ) -> None:
         """Make a part of a configuration, as the method of this name does."""
         if name in _OF_YAML:
             ending, stem = _OF_YAML[name]
@@ -187,8 +242,12 @@ class MoveItConfigurations:
         return posixpath.join(own.folder, text)
 
     def _names(self, own: _Configuration) -> Sequence[str] | None:
-        """Return the names of the files that are installed in the folder config; None where this is not known."""
-        return self.context().installation.files_in(f"{own.folder}/config".removeprefix(f"{PREFIX}/"))
+        """Return the names of the files that are installed in the folder config; None where this
+        is not known.
+        """
+        return self.context().installation.files_in(
+            f"{own.folder}/config".removeprefix(f"{PREFIX}/")
+        )
 
     def _is_there(self, path: str) -> bool:
         return self.context().text_of(path) is not None
@@ -201,7 +260,9 @@ class MoveItConfigurations:
     def _yaml(self, path: str, at: Position) -> Value:
         """Return the table in a file that has to be there."""
         self._read(path, at, BY_MOVEIT)
-        found = self.context().installation.open_installed(posixpath.normpath(path).removeprefix(f"{PREFIX}/"))
+        found = self.context().installation.open_installed(
+            posixpath.normpath(path).removeprefix(f"{PREFIX}/")
+        )
         if found is None:
             return UnknownTable("a file for MoveIt is not evaluated", at)
         try:
@@ -215,77 +276,147 @@ class MoveItConfigurations:
         table = self._yaml(path, at) if self._is_there(path) else None
         config = table.get("moveit_setup_assistant_config") if isinstance(table, dict) else None
         robot = config.get("urdf", config.get("URDF")) if isinstance(config, dict) else None
-        package, file = (robot.get(key) if isinstance(robot, dict) else None for key in ("package", "relative_path"))
-        return f"{SHARE}/{package}/{file}" if isinstance(package, str) and isinstance(file, str) else None
+        package, file = (
+            robot.get(key) if isinstance(robot, dict) else None
+            for key in ("package", "relative_path")
+        )
+        return (
+            f"{SHARE}/{package}/{file}"
+            if isinstance(package, str) and isinstance(file, str)
+            else None
+        )
 
-    def _description(self, own: _Configuration, at: Position, given: Mapping[str, Value]) -> dict[str, Value]:
+    def _description(
+        self, own: _Configuration, at: Position, given: Mapping[str, Value]
+    ) -> dict[str, Value]:
         """Return the robot; if its file is not there, MoveIt waits for a topic."""
         path = self._path(own, given, f"config/{own.robot}.urdf.xacro")
         if "file_path" not in given:
             path = self._robot_of_assistant(own, at) or path
         is_there = self._is_there(path)
         if not is_there and "file_path" not in given:
-            return {own.description: own.doubted("the file of the robot that MoveIt finds is not evaluated", at)}
-        contents = self._read(path, at, "xacro", _mappings(given)) if is_there else Contents(path, "xacro")
+            return {
+                own.description: own.doubted(
+                    "the file of the robot that MoveIt finds is not evaluated", at
+                )
+            }
+        contents = (
+            self._read(path, at, "xacro", _mappings(given)) if is_there else Contents(path, "xacro")
+        )
         return {own.description: FileText("the output of xacro is not evaluated", at, contents)}
 
-    def _semantic(self, own: _Configuration, at: Position, given: Mapping[str, Value]) -> dict[str, Value]:
-        path, key = self._path(own, given, f"config/{own.robot}.srdf"), f"{own.description}_semantic"
-        is_open = "file_path" not in given and any(name.endswith(".srdf") for name in self._names(own) or ())
+    def _semantic(
+        self, own: _Configuration, at: Position, given: Mapping[str, Value]
+    ) -> dict[str, Value]:
+        path, key = (
+            self._path(own, given, f"config/{own.robot}.srdf"),
+            f"{own.description}_semantic",
+        )
+        is_open = "file_path" not in given and any(
+            name.endswith(".srdf") for name in self._names(own) or ()
+        )
         if is_open and not self._is_there(path):
             return {key: own.doubted("the SRDF that MoveIt finds is not evaluated", at)}
         contents = self._read(path, at, "xacro", _mappings(given))
         return {key: FileText("the output of xacro is not evaluated", at, contents)}
 
-    def _pipelines(self, own: _Configuration, at: Position, given: Mapping[str, Value]) -> dict[str, Value]:
+    def _pipelines(
+        self, own: _Configuration, at: Position, given: Mapping[str, Value]
+    ) -> dict[str, Value]:
         names = self._names(own)
-        wanted, default = (known(given.get(it)) for it in ("pipelines", "default_planning_pipeline"))
-        found = [name.removesuffix("_planning.yaml") for name in names or () if name.endswith("_planning.yaml")]
+        wanted, default = (
+            known(given.get(it)) for it in ("pipelines", "default_planning_pipeline")
+        )
+        found = [
+            name.removesuffix("_planning.yaml")
+            for name in names or ()
+            if name.endswith("_planning.yaml")
+        ]
         pipelines, with_all = wanted, given.get("load_all", True)
         if wanted is None:
             pipelines = [*found, *(it for it in _DEFAULT_PIPELINES if it not in found and with_all)]
-        if not isinstance(pipelines, list | tuple) or (names is None and wanted is None and not with_all):
+        if not isinstance(pipelines, list | tuple) or (
+            names is None and wanted is None and not with_all
+        ):
             raise Undetermined("the pipelines of MoveIt are not evaluated", at)
         if not pipelines:
             raise EvaluationFails("MoveIt finds no *_planning.yaml", at)
         default = default or ("ompl" if "ompl" in pipelines else pipelines[0])
         if default not in pipelines:
-            raise EvaluationFails(f"the default pipeline {default!r} is none of {', '.join(map(str, pipelines))}", at)
-        unordered = UnknownText("the order in which files are found is not known", at) if wanted is None else None
-        tables = {it: self._pipeline(own, it, at, is_there=it in found) for it in map(str, pipelines)}
-        return {"planning_pipelines": unordered or [*pipelines], "default_planning_pipeline": default, **tables}
+            raise EvaluationFails(
+                f"the default pipeline {default!r} is none of {', '.join(map(str, pipelines))}", at
+            )
+        unordered = (
+            UnknownText("the order in which files are found is not known", at)
+            if wanted is None
+            else None
+        )
+        tables = {
+            it: self._pipeline(own, it, at, is_there=it in found) for it in map(str, pipelines)
+        }
+        return {
+            "planning_pipelines": unordered or [*pipelines],
+            "default_planning_pipeline": default,
+            **tables,
+        }
 
     def _pipeline(self, own: _Configuration, name: str, at: Position, *, is_there: bool) -> Value:
         if not is_there and name in _DEFAULT_PIPELINES:
             return UnknownTable(f"the default configuration of {name} is not evaluated", at)
         table = self._yaml(f"{own.folder}/config/{name}_planning.yaml", at)
         is_whole = name != "ompl" or (isinstance(table, dict) and "planner_configs" in table)
-        return table if is_whole else UnknownTable("the default configuration of ompl is not evaluated", at)
+        return (
+            table
+            if is_whole
+            else UnknownTable("the default configuration of ompl is not evaluated", at)
+        )
 
-    def _controllers(self, own: _Configuration, at: Position, given: Mapping[str, Value]) -> dict[str, Value]:
-        made: dict[str, Value] = {"moveit_manage_controllers": given.get("moveit_manage_controllers", True)}
+    def _controllers(
+        self, own: _Configuration, at: Position, given: Mapping[str, Value]
+    ) -> dict[str, Value]:
+        made: dict[str, Value] = {
+            "moveit_manage_controllers": given.get("moveit_manage_controllers", True)
+        }
         if "file_path" in given:
             return made | _spread(self._yaml(self._path(own, given, ""), at))
         ending, names = "_controllers.yaml", self._names(own)
-        usual = [it for it in ("moveit", "moveit2", own.robot) if self._is_there(f"{own.folder}/config/{it}{ending}")]
+        usual = [
+            it
+            for it in ("moveit", "moveit2", own.robot)
+            if self._is_there(f"{own.folder}/config/{it}{ending}")
+        ]
         if names is None and not usual:
-            return made | _spread(UnknownTable("the controllers that MoveIt finds are not evaluated", at))
+            return made | _spread(
+                UnknownTable("the controllers that MoveIt finds are not evaluated", at)
+            )
         found = [name.removesuffix(ending) for name in names or () if name.endswith(ending)]
         if len(found) > 1 and not usual:
             listed = ", ".join(sorted(name + ending for name in found))
-            raise EvaluationFails(f"MoveIt cannot choose between {listed}: give trajectory_execution a file_path", at)
+            raise EvaluationFails(
+                f"MoveIt cannot choose between {listed}: give trajectory_execution a file_path", at
+            )
         chosen = [*usual, *found][:1]
-        return made | (_spread(self._yaml(f"{own.folder}/config/{chosen[0]}{ending}", at)) if chosen else {})
+        return made | (
+            _spread(self._yaml(f"{own.folder}/config/{chosen[0]}{ending}", at)) if chosen else {}
+        )
 
-    def _sensors(self, own: _Configuration, at: Position, given: Mapping[str, Value]) -> dict[str, Value]:
+    def _sensors(
+        self, own: _Configuration, at: Position, given: Mapping[str, Value]
+    ) -> dict[str, Value]:
         path = self._path(own, given, "config/sensors_3d.yaml")
         if not self._is_there(path):
-            return {} if self._names(own) is not None else _spread(UnknownTable("sensors are not evaluated", at))
+            return (
+                {}
+                if self._names(own) is not None
+                else _spread(UnknownTable("sensors are not evaluated", at))
+            )
         table = self._yaml(path, at)
         sensors = table.get("sensors") if isinstance(table, dict) else None
         return _spread(table) if isinstance(sensors, list) and sensors and sensors[0] else {}
 
-    def _scene(self, _: _Configuration, __: Position, given: Mapping[str, Value]) -> dict[str, Value]:
+    def _scene(
+        self, _: _Configuration, __: Position, given: Mapping[str, Value]
+    ) -> dict[str, Value]:
         return {**_MONITOR, **given}
 
     def _start(self, name: str, _: Evaluation, call: Call) -> Value:
@@ -295,22 +426,42 @@ class MoveItConfigurations:
         if not isinstance(configs, Namespace):
             raise Undetermined("the configuration of MoveIt is not evaluated", call.at)
         package, folder = str(configs.find("package_path")), given.get("launch_package_path")
-        make = _Actions(call.at, configs, {"package": package, "folder": str(known(folder)) if folder else package})
-        rows = [it for it in row["start"] if not it.get("optional") or self._is_there(make.value(it["include"]))]
-        actions: list[Value] = [make.argument(*pair, is_flag=True) for pair in row.get("flags", {}).items()]
-        actions += [make.argument(*pair, is_flag=False) for pair in row.get("arguments", {}).items()]
+        make = _Actions(
+            call.at,
+            configs,
+            {"package": package, "folder": str(known(folder)) if folder else package},
+        )
+        rows = [
+            it
+            for it in row["start"]
+            if not it.get("optional") or self._is_there(make.value(it["include"]))
+        ]
+        actions: list[Value] = [
+            make.argument(*pair, is_flag=True) for pair in row.get("flags", {}).items()
+        ]
+        actions += [
+            make.argument(*pair, is_flag=False) for pair in row.get("arguments", {}).items()
+        ]
         for it in [*rows, *self._found_in(configs, name, call.at)]:
             actions += [it] if isinstance(it, Unknown) else make.started(it)
         return Call(DESCRIPTION, [], {"initial_entities": actions}, call.at)
 
     def _found_in(self, configs: Namespace, name: str, at: Position) -> Iterator[Any]:
-        """Yield the rows of what a function starts for controllers or virtual joints; Unknown for unknown ones."""
+        """Yield the rows of what a function starts for controllers or virtual joints; Unknown
+        for unknown ones.
+        """
         if name == "generate_spawn_controllers_launch":
             for it in _controllers_in(configs.find("trajectory_execution"), at):
-                yield it if isinstance(it, Unknown) else {"node": "controller_manager/spawner", "arguments": [it]}
+                yield (
+                    it
+                    if isinstance(it, Unknown)
+                    else {"node": "controller_manager/spawner", "arguments": [it]}
+                )
         elif name == "generate_static_virtual_joint_tfs_launch":
             srdf = next(iter(configs.find("robot_description_semantic").values()))
-            text = self.context().text_of(srdf.contents.path) if isinstance(srdf, FileText) else None
+            text = (
+                self.context().text_of(srdf.contents.path) if isinstance(srdf, FileText) else None
+            )
             if text is None or "xacro:" in text:
                 yield Unknown("the virtual joints of the SRDF are not evaluated", at)
                 return
@@ -319,7 +470,9 @@ class MoveItConfigurations:
 
 
 def _named(call: Call, names: Sequence[str]) -> dict[str, Value]:
-    """Return the arguments of a call by their names, but those that are None. Raises EvaluationFails."""
+    """Return the arguments of a call by their names, but those that are None. Raises
+    EvaluationFails.
+    """
     wrong = next((name for name in call.kwargs if name not in names), None)
     if wrong is not None or len(call.args) > len(names):
         what = f"no argument {wrong!r}" if wrong is not None else f"at most {len(names)} arguments"
@@ -333,7 +486,9 @@ def _mappings(given: Mapping[str, Value]) -> tuple[tuple[str, str | None], ...]:
     table = given.get("mappings", {})
     if not isinstance(table, dict):
         raise Undetermined("the mappings for xacro are not evaluated")
-    return tuple((str(name), value if isinstance(value, str) else None) for name, value in table.items())
+    return tuple(
+        (str(name), value if isinstance(value, str) else None) for name, value in table.items()
+    )
 
 
 def _value_of(node: YamlNode, depth: int) -> Value:
@@ -375,7 +530,9 @@ def _launches() -> Mapping[str, Any]:
 
 @dataclass(frozen=True, slots=True)
 class _Actions:
-    """Makes the actions of a description from the rows of the table, as if they were written at a place."""
+    """Makes the actions of a description from the rows of the table, as if they were written at
+    a place.
+    """
 
     at: Position
     configs: Namespace
@@ -383,12 +540,16 @@ class _Actions:
 
     def made(self, kind: str, **kwargs: Value) -> Call:
         """Return an action, condition or substitution; arguments that are None are left out."""
-        return Call(kind, [], {name: value for name, value in kwargs.items() if value is not None}, self.at)
+        return Call(
+            kind, [], {name: value for name, value in kwargs.items() if value is not None}, self.at
+        )
 
     def argument(self, name: str, default: str, *, is_flag: bool) -> Call:
         """Return the declaration of a launch argument."""
         choices = ["true", "false", "True", "False"] if is_flag else None
-        return self.made(_DECLARED, name=name, default_value=default.format(**self.folders), choices=choices)
+        return self.made(
+            _DECLARED, name=name, default_value=default.format(**self.folders), choices=choices
+        )
 
     def value(self, value: Any) -> Value:
         """Return a value; "$name" is that of a launch argument."""
@@ -400,11 +561,19 @@ class _Actions:
         """Return the node or include of a row; two nodes if one has a debugger."""
         condition = self.when(row["if"]) if "if" in row else None
         if "include" in row:
-            return [self.made(_INCLUDE, launch_description_source=self.value(row["include"]), condition=condition)]
+            return [
+                self.made(
+                    _INCLUDE,
+                    launch_description_source=self.value(row["include"]),
+                    condition=condition,
+                )
+            ]
         package, _, executable = row["node"].partition("/")
         parts = [self.configs.find(name) for name in row.get("parts", ())]
         table = {name: self.value(value) for name, value in row.get("parameters", {}).items()}
-        given = [it.run() if isinstance(it, PlainFunction) else it for it in parts] + ([table] if table else [])
+        given = [it.run() if isinstance(it, PlainFunction) else it for it in parts] + (
+            [table] if table else []
+        )
         node = partial(
             self.made,
             _NODE,
@@ -420,7 +589,9 @@ class _Actions:
         return [node(condition=self.when("debug", _UNLESS)), debugged]
 
     def when(self, name: str, kind: str = _IF) -> Call:
-        """Return the condition that a launch argument is true, or with another kind that it is not."""
+        """Return the condition that a launch argument is true, or with another kind that it is
+        not.
+        """
         return self.made(kind, predicate_expression=self.value(f"${name}"))
 
 
@@ -436,6 +607,8 @@ def _controllers_in(table: Mapping[str, Value], at: Position) -> list[Value]:
 def _virtual_joints(text: str) -> Iterator[list[str]]:
     """Yield the arguments of the publishers of the virtual joints in an SRDF."""
     for joint in re.findall(r"<virtual_joint\b[^>]*>", re.sub(r"(?s)<!--.*?-->", "", text)):
-        found = (re.search(rf"\b{name}=[\"']([^\"']*)", joint) for name in ("parent_frame", "child_link"))
+        found = (
+            re.search(rf"\b{name}=[\"']([^\"']*)", joint) for name in ("parent_frame", "child_link")
+        )
         parent, child = (it[1] if it is not None else "" for it in found)
         yield ["--frame-id", parent, "--child-frame-id", child]

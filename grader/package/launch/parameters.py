@@ -1,6 +1,7 @@
 """The parameters of nodes: what launch_ros gives a node, and which value counts in the end.
 
-Launch evaluates them first; rclcpp and rclpy then read the files and rules on the node's command line, in order.
+Launch evaluates them first; rclcpp and rclpy then read the files and rules on the node's command
+line, in order.
 """
 
 import posixpath
@@ -27,11 +28,19 @@ from grader.package.launch.places import PREFIX
 from grader.package.launch.substitutions import PART_UNKNOWN, boolean, known_text, resolve
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_value
 from grader.python.parse import START, Position
-from grader.python.values import Call, EvaluationFails, EvaluationSignal, Undetermined, Unknown, Value
+from grader.python.values import (
+    Call,
+    EvaluationFails,
+    EvaluationSignal,
+    Undetermined,
+    Unknown,
+    Value,
+)
 from grader.source import Location
 
 _EVERY_NODE = "/**"
-TO_ALL = "global_params"  # the launch configuration that has what SetParameter gives to all nodes, as in launch_ros
+# the launch configuration that has what SetParameter gives to all nodes, as in launch_ros
+TO_ALL = "global_params"
 _OWN = "?"  # the key of a node whose name is not known
 _MAX_YAML = 200_000  # characters
 _MAX_DEPTH = 40
@@ -51,14 +60,28 @@ _IN_CPP = re.compile(
 )
 # The options of the spawner of ros2_control (Jazzy) that a value follows; the others are switches.
 _OF_SPAWNER = frozenset(
-    {"-c", "--controller-manager", "-p", "--param-file", "-n", "--namespace", "--controller-manager-timeout",
-     "--switch-timeout", "--service-call-timeout", "--controller-ros-args", "-t", "--controller-type"}
-)  # fmt: skip
+    {
+        "-c",
+        "--controller-manager",
+        "-p",
+        "--param-file",
+        "-n",
+        "--namespace",
+        "--controller-manager-timeout",
+        "--switch-timeout",
+        "--service-call-timeout",
+        "--controller-ros-args",
+        "-t",
+        "--controller-type",
+    }
+)
 _PARAM_FILES = ("-p", "--param-file")
 
 
 def evaluate_parameters(parameters: Value, context: Context, at: Position) -> None:
-    """Evaluate the parameters of a node, as launch_ros does first. Raises EvaluationSignal and Undetermined."""
+    """Evaluate the parameters of a node, as launch_ros does first. Raises EvaluationSignal and
+    Undetermined.
+    """
     for item in items_in(parameters) or ():
         if isinstance(item, dict):
             evaluate_dict(item, context, at)
@@ -73,7 +96,9 @@ def evaluate_parameters(parameters: Value, context: Context, at: Position) -> No
 def _evaluate_file(call: Call, context: Context) -> None:
     path = _path_of(call, context)
     text = context.text_of(path) if isinstance(path, str) else None
-    if call.kwargs.get("allow_substs") not in (None, False) and (text is None or _SUBSTITUTION in text):
+    if call.kwargs.get("allow_substs") not in (None, False) and (
+        text is None or _SUBSTITUTION in text
+    ):
         raise Undetermined("substitutions in a parameter file are not evaluated", call.at)
 
 
@@ -82,19 +107,26 @@ def _path_of(call: Call, context: Context) -> Resolved:
     given = call.kwargs["param_file"]
     if isinstance(given, PurePosixPath):
         return str(given)
-    if not all(isinstance(it, str | Call | Unknown) for it in (given if isinstance(given, list) else [given])):
+    if not all(
+        isinstance(it, str | Call | Unknown)
+        for it in (given if isinstance(given, list) else [given])
+    ):
         raise Undetermined("the path of a parameter file is not evaluated", call.at)
     return resolve(given, context, call.at)
 
 
 def evaluate_dict(table: dict[Any, Value], context: Context, at: Position) -> dict[str, Any]:
-    """Return the values in a dict of parameters, those of dicts in it by dotted names. Raises EvaluationSignal."""
+    """Return the values in a dict of parameters, those of dicts in it by dotted names. Raises
+    EvaluationSignal.
+    """
     found: dict[str, Any] = {}
     for key, value in table.items():
         name = resolve(list(key) if isinstance(key, tuple) else key, context, at)
         shown = name if isinstance(name, str) else "?"
         if isinstance(value, dict):
-            found |= {f"{shown}.{inner}": it for inner, it in evaluate_dict(value, context, at).items()}
+            found |= {
+                f"{shown}.{inner}": it for inner, it in evaluate_dict(value, context, at).items()
+            }
         else:
             found[shown] = _evaluate_value(shown, value, context, at)
     return found
@@ -115,7 +147,9 @@ def _evaluate_value(name: str, value: Value, context: Context, at: Position) -> 
 
 def _evaluate_list(name: str, items: list[Value], context: Context, at: Position) -> Any:
     kinds = {type(item) for item in items if isinstance(item, SCALARS)}
-    if any(isinstance(item, Call) for item in items) and all(isinstance(it, str | Call | Unknown) for it in items):
+    if any(isinstance(item, Call) for item in items) and all(
+        isinstance(it, str | Call | Unknown) for it in items
+    ):
         return _read_as_yaml(name, items, context, at)
     if not items or not all(isinstance(item, SCALARS) for item in items):
         raise Undetermined(f"the value of the parameter {name!r} is not evaluated", at)
@@ -146,14 +180,20 @@ def _evaluate_typed(call: Call, context: Context) -> Any:
     try:
         return boolean(text, call.at) if kind is bool else kind(text)
     except ValueError:
-        raise EvaluationFails(f"the value {text[:40]!r} of a parameter is not {kind.__name__}", call.at) from None
+        raise EvaluationFails(
+            f"the value {text[:40]!r} of a parameter is not {kind.__name__}", call.at
+        ) from None
 
 
 def _read_as_yaml(name: str, value: Value, context: Context, at: Position) -> Any:
     found = _value_as_yaml(name, value, context, at)
-    if not (isinstance(found, list) and _is_uniform(found)) and not isinstance(found, (*SCALARS, bytes)):
+    if not (isinstance(found, list) and _is_uniform(found)) and not isinstance(
+        found, (*SCALARS, bytes)
+    ):
         hint = "write ParameterValue(..., value_type=str)"
-        raise EvaluationFails(f"the parameter {name!r} is read as YAML, and is {kind_of(found)} then: {hint}", at)
+        raise EvaluationFails(
+            f"the parameter {name!r} is read as YAML, and is {kind_of(found)} then: {hint}", at
+        )
     return found
 
 
@@ -161,7 +201,9 @@ def _value_as_yaml(name: str, value: Value, context: Context, at: Position) -> A
     """Return the value of a text as YAML. Raises EvaluationSignal."""
     found = resolve(value, context, at)
     if isinstance(found, Unknown):
-        raise Undetermined(f"the value of the parameter {name!r} is not evaluated: {found.reason}", at)
+        raise Undetermined(
+            f"the value of the parameter {name!r} is not evaluated: {found.reason}", at
+        )
     text = context.text_of(found.path) if isinstance(found, Contents) else found
     if text is None:
         return ""  # a file that is not there is reported for itself
@@ -172,14 +214,19 @@ def _value_as_yaml(name: str, value: Value, context: Context, at: Position) -> A
     except ValueError:
         if isinstance(found, Contents) and found.by == "xacro" and not _is_never_yaml(text):
             raise Undetermined(
-                f"whether the output of xacro is YAML, as which {name!r} is read, is not evaluated", at
+                f"whether the output of xacro is YAML, as which {name!r} is read, is not evaluated",
+                at,
             ) from None
         hint = "write ParameterValue(..., value_type=str)"
-        raise EvaluationFails(f"the parameter {name!r} is read as YAML, which fails: {hint}", at) from None
+        raise EvaluationFails(
+            f"the parameter {name!r} is read as YAML, which fails: {hint}", at
+        ) from None
 
 
 def _is_never_yaml(text: str) -> bool:
-    """Return whether a URDF is no YAML after xacro either, which keeps comments, texts and values."""
+    """Return whether a URDF is no YAML after xacro either, which keeps comments, texts and
+    values.
+    """
     if "xacro:" in text or "${" in text or "$(" in text:
         return False
     try:
@@ -194,7 +241,9 @@ def _is_uniform(values: list[Any]) -> bool:
     return kind in SCALARS and all(isinstance(value, kind) for value in values if kind)
 
 
-_OpenFile = Callable[[str], tuple[bytes, str] | None]  # returns an installed file, and its path in the submission
+_OpenFile = Callable[
+    [str], tuple[bytes, str] | None
+]  # returns an installed file, and its path in the submission
 
 
 class _Place(NamedTuple):
@@ -205,7 +254,9 @@ class _Place(NamedTuple):
     location: Location
 
 
-def given_parameters(call: Call, words: Sequence[str], context: Context, at: Location) -> tuple[GivenParameters, ...]:
+def given_parameters(
+    call: Call, words: Sequence[str], context: Context, at: Location
+) -> tuple[GivenParameters, ...]:
     """Return the parameters that a Node action gives its node, in the order of its command line.
 
     Args:
@@ -223,10 +274,13 @@ def given_parameters(call: Call, words: Sequence[str], context: Context, at: Loc
     return (*_of_command_line(words, at), *context.to_all.get(TO_ALL, ()), *found)
 
 
-def set_for_all(name: Value, value: Value, context: Context, at: Position, location: Location) -> GivenParameters:
+def set_for_all(
+    name: Value, value: Value, context: Context, at: Position, location: Location
+) -> GivenParameters:
     """Return what SetParameter gives to all nodes; unknown where it is not evaluated."""
     found = _given_item(
-        {(name,) if not isinstance(name, list | tuple) else tuple(name): value}, _Place(context, at, location)
+        {(name,) if not isinstance(name, list | tuple) else tuple(name): value},
+        _Place(context, at, location),
     )
     rules = {key: _as_rule(it) for key, it in found.values.items()}
     return found._replace(values=rules)
@@ -240,7 +294,9 @@ def _as_rule(given: ParameterValue) -> ParameterValue:
     return given._replace(value=_value_of_text(str(value)))
 
 
-def file_for_all(path: Value, context: Context, at: Position, location: Location) -> GivenParameters:
+def file_for_all(
+    path: Value, context: Context, at: Position, location: Location
+) -> GivenParameters:
     """Return the file that SetParametersFromFile gives to all nodes. Raises EvaluationSignal."""
     return GivenParameters(location, known_text(path, context, at))
 
@@ -252,18 +308,23 @@ def _given_item(item: Value, place: _Place, *, is_named: bool = False) -> GivenP
             return GivenParameters(location, values=_values_in(item, place), is_named=is_named)
         if isinstance(item, Call) and item.name == FILE:
             is_plain = item.kwargs.get("allow_substs") in (None, False)
-            return GivenParameters(location, known_text(_path_of(item, context), context, at), is_plain=is_plain)
+            return GivenParameters(
+                location, known_text(_path_of(item, context), context, at), is_plain=is_plain
+            )
         if isinstance(item, Call) and item.name in TYPED:
             raise Undetermined("a parameter of this kind is not evaluated")
         return GivenParameters(
-            location, str(item) if isinstance(item, PurePosixPath) else known_text(item, context, at)
+            location,
+            str(item) if isinstance(item, PurePosixPath) else known_text(item, context, at),
         )
     except EvaluationSignal as signal:
         return GivenParameters(location, unknown=str(signal))
 
 
 def _values_in(table: dict[Any, Value], place: _Place) -> dict[str, ParameterValue]:
-    """Return the values in a dict of parameters, each unknown for itself. Raises EvaluationSignal for unknown names."""
+    """Return the values in a dict of parameters, each unknown for itself. Raises EvaluationSignal
+    for unknown names.
+    """
     found: dict[str, ParameterValue] = {}
     for key, value in table.items():
         name = known_text(list(key) if isinstance(key, tuple) else key, place.context, place.at)
@@ -283,7 +344,11 @@ def _values_in(table: dict[Any, Value], place: _Place) -> dict[str, ParameterVal
 def _plain(value: Any, at: Position) -> Any:
     """Return a value without stand-ins; the contents of a file are unknown."""
     is_plain = isinstance(value, (*SCALARS, list)) and PART_UNKNOWN not in str(value)
-    return value if is_plain or isinstance(value, Unknown) else Unknown("the contents of a file are not evaluated", at)
+    return (
+        value
+        if is_plain or isinstance(value, Unknown)
+        else Unknown("the contents of a file are not evaluated", at)
+    )
 
 
 def _of_command_line(words: Sequence[str], at: Location) -> Iterator[GivenParameters]:
@@ -298,12 +363,18 @@ def _of_command_line(words: Sequence[str], at: Location) -> Iterator[GivenParame
         elif option == "--params-file":
             yield GivenParameters(at, word)
         else:
-            yield GivenParameters(at, values={name: ParameterValue(_value_of_text(text), at)}, node=node)
+            yield GivenParameters(
+                at, values={name: ParameterValue(_value_of_text(text), at)}, node=node
+            )
 
 
 def _value_of_text(text: str) -> Any:
     try:
-        return _value_of(read_yaml(text.encode(), "")) if PART_UNKNOWN not in text else Unknown("a text", START)
+        return (
+            _value_of(read_yaml(text.encode(), ""))
+            if PART_UNKNOWN not in text
+            else Unknown("a text", START)
+        )
     except YamlFault as fault:
         return Unknown(str(fault), START)
 
@@ -313,7 +384,11 @@ def _value_of(node: YamlNode) -> Any:
     if isinstance(node.value, list):
         items = [_value_of(item) for item in node.items]
         kinds = {type(item) for item in items}
-        return items if len(kinds) == 1 and kinds <= {*SCALARS} else Unknown("a list of different values", START)
+        return (
+            items
+            if len(kinds) == 1 and kinds <= {*SCALARS}
+            else Unknown("a list of different values", START)
+        )
     text = node.text
     if text is None or (not text and not node.quoted):
         return Unknown("no value", START)
@@ -333,7 +408,8 @@ def _scalar(text: str) -> "bool | int | float | str":
 
 
 class NodeParameters(NamedTuple):
-    """The parameters that a node is given, by their names. If something is `unknown`, there may be more of them.
+    """The parameters that a node is given, by their names. If something is `unknown`, there may be
+    more of them.
 
     The value of one is Unknown where it is not evaluated, or may be replaced by what is unknown.
     """
@@ -347,19 +423,24 @@ def parameters_of(
 ) -> NodeParameters:
     """Return the parameters that a node gets from a launch file, and where each is written.
 
-    Later files and tables replace earlier ones. Of the keys of nodes in them (`/**`, `/ns/node`, `node`), rclcpp lets
-    the one count that it meets last for the first time, rclpy the exact name: where these differ, a value is unknown
-    unless it is known which of them the node uses.
+    Later files and tables replace earlier ones. Of the keys of nodes in them (`/**`, `/ns/node`,
+    `node`), rclcpp lets the one count that it meets last for the first time, rclpy the exact name:
+    where these differ, a value is unknown unless it is known which of them the node uses.
 
     Args:
         node: The node, as it is started.
-        open_file: Returns the parameter file at a path below the prefix, and its path in the submission.
-        name: The name that the node has in its program if the launch file gives it none; or the full name of another
-            node of the same process, such as a controller.
+        open_file: Returns the parameter file at a path below the prefix, and its path in the
+            submission.
+        name: The name that the node has in its program if the launch file gives it none; or the
+            full name of another node of the same process, such as a controller.
         is_python: Whether it is written in Python, if this is known.
     """
     full = _full_name(node, name)
-    is_cpp = not is_python if is_python is not None else _IN_CPP.fullmatch(node.package) is not None or None
+    is_cpp = (
+        not is_python
+        if is_python is not None
+        else _IN_CPP.fullmatch(node.package) is not None or None
+    )
     by_key: dict[str, dict[str, ParameterValue]] = {}
     reasons = []
     if node.parameters is None:
@@ -371,18 +452,25 @@ def parameters_of(
             reasons.append(str(error))
             doubt = Unknown(str(error), START)
             by_key = {
-                key: {own: it._replace(value=doubt) for own, it in table.items()} for key, table in by_key.items()
+                key: {own: it._replace(value=doubt) for own, it in table.items()}
+                for key, table in by_key.items()
             }
             continue
         for key, values in tables:
-            opened = {name: it.value for name, it in values.items() if isinstance(it.value, UnknownTable)}
+            opened = {
+                name: it.value for name, it in values.items() if isinstance(it.value, UnknownTable)
+            }
             reasons += [table.reason for table in opened.values()]
             _forget_below(opened, by_key)
-            by_key.setdefault(key, {}).update((name, it) for name, it in values.items() if name not in opened)
+            by_key.setdefault(key, {}).update(
+                (name, it) for name, it in values.items() if name not in opened
+            )
     return NodeParameters(_counting(by_key, full, is_cpp), "; ".join(dict.fromkeys(reasons)))
 
 
-def _forget_below(tables: Mapping[str, Unknown], by_key: dict[str, dict[str, ParameterValue]]) -> None:
+def _forget_below(
+    tables: Mapping[str, Unknown], by_key: dict[str, dict[str, ParameterValue]]
+) -> None:
     """Make the values unknown that parameters in a table that is not known may replace."""
     for name, doubt in tables.items():
         for values in by_key.values():
@@ -395,13 +483,19 @@ def _full_name(node: StartedNode, name: str) -> str | None:
     own = name or node.node_name
     if own and own.startswith("/"):
         return own
-    return f"/{node.namespace.strip('/')}/{own}".replace("//", "/") if own and node.namespace is not None else None
+    return (
+        f"/{node.namespace.strip('/')}/{own}".replace("//", "/")
+        if own and node.namespace is not None
+        else None
+    )
 
 
 def _tables_of(
     given: GivenParameters, open_file: _OpenFile, own: str | None
 ) -> Iterator[tuple[str, Mapping[str, ParameterValue]]]:
-    """Yield the parameters by keys of nodes; `own` is the full name that the launch file gives. Raises Undetermined."""
+    """Yield the parameters by keys of nodes; `own` is the full name that the launch file gives.
+    Raises Undetermined.
+    """
     if given.unknown:
         raise Undetermined(given.unknown)
     if not given.path:
@@ -410,7 +504,9 @@ def _tables_of(
     path = posixpath.normpath(given.path)
     found = open_file(path.removeprefix(f"{PREFIX}/")) if path.startswith(f"{PREFIX}/") else None
     if found is None:
-        raise Undetermined(f"the file {path.removeprefix(PREFIX)} is not read: the submission does not install it")
+        raise Undetermined(
+            f"the file {path.removeprefix(PREFIX)} is not read: the submission does not install it"
+        )
     try:
         root = read_yaml(*found)
     except YamlFault as fault:
@@ -425,14 +521,20 @@ def _key_of(given: GivenParameters, own: str | None) -> str:
     return f"/{given.node.strip('/')}" if given.node else _EVERY_NODE
 
 
-def _sections(node: YamlNode, key: str, *, is_plain: bool) -> Iterator[tuple[str, dict[str, ParameterValue]]]:
+def _sections(
+    node: YamlNode, key: str, *, is_plain: bool
+) -> Iterator[tuple[str, dict[str, ParameterValue]]]:
     """Yield the sections of a parameter file, each with its key, which begins with a slash."""
     for name, value in node.pairs if key.count("/") < _MAX_DEPTH else ():
         if name == _KEY:
             values = _flat(value, "", 0)
             yield (
                 key,
-                {it: value_in_file(own, is_plain=is_plain) for it, own in values if isinstance(own.value, str | list)},
+                {
+                    it: value_in_file(own, is_plain=is_plain)
+                    for it, own in values
+                    if isinstance(own.value, str | list)
+                },
             )
         else:
             yield from _sections(value, f"{key}/{name.strip('/')}", is_plain=is_plain)
@@ -447,16 +549,22 @@ def _flat(node: YamlNode, name: str, depth: int) -> Iterator[tuple[str, YamlNode
 
 
 def value_in_file(node: YamlNode, *, is_plain: bool = True) -> ParameterValue:
-    """Return the value that a parameter file has for a parameter; of a file that is not plain, launch replaces `$(`."""
+    """Return the value that a parameter file has for a parameter; of a file that is not plain,
+    launch replaces `$(`.
+    """
     if not is_plain and _SUBSTITUTION in str(node.text):
-        return ParameterValue(Unknown("substitutions in a parameter file are not evaluated", START), node.location)
+        return ParameterValue(
+            Unknown("substitutions in a parameter file are not evaluated", START), node.location
+        )
     return ParameterValue(_value_of(node), node.location)
 
 
 def _counting(
     by_key: Mapping[str, Mapping[str, ParameterValue]], full: str | None, is_cpp: bool | None
 ) -> dict[str, ParameterValue]:
-    """Return the values that count for a node, of all sections in the order in which their keys are met first."""
+    """Return the values that count for a node, of all sections in the order in which their keys are
+    met first.
+    """
     if full is None:
         return _for_unknown_name(by_key)
     of_cpp = _merged(values for key, values in by_key.items() if _matches(key, full))
@@ -465,11 +573,18 @@ def _counting(
         return of_cpp if is_cpp else of_python
     doubt = Unknown("rclcpp and rclpy let different values count", START)
     names = {**of_cpp, **of_python}
-    return {it: own if of_cpp.get(it) == of_python.get(it) else own._replace(value=doubt) for it, own in names.items()}
+    return {
+        it: own if of_cpp.get(it) == of_python.get(it) else own._replace(value=doubt)
+        for it, own in names.items()
+    }
 
 
-def _for_unknown_name(by_key: Mapping[str, Mapping[str, ParameterValue]]) -> dict[str, ParameterValue]:
-    """Return the values of sections for every node; those that another section may replace are unknown."""
+def _for_unknown_name(
+    by_key: Mapping[str, Mapping[str, ParameterValue]],
+) -> dict[str, ParameterValue]:
+    """Return the values of sections for every node; those that another section may replace are
+    unknown.
+    """
     doubt = Unknown("the name of the node is not known", START)
     known = _merged(values for key, values in by_key.items() if key in (_EVERY_NODE, _OWN))
     others = _merged(values for key, values in by_key.items() if key not in (_EVERY_NODE, _OWN))
@@ -495,15 +610,21 @@ def remap_rules(words: Sequence[str]) -> list[tuple[str, str, str]]:
 
 
 def controllers_of(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
-    """Return the controllers that a spawner starts, as nodes with the files and remappings that it gives them.
+    """Return the controllers that a spawner starts, as nodes with the files and remappings that it
+    gives them.
 
-    None if not all are known. A controller has the namespace of its controller manager, in whose process it runs: what
-    that is given applies to it as well, and what the spawner gives counts more.
+    None if not all are known. A controller has the namespace of its controller manager, in whose
+    process it runs: what that is given applies to it as well, and what the spawner gives counts
+    more.
     """
     words = spawner.arguments
     if words is None or None in words or spawner.namespace is None:
         return None
-    known = [word for word in (words[: words.index("--ros-args")] if "--ros-args" in words else words) if word]
+    known = [
+        word
+        for word in (words[: words.index("--ros-args")] if "--ros-args" in words else words)
+        if word
+    ]
     names: list[str] = []
     given: dict[str, list[str]] = {}
     rest = iter(known)
@@ -514,11 +635,19 @@ def controllers_of(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
         elif not word.startswith("-"):
             names.append(word)
     files = [path for option in _PARAM_FILES for path in given.get(option, ())]
-    manager = [*given.get("-c", ()), *given.get("--controller-manager", ())][-1:] or ["controller_manager"]
-    full = manager[0] if manager[0].startswith("/") else f"/{spawner.namespace.strip('/')}/{manager[0]}"
+    manager = [*given.get("-c", ()), *given.get("--controller-manager", ())][-1:] or [
+        "controller_manager"
+    ]
+    full = (
+        manager[0]
+        if manager[0].startswith("/")
+        else f"/{spawner.namespace.strip('/')}/{manager[0]}"
+    )
     namespace = full.replace("//", "/").rpartition("/")[0] or "/"
     parameters = tuple(GivenParameters(spawner.location, path) for path in files)
     rules = remap_rules(" ".join(given.get("--controller-ros-args", ())).split())
     remaps = tuple((name, to) for name, _, to in rules)
-    started = replace(spawner, namespace=namespace, parameters=parameters, arguments=(), remaps=remaps)
+    started = replace(
+        spawner, namespace=namespace, parameters=parameters, arguments=(), remaps=remaps
+    )
     return tuple(replace(started, node_name=name) for name in names)

@@ -11,20 +11,34 @@ HOME = "/<home>"
 SHARE = f"{PREFIX}/share"
 BY_UTF8 = ("cat", "open")  # what reads a file as text in UTF-8, and stops at any other
 BY_MOVEIT = "moveit"  # reads its configuration
-ENDINGS = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", "_launch.py", "_launch.xml", "_launch.yaml")
+ENDINGS = (
+    ".launch.py",
+    ".launch.xml",
+    ".launch.yaml",
+    ".launch.yml",
+    "_launch.py",
+    "_launch.xml",
+    "_launch.yaml",
+)
 
 
 def is_in_launch_folder(path: str) -> bool:
-    """Return whether a file is a launch file because it is in a folder named launch, whatever its own name."""
+    """Return whether a file is a launch file because it is in a folder named launch, whatever its
+    own name.
+    """
     folder, _, name = path.rpartition("/")
     if folder.rpartition("/")[2] != "launch" or name == "__init__.py":
         return False
     suffix = PurePosixPath(name).suffix
-    return suffix in ("", ".launch", ".py", ".xml", ".yaml", ".yml") or (suffix == ".txt" and ".launch." in name)
+    return suffix in ("", ".launch", ".py", ".xml", ".yaml", ".yml") or (
+        suffix == ".txt" and ".launch." in name
+    )
 
 
 def is_launch_named(path: str, name: str) -> bool:
-    """Return whether a launch file has this name, in any of the three languages that ros2 launch reads."""
+    """Return whether a launch file has this name, in any of the three languages that ros2 launch
+    reads.
+    """
     own = path.rpartition("/")[2]
     return own == name or (launch_stem(own) == launch_stem(name) and own.endswith(ENDINGS[:4]))
 
@@ -42,4 +56,6 @@ def one_machine_only(path: str) -> str:
 
 def is_of_one_machine(path: str) -> bool:
     """Return whether a path leads into a user's home folder, or to a disk of one machine."""
-    return path.startswith(HOME) or bool(re.match(r".:[\\/]|/(home|Users|root|mnt|media)/.", path, re.DOTALL))
+    return path.startswith(HOME) or bool(
+        re.match(r".:[\\/]|/(home|Users|root|mnt|media)/.", path, re.DOTALL)
+    )

@@ -17,7 +17,16 @@ from grader.python.budget import Budget, OutOfBudget
 from grader.python.builtins import BUILTINS, MATH
 from grader.python.expressions import evaluate
 from grader.python.parse import Position
-from grader.python.values import MAX_TEXT, Call, EvaluationFails, Namespace, Undetermined, Unknown, Value, str_of
+from grader.python.values import (
+    MAX_TEXT,
+    Call,
+    EvaluationFails,
+    Namespace,
+    Undetermined,
+    Unknown,
+    Value,
+    str_of,
+)
 from grader.text import enumerated
 
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
@@ -27,7 +36,8 @@ _PROGRAMS = frozenset({"xacro", "cat", "ros2", "python3", "bash", "sh", "echo", 
 
 
 def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Resolved:
-    """Return the text of a value, or the contents of a file; Unknown where it certainly is a text, but not known.
+    """Return the text of a value, or the contents of a file; Unknown where it certainly is a text,
+    but not known.
 
     Raises EvaluationFails where launch certainly raises an error, Undetermined where it may.
     """
@@ -64,11 +74,16 @@ def known_text(value: Value, context: Context, at: Position) -> str:
     found = resolve(value, context, at)
     if isinstance(found, str):
         return found
-    raise Undetermined(found.reason if isinstance(found, Unknown) else "the content of a file is used as a text", at)
+    raise Undetermined(
+        found.reason if isinstance(found, Unknown) else "the content of a file is used as a text",
+        at,
+    )
 
 
 def boolean(text: str, at: Position) -> bool:
-    """Return the value of a text as launch reads it where it wants a boolean, by the rules of YAML."""
+    """Return the value of a text as launch reads it where it wants a boolean, by the rules of
+    YAML.
+    """
     found: object = _BOOLEANS[text] if text in ("0", "1") else None
     if found is None and len(text) < 20:
         with suppress(ValueError):
@@ -89,8 +104,14 @@ def condition_holds(given: Call, context: Context) -> bool:
         return holds == (kind == "IfCondition")
     name, wanted = given.kwargs["launch_configuration_name"], given.kwargs["expected_value"]
     expected = known_text(wanted, context, given.at) if wanted is not None else None
-    found = context.arguments.get(name) if isinstance(name, str) else None  # no other object is the key of one
-    if isinstance(name, Unknown) or (found is None and ANY in context.arguments) or not isinstance(found, str | None):
+    found = (
+        context.arguments.get(name) if isinstance(name, str) else None
+    )  # no other object is the key of one
+    if (
+        isinstance(name, Unknown)
+        or (found is None and ANY in context.arguments)
+        or not isinstance(found, str | None)
+    ):
         raise Undetermined("the launch configuration of this condition is not evaluated", given.at)
     return (found == expected) == (kind == "LaunchConfigurationEquals")
 
@@ -104,7 +125,9 @@ class _Substitution:
     def value(self) -> Resolved:
         perform = PERFORMS.get(self.call.name.rpartition(".")[2])
         if perform is None:
-            raise Undetermined(f"{self.call.name.rpartition('.')[2]} is not evaluated", self.call.at)
+            raise Undetermined(
+                f"{self.call.name.rpartition('.')[2]} is not evaluated", self.call.at
+            )
         return perform(self)
 
     def resolve(self, value: Value) -> Resolved:
@@ -118,7 +141,11 @@ class _Substitution:
         found = [self.resolve(value) for value in values]
         unknown = next((it for it in found if isinstance(it, Unknown)), None)
         texts = [it for it in found if isinstance(it, str)]
-        return texts if len(texts) == len(found) else unknown or Unknown("the content of a file is used", self.call.at)
+        return (
+            texts
+            if len(texts) == len(found)
+            else unknown or Unknown("the content of a file is used", self.call.at)
+        )
 
     def configuration(self) -> Resolved:
         name, arguments = self.argument("variable_name"), self.context.arguments
@@ -129,12 +156,18 @@ class _Substitution:
         default = self.call.kwargs.get("default")
         if ANY in arguments:
             raise Undetermined(
-                f"whether {name!r} is declared in a file that is not submitted is not evaluated", self.call.at
+                f"whether {name!r} is declared in a file that is not submitted is not evaluated",
+                self.call.at,
             )
         if default is not None:
             items = default if isinstance(default, list | tuple) else [default]
-            return self.resolve([item if isinstance(item, str | Call | Unknown) else str(item) for item in items])
-        message = f"the launch argument {name!r} is used, but DeclareLaunchArgument does not declare it before"
+            return self.resolve(
+                [item if isinstance(item, str | Call | Unknown) else str(item) for item in items]
+            )
+        message = (
+            f"the launch argument {name!r} is used, but DeclareLaunchArgument does not declare "
+            "it before"
+        )
         raise EvaluationFails(message, self.call.at)
 
     def variable(self) -> Resolved:
@@ -142,13 +175,17 @@ class _Substitution:
         if name == "HOME":
             return HOME
         if default is None:
-            raise Undetermined(f"whether the environment variable {name!r} is set is not evaluated", self.call.at)
+            raise Undetermined(
+                f"whether the environment variable {name!r} is set is not evaluated", self.call.at
+            )
         self.resolve(default)
         return Unknown("the environment is not evaluated", self.call.at)
 
     def path(self) -> Resolved:
         given = self.call.kwargs
-        parts = given["substitutions"] if "substitutions" in given else [given["path"]]  # of a PathSubstitution
+        parts = (
+            given["substitutions"] if "substitutions" in given else [given["path"]]
+        )  # of a PathSubstitution
         texts = self.texts(*(parts if isinstance(parts, list | tuple) else [parts]))
         if isinstance(texts, Unknown):
             return texts
@@ -162,13 +199,17 @@ class _Substitution:
             return package
         if not isinstance(package, str) or not self.context.installation.has_package(package):
             shown = repr(package) if isinstance(package, str) else "that is read from a file"
-            raise Undetermined(f"whether the package {shown} is installed is not evaluated", self.call.at)
+            raise Undetermined(
+                f"whether the package {shown} is installed is not evaluated", self.call.at
+            )
         return f"{SHARE}/{package}"
 
     def program(self) -> Resolved:
         name = self.argument("name")
         if isinstance(name, str) and name not in _PROGRAMS:
-            raise Undetermined(f"whether the program {name!r} is installed is not evaluated", self.call.at)
+            raise Undetermined(
+                f"whether the program {name!r} is installed is not evaluated", self.call.at
+            )
         return name
 
     def command(self) -> Resolved:
@@ -176,7 +217,9 @@ class _Substitution:
         if isinstance(mode, str) and mode not in ("fail", "ignore", "warn", "capture"):
             raise EvaluationFails("on_stderr is one of fail, ignore, warn, capture", self.call.at)
         parts = self.call.kwargs["command"]
-        texts = [self.resolve(piece) for piece in (parts if isinstance(parts, list | tuple) else [parts])]
+        texts = [
+            self.resolve(piece) for piece in (parts if isinstance(parts, list | tuple) else [parts])
+        ]
         contents = _command_output(texts, self.call.at, stops_at_stderr=mode == "fail")
         self.context.reads.append((contents, self.call.at))
         return contents
@@ -221,26 +264,36 @@ class _Substitution:
             value = str(value).lower()
         elif isinstance(value, int | float):
             value = str(value)
-        elif not all(isinstance(it, str | Call | Unknown) for it in (value if isinstance(value, list) else [value])):
-            raise Undetermined("the text of a list in this substitution is not evaluated", self.call.at)
+        elif not all(
+            isinstance(it, str | Call | Unknown)
+            for it in (value if isinstance(value, list) else [value])
+        ):
+            raise Undetermined(
+                "the text of a list in this substitution is not evaluated", self.call.at
+            )
         return known_text(value, self.context, self.call.at)
 
     def file_content(self) -> Contents:
-        contents = Contents(known_text(self.call.kwargs["path"], self.context, self.call.at), "open")
+        contents = Contents(
+            known_text(self.call.kwargs["path"], self.context, self.call.at), "open"
+        )
         self.context.reads.append((contents, self.call.at))
         return contents
 
     def executable(self) -> Resolved:
         """Return the path of a program of a package. Raises EvaluationSignal."""
         package, name = (
-            known_text(self.call.kwargs[it], self.context, self.call.at) for it in ("package", "executable")
+            known_text(self.call.kwargs[it], self.context, self.call.at)
+            for it in ("package", "executable")
         )
         check_program(package, name, self.context, self.call.at)
         return f"{PREFIX}/lib/{package}/{name}"
 
 
 def check_program(package: str, name: str, context: Context, at: Position) -> None:
-    """Raise EvaluationFails if a package certainly has no such program, Undetermined if this is not known."""
+    """Raise EvaluationFails if a package certainly has no such program, Undetermined if this is not
+    known.
+    """
     if not context.installation.has_package(package):
         raise Undetermined(f"whether the package {package!r} is installed is not evaluated", at)
     is_there = context.installation.has_program(package, name)
@@ -248,27 +301,42 @@ def check_program(package: str, name: str, context: Context, at: Position) -> No
         raise Undetermined(f"whether {package!r} has the program {name!r} is not evaluated", at)
     if not is_there:
         others = enumerated(programs_of(package)) or "none"
-        where = f" in lib/{package}: see console_scripts of setup.py, and install_scripts of setup.cfg"
+        where = (
+            f" in lib/{package}: see console_scripts of setup.py, and install_scripts of setup.cfg"
+        )
         known = f"; it has {others}" if is_part_of_ros(package) else where
         raise EvaluationFails(f"the package {package!r} has no program {name!r}{known}", at)
 
 
 # The conditions that are evaluated.
-CONDITIONS = ("IfCondition", "UnlessCondition", "LaunchConfigurationEquals", "LaunchConfigurationNotEquals")
+CONDITIONS = (
+    "IfCondition",
+    "UnlessCondition",
+    "LaunchConfigurationEquals",
+    "LaunchConfigurationNotEquals",
+)
 # The substitutions that are evaluated.
 PERFORMS: Mapping[str, Callable[[_Substitution], Resolved]] = {
-    "TextSubstitution": lambda it: it.argument("text"), "LaunchConfiguration": _Substitution.configuration,
-    "PathJoinSubstitution": _Substitution.path, "PathSubstitution": _Substitution.path,
+    "TextSubstitution": lambda it: it.argument("text"),
+    "LaunchConfiguration": _Substitution.configuration,
+    "PathJoinSubstitution": _Substitution.path,
+    "PathSubstitution": _Substitution.path,
     "Command": _Substitution.command,
-    "PythonExpression": _Substitution.expression, "FindPackageShare": _Substitution.package_folder,
-    "FindExecutable": _Substitution.program, "EnvironmentVariable": _Substitution.variable,
-    "ThisLaunchFileDir": lambda it: posixpath.dirname(it.context.path), "ThisLaunchFile": lambda it: it.context.path,
-    "AndSubstitution": _Substitution.both, "OrSubstitution": _Substitution.either,
-    "NotSubstitution": lambda it: str(not it.is_true("value")).lower(), "IfElseSubstitution": _Substitution.choice,
-    "EqualsSubstitution": _Substitution.equals, "FileContent": _Substitution.file_content,
+    "PythonExpression": _Substitution.expression,
+    "FindPackageShare": _Substitution.package_folder,
+    "FindExecutable": _Substitution.program,
+    "EnvironmentVariable": _Substitution.variable,
+    "ThisLaunchFileDir": lambda it: posixpath.dirname(it.context.path),
+    "ThisLaunchFile": lambda it: it.context.path,
+    "AndSubstitution": _Substitution.both,
+    "OrSubstitution": _Substitution.either,
+    "NotSubstitution": lambda it: str(not it.is_true("value")).lower(),
+    "IfElseSubstitution": _Substitution.choice,
+    "EqualsSubstitution": _Substitution.equals,
+    "FileContent": _Substitution.file_content,
     "NotEqualsSubstitution": lambda it: "false" if it.equals() == "true" else "true",
     "ExecutableInPackage": _Substitution.executable,
-}  # fmt: skip
+}
 
 
 def _expression_text(text: str, at: Position, context: Context) -> str:
@@ -295,10 +363,16 @@ def _find_name(name: str) -> Value:
 
 
 def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr: bool) -> Contents:
-    """Return the contents of the file that a command prints, whose parts have these texts. Raises EvaluationSignal."""
-    command = "".join(text if isinstance(text, str) else PART_UNKNOWN for text in texts).strip()[:MAX_TEXT]
+    """Return the contents of the file that a command prints, whose parts have these texts. Raises
+    EvaluationSignal.
+    """
+    command = "".join(text if isinstance(text, str) else PART_UNKNOWN for text in texts).strip()[
+        :MAX_TEXT
+    ]
     if glued := re.match(r"(xacro|cat)(?=/)", command):
-        raise EvaluationFails(f"a space is missing between {glued[1]} and the path: write '{glued[1]} '", at)
+        raise EvaluationFails(
+            f"a space is missing between {glued[1]} and the path: write '{glued[1]} '", at
+        )
     try:
         words = shlex.split(command)
     except ValueError:
@@ -308,10 +382,14 @@ def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr:
     found = _printed_file(words[3:] if words[:3] == ["ros2", "run", "xacro"] else words)
     if found is None:
         unknown = next((text.reason for text in texts if isinstance(text, Unknown)), "")
-        raise Undetermined(f"the output of this command is not evaluated{unknown and ': ' + unknown}", at)
+        raise Undetermined(
+            f"the output of this command is not evaluated{unknown and ': ' + unknown}", at
+        )
     if found.by != "xacro" or not stops_at_stderr:
         return found
-    return replace(found, stops_at_stderr=True, is_deprecated=not {"-i", "--inorder"}.isdisjoint(words))
+    return replace(
+        found, stops_at_stderr=True, is_deprecated=not {"-i", "--inorder"}.isdisjoint(words)
+    )
 
 
 def _printed_file(words: list[str]) -> Contents | None:
@@ -324,4 +402,6 @@ def _printed_file(words: list[str]) -> Contents | None:
     if program != "xacro":
         return Contents(files[0], "cat") if words[1:] == files else None
     given = (word.split(":=", 1) for word in words[1:] if ":=" in word)
-    return Contents(files[0], "xacro", tuple((name, None if PART_UNKNOWN in it else it) for name, it in given))
+    return Contents(
+        files[0], "xacro", tuple((name, None if PART_UNKNOWN in it else it) for name, it in given)
+    )

@@ -1,6 +1,8 @@
-"""The content of a picture of a robot: its shapes and frames, differences from the reference, failed criteria.
+"""The content of a picture of a robot: its shapes and frames, differences from the reference,
+failed criteria.
 
-The scene is what is shown of any robot: shapes in their colours, frames, and driving directions of wheels.
+The scene is what is shown of any robot: shapes in their colours, frames, and driving directions of
+wheels.
 """
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -27,7 +29,10 @@ _MAX_BODIES = 500  # in software, a browser draws more only in seconds
 _MAX_COORDINATE = 1e4  # metres
 _MAX_NAMED = 4
 _WITHOUT_MATERIAL: _Rgba = (1.0, 0.0, 0.0, 1.0)  # RViz shows such a shape in red
-_MESHES, _UNKNOWN = "mesh files are not opened", "the size or place of a shape is zero, too large or not known"
+_MESHES, _UNKNOWN = (
+    "mesh files are not opened",
+    "the size or place of a shape is zero, too large or not known",
+)
 _NOT_KNOWN = (MissingElement, NotDecided, UnknownShape)
 _SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name what it examines
 
@@ -45,7 +50,9 @@ class Body(NamedTuple):
 
 
 class Wheel(NamedTuple):
-    """A wheel in the frame of a scene: its centre, and the unit direction in which it drives at a positive rotation."""
+    """A wheel in the frame of a scene: its centre, and the unit direction in which it drives at
+    a positive rotation.
+    """
 
     centre: Vector
     travel: Vector
@@ -63,13 +70,19 @@ class Scene:
     missing: tuple[str, ...]  # sentences that say what is not shown, and why
 
     def centre(self, link: str) -> Vector | None:
-        """Return the centre of the first shape of a link, else the origin of its frame; None without a pose."""
-        pose = next((body.T_frame_shape for body in self.bodies if body.link == link), self.poses.get(link))
+        """Return the centre of the first shape of a link, else the origin of its frame; None
+        without a pose.
+        """
+        pose = next(
+            (body.T_frame_shape for body in self.bodies if body.link == link), self.poses.get(link)
+        )
         return pose.translation if pose is not None else None
 
     @property
     def root(self) -> str:
-        """The root of the tree that `frame` is in; `frame` itself if it is on or below a loop of joints."""
+        """The root of the tree that `frame` is in; `frame` itself if it is on or below a loop of
+        joints.
+        """
         with suppress(MissingElement):
             return self.robot.root_of(self.frame)
         return self.frame
@@ -81,8 +94,12 @@ class Scene:
 
 
 def scene_of(robot: Configuration, frame: str, wheels: Collection[str] = ()) -> Scene:
-    """Return the content of a picture of a robot, in the frame of a link; `wheels` are links that are meant to roll."""
-    omitted: dict[str, dict[str, None]] = {}  # the links that are not shown, or not wholly, by reason
+    """Return the content of a picture of a robot, in the frame of a link; `wheels` are links
+    that are meant to roll.
+    """
+    omitted: dict[
+        str, dict[str, None]
+    ] = {}  # the links that are not shown, or not wholly, by reason
     poses: dict[str, Transform] = {}
     bodies: dict[Body, None] = {}  # each once
     for link in robot.robot.links:
@@ -94,7 +111,10 @@ def scene_of(robot: Configuration, frame: str, wheels: Collection[str] = ()) -> 
                 bodies[found] = None
             else:
                 omitted.setdefault(found, {})[link.name] = None
-    missing = [f"Not shown: {enumerated([*map(quoted, names)], _MAX_NAMED)}: {why}" for why, names in omitted.items()]
+    missing = [
+        f"Not shown: {enumerated([*map(quoted, names)], _MAX_NAMED)}: {why}"
+        for why, names in omitted.items()
+    ]
     if len(bodies) > _MAX_BODIES:
         missing.append(f"Not shown: {counted(len(bodies) - _MAX_BODIES, 'more shape')}")
     scene = Scene(robot, frame, poses, (*bodies,)[:_MAX_BODIES], (), (*missing,))
@@ -137,7 +157,9 @@ def _body(link: str, visual: Visual, pose: Transform) -> Body | str:
     if is_empty(visual.geometry) or not _is_drawable(sizes) or not _is_drawable(own.translation):
         return _UNKNOWN
     rgba = visual.material.rgba if visual.material is not None else _WITHOUT_MATERIAL
-    red, green, blue, alpha = (min(1.0, max(0.0, value)) if isfinite(value) else 0.0 for value in rgba)
+    red, green, blue, alpha = (
+        min(1.0, max(0.0, value)) if isfinite(value) else 0.0 for value in rgba
+    )
     return Body(link, drawn, pose @ own, (red, green, blue, alpha))
 
 
@@ -147,7 +169,9 @@ def _is_drawable(values: Vector) -> bool:
 
 
 def _wheel(scene: Scene, link: str) -> Wheel | None:
-    """Return a link as a wheel; None if it has no place, no joint turns it, it does not roll, or no shape is known."""
+    """Return a link as a wheel; None if it has no place, no joint turns it, it does not roll, or
+    no shape is known.
+    """
     centre = scene.centre(link)
     with suppress(*_NOT_KNOWN):
         joint = turning_joint(scene.robot, link, scene.frame)
@@ -161,7 +185,9 @@ class _Callout(NamedTuple):
 
     number: int
     link: str  # empty for criteria on the whole robot
-    point: Vector | None  # what marks it, in metres in the scene's frame; None if the link has no pose there
+    point: (
+        Vector | None
+    )  # what marks it, in metres in the scene's frame; None if the link has no pose there
     results: tuple[Result, ...]
 
     @property
@@ -178,18 +204,30 @@ class Picture:
     """
 
     scene: Scene
-    outlines: tuple[Body, ...]  # bodies of the reference where shapes or their places failed, or the robot has none
-    frames: tuple[Transform, ...]  # poses of the reference's links whose frames failed, or that the robot has not
+    outlines: tuple[
+        Body, ...
+    ]  # bodies of the reference where shapes or their places failed, or the robot has none
+    frames: tuple[
+        Transform, ...
+    ]  # poses of the reference's links whose frames failed, or that the robot has not
     callouts: tuple[_Callout, ...]
 
 
 def plain_picture(robot: Configuration | None, frame: str | None) -> Picture | None:
-    """Return the picture of a robot that is not graded, in the frame of one of its links; None without either."""
-    return Picture(scene_of(robot, frame), (), (), ()) if robot is not None and frame is not None else None
+    """Return the picture of a robot that is not graded, in the frame of one of its links; None
+    without either.
+    """
+    return (
+        Picture(scene_of(robot, frame), (), (), ())
+        if robot is not None and frame is not None
+        else None
+    )
 
 
 def picture_of(report: Report) -> Picture | None:
-    """Return the picture of a graded robot; None if there is no robot, or if it can no longer be read."""
+    """Return the picture of a graded robot; None if there is no robot, or if it can no longer be
+    read.
+    """
     if report.submission.robot is None or not report.submission.robot.links:
         return None
     robot = Configuration(report.submission.robot)
@@ -199,7 +237,11 @@ def picture_of(report: Report) -> Picture | None:
         return None
     wheels = [*_wheels(report.rubric, robot)]
     scene = scene_of(robot, frame, wheels)
-    reference = scene_of(solution, reference_frame, wheels) if solution is not None and reference_frame else None
+    reference = (
+        scene_of(solution, reference_frame, wheels)
+        if solution is not None and reference_frame
+        else None
+    )
     lost = [result for result in report.results if _is_marked(result)]
     about = _by_link(lost, robot, solution)
     outlines, frames = _expected(scene, reference, about) if reference is not None else ((), ())
@@ -228,10 +270,14 @@ def _selected(robot: Configuration, name: str) -> str:
     return selected_or_name(robot.robot, robot.parent_joints, name)
 
 
-def _frames(rubric: Rubric, robot: Configuration, solution: Configuration | None) -> tuple[str | None, str | None]:
+def _frames(
+    rubric: Rubric, robot: Configuration, solution: Configuration | None
+) -> tuple[str | None, str | None]:
     """Return the links in whose frames both robots are drawn: the rubric's base, else the roots."""
     trees = [one.main_tree if one is not None else () for one in (robot, solution)]
-    own, other = (_selected(one, rubric.base) if one is not None else None for one in (robot, solution))
+    own, other = (
+        _selected(one, rubric.base) if one is not None else None for one in (robot, solution)
+    )
     if own in trees[0] and (other is None or other in trees[1]):
         return own, other
     return next(iter(trees[0]), None), next(iter(trees[1]), None)
@@ -245,13 +291,24 @@ def _wheels(rubric: Rubric, robot: Configuration) -> Iterator[str]:
 
 
 def _is_marked(result: Result) -> bool:
-    """Return whether a picture marks a criterion: it failed on the robot, and its points are lost."""
+    """Return whether a picture marks a criterion: it failed on the robot, and its points are
+    lost.
+    """
     is_about_robot = result.criterion.check.subject in ("urdf", "robot")
-    return is_about_robot and result.outcome.status == "failed" and result.is_lost and result.manual_mark is None
+    return (
+        is_about_robot
+        and result.outcome.status == "failed"
+        and result.is_lost
+        and result.manual_mark is None
+    )
 
 
-def _by_link(lost: Sequence[Result], robot: Configuration, solution: Configuration | None) -> dict[str, list[Result]]:
-    """Return the criteria by the link that they are about, in the rubric's order; by "" for several links, or none."""
+def _by_link(
+    lost: Sequence[Result], robot: Configuration, solution: Configuration | None
+) -> dict[str, list[Result]]:
+    """Return the criteria by the link that they are about, in the rubric's order; by "" for several
+    links, or none.
+    """
     found: dict[str, list[Result]] = {}
     for result in lost:
         links = [*_links(result.criterion, robot, solution)]
@@ -259,9 +316,13 @@ def _by_link(lost: Sequence[Result], robot: Configuration, solution: Configurati
     return found
 
 
-def _links(criterion: Criterion, robot: Configuration, solution: Configuration | None) -> Iterator[str]:
+def _links(
+    criterion: Criterion, robot: Configuration, solution: Configuration | None
+) -> Iterator[str]:
     """Yield the links that a criterion examines and that one of the robots has."""
-    subject = next((criterion.arguments[key] for key in _SUBJECTS if key in criterion.arguments), None)
+    subject = next(
+        (criterion.arguments[key] for key in _SUBJECTS if key in criterion.arguments), None
+    )
     for link in dict.fromkeys(_selected(robot, name) for name in texts_in(subject)):
         if robot.robot.has_link(link) or (solution is not None and solution.robot.has_link(link)):
             yield link
@@ -271,7 +332,10 @@ def _expected(
     scene: Scene, reference: Scene, about: Mapping[str, Sequence[Result]]
 ) -> tuple[tuple[Body, ...], tuple[Transform, ...]]:
     """Return the bodies and the frames of the reference that the failed criteria are about."""
-    kinds = {link: {it.criterion.check.about.picture for it in results} for link, results in about.items()}
+    kinds = {
+        link: {it.criterion.check.about.picture for it in results}
+        for link, results in about.items()
+    }
     shown = {body.link for body in scene.bodies}
     shapes = {link for link, found in kinds.items() if "outline" in found or link not in shown}
     frames = {link for link, found in kinds.items() if "frame" in found or link not in scene.poses}

@@ -1,7 +1,8 @@
-"""Three orthographic views of a scene at one scale, as in third-angle projection, and free places for labels in them.
+"""Three orthographic views of a scene at one scale, as in third-angle projection, and free places
+for labels in them.
 
-A box, a cylinder and a sphere are convex, so the outline of each in a view is the convex hull of its projected points.
-Lengths on the sheet are pixels, and y points down.
+A box, a cylinder and a sphere are convex, so the outline of each in a view is the convex hull of
+its projected points. Lengths on the sheet are pixels, and y points down.
 """
 
 from collections.abc import Iterable
@@ -52,7 +53,9 @@ class Panel(NamedTuple):
     scale: float
 
     def direction(self, direction: Vector) -> Vector:
-        """Return a direction of the frame on the sheet, with y down, and its component to the viewer."""
+        """Return a direction of the frame on the sheet, with y down, and its component to the
+        viewer.
+        """
         x, y, z = np.array((self.right, self.up, self.near)) @ direction
         return float(x), -float(y), float(z)
 
@@ -70,21 +73,32 @@ class Panel(NamedTuple):
     def outline(self, body: Body) -> list[Place]:
         """Return the corners of the outline of a body."""
         if isinstance(body.shape, Sphere):
-            return hull(self.places(body.T_frame_shape.translation) + _CIRCLE * body.shape.radius * self.scale)
+            return hull(
+                self.places(body.T_frame_shape.translation)
+                + _CIRCLE * body.shape.radius * self.scale
+            )
         return hull(self.places(_points_of(body)))
 
 
 def _points_of(body: Body) -> _Points:
-    """Return points of the frame whose hull is a body; of a sphere, those that are farthest along the axes."""
+    """Return points of the frame whose hull is a body; of a sphere, those that are farthest
+    along the axes.
+    """
     pose, shape = body.T_frame_shape, body.shape
     if isinstance(shape, Sphere):
         return pose.translation + shape.radius * np.vstack([np.eye(3), -np.eye(3)])
-    points = _CORNERS * shape.size if isinstance(shape, Box) else _CAPS * (shape.radius, shape.radius, shape.length)
+    points = (
+        _CORNERS * shape.size
+        if isinstance(shape, Box)
+        else _CAPS * (shape.radius, shape.radius, shape.length)
+    )
     return points @ np.reshape(pose.rotation, (3, 3)).T + pose.translation
 
 
 def hull(points: _Points) -> list[Place]:
-    """Return the convex hull of points on the sheet, to a tenth of a pixel (Andrew's monotone chain, 1979)."""
+    """Return the convex hull of points on the sheet, to a tenth of a pixel (Andrew's monotone
+    chain, 1979).
+    """
     rounded: Any = np.round(points, 1).tolist()
     ordered = sorted({(float(x), float(y)) for x, y in rounded})
     return [place for half in (ordered, ordered[::-1]) for place in _half_hull(half)] or ordered
@@ -103,12 +117,16 @@ def _half_hull(ordered: list[Place]) -> list[Place]:
 
 
 def from_back_to_front(bodies: Iterable[Body], panel: Panel) -> list[Body]:
-    """Return bodies by the depth of their nearest points; slanted ones that interlock may be in the wrong order."""
+    """Return bodies by the depth of their nearest points; slanted ones that interlock may be in
+    the wrong order.
+    """
     return sorted(bodies, key=lambda body: float((_points_of(body) @ panel.near).max()))
 
 
 def panels_of(picture: Picture, top: float = 0.0) -> tuple[Panel, ...]:
-    """Return the three views of a picture, below `top`; the room above the last one is for the key."""
+    """Return the three views of a picture, below `top`; the room above the last one is for the
+    key.
+    """
     low, high = _bounds(picture)
     size = np.maximum(high - low, _SMALLEST)
     scale = min((PANEL - 2.0 * _MARGIN) / size[:2].max(), _MAX_HEIGHT / size[1:].sum())
@@ -135,7 +153,9 @@ def _bounds(picture: Picture) -> tuple[_Points, _Points]:
 
 
 def frames_of(picture: Picture) -> list[Transform]:
-    """Return the frames that are shown: of links with callouts or shapes, or of all links if there are no shapes."""
+    """Return the frames that are shown: of links with callouts or shapes, or of all links if there
+    are no shapes.
+    """
     scene = picture.scene
     called = [callout.link for callout in picture.callouts]
     others = [body.link for body in scene.bodies] or scene.poses
@@ -152,7 +172,9 @@ class FreePlaces:
         self._taken: list[tuple[float, ...]] = []
 
     def take(self, centres: Iterable[Place], size: Place) -> Place | None:
-        """Take the first of some centres at which a label of a size is in the panel and free; None without one."""
+        """Take the first of some centres at which a label of a size is in the panel and free; None
+        without one.
+        """
         panel, (across, down) = self._panel, size
         for x, y in centres:
             is_inside = across / 2.0 <= x - panel.left <= PANEL - across / 2.0

@@ -1,4 +1,6 @@
-"""The class's page: statistics, and a table of students with links, which shows those behind each figure."""
+"""The class's page: statistics, and a table of students with links, which shows those behind each
+figure.
+"""
 
 from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -18,7 +20,9 @@ _MAX_HEIGHT, _CUT_AT = 3, 1.5  # of a bar of the second highest: a higher one is
 
 
 class _StudentRow(NamedTuple):
-    """A student in the table: the cells as text, which may be empty; `link` is the address of the student's page."""
+    """A student in the table: the cells as text, which may be empty; `link` is the address of the
+    student's page.
+    """
 
     key: str
     name: str
@@ -32,7 +36,9 @@ class _StudentRow(NamedTuple):
 
 
 class _Group(NamedTuple):
-    """A group of students that the table can show: its label, their keys, and the word by which a search finds them."""
+    """A group of students that the table can show: its label, their keys, and the word by which a
+    search finds them.
+    """
 
     label: str
     keys: Collection[str]
@@ -40,15 +46,24 @@ class _Group(NamedTuple):
 
 
 def render_class_page(
-    book: Gradebook, grades: Sequence[StudentGrade], found: ClassStatistics, links: Mapping[str, str]
+    book: Gradebook,
+    grades: Sequence[StudentGrade],
+    found: ClassStatistics,
+    links: Mapping[str, str],
 ) -> str:
-    """Return the class's page; `links` are the addresses of students' pages by key, relative to this page."""
-    rows = sorted((_row(grade, links) for grade in grades), key=lambda row: words.family_name_order(row.name, row.key))
+    """Return the class's page; `links` are the addresses of students' pages by key, relative to
+    this page.
+    """
+    rows = sorted(
+        (_row(grade, links) for grade in grades),
+        key=lambda row: words.family_name_order(row.name, row.key),
+    )
     groups = {name: group for name, group in _groups(grades, found).items() if group.keys}
     numbers = {row.key: number for number, row in enumerate(rows)}
     bars, cut = _bars(found)
     shown = {
-        name: [printable(label), word, [numbers[key] for key in keys]] for name, (label, keys, word) in groups.items()
+        name: [printable(label), word, [numbers[key] for key in keys]]
+        for name, (label, keys, word) in groups.items()
     }
     values = {
         "version": __version__,
@@ -63,7 +78,10 @@ def render_class_page(
         "mistakes": [(one.criterion, one.message, len(one.students)) for one in found.mistakes],
         "equal": found.equal,
         "equal_note": words.EQUAL_NOTE,
-        "attention": [(str(reason), those[:_MAX_ATTENTION], len(those)) for reason, those in found.attention.items()],
+        "attention": [
+            (str(reason), those[:_MAX_ATTENTION], len(those))
+            for reason, those in found.attention.items()
+        ],
         "ignored": book.marks.ignored,
         "people": {row.key: row for row in rows},
         "rows": rows,
@@ -74,20 +92,33 @@ def render_class_page(
 
 
 def _bars(found: ClassStatistics) -> tuple[list[tuple[str, str, int, int, bool]], str]:
-    """Return the bars of the grades: the group, the grades, the students, the height in percent, and whether it is cut.
+    """Return the bars of the grades: the group, the grades, the students, the height in percent,
+    and whether it is cut.
 
-    The highest one is cut, as the text that is returned with them says, where all others would be flat.
+    The highest one is cut, as the text that is returned with them says, where all others would be
+    flat.
     """
     counts = [*map(len, found.tenths)]
     second, most = sorted(counts)[-2:]
     is_flat = 0 < _MAX_HEIGHT * second < most
     scale = _CUT_AT * second if is_flat else max(most, 1)
     bars = [
-        (f"grade-{at}", words.span(found, at), count, min(100, round(100 * count / scale)), is_flat and count == most)
+        (
+            f"grade-{at}",
+            words.span(found, at),
+            count,
+            min(100, round(100 * count / scale)),
+            is_flat and count == most,
+        )
         for at, count in enumerate(counts if most else ())
     ]
     highest = words.span(found, counts.index(most))
-    return bars, f"The bar of {highest} is cut: it would be {most / scale:.1f} times as high." if is_flat else ""
+    return (
+        bars,
+        f"The bar of {highest} is cut: it would be {most / scale:.1f} times as high."
+        if is_flat
+        else "",
+    )
 
 
 def _row(grade: StudentGrade, links: Mapping[str, str]) -> _StudentRow:
@@ -106,7 +137,9 @@ def _row(grade: StudentGrade, links: Mapping[str, str]) -> _StudentRow:
 
 
 def _columns(rows: Sequence[_StudentRow], found: ClassStatistics) -> list[tuple[str, str, str]]:
-    """Return the columns that are not empty: the field of a row, the heading, the class of its cells."""
+    """Return the columns that are not empty: the field of a row, the heading, the class of its
+    cells.
+    """
     columns = (
         ("key", "id" if any(row.name != row.key for row in rows) else "", ""),
         ("section", "section", ""),
@@ -116,7 +149,9 @@ def _columns(rows: Sequence[_StudentRow], found: ClassStatistics) -> list[tuple[
         ("late", "late", "text"),
         ("lost", "lost points in", "text"),
     )
-    return [column for column in columns if column[1] and any(getattr(row, column[0]) for row in rows)]
+    return [
+        column for column in columns if column[1] and any(getattr(row, column[0]) for row in rows)
+    ]
 
 
 def _filters_of(grade: StudentGrade, *, has_sections: bool) -> Iterator[tuple[int, str]]:
@@ -135,7 +170,9 @@ def _filters_of(grade: StudentGrade, *, has_sections: bool) -> Iterator[tuple[in
 
 
 def _groups(grades: Sequence[StudentGrade], found: ClassStatistics) -> dict[str, _Group]:
-    """Return the groups of students on the page by the id that its buttons use; those at the top are filters."""
+    """Return the groups of students on the page by the id that its buttons use; those at the top
+    are filters.
+    """
     keys, lost = defaultdict[tuple[int, str], list[str]](list), defaultdict[str, list[str]](list)
     has_sections = len({one.student.section for one in grades}) > 1
     for one in grades:
@@ -143,21 +180,34 @@ def _groups(grades: Sequence[StudentGrade], found: ClassStatistics) -> dict[str,
             keys[place].append(one.student.key)
         for _, name in one.losses:
             lost[name].append(one.student.key)
-    filters = {f"filter-{label}": _Group(label, those, label) for (_, label), those in sorted(keys.items())}
-    tenths = {f"grade-{at}": _Group(f"a grade of {words.span(found, at)}", of) for at, of in enumerate(found.tenths)}
+    filters = {
+        f"filter-{label}": _Group(label, those, label) for (_, label), those in sorted(keys.items())
+    }
+    tenths = {
+        f"grade-{at}": _Group(f"a grade of {words.span(found, at)}", of)
+        for at, of in enumerate(found.tenths)
+    }
     rows = (row.criterion for row in found.criteria)
-    criteria = {f"criterion-{row.id}": _Group(f"lost points in {row.id}", lost[row.id], row.id) for row in rows}
+    criteria = {
+        f"criterion-{row.id}": _Group(f"lost points in {row.id}", lost[row.id], row.id)
+        for row in rows
+    }
     mistakes = {
         f"mistake-{at}": _Group(f"{one.criterion}: {one.message}", one.students)
         for at, one in enumerate(found.mistakes)
     }
-    same = {f"same-{at}": _Group("equal work", work.students) for at, work in enumerate(found.equal)}
+    same = {
+        f"same-{at}": _Group("equal work", work.students) for at, work in enumerate(found.equal)
+    }
     return {**filters, **tenths, **criteria, **mistakes, **same}
 
 
 def _criteria(found: ClassStatistics) -> list[dict[str, Any]]:
     """Return the rows of the criteria, the hardest first."""
-    asked = sorted(found.criteria, key=lambda row: (2.0 if row.share is None else row.share, -row.criterion.points))
+    asked = sorted(
+        found.criteria,
+        key=lambda row: (2.0 if row.share is None else row.share, -row.criterion.points),
+    )
     return [
         {
             "row": row,

@@ -1,4 +1,6 @@
-"""The pages of a review in the browser: one item in words and pictures, the end of the review, a message."""
+"""The pages of a review in the browser: one item in words and pictures, the end of the review, a
+message.
+"""
 
 from collections.abc import Mapping, Sequence
 from datetime import datetime
@@ -28,8 +30,9 @@ _DECIMALS = Decimal("0.0001")
 class OpenedItem(NamedTuple):
     """What was found for an item, as a page or a sheet shows it.
 
-    `views` is an SVG element with the robot, empty without one, and `legend` says what is marked in it. `places` are
-    the lines of files around the places that decide, each with its location in words.
+    `views` is an SVG element with the robot, empty without one, and `legend` says what is marked in
+    it. `places` are the lines of files around the places that decide, each with its location in
+    words.
     """
 
     message: str
@@ -42,15 +45,25 @@ class OpenedItem(NamedTuple):
     title: str = "Answer"  # of the answer
 
 
-def filters(shown: ReviewFilter, questions: Sequence[str], sections: Sequence[str]) -> list[tuple[object, ...]]:
-    """Return the lists to filter by: the name of each, its label, its values with their words, the chosen value."""
-    values = ({"": "all questions"} | dict(zip(questions, questions, strict=True)),
-              {"": "all sections"} | dict(zip(sections, sections, strict=True)), STATES)  # fmt: skip
-    return [*zip(ReviewFilter._fields, ("Question", "Section", "Items"), values, shown, strict=True)]
+def filters(
+    shown: ReviewFilter, questions: Sequence[str], sections: Sequence[str]
+) -> list[tuple[object, ...]]:
+    """Return the lists to filter by: the name of each, its label, its values with their words,
+    the chosen value.
+    """
+    values = (
+        {"": "all questions"} | dict(zip(questions, questions, strict=True)),
+        {"": "all sections"} | dict(zip(sections, sections, strict=True)),
+        STATES,
+    )
+    return [
+        *zip(ReviewFilter._fields, ("Question", "Section", "Items"), values, shown, strict=True)
+    ]
 
 
 def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) -> str:
-    """Return the page of an item; `place` has its `number` and address among a `total`, and the filters.
+    """Return the page of an item; `place` has its `number` and address among a `total`, and the
+    filters.
 
     The addresses of the pictures are ADDRESS/picture/1 and so on.
     """
@@ -66,7 +79,10 @@ def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) ->
         "members": [] if is_alone else members,
         "item": item,
         "maximum": format_points(maximum),
-        "each": [(one.criterion.title, one.criterion.id, format_points(one.criterion.points)) for one in item.all],
+        "each": [
+            (one.criterion.title, one.criterion.id, format_points(one.criterion.points))
+            for one in item.all
+        ],
         "opened": opened,
         "views": Markup(opened.views),  # noqa: S704  an element, whose text is escaped
         "model": model_lines(criterion),
@@ -98,7 +114,9 @@ def _total(marks: Sequence[Mark | None]) -> str:
 
 
 def _marked_text(marks: Sequence[Mark | None], *, is_older: bool) -> str:
-    """Return what is marked of an item: the first mark, with the points of all; empty without one."""
+    """Return what is marked of an item: the first mark, with the points of all; empty without
+    one.
+    """
     given = [mark for mark in marks if mark is not None]
     if not given:
         return ""
@@ -109,7 +127,8 @@ def _marked_text(marks: Sequence[Mark | None], *, is_older: bool) -> str:
 
 
 def end_page(marked: int, left: int, place: Mapping[str, Any], gradebook: str, lms: str) -> str:
-    """Return the page after the last item: how many marks were given, how many are left, and the next command.
+    """Return the page after the last item: how many marks were given, how many are left, and the
+    next command.
 
     It exports the grades to the LMS that the class came from, if that is known.
     """
@@ -120,14 +139,18 @@ def end_page(marked: int, left: int, place: Mapping[str, Any], gradebook: str, l
         "summary": f"{counted(marked, 'mark')} given in this review.",
         "left": left,
         "is_filtered": any(chosen not in ("", UNMARKED) for *_, chosen in place["filters"]),
-        "how": f"fill the grade file that {FORMS[lms].lms} has exported" if lms else "export the grades",
+        "how": f"fill the grade file that {FORMS[lms].lms} has exported"
+        if lms
+        else "export the grades",
         "command": f"{command} --into EXPORTED.csv --output upload.csv" if lms else command,
     }
     return _page("review-end.html", values)
 
 
 def error_page(message: str, following: str) -> str:
-    """Return the page of an item that cannot be shown; `following` is the address of the next one."""
+    """Return the page of an item that cannot be shown; `following` is the address of the next
+    one.
+    """
     title = "This item cannot be shown"
     return _page("review-error.html", {"title": title, "message": message, "following": following})
 
@@ -139,7 +162,11 @@ def _page(template: str, values: Mapping[str, object], data: Mapping[str, Any] =
 def _buttons(maximum: Decimal) -> list[tuple[str, str]]:
     """Return the points that have a button, and the name of each."""
     named = {Decimal(0): "none", maximum / 2: "half", maximum: "all"}
-    return [(format_points(value), name) for value, name in named.items() if value == value.quantize(_DECIMALS)]
+    return [
+        (format_points(value), name)
+        for value, name in named.items()
+        if value == value.quantize(_DECIMALS)
+    ]
 
 
 def mark_text(mark: Mark) -> str:

@@ -1,4 +1,6 @@
-"""The common parts of all pages: templates that escape all text, one file without requests, a policy."""
+"""The common parts of all pages: templates that escape all text, one file without requests, a
+policy.
+"""
 
 import hashlib
 import json
@@ -27,13 +29,17 @@ class Assets(NamedTuple):
     sources: str = ""  # directives for the policy of a page that is served: "img-src 'self'"
 
 
-def render_page(template: str, values: Mapping[str, object], data: Mapping[str, Any], assets: Assets) -> str:
+def render_page(
+    template: str, values: Mapping[str, object], data: Mapping[str, Any], assets: Assets
+) -> str:
     """Return a page as one HTML file.
 
     Args:
-        template: The name of the template. It extends base.html and gets the `values`. Text is escaped and printable.
+        template: The name of the template. It extends base.html and gets the `values`. Text is
+            escaped and printable.
         values: The values of the template; markup only as `Markup`.
-        data: The data of the script, as JSON: `JSON.parse(document.getElementById("data").textContent)`.
+        data: The data of the script, as JSON:
+            `JSON.parse(document.getElementById("data").textContent)`.
         assets: The styles and scripts.
     """
     styles = [*map(_file, ("base.css", *assets.styles.split()))]
@@ -87,6 +93,8 @@ def _source_hash(text: str) -> str:
 
 
 def _json(data: Mapping[str, Any]) -> Markup:
-    """Return JSON that cannot close its script element. Raises ValueError for NaN, which is no JSON."""
+    """Return JSON that cannot close its script element. Raises ValueError for NaN, which is no
+    JSON.
+    """
     text = json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
     return Markup(text.translate(_UNSAFE))  # noqa: S704  no character of it is markup

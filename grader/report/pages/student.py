@@ -1,4 +1,6 @@
-"""The pages about one robot: the report for the student, with three views of the robot, and an inspection."""
+"""The pages about one robot: the report for the student, with three views of the robot, and an
+inspection.
+"""
 
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
@@ -35,18 +37,31 @@ _CLASSES = {"clean": "passed", "degraded": "skipped"}  # of verdicts
 
 
 def render_html(report: Report) -> str:
-    """Return the report as a page. Model answers are on it only if the rubric was loaded with them."""
+    """Return the report as a page. Model answers are on it only if the rubric was loaded with
+    them.
+    """
     picture = picture_of(report) if not report.is_bare else None
-    callouts = [callout for callout in picture.callouts if callout.point is not None] if picture is not None else []
-    called = {result.criterion.id: callout.number for callout in callouts for result in callout.results}
+    callouts = (
+        [callout for callout in picture.callouts if callout.point is not None]
+        if picture is not None
+        else []
+    )
+    called = {
+        result.criterion.id: callout.number for callout in callouts for result in callout.results
+    }
     sections = [*report_sections(report).sections]
     by_part = groupby(groups(report) if not report.is_bare else (), key=lambda group: group.part)
     values = {
         "version": report.version,
-        "title": printable(f"{report.student or content.graded_line(report)}: {content.score_text(report)}"),
+        "title": printable(
+            f"{report.student or content.graded_line(report)}: {content.score_text(report)}"
+        ),
         "report": report,
         "content": content,
-        "head": {role: [line.text for line in some] for role, some in alike(content.head(report), lambda it: it.role)},
+        "head": {
+            role: [line.text for line in some]
+            for role, some in alike(content.head(report), lambda it: it.role)
+        },
         "maximum": format_points(report.max_score) if report.counting is not None else "",
         "symbols": SYMBOLS,
         "status_words": STATUS_WORDS,
@@ -58,7 +73,12 @@ def render_html(report: Report) -> str:
         "kind_of": lambda block: type(block).__name__,
         "called": called,
         "sections": sections,
-        "cards": {one.criterion.id: entry.id for part in sections for entry in part.entries for one in entry.results},
+        "cards": {
+            one.criterion.id: entry.id
+            for part in sections
+            for entry in part.entries
+            for one in entry.results
+        },
         "parts": [_part_card(report.rubric.part(part).title, [*some]) for part, some in by_part],
         "pictures": _pictures(report, [entry for part in sections for entry in part.entries]),
         "no_picture": NO_PICTURE,
@@ -67,7 +87,9 @@ def render_html(report: Report) -> str:
 
 
 def _pictures(report: Report, entries: Sequence[Entry]) -> Mapping[str, list[tuple[str, str]]]:
-    """Return the pictures of criteria that need manual grading, each as where it is and its data as an address."""
+    """Return the pictures of criteria that need manual grading, each as where it is and its data as
+    an address.
+    """
     shown: dict[str, list[tuple[str, str]]] = {}
     room = _MAX_PICTURES
     for entry in entries:
@@ -95,7 +117,11 @@ def inspection_html(inspection: Inspection) -> str:
         "effect": effect(inspection),
         "verdict": _CLASSES.get(inspection.verdict or "clean", "failed"),
         "problems": [
-            (problem.severity, content.problem_line(problem), source_lines(problem.location, inspection.source))
+            (
+                problem.severity,
+                content.problem_line(problem),
+                source_lines(problem.location, inspection.source),
+            )
             for problem in inspection.problems[:MAX_LISTED]
         ],
         "lists": lists(inspection),
@@ -104,11 +130,17 @@ def inspection_html(inspection: Inspection) -> str:
 
 
 def _render(
-    template: str, values: Mapping[str, object], picture: Picture | None, script: str = "", sources: str = ""
+    template: str,
+    values: Mapping[str, object],
+    picture: Picture | None,
+    script: str = "",
+    sources: str = "",
 ) -> str:
     """Return a page about the robot of a picture, if there is one."""
     drawn = drawing_element(picture, legend=False) if picture is not None else ""
     views = Markup(drawn)  # noqa: S704  an element, whose text is escaped
     assets = Assets("text.css robot.css student.css", script, STYLE if drawn else "", sources)
     legend = callout_lines(picture) if picture is not None else []
-    return render_page(template, {**values, "picture": picture, "views": views, "legend": legend}, {}, assets)
+    return render_page(
+        template, {**values, "picture": picture, "views": views, "legend": legend}, {}, assets
+    )

@@ -42,7 +42,9 @@ def behaves(robot: Configuration) -> Outcome:
             while True:
                 time.sleep(0.01)
         case "hangs_in_c":
-            ctypes.PyDLL(None).sleep(3600)  # with the interpreter's lock held: no thread and no handler gets a turn
+            ctypes.PyDLL(None).sleep(
+                3600
+            )  # with the interpreter's lock held: no thread and no handler gets a turn
         case "stops":
             while True:  # a shell that ends may leave its processes running
                 os.kill(os.getpid(), signal.SIGSTOP)

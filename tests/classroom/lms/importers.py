@@ -25,13 +25,19 @@ def canvas_import(data: bytes, state: State) -> State:
     assert "Student" in header[0], header
     assert "ID" in header[1], header
     assert "Section" in header
-    titles = {index: found[1] for index, title in enumerate(header) if (found := re.fullmatch(r"(.+) \(\d+\)", title))}
+    titles = {
+        index: found[1]
+        for index, title in enumerate(header)
+        if (found := re.fullmatch(r"(.+) \(\d+\)", title))
+    }
     after = deepcopy(state)
     for row in rows:
         if "Points Possible" not in row[0] and any(cell.strip() for cell in row):
             for index, title in titles.items():
                 cell = row[index].strip()
-                after[row[1]][title] = "EX" if cell.casefold() == "ex" else "" if cell == "-" else cell
+                after[row[1]][title] = (
+                    "EX" if cell.casefold() == "ex" else "" if cell == "-" else cell
+                )
     return after
 
 
@@ -56,7 +62,11 @@ def moodle_feedback(data: bytes, participants: Mapping[str, str]) -> dict[str, d
         *folders, file = path.split("/")
         assert not file.startswith((".", "~")), path
         named = [part.split("_", 4) for part in (*folders, file)]
-        words = next(part for part in named if len(part) >= 4 and part[1].isdecimal() and part[1] in participants)
+        words = next(
+            part
+            for part in named
+            if len(part) >= 4 and part[1].isdecimal() and part[1] in participants
+        )
         assert words[2:4] == ["assignfeedback", "file"], path
         found.setdefault(participants[words[1]], {})[file] = content
     return found

@@ -32,7 +32,9 @@ def test_lost_points() -> None:
         Result(CRITERIA["loads"], Outcome("passed", "fine")),
         Result(CRITERIA["loads"], Outcome("failed", "it is off")),
         Result(CRITERIA["loads"], Outcome("passed", "fine"), comment=ManualComment("nice", "Kim")),
-        Result(CRITERIA["box"], skip, "loads", manual_mark=ManualMark(Decimal(1), "me", "nice try")),
+        Result(
+            CRITERIA["box"], skip, "loads", manual_mark=ManualMark(Decimal(1), "me", "nice try")
+        ),
         Result(CRITERIA["tall"], skip, "loads"),
         Result(CRITERIA["tall"], Outcome("failed", "it is too low"), carried="box"),
         Result(CRITERIA["essay"], skip, "loads"),
@@ -53,7 +55,12 @@ def test_own_comments_are_recognised() -> None:
     """The same words in other tags and spaces are the grader's, also of earlier versions; other words are a person's."""
     assert comment_html(OPENING, ["The base: 2 of 4. it is 0.1 m too low"]) == OWN
     assert is_own_comment(OWN.replace("<p>", "<p dir='ltr'>\n ").replace("</li>", "</li>\n"))
-    for other in (OWN.replace("too low", "far too low"), OWN.replace("automatically", "badly"), OWN[:-30], ""):
+    for other in (
+        OWN.replace("too low", "far too low"),
+        OWN.replace("automatically", "badly"),
+        OWN[:-30],
+        "",
+    ):
         assert not is_own_comment(other)
 
 
@@ -67,7 +74,9 @@ def test_a_comment_is_limited() -> None:
 
 @given(
     st.text(max_size=50),
-    st.lists(st.text(max_size=900) | st.text(st.sampled_from(";=-+@ \\<&'\"a"), max_size=9), max_size=8),
+    st.lists(
+        st.text(max_size=900) | st.text(st.sampled_from(";=-+@ \\<&'\"a"), max_size=9), max_size=8
+    ),
 )
 def test_a_comment_is_always_safe(graders: str, lines: list[str]) -> None:
     """Any text gives one line, with only the grader's tags, no formula, and is recognised again."""

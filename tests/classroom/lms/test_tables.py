@@ -37,7 +37,9 @@ def by_csv(text: str, delimiter: str) -> list[list[str]]:
     st.sampled_from(["\n", "\r\n", "\r"]),
     st.sampled_from([csv.QUOTE_ALL, csv.QUOTE_MINIMAL]),
 )
-def test_tables_read_as_csv_wrote_them(rows: list[list[str]], delimiter: str, end: str, quoting: Literal[0, 1]) -> None:
+def test_tables_read_as_csv_wrote_them(
+    rows: list[list[str]], delimiter: str, end: str, quoting: Literal[0, 1]
+) -> None:
     """A header and any cells, in any quoting, have the written values, and encode to the same bytes."""
     text = written([["Student", "ID"], *rows], delimiter, end, quoting)
     table = read_table(text.encode(), "x.csv")
@@ -56,7 +58,11 @@ def test_any_text_is_read_like_csv_or_refused(text: str) -> None:
     except InputError as error:
         assert "never closed" in str(error)
         with pytest.raises(csv.Error):
-            list(csv.reader(io.StringIO(text, newline=""), delimiter=first_delimiter(text), strict=True))
+            list(
+                csv.reader(
+                    io.StringIO(text, newline=""), delimiter=first_delimiter(text), strict=True
+                )
+            )
         return
     assert values(table) == by_csv(text, table.delimiter)
     assert table.encoded() == text.encode()
@@ -68,9 +74,13 @@ def first_delimiter(text: str) -> str:
 
 
 @given(WELL_FORMED, st.data(), CELLS)
-def test_a_changed_cell_changes_nothing_else(rows: list[list[str]], data: st.DataObject, value: str) -> None:
+def test_a_changed_cell_changes_nothing_else(
+    rows: list[list[str]], data: st.DataObject, value: str
+) -> None:
     """After a change the file has the new value in that one cell; all other cells are the same, byte for byte."""
-    table = read_table(written([["a", "b"], *rows], ",", "\r\n", csv.QUOTE_MINIMAL).encode(), "x.csv")
+    table = read_table(
+        written([["a", "b"], *rows], ",", "\r\n", csv.QUOTE_MINIMAL).encode(), "x.csv"
+    )
     row = data.draw(st.sampled_from([row for row in table.rows if row.cells]))
     column = data.draw(st.integers(0, len(row.cells) - 1))
     changed = table.changed(row, column, value)
@@ -114,7 +124,10 @@ def test_other_files_are_refused() -> None:
     for data, words in [
         (b'a,b\n1,"2', "row 2 is never closed"),
         (b"a,b\n\0,2", "NUL"),
-        (b"PK\x03\x04 a spreadsheet", "is a spreadsheet, not a CSV file: open it and save it as CSV"),
+        (
+            b"PK\x03\x04 a spreadsheet",
+            "is a spreadsheet, not a CSV file: open it and save it as CSV",
+        ),
         (b"\xd0\xcf\x11\xe0 an older one", "is a spreadsheet, not a CSV file"),
         ("a,b".encode("utf-32"), "NUL"),
         (b"\xff\xfea", "not text in utf-16-le"),
@@ -126,7 +139,11 @@ def test_other_files_are_refused() -> None:
 
 def test_limits(monkeypatch: pytest.MonkeyPatch) -> None:
     """A file at a limit is read, and one above it is refused."""
-    for name, data in [("SIZE_LIMIT", b"a,b\n"), ("_CELL_LIMIT", b"a\n\nc\nd"), ("_CELL_LIMIT", b"a,b\nc,d")]:
+    for name, data in [
+        ("SIZE_LIMIT", b"a,b\n"),
+        ("_CELL_LIMIT", b"a\n\nc\nd"),
+        ("_CELL_LIMIT", b"a,b\nc,d"),
+    ]:
         monkeypatch.setattr(tables, name, 4)
         read_table(data, "x.csv")
         monkeypatch.setattr(tables, name, 3)
@@ -139,7 +156,9 @@ def test_unencodable_characters_become_references() -> None:
     """An emoji in a new cell of a Windows-1252 file is written as an HTML character reference."""
     table = read_table("Name,Text\nJörg,x\n".encode("cp1252"), "x.csv")
     changed = table.changed(table.rows[1], 1, "gut 😀")
-    assert table._replace(rows=(table.rows[0], changed)).encoded() == "Name,Text\nJörg,gut &#128512;\n".encode("cp1252")
+    assert table._replace(
+        rows=(table.rows[0], changed)
+    ).encoded() == "Name,Text\nJörg,gut &#128512;\n".encode("cp1252")
 
 
 def test_quoting_of_a_changed_cell() -> None:

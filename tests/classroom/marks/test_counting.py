@@ -20,9 +20,15 @@ def test_the_marks_that_count(case: dict[str, Any], tmp_path: Path) -> None:
         with pytest.raises(InputError) as caught:
             read(folder)
         lines = str(caught.value).splitlines()
-        assert lines[-1:] == [case["last"]] if "last" in case else lines == case["error"].splitlines()
+        assert (
+            lines[-1:] == [case["last"]] if "last" in case else lines == case["error"].splitlines()
+        )
         return
     marks = read(folder)
-    assert {" ".join(key): said(mark) for key, mark in marks.counting.items()} == case.get("counting", {})
-    assert {" ".join(key): mark.comment for key, mark in marks.comments.items()} == case.get("comments", {})
+    assert {" ".join(key): said(mark) for key, mark in marks.counting.items()} == case.get(
+        "counting", {}
+    )
+    assert {" ".join(key): mark.comment for key, mark in marks.comments.items()} == case.get(
+        "comments", {}
+    )
     assert marks.ignored == case.get("ignored", [])

@@ -17,7 +17,15 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from grader.classroom import marks
-from grader.classroom.marks import COLUMNS, EXCUSED, WITHDRAWN, Mark, append_marks, is_open_in_libreoffice, mark_file
+from grader.classroom.marks import (
+    COLUMNS,
+    EXCUSED,
+    WITHDRAWN,
+    Mark,
+    append_marks,
+    is_open_in_libreoffice,
+    mark_file,
+)
 from grader.classroom.tables import protected, unprotected
 from grader.errors import InputError
 from grader.grading.criterion import DEADLINE, TOTAL
@@ -31,8 +39,13 @@ REFUSED = {
         "marks/lee.csv:2: points are a number from 0 to 4, with at most 4 decimals, not '03. Mai'",
         "marks/lee.csv:3: points are a number from 0 to 4, with at most 4 decimals, not '03.05.26'",
     ],
-    "excel-lost-zeros.csv": ["marks/lee.csv:11: student '12' may be '0012', changed by a spreadsheet: correct it"],
-    "excel-one-column.csv": ["marks/lee.csv:3: the row names no student", "marks/lee.csv:4: the row names no student"],
+    "excel-lost-zeros.csv": [
+        "marks/lee.csv:11: student '12' may be '0012', changed by a spreadsheet: correct it"
+    ],
+    "excel-one-column.csv": [
+        "marks/lee.csv:3: the row names no student",
+        "marks/lee.csv:4: the row names no student",
+    ],
 }
 SAVED = Path(__file__).with_name("saved")
 TEXT = st.text(st.sampled_from("ab é;,=+-@'\"\t\n“x"), max_size=12).map(lambda text: text.strip())
@@ -44,9 +57,20 @@ DUE = "2026-11-20T23:59+01:00"
 @st.composite
 def mark(draw: st.DrawFn) -> Mark:
     """Draw a mark of any kind."""
-    who, value = draw(st.sampled_from(STUDENTS)), draw(POINTS | st.sampled_from((EXCUSED, WITHDRAWN, "", DUE)))
+    who, value = (
+        draw(st.sampled_from(STUDENTS)),
+        draw(POINTS | st.sampled_from((EXCUSED, WITHDRAWN, "", DUE))),
+    )
     criterion = {EXCUSED: TOTAL, DUE: DEADLINE}.get(value, "essay")
-    drawn = Mark(draw(TIMES), draw(TEXT), who, criterion, value, draw(TEXT), draw(st.sampled_from(("", "d0a1"))))
+    drawn = Mark(
+        draw(TIMES),
+        draw(TEXT),
+        who,
+        criterion,
+        value,
+        draw(TEXT),
+        draw(st.sampled_from(("", "d0a1"))),
+    )
     assume(drawn.value or drawn.comment)
     return drawn
 
@@ -69,7 +93,9 @@ def dialect(draw: st.DrawFn) -> bytes:
         delimiter.join(titles),
         *draw(st.sampled_from(((), (delimiter.join(row.get(one, "") for one in titles),)))),
     ]
-    return (end.join(lines) + end).encode(draw(st.sampled_from(("utf-8", "utf-8-sig", "utf-16", "cp1252"))))
+    return (end.join(lines) + end).encode(
+        draw(st.sampled_from(("utf-8", "utf-8-sig", "utf-16", "cp1252")))
+    )
 
 
 def rows_in(folder: Path) -> dict[tuple[str, str], Mark]:
@@ -87,7 +113,9 @@ def appended(folder: Path, start: bytes | None, marks: list[Mark], name: str = "
 
 
 @given(dialect() | st.none(), MARKS, MARKS)
-def test_appended_marks_are_read_as_they_were_given(start: bytes | None, first: list[Mark], second: list[Mark]) -> None:
+def test_appended_marks_are_read_as_they_were_given(
+    start: bytes | None, first: list[Mark], second: list[Mark]
+) -> None:
     """In any dialect, what was in the file stays byte for byte; the newest mark is the one with the latest time."""
     expected: dict[tuple[str, str], Mark] = {}
     for one in (*first, *second):
@@ -109,7 +137,10 @@ def test_appended_marks_are_read_as_they_were_given(start: bytes | None, first: 
 def test_protected_text_is_restored(text: str) -> None:
     """No text begins a formula, and each comes back."""
     assert unprotected(protected(text)) == text
-    assert not any(cell.lstrip().startswith(tuple("=+-@＝")) for cell in protected(text).replace("\n", ";").split(";"))
+    assert not any(
+        cell.lstrip().startswith(tuple("=+-@＝"))
+        for cell in protected(text).replace("\n", ";").split(";")
+    )
 
 
 @given(st.lists(MARKS, min_size=2, max_size=2), st.booleans())
@@ -121,7 +152,10 @@ def test_copying_a_file_merges(files: list[list[Mark]], is_reversed: bool) -> No
         parts: dict[tuple[str, str], Mark] = {}
         for number, marks in enumerate(files):
             appended(Path(top) / str(number), None, marks)
-            parts |= {key: max(parts.get(key, one), one) for key, one in rows_in(Path(top) / str(number)).items()}
+            parts |= {
+                key: max(parts.get(key, one), one)
+                for key, one in rows_in(Path(top) / str(number)).items()
+            }
         folder = Path(top) / "marks"
         for number, marks in enumerate(files):
             appended(folder, None, marks, f"{'ba'[number] if is_reversed else 'ab'[number]}.csv")
@@ -129,7 +163,9 @@ def test_copying_a_file_merges(files: list[list[Mark]], is_reversed: bool) -> No
 
 
 @given(dialect(), MARKS, st.data())
-def test_a_cut_file_counts_nothing_new(start: bytes, marks: list[Mark], data: st.DataObject) -> None:
+def test_a_cut_file_counts_nothing_new(
+    start: bytes, marks: list[Mark], data: st.DataObject
+) -> None:
     """Every prefix is refused, or its rows are rows of the whole file; the last one may lack its digest."""
     with TemporaryDirectory() as top:
         rows = {*rows_in_file(Path(top), start), *marks}
@@ -182,7 +218,9 @@ HEADER = ",".join(COLUMNS)
 )
 def test_a_row_is_in_the_style_of_its_file(start: str, row: str, tmp_path: Path) -> None:
     """Delimiter, decimal sign, line ends, order of columns; what is missing before it is supplied."""
-    after = appended(tmp_path / "marks", start.encode(), [Mark("", "Lee", "ben", "essay", "0.75", "a;b")])
+    after = appended(
+        tmp_path / "marks", start.encode(), [Mark("", "Lee", "ben", "essay", "0.75", "a;b")]
+    )
     assert after.decode().replace('"a;b"', "a;b") == start + row
 
 
@@ -199,11 +237,17 @@ for number in range(20):
 def test_two_writers_lose_no_row(tmp_path: Path) -> None:
     """Two processes append to one file, which neither has made before."""
     folder = tmp_path / "marks"
-    programs = [WRITER.replace("FOLDER", repr(str(folder))).replace("WHO", repr(who)) for who in ("anna", "ben")]
+    programs = [
+        WRITER.replace("FOLDER", repr(str(folder))).replace("WHO", repr(who))
+        for who in ("anna", "ben")
+    ]
     started = [subprocess.Popen([sys.executable, "-c", program], cwd=ROOT) for program in programs]
     assert [one.wait(HANG_TIMEOUT) for one in started] == [0, 0]
     assert (folder / "lee.csv").read_text().count("\n") == 41
-    assert {who: said(one)[:3] for (who, _), one in read(folder).counting.items()} == {"anna": "2.3", "ben": "2.3"}
+    assert {who: said(one)[:3] for (who, _), one in read(folder).counting.items()} == {
+        "anna": "2.3",
+        "ben": "2.3",
+    }
 
 
 def test_a_full_disk_leaves_the_file_as_it_was(tmp_path: Path) -> None:
@@ -214,7 +258,9 @@ def test_a_full_disk_leaves_the_file_as_it_was(tmp_path: Path) -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (len(before) + 9, limits[1]))
     try:
         with pytest.raises(InputError, match=r"cannot write marks/lee\.csv: File too large"):
-            append_marks(tmp_path / "marks" / "lee.csv", [old._replace(student="ben", comment="x" * 99)])
+            append_marks(
+                tmp_path / "marks" / "lee.csv", [old._replace(student="ben", comment="x" * 99)]
+            )
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     assert (tmp_path / "marks" / "lee.csv").read_bytes() == before
@@ -227,8 +273,14 @@ def test_a_full_disk_leaves_the_file_as_it_was(tmp_path: Path) -> None:
             b"student,criterion,points\n",
             "marks/lee.csv has no column time, by, comment and submission: add it to the first line",
         ),
-        (b",".join(map(str.encode, COLUMNS)) + b"\n,,anna,essay,1", "marks/lee.csv:2: the last row may be incomplete"),
-        (b",".join(map(str.encode, COLUMNS)) + b'\n,,anna,essay,1,"', "a quotation mark in row 2 is never closed"),
+        (
+            b",".join(map(str.encode, COLUMNS)) + b"\n,,anna,essay,1",
+            "marks/lee.csv:2: the last row may be incomplete",
+        ),
+        (
+            b",".join(map(str.encode, COLUMNS)) + b'\n,,anna,essay,1,"',
+            "a quotation mark in row 2 is never closed",
+        ),
     ],
 )
 def test_no_row_is_appended(start: bytes, why: str, tmp_path: Path) -> None:
@@ -256,7 +308,10 @@ def test_files_are_private_and_symlinks_are_not_followed(tmp_path: Path) -> None
     """A new file is for its owner alone; a symlink is neither read nor written."""
     folder = tmp_path / "gradebook" / "marks"
     append_marks(folder / "lee.csv", [Mark("", "Lee", "anna", "essay", "3")])
-    assert [stat.S_IMODE(path.stat().st_mode) for path in (folder, folder / "lee.csv")] == [0o700, 0o600]
+    assert [stat.S_IMODE(path.stat().st_mode) for path in (folder, folder / "lee.csv")] == [
+        0o700,
+        0o600,
+    ]
     (folder / "kim.csv").symlink_to(folder / "lee.csv")
     with pytest.raises(InputError, match=r"marks/kim\.csv is a symlink, and was not followed"):
         read(folder)
@@ -269,7 +324,9 @@ def test_files_are_private_and_symlinks_are_not_followed(tmp_path: Path) -> None
 
 @given(
     st.lists(
-        st.text(max_size=50) | st.sampled_from(["con", "COM1", "..", "a/b", "Kim", "kim ", "K\u0131m"]), max_size=3
+        st.text(max_size=50)
+        | st.sampled_from(["con", "COM1", "..", "a/b", "Kim", "kim ", "K\u0131m"]),
+        max_size=3,
     )
 )
 def test_different_graders_have_different_files(graders: list[str]) -> None:
@@ -279,5 +336,7 @@ def test_different_graders_have_different_files(graders: list[str]) -> None:
         {unicodedata.normalize("NFC", by.strip().lower()) for by in graders}
     )
     for path in files:
-        assert path.parent == Path("marks") and re.fullmatch(r"[a-z0-9_][a-z0-9_-]{0,99}\.csv", path.name)
+        assert path.parent == Path("marks") and re.fullmatch(
+            r"[a-z0-9_][a-z0-9_-]{0,99}\.csv", path.name
+        )
         assert not re.fullmatch(r"(con|prn|aux|nul|com\d|lpt\d)\.csv", path.name)

@@ -63,7 +63,9 @@ def test_what_a_file_becomes(case: dict[str, Any], tmp_path: Path) -> None:
     append_marks(folder / "lee.csv", timed(read(folder), marks))
     after = {key: dict(points) for key, points in POINTS.items()}
     for one in marks:
-        after[one.student] |= {one.criterion: one.value or after[one.student].get(one.criterion, "")}
+        after[one.student] |= {
+            one.criterion: one.value or after[one.student].get(one.criterion, "")
+        }
     assert importing(read(folder), after).read(text.encode(), "marks.csv")[0] == []
 
 
@@ -77,13 +79,18 @@ def test_only_changed_cells_of_an_export_are_marks(
     """None without a change; else the changed ones, whatever a spreadsheet does to decimals; or they are refused."""
     points = {student: {**NONE, **row} for student, row in values.items()}
     has_other_points = data.draw(st.booleans())
-    now = {student: {**row, "loads": "0.75"} if has_other_points else row for student, row in points.items()}
+    now = {
+        student: {**row, "loads": "0.75"} if has_other_points else row
+        for student, row in points.items()
+    }
     cells = {(student, name): text for student, row in values.items() for name, text in row.items()}
     changed = {key: "0.4" for key in cells if data.draw(st.booleans())}
     rows = []
     for student, row in values.items():
         texts = [
-            changed.get((student, name), row.get(name, "")).replace(".", data.draw(st.sampled_from(",.")))
+            changed.get((student, name), row.get(name, "")).replace(
+                ".", data.draw(st.sampled_from(",."))
+            )
             for name in CRITERIA
         ]
         rows.append([student, *texts, exported_text(points[student]), "d0"])
@@ -99,7 +106,11 @@ def test_only_changed_cells_of_an_export_are_marks(
 def test_a_new_mark_counts_though_a_clock_was_ahead(tmp_path: Path) -> None:
     """Its time is later than that of the newest one."""
     folder = tmp_path / "marks"
-    append_marks(folder / "kim.csv", [Mark("2999-12-31T23:59:59.999+00:00", "Kim", "anna", "essay", "1")])
+    append_marks(
+        folder / "kim.csv", [Mark("2999-12-31T23:59:59.999+00:00", "Kim", "anna", "essay", "1")]
+    )
     rows = b"student,criterion,points\nanna,essay,2\n"
-    append_marks(folder / "lee.csv", timed(read(folder), importing(read(folder)).read(rows, "marks.csv")[0]))
+    append_marks(
+        folder / "lee.csv", timed(read(folder), importing(read(folder)).read(rows, "marks.csv")[0])
+    )
     assert said(read(folder).counting["anna", "essay"]) == "2"

@@ -45,8 +45,15 @@ def package(launched: str, name: str = "my_robot") -> Contents:
     launch = "launch/my_robot_rviz.launch.py"
     found[launch] = found[launch].replace(b"my_robot.urdf", (launched or "my_robot.urdf").encode())
     if name != "my_robot":
-        found = {path.replace("my_robot/__init__", f"{name}/__init__"): data for path, data in found.items()}
-        found |= {path: data.replace(b"my_robot", name.encode()) for path, data in found.items() if "/" not in path}
+        found = {
+            path.replace("my_robot/__init__", f"{name}/__init__"): data
+            for path, data in found.items()
+        }
+        found |= {
+            path: data.replace(b"my_robot", name.encode())
+            for path, data in found.items()
+            if "/" not in path
+        }
         found[f"resource/{name}"] = found.pop("resource/my_robot")
     return found
 
@@ -133,8 +140,17 @@ EXTRAS: Mapping[str, Callable[[], Contents]] = {
         "resource/e-puck.urdf": b'<robot name="EPuck"><webots><device/></webots></robot>',
     },
     "macOS": lambda: {
-        "__MACOSX/._my_robot.urdf": b"\0\5\x16\7<robot/>", ".DS_Store": b"\0\0", "__MACOSX/my_robot.urdf": b"\0\5\x16\7"
+        "__MACOSX/._my_robot.urdf": b"\0\5\x16\7<robot/>",
+        ".DS_Store": b"\0\0",
+        "__MACOSX/my_robot.urdf": b"\0\5\x16\7",
     },
-    "pictures of another lab": lambda: {"Task1_Step8.png": PICTURE_FILE, "Task4_Step2.png": PICTURE_FILE},
-    "git": lambda: {".git/config": b"[core]\n", ".vscode/settings.json": b"{}", ".gitignore": b"__pycache__/\n"},
-}  # fmt: skip
+    "pictures of another lab": lambda: {
+        "Task1_Step8.png": PICTURE_FILE,
+        "Task4_Step2.png": PICTURE_FILE,
+    },
+    "git": lambda: {
+        ".git/config": b"[core]\n",
+        ".vscode/settings.json": b"{}",
+        ".gitignore": b"__pycache__/\n",
+    },
+}

@@ -21,7 +21,16 @@ WITHOUT = [row for row in ROWS if not row.works]
 WORKS = [(row, folder) for row in ROWS for folder in row.works]
 # What each repository without a robot shows: the evidence that is found, and the answers.
 PRELAB = ("yew",)  # have a robot, but another one; that of olive has no links
-EVIDENCE = {"yew": (5, 0), "myrtle": (5, 0), "nutmeg": (4, 0), "oak": (5, 2), "oleander": (5, 2), "olive": (5, 2), "palm": (5, 0), "pear": (0, 0)}  # fmt: skip
+EVIDENCE = {
+    "yew": (5, 0),
+    "myrtle": (5, 0),
+    "nutmeg": (4, 0),
+    "oak": (5, 2),
+    "oleander": (5, 2),
+    "olive": (5, 2),
+    "palm": (5, 0),
+    "pear": (0, 0),
+}
 
 
 class Class(NamedTuple):
@@ -44,11 +53,27 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Class:
     for layout in ("folders", "teams"):
         found.gradebooks[layout] = top / f"{layout}-grades"
         found.runs[layout] = grader(
-            "batch", found.folder, "--gradebook", top / f"{layout}-grades", "--rubric", rubric, "--layout", layout,
-            "--roster", top / "roster.csv", "--jobs", "2", "--report-format", "json", "--reports", top / layout,
-        )  # fmt: skip
+            "batch",
+            found.folder,
+            "--gradebook",
+            top / f"{layout}-grades",
+            "--rubric",
+            rubric,
+            "--layout",
+            layout,
+            "--roster",
+            top / "roster.csv",
+            "--jobs",
+            "2",
+            "--report-format",
+            "json",
+            "--reports",
+            top / layout,
+        )
         assert found.runs[layout].returncode == 0, found.runs[layout].stderr
-        found.reports[layout] = {path.stem: json.loads(path.read_text()) for path in (top / layout).glob("*.json")}
+        found.reports[layout] = {
+            path.stem: json.loads(path.read_text()) for path in (top / layout).glob("*.json")
+        }
     return found
 
 
@@ -89,7 +114,9 @@ def _reason(gradebook: Path, student: str) -> str:
 
 
 def _statuses(report: Report, part: str) -> dict[str, str]:
-    return {result["id"]: result["status"] for result in report["results"] if result["part"] == part}
+    return {
+        result["id"]: result["status"] for result in report["results"] if result["part"] == part
+    }
 
 
 def _points(report: Report, part: str) -> float:
@@ -105,17 +132,26 @@ def _check(row: Row, work: Work, report: Report, alone: Report) -> None:
         assert _points(report, "task1") == alone["score"]
     task2 = _statuses(report, "task2")
     if work.package is None:
-        has_evidence = report["other_pictures"] or any(it["files"] or it["possible"] for it in report["evidence"])
+        has_evidence = report["other_pictures"] or any(
+            it["files"] or it["possible"] for it in report["evidence"]
+        )
         expected_of_package = ("pending", {"pending"}) if has_evidence else ("failed", {"skipped"})
         assert (task2.pop("package-found"), set(task2.values())) == expected_of_package
     else:
         assert {name for name, status in task2.items() if status == "failed"} == set(work.lost)
-        assert {name for name, status in task2.items() if status != "passed"} == {*work.lost, *work.unknown}
+        assert {name for name, status in task2.items() if status != "passed"} == {
+            *work.lost,
+            *work.unknown,
+        }
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("row", "folder"), WORKS, ids=[f"{row.name}/{folder}".rstrip("/") for row, folder in WORKS])
-def test_a_student_with_a_robot(row: Row, folder: str, graded: Class, plain: Callable[[str], Report]) -> None:
+@pytest.mark.parametrize(
+    ("row", "folder"), WORKS, ids=[f"{row.name}/{folder}".rstrip("/") for row, folder in WORKS]
+)
+def test_a_student_with_a_robot(
+    row: Row, folder: str, graded: Class, plain: Callable[[str], Report]
+) -> None:
     """`grade` and `batch` give the mark of the plain URDF, and Task 2 what its package deserves."""
     work = row.works[folder]
     alone = plain(work.sample)
@@ -131,12 +167,19 @@ def test_a_student_without_a_robot(row: Row, graded: Class) -> None:
     for report in (_report(graded.folder / row.name), graded.reports["folders"][row.name]):
         statuses = _statuses(report, "task1")
         loads = statuses.pop("urdf-loads")
-        decided = ("pending", {"pending"}, 100) if EVIDENCE[row.name][0] else ("failed", {"skipped"}, 10)
+        decided = (
+            ("pending", {"pending"}, 100) if EVIDENCE[row.name][0] else ("failed", {"skipped"}, 10)
+        )
         assert (loads, set(statuses.values()), report["pending"], report["score"]) == (*decided, 0)
         assert (row.name in PRELAB) == ("another robot" in json.dumps(report["notes"]))
-        answers = [result["message"] for result in report["results"] if result["part"] == "questions"]
+        answers = [
+            result["message"] for result in report["results"] if result["part"] == "questions"
+        ]
         found = sum(bool(evidence["files"]) for evidence in report["evidence"])
-        assert (found, sum("No answer was found" not in message for message in answers)) == EVIDENCE[row.name]
+        assert (
+            found,
+            sum("No answer was found" not in message for message in answers),
+        ) == EVIDENCE[row.name]
 
 
 @pytest.mark.parametrize("row", TEAMS, ids=[row.name for row in TEAMS])

@@ -37,12 +37,16 @@ def _contents(row: Row) -> Contents:
 def _of_work(work: Work) -> Contents:
     folder, _, name = work.path.rpartition("/")
     files = SPELLINGS[work.spelling](robot(work.sample))
-    found = _below(folder, {name if file == MAIN else file: text.encode() for file, text in files.items()})
+    found = _below(
+        folder, {name if file == MAIN else file: text.encode() for file, text in files.items()}
+    )
     if work.package is not None:
         content = package(work.launched, work.package_name)
         if work.installed_as:
             for path in ("setup.py", LAUNCH_FILE):
-                content[path] = content[path].replace(b"'my_robot'", f"'{work.installed_as}'".encode())
+                content[path] = content[path].replace(
+                    b"'my_robot'", f"'{work.installed_as}'".encode()
+                )
             content[f"resource/{work.installed_as}"] = content.pop("resource/my_robot")
         if "launch-found" in work.lost:  # its extension was lost
             content[LAUNCH_FILE.removesuffix(".launch.py")] = content.pop(LAUNCH_FILE)

@@ -45,7 +45,11 @@ def service(log: Path, *arguments: str) -> Iterator[subprocess.Popen[bytes]]:
     """Yield a running Dask program in its own session; all its processes end with it."""
     with log.open("wb") as out:
         process = subprocess.Popen(
-            [*DASK, *arguments], env=environment(**WITH_HOSTILE), stdout=out, stderr=out, start_new_session=True
+            [*DASK, *arguments],
+            env=environment(**WITH_HOSTILE),
+            stdout=out,
+            stderr=out,
+            start_new_session=True,
         )
         with process:
             try:
@@ -101,7 +105,15 @@ class DaskCluster:
 def scheduler(target: Path) -> Iterator[DaskCluster]:
     """Yield a scheduler without workers."""
     cluster = DaskCluster(target)
-    arguments = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(cluster.file))
+    arguments = (
+        "--host",
+        "127.0.0.1",
+        "--port",
+        "0",
+        "--no-dashboard",
+        "--scheduler-file",
+        str(cluster.file),
+    )
     with service(target / "scheduler.log", "scheduler", *arguments) as process:
         cluster.process = process.pid
         assert eventually(lambda: cluster.file.exists() and cluster.file.read_text().endswith("}"))
@@ -130,16 +142,31 @@ def test_a_cluster_gives_the_same_marks(tmp_path: Path) -> None:
     folder = Path(shutil.make_archive(str(tmp_path / "packed"), "zip", folder))
     local, remote = tmp_path / "here", tmp_path / "there"
     rubric = ("--rubric", without_hints())  # hints are searched by local processes in both runs
-    one = grader("batch", folder, "--gradebook", tmp_path / "local-book", "--reports", local, *JSON, *rubric)
+    one = grader(
+        "batch", folder, "--gradebook", tmp_path / "local-book", "--reports", local, *JSON, *rubric
+    )
     with scheduler(tmp_path) as found:
-        command = ("batch", folder, "--gradebook", tmp_path / "other-book", "--cluster", found.address, *rubric)
+        command = (
+            "batch",
+            folder,
+            "--gradebook",
+            tmp_path / "other-book",
+            "--cluster",
+            found.address,
+            *rubric,
+        )
         start = f"`dask worker {found.address}`"
         line = f"the Dask cluster at {found.address} has no workers yet: start one with {start}"
         assert refused(*command) == line
         with found.with_workers(2):
             other = grader(*command, "--reports", remote, *JSON)
-            assert (other.returncode, other.stdout.replace("other-book", "local-book")) == (0, one.stdout)
-            assert without_progress(other.stderr) == without_progress(one.stderr.replace(str(local), str(remote)))
+            assert (other.returncode, other.stdout.replace("other-book", "local-book")) == (
+                0,
+                one.stdout,
+            )
+            assert without_progress(other.stderr) == without_progress(
+                one.stderr.replace(str(local), str(remote))
+            )
             assert contents(local) == contents(remote)
             assert counted(grader(*command)).startswith("0 graded, ")
 
@@ -157,7 +184,18 @@ def test_whatever_happens_to_a_cluster(tmp_path: Path) -> None:
 
 def _misbehaves(cluster: DaskCluster, top: Path) -> None:
     """Each affects one submission, for the same reason as locally; the cluster's workers live on and log nothing."""
-    names = ("hangs", "hangs_in_c", "dies", "crashes", "leaves", "leaves_loudly", "exits", "raises", "fine", "fine-2")
+    names = (
+        "hangs",
+        "hangs_in_c",
+        "dies",
+        "crashes",
+        "leaves",
+        "leaves_loudly",
+        "exits",
+        "raises",
+        "fine",
+        "fine-2",
+    )
     top.mkdir()
     folder = hostile_class(top / "class", *names)
     before = sorted(cluster.workers())
@@ -212,7 +250,14 @@ def _is_used_twice(cluster: DaskCluster, top: Path) -> None:
     folders = [urdf_class(top / f"class{seed}", 150, seed) for seed in (1, 2)]
 
     def run(number: int) -> int:
-        where = ("--gradebook", top / f"{number}", "--cluster", cluster.address, "--timeout", str(20 + number))
+        where = (
+            "--gradebook",
+            top / f"{number}",
+            "--cluster",
+            cluster.address,
+            "--timeout",
+            str(20 + number),
+        )
         return grader("batch", folders[number], *where).returncode
 
     with ThreadPoolExecutor(2) as threads:
@@ -256,13 +301,22 @@ def test_an_unusable_cluster_is_refused(tmp_path: Path) -> None:
     folder, book = urdf_class(tmp_path / "class", 2), tmp_path / "lab6"
     command = ("batch", folder, "--gradebook", book, "--cluster")
     for address in ("tcp://127.0.0.1:1", "foo", "", "http://127.0.0.1:1", "tls://127.0.0.1:1"):
-        assert refused(*command, address).startswith(f"there is no Dask scheduler at {address or repr('')}: ")
+        assert refused(*command, address).startswith(
+            f"there is no Dask scheduler at {address or repr('')}: "
+        )
     (tmp_path / "distributed.py").write_text("raise ImportError('no such module')\n")
     line = refused(*command, "tcp://127.0.0.1:1", PYTHONPATH=str(tmp_path))
     assert line == "--cluster needs Dask: pip install 'urdf-grader[cluster]'"
     (tmp_path / "scheduler").mkdir()
     with scheduler(tmp_path / "scheduler") as idle:
-        arguments = ("--scheduler-file", str(idle.file), "--host", "127.0.0.1", "--no-dashboard", "--no-nanny")
+        arguments = (
+            "--scheduler-file",
+            str(idle.file),
+            "--host",
+            "127.0.0.1",
+            "--no-dashboard",
+            "--no-nanny",
+        )
         for number, (words, start) in enumerate(_UNUSABLE.items()):
             (tmp_path / "start.py").write_text(start)
             log = tmp_path / f"worker{number}.log"

@@ -72,7 +72,9 @@ def _stop() -> None:
 @pytest.mark.exhaustive
 def test_no_more_memory_than_allowed(pool: Processes) -> None:
     """A task that needs more memory is lost, and its worker continues."""
-    assert lost(pool.submit(_eat)) == "grading it needs more memory than a worker has (at most 2 GiB)"
+    assert (
+        lost(pool.submit(_eat)) == "grading it needs more memory than a worker has (at most 2 GiB)"
+    )
     assert pool.submit(len, "abc").result(HANG_TIMEOUT) == 3
 
 
@@ -83,7 +85,11 @@ def test_no_more_memory_than_allowed(pool: Processes) -> None:
         (_leave, (0,), "the process that graded it exited unexpectedly"),
         (_leave, (7,), "the process that graded it ended with exit code 7"),
         (os.abort, (), "the process that graded it was ended by signal 6"),
-        (signal.raise_signal, (signal.SIGKILL,), "the process that graded it was ended by signal 9"),
+        (
+            signal.raise_signal,
+            (signal.SIGKILL,),
+            "the process that graded it was ended by signal 9",
+        ),
         (
             _stop,
             (),

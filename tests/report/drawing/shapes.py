@@ -28,7 +28,10 @@ SHAPES = st.one_of(
 def scene_with(shapes: list[Shape], poses: list[Transform]) -> Scene:
     """Return a scene of a robot of one link that shows these shapes."""
     robot = Configuration(Robot("r", (Link("a"),)))
-    bodies = tuple(Body("a", shape, pose, (0.5, 0.5, 0.5, 1.0)) for shape, pose in zip(shapes, poses, strict=True))
+    bodies = tuple(
+        Body("a", shape, pose, (0.5, 0.5, 0.5, 1.0))
+        for shape, pose in zip(shapes, poses, strict=True)
+    )
     return Scene(robot, "a", {"a": Transform()}, bodies, (), ())
 
 
@@ -42,7 +45,10 @@ def surface(shape: Shape) -> Points:
         across = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
         levels = np.linspace(-0.5, 0.5, 5) * shape.length
         side = [np.column_stack([shape.radius * across, np.full(len(turn), z)]) for z in levels]
-        caps = [np.column_stack([0.5 * shape.radius * across, np.full(len(turn), z)]) for z in levels[[0, -1]]]
+        caps = [
+            np.column_stack([0.5 * shape.radius * across, np.full(len(turn), z)])
+            for z in levels[[0, -1]]
+        ]
         return np.concatenate(side + caps)
     polar, turn = np.meshgrid(np.linspace(0.0, pi, 121), turn)
     flat = np.sin(polar)
@@ -57,7 +63,9 @@ def contains(shape: Shape, pose: Transform, points: Points, grown: float) -> Any
         return np.all(np.abs(local) <= np.array(shape.size) / 2.0 + grown, axis=1)
     if isinstance(shape, Cylinder):
         across = np.hypot(local[:, 0], local[:, 1])
-        return (across <= shape.radius + grown) & (np.abs(local[:, 2]) <= shape.length / 2.0 + grown)
+        return (across <= shape.radius + grown) & (
+            np.abs(local[:, 2]) <= shape.length / 2.0 + grown
+        )
     return np.linalg.norm(local, axis=1) <= shape.radius + grown
 
 

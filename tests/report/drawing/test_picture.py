@@ -19,19 +19,29 @@ ROOT = Path(__file__).parents[3]
 def picture(name: str, rubric: str = "lab6") -> Picture:
     """Return the picture of a sample submission."""
     loaded = load_rubric(rubric)
-    found = picture_of(grade(loaded, open_submission(str(ROOT / "submissions" / rubric / name), loaded.lab)))
+    found = picture_of(
+        grade(loaded, open_submission(str(ROOT / "submissions" / rubric / name), loaded.lab))
+    )
     assert found is not None
     return found
 
 
 @pytest.mark.parametrize(("kind", "picture"), [("svg", "<svg "), ("html", "Three views")])
-def test_a_number_that_overflows_costs_neither_picture_nor_hints(kind: str, picture: str, tmp_path: Path) -> None:
+def test_a_number_that_overflows_costs_neither_picture_nor_hints(
+    kind: str, picture: str, tmp_path: Path
+) -> None:
     """A mesh at the end of the range of numbers in a link that is turned: the number of the callout is at the cylinder that is drawn."""
     far = '<visual><origin xyz="1e308 1.7e308 1.7e308"/><geometry><mesh filename="a.stl"/></geometry></visual>'
     link = '<link name="left_wheel">'
-    text = (ROOT / "submissions/lab6/axis-negated/my_robot/urdf/my_robot.urdf").read_text().replace(link, link + far)
+    text = (
+        (ROOT / "submissions/lab6/axis-negated/my_robot/urdf/my_robot.urdf")
+        .read_text()
+        .replace(link, link + far)
+    )
     turned = '<origin xyz="-0.15 0.2 0" rpy="-0.78 0 0.78"/>'
-    (tmp_path / "my_robot.urdf").write_text(text.replace('<origin xyz="-0.15 0.2 0" rpy="-1.57 0 0"/>', turned))
+    (tmp_path / "my_robot.urdf").write_text(
+        text.replace('<origin xyz="-0.15 0.2 0" rpy="-1.57 0 0"/>', turned)
+    )
     assert (tmp_path / "my_robot.urdf").read_text().count(turned) == text.count(far) == 1
     done = run(["grade", tmp_path, "--rubric", "lab6", "--format", kind])
     assert (done.returncode, done.stderr) == (1, b"")
@@ -72,7 +82,10 @@ def changed_picture(folder: Path, name: str, old: str, new: str) -> Picture:
 def test_criterion_on_several_links_marks_none_of_them(tmp_path: Path) -> None:
     """If wheels and caster miss the ground together, that is a mistake of the robot, not of its first wheel."""
     found = changed_picture(
-        tmp_path, "caster-below-the-ground", '<origin xyz="0 0 0.1"/>\n', '<origin xyz="0 0 0.05"/>\n'
+        tmp_path,
+        "caster-below-the-ground",
+        '<origin xyz="0 0 0.1"/>\n',
+        '<origin xyz="0 0 0.05"/>\n',
     )
     callouts = {callout.link: callout for callout in found.callouts}
     assert set(callouts) == {"base_footprint", "caster_wheel", ""}

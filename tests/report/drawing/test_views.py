@@ -14,7 +14,15 @@ from grader.robot.model import Box
 from grader.robot.shapes import Shape
 from grader.robot.transforms import Rotation, Transform, Vector, rotation_from_rpy
 from tests.examples import examples
-from tests.report.drawing.shapes import POSES, ROTATIONS, SHAPES, contains, placed, scene_with, surface
+from tests.report.drawing.shapes import (
+    POSES,
+    ROTATIONS,
+    SHAPES,
+    contains,
+    placed,
+    scene_with,
+    surface,
+)
 
 DIRECTIONS = [np.array([cos(number * pi / 8.0), sin(number * pi / 8.0)]) for number in range(16)]
 
@@ -25,17 +33,23 @@ def panels(shapes: list[Shape], poses: list[Transform]) -> tuple[Panel, ...]:
 
 @pytest.mark.slow
 @given(SHAPES, POSES)
-@example(Box((0.5, 0.5, 0.5)), Transform(rotation_from_rpy((pi / 2.0, 2.0, 0.0))))  # edges above each other
+@example(
+    Box((0.5, 0.5, 0.5)), Transform(rotation_from_rpy((pi / 2.0, 2.0, 0.0)))
+)  # edges above each other
 @examples(10)
 def test_outline_is_that_of_the_sampled_surface(shape: Shape, pose: Transform) -> None:
     """The surface reaches as far as the outline in 16 directions of each view: to 0.3 % of a radius and a tenth of a pixel."""
     scene, points = scene_with([shape], [pose]), placed(pose, surface(shape))
     for panel in panels([shape], [pose]):
         drawn = np.array(panel.outline(scene.bodies[0]))
-        sampled = np.array([panel.place((x, y, z)) for x, y, z in points[:: max(1, len(points) // 3000)]])
+        sampled = np.array(
+            [panel.place((x, y, z)) for x, y, z in points[:: max(1, len(points) // 3000)]]
+        )
         size = np.ptp(drawn, axis=0).max()
         for direction in DIRECTIONS:
-            assert abs((sampled @ direction).max() - (drawn @ direction).max()) <= 0.2 + 0.003 * size
+            assert (
+                abs((sampled @ direction).max() - (drawn @ direction).max()) <= 0.2 + 0.003 * size
+            )
 
 
 @given(st.lists(st.tuples(st.integers(-9, 9), st.integers(-9, 9)), min_size=1, max_size=30))
@@ -59,7 +73,9 @@ def test_a_hull_is_convex_and_has_all_points_inside(points: list[tuple[int, int]
     st.integers(0, 2),
 )
 @examples(10)
-def test_shape_in_front_is_painted_last(shapes: list[tuple[Shape, Rotation, Vector]], view: int) -> None:
+def test_shape_in_front_is_painted_last(
+    shapes: list[tuple[Shape, Rotation, Vector]], view: int
+) -> None:
     """At the centre of each shape the one painted last is the one that a ray from the viewer meets first."""
     poses = [Transform(rotation, place) for _, rotation, place in shapes]
     scene = scene_with([shape for shape, _, _ in shapes], poses)

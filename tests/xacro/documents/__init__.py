@@ -24,7 +24,9 @@ def _documents(path: Path) -> Documents:
     """Return the documents of a table; `like` names a row of `shared` with the files of several documents."""
     rows = tomllib.loads(path.read_bytes().decode())
     shared = rows.pop("shared", {})
-    return {name: _document({**shared.get(row.get("like"), {}), **row}) for name, row in rows.items()}
+    return {
+        name: _document({**shared.get(row.get("like"), {}), **row}) for name, row in rows.items()
+    }
 
 
 GROUPS = {path.stem: _documents(path) for path in sorted(Path(__file__).parent.glob("*.toml"))}

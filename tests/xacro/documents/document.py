@@ -61,7 +61,9 @@ def shown(*texts: str) -> str:
     return "".join(f"<shown x={quoteattr(text)}/>" for text in texts)
 
 
-def expressions(listed: Iterable[str], before: str = "", undetermined: Dependence = "never") -> Documents:
+def expressions(
+    listed: Iterable[str], before: str = "", undetermined: Dependence = "never"
+) -> Documents:
     """Return one document for each expression, which is shown after what stands before it."""
     return {
         expression: Document(robot(before + shown(f"${{{expression}}}")), undetermined=undetermined)
