@@ -12,10 +12,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from grader.grading.grade import grade
-from grader.grading.rubric import load_rubric
+from grader.lab.grading.grade import grade
+from grader.lab.rubric.rubric import load_rubric
+from grader.lab.submission.opening import open_submission, read_submission
 from grader.report.formats import Format, render
-from grader.submission.opening import open_submission, read_submission
 
 ROOT = Path(__file__).resolve().parent.parent
 SAMPLES = (

@@ -76,8 +76,8 @@ def case(name: str, folder: Path) -> Counter[str]:
         one.run()
         return sampled(lambda: [one.run() for _ in range(1_000 if name == "warm" else 300)])
     if name == "worker":
-        from grader.classroom.batch_worker import ClassContext, Task, grade_all
-        from grader.grading.rubric import load_rubric
+        from grader.classroom.run.batch_worker import ClassContext, Task, grade_all
+        from grader.lab.rubric.rubric import load_rubric
 
         rubric, tasks = (
             load_rubric("lab6"),

@@ -15,13 +15,13 @@ from typing import NamedTuple
 from lxml import etree
 from timing import PACKAGE, ROOT, URDF, in_turn, repeated
 
-from grader.grading.grade import grade
-from grader.grading.report import Report
-from grader.grading.rubric import load_rubric
-from grader.python.budget import Budget
-from grader.submission.opening import open_submission, read_submission
-from grader.submission.urdf import Surroundings
-from grader.xacro.expansion import expand
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import Report
+from grader.lab.rubric.rubric import load_rubric
+from grader.lab.submission.opening import open_submission, read_submission
+from grader.ros.package.robot_file import Surroundings
+from grader.ros.python.budget import Budget
+from grader.ros.xacro.expansion import expand
 
 ZIPPED = ROOT / "submissions/lab6/equivalent-zipped-with-wrapper" / "lab6.zip"
 XACRO = ROOT / "submissions/lab6/equivalent-xacro-inertials/my_robot/urdf/my_robot.urdf.xacro"

@@ -11,10 +11,13 @@ from typing import get_args
 from rich.console import Console
 from rich.text import Text
 
-from grader.checks.registry import own_checks
-from grader.cli.explain import SchemaName
-from grader.grading.grade import grade
-from grader.grading.keys import (
+from grader.app.cli.explain import SchemaName
+from grader.app.commands.schemas import json_schema
+from grader.lab.checks.registry import own_checks
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import Report
+from grader.lab.hints.hinting import hinted
+from grader.lab.rubric.keys import (
     ADJUSTMENT,
     CARRIED,
     CRITERION,
@@ -26,9 +29,8 @@ from grader.grading.keys import (
     RUBRIC,
     TEST,
 )
-from grader.grading.report import Report
-from grader.grading.rubric import load_rubric
-from grader.hints.hinting import hinted
+from grader.lab.rubric.rubric import load_rubric
+from grader.lab.submission.opening import open_submission
 from grader.report.explanations import (
     EFFECTS,
     EVERY_KIND,
@@ -36,10 +38,8 @@ from grader.report.explanations import (
     example_blocks,
     explanation_of,
 )
-from grader.report.formats import json_schema
 from grader.report.json_data import to_json
-from grader.report.terminal import render_terminal
-from grader.submission.opening import open_submission
+from grader.report.writers.terminal import render_terminal
 
 KEYS = {
     "The rubric": RUBRIC,

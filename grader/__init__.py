@@ -10,21 +10,21 @@ from importlib import import_module
 __version__ = "0.9.0"
 
 _MODULES = {
-    "Configuration": "robot.kinematics",
-    "GraderError": "errors",
-    "Joint": "robot.model",
-    "Link": "robot.model",
-    "MissingElement": "errors",
-    "Reading": "robot.reader",
-    "Report": "grading.report",
-    "Result": "grading.report",
-    "Robot": "robot.model",
-    "Rubric": "grading.rubric",
-    "RubricError": "errors",
-    "Transform": "robot.transforms",
-    "grade": "api",
-    "load_rubric": "grading.rubric",
-    "read_urdf": "robot.reader",
+    "Configuration": "ros.urdf.kinematics",
+    "GraderError": "base.errors",
+    "Joint": "ros.urdf.model",
+    "Link": "ros.urdf.model",
+    "MissingElement": "base.errors",
+    "Reading": "ros.urdf.reader",
+    "Report": "lab.grading.report",
+    "Result": "lab.grading.report",
+    "Robot": "ros.urdf.model",
+    "Rubric": "lab.rubric.rubric",
+    "RubricError": "base.errors",
+    "Transform": "ros.urdf.transforms",
+    "grade": "app.api",
+    "load_rubric": "lab.rubric.rubric",
+    "read_urdf": "ros.urdf.reader",
 }
 __all__ = list(_MODULES)
 

@@ -1,11 +1,11 @@
-from grader.api import grade
-from grader.errors import GraderError, MissingElement, RubricError
-from grader.grading.report import Report, Result
-from grader.grading.rubric import Rubric, load_rubric
-from grader.robot.kinematics import Configuration
-from grader.robot.model import Joint, Link, Robot
-from grader.robot.reader import Reading, read_urdf
-from grader.robot.transforms import Transform
+from grader.app.api import grade
+from grader.base.errors import GraderError, MissingElement, RubricError
+from grader.lab.grading.report import Report, Result
+from grader.lab.rubric.rubric import Rubric, load_rubric
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Joint, Link, Robot
+from grader.ros.urdf.reader import Reading, read_urdf
+from grader.ros.urdf.transforms import Transform
 
 __all__ = [
     "Configuration",

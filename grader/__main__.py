@@ -6,7 +6,7 @@ import sys
 _NOT_GRADED, _INTERRUPTED = (
     2,
     130,
-)  # as in grader.commands.invocation, which is not imported for --version
+)  # as in grader.report.invocation, which is not imported for --version
 
 
 def main() -> None:
@@ -34,7 +34,7 @@ def _run(arguments: list[str]) -> int:
     # One command makes little garbage and ends soon; collecting it while modules load takes some 7
     # % of a run.
     gc.disable()
-    from grader.cli.app import run
+    from grader.app.cli.app import run
 
     return run(arguments)
 

@@ -144,13 +144,13 @@ def _process_state(
     with (
         patch.dict(os.environ, variables, clear=True),
         patch.object(sys, "argv", ["grader", *words]),
-        patch("grader.grading.rubric._validate", validated_once),
-        patch("grader.documents.collection.DocumentCollection._run", convert_here),
-        patch("grader.classroom.workers.pool.ProcessPool", _Pool),
-        patch("grader.classroom.workers.forks.start_server", bool),
+        patch("grader.lab.rubric.rubric._validate", validated_once),
+        patch("grader.lab.documents.collection.DocumentCollection._run", convert_here),
+        patch("grader.workers.pool.ProcessPool", _Pool),
+        patch("grader.workers.forks.start_server", bool),
         patch("os.fsync", os.fsync if is_preloaded() else bool),
         patch(
-            "grader.cli.streams._LINE_SECONDS", inf
+            "grader.app.cli.streams._LINE_SECONDS", inf
         ),  # no line depends on how busy the machine is
         _redirected(0, files[0]),
         _redirected(1, files[1]),

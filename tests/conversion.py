@@ -6,7 +6,7 @@ import warnings
 from types import SimpleNamespace
 from unittest.mock import patch
 
-from grader.documents import converter
+from grader.lab.documents import converter
 
 
 def convert_here(_documents: object, command: list[str], data: bytes) -> tuple[int, bytes]:

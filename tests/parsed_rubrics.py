@@ -4,7 +4,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from grader.grading import rubric, validation
+from grader.lab.rubric import rubric, validation
 
 _LONG = range(5_000, 100_000)  # bytes: what takes long, and is the same in many tests
 _read: Callable[[bytes, Path], validation.Validation] = vars(rubric)["_validate"].__wrapped__

@@ -6,7 +6,7 @@
 import sys
 from hashlib import sha256
 
-from grader.hints.hinting import hinted
+from grader.lab.hints.hinting import hinted
 from grader.report.formats import Format, render
 from tests.samples import SAMPLES
 

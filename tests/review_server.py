@@ -9,10 +9,10 @@ from pathlib import Path
 from threading import Thread
 from typing import Any, NamedTuple
 
-from grader.classroom.gradebook import Gradebook
-from grader.classroom.review_items import ReviewFilter
-from grader.commands.review_server import HOST, LocalServer, ReviewPage
-from grader.commands.review_session import ReviewSession
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.review_items import ReviewFilter
+from grader.classroom.review.review_server import HOST, LocalServer, ReviewPage
+from grader.classroom.review.review_session import ReviewSession
 
 _TIMEOUT = 60.0  # seconds, of a machine that is busy
 

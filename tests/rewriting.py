@@ -12,7 +12,7 @@ from random import Random
 from hypothesis import strategies as st
 from lxml import etree
 
-from grader.authoring.trees import (
+from grader.lab.authoring.trees import (
     add_joint,
     attribute_numbers,
     attribute_text,
@@ -25,9 +25,9 @@ from grader.authoring.trees import (
     pose,
     set_pose,
 )
-from grader.authoring.trees import split_joint as split
-from grader.robot.transforms import IDENTITY
-from grader.xml.parsing import Element
+from grader.lab.authoring.trees import split_joint as split
+from grader.ros.urdf.transforms import IDENTITY
+from grader.ros.xml.parsing import Element
 from tests.writing_style import Style
 
 Step = Callable[[st.DrawFn, Element], None]

@@ -10,7 +10,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from grader.grading.rubric import Rubric
+from grader.lab.rubric.rubric import Rubric
 from tests.sample_class import class_files, package_files
 from tests.samples import ROOT, RUBRICS, SAMPLES, Sample
 

@@ -4,13 +4,13 @@ from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
-from grader.authoring.samples import Sample as ExpectedSample
-from grader.authoring.samples import read_samples
-from grader.grading.grade import grade
-from grader.grading.report import Report
-from grader.grading.rubric import Rubric, load_rubric, shipped_rubrics
-from grader.submission.opening import open_submission
-from grader.submission.submission import Submission
+from grader.lab.authoring.samples import Sample as ExpectedSample
+from grader.lab.authoring.samples import read_samples
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import Report
+from grader.lab.rubric.rubric import Rubric, load_rubric, shipped_rubrics
+from grader.lab.submission.opening import open_submission
+from grader.lab.submission.submission import Submission
 
 ROOT = Path(__file__).parent.parent
 RUBRICS = {name: load_rubric(name) for name in shipped_rubrics()}

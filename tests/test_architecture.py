@@ -1,4 +1,4 @@
-"""A module imports from lower layers only, packages of one layer do not import each other, and there is no cycle."""
+"""A module imports from lower packages and rooms only, and there is no cycle."""
 
 import ast
 from collections.abc import Iterator
@@ -9,53 +9,96 @@ from pathlib import Path
 
 import pytest
 
-from grader.checks.registry import own_checks
+from grader.lab.checks.registry import own_checks
 
 ROOT = Path(__file__).parent.parent / "grader"
+# The packages, and the rooms inside each of them, from the bottom: what stands in one string does
+# not import each other.
 LAYERS = (
-    ("errors", "markup", "merge_conflicts", "text", "reuse", "pairing"),
-    ("source", "names"),
-    ("problems",),
-    ("files", "python", "xml"),
-    ("xacro", "robot", "documents", "package"),
-    ("submission",),
-    ("workspace",),
-    ("checks",),
-    ("grading",),
-    ("hints",),
-    ("authoring",),
-    ("classroom", "bundle"),
-    ("report",),
-    ("commands",),
-    ("cli", "api"),
-    ("__main__",),
+    "base",
+    "files",
+    "workers",
+    "ros",
+    "lab",
+    "report",
+    "classroom",
+    "app plugin",
+    "__main__",
 )
-# The packages that may import a library: each has one concern.
-LIBRARIES = {
-    "typer": {"cli"},
-    "rich": {"cli", "report", "commands"},
-    "lxml": {
+ROOMS = {
+    "base": ("errors markup merge_conflicts text reuse pairing", "source names", "problems"),
+    "ros": (
+        "known python xml",
+        "xacro urdf build",
+        "config",
+        "launch",
+        "package",
+        "workspace",
+    ),
+    "lab": (
         "documents",
-        "xml",
-        "report",
+        "submission",
+        "checks",
+        "rubric",
+        "grading",
+        "hints",
         "authoring",
-    },  # of Word; a report may be XML; a robot is rewritten as a tree
+    ),
+    "report": (
+        "locations screen json_data",
+        "criteria",
+        "content",
+        "drawing inspection",
+        "writers",
+        "pages",
+        "explanations formats",
+        "writing invocation",
+        "open_browser",
+    ),
+    "classroom": (
+        "tables",
+        "roster",
+        "results",
+        "marks",
+        "intake",
+        "run",
+        "gradebook",
+        "lms",
+        "reports",
+        "commands",
+        "review",
+    ),
+    "app": ("bundle", "commands", "cli api"),
+}
+# The packages, or rooms of them, that may import a library: each has one concern.
+LIBRARIES = {
+    "typer": {"app.cli"},
+    "rich": {"app", "report", "classroom"},
+    "lxml": {"lab.documents", "ros.xml", "report", "lab.authoring"},  # of Word; a report may be XML
     "jinja2": {"report"},
-    "markupsafe": {"report"},
-    "yaml": {"package", "xacro"},
-    "ast": {"python", "package", "hints", "authoring"},
-    "docx": {"documents"},
-    "pypdf": {"documents"},
-    "numpy": {"report", "robot"},
-    "tomllib": {"grading", "bundle", "package", "classroom", "workspace"},
-    "pebble": {"classroom"},
-    "distributed": {"classroom"},
-    "csv": {"classroom"},
+    "markupsafe": {"report", "classroom.review"},
+    "yaml": {"ros.config", "ros.launch", "ros.xacro"},
+    "ast": {"ros.python", "ros.build", "ros.launch", "ros.package", "lab.hints", "lab.authoring"},
+    "docx": {"lab.documents"},
+    "pypdf": {"lab.documents"},
+    "numpy": {"report", "ros.urdf"},
+    "tomllib": {
+        "lab.rubric",
+        "app.bundle",
+        "ros.known",
+        "ros.build",
+        "ros.launch",
+        "classroom.marks",
+        "report",
+    },
+    "pebble": {"workers"},
+    "distributed": {"workers"},
+    "csv": {"classroom.tables"},
 }
 
 
 def name_of(path: Path) -> str:
-    """Return the dotted name of a module: `grader.robot.reader`."""
+    """Return the dotted name of a module: `grader.ros.urdf.reader`."""
     parts = ("grader", *path.relative_to(ROOT).with_suffix("").parts)
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
@@ -78,24 +121,34 @@ def _imports(module: str) -> Iterator[str]:
             yield from names & MODULES.keys() or {node.module}
 
 
-def height(layers: tuple[tuple[str, ...], ...], name: str) -> int:
-    """Return the number of the layer that contains a package or module."""
-    return next(number for number, layer in enumerate(layers) if name in layer)
+def height(layers: tuple[str, ...], name: str) -> int:
+    """Return the number of the layer that contains a package or a room; -1 without one."""
+    return next((number for number, layer in enumerate(layers) if name in layer.split()), -1)
 
 
 def points_down(module: str, imported: str) -> bool:
-    """Return whether a module may import another: from lower layers, from its own package, and libraries in their packages."""
-    _, *first = module.split(".")
-    top, *second = imported.split(".")
-    if not first or top != "grader":
-        return not first or first[0] in LIBRARIES.get(top, {first[0]})
-    if not second or second[0] != first[0]:
-        return not second or height(LAYERS, second[0]) < height(LAYERS, first[0])
-    return True
+    """Return whether a module may import another: from lower packages, from lower rooms of its
+    own package, from its own room, and libraries in their packages.
+    """
+    _, *place = module.split(".")
+    top, *other = imported.split(".")
+    if not place:
+        return True
+    if top != "grader":
+        allowed = LIBRARIES.get(top)
+        return allowed is None or not allowed.isdisjoint({place[0], ".".join(place[:2])})
+    if not other:
+        return True
+    if other[0] != place[0]:
+        return height(LAYERS, other[0]) < height(LAYERS, place[0])
+    rooms = ROOMS.get(place[0])
+    if rooms is None or place[1:2] == other[1:2]:
+        return True
+    return height(rooms, other[1]) < height(rooms, place[1])
 
 
 def test_imports_point_down() -> None:
-    """No module imports from a higher layer or from another package of its own, and each library has its packages."""
+    """No module imports from a higher package or room, and each library has its packages."""
     found = [(module, imported) for module in MODULES for imported in imports(module)]
     assert [pair for pair in found if not points_down(*pair)] == []
 
@@ -120,16 +173,23 @@ def test_check_families_do_not_import_each_other() -> None:
 
 
 def test_every_package_has_a_layer() -> None:
-    """Every package and top-level module is in exactly one layer."""
-    named = list(chain.from_iterable(LAYERS))
-    assert sorted(named) == sorted(
-        {path.relative_to(ROOT).with_suffix("").parts[0] for path in MODULES.values()}
-        - {"__init__"}
-    )
+    """Every package, and every room of a package that has rooms, is in exactly one layer."""
+    places = {tuple(module.split(".")[1:3]) for module in MODULES} - {()}
+    packages = {place[0] for place in places}
+    assert sorted(" ".join(LAYERS).split()) == sorted(packages)
+    for package, layers in ROOMS.items():
+        rooms = {place[1] for place in places if place[0] == package and len(place) > 1}
+        assert sorted(" ".join(layers).split()) == sorted(rooms), package
 
 
 # What names its functions itself: the registry of checks, the commands of typer, the Python API.
-NAMED_BY_OTHERS = ("grader.checks.", "grader.cli.", "grader.api", "grader.__main__")
+NAMED_BY_OTHERS = (
+    "grader.lab.checks.",
+    "grader.plugin",
+    "grader.app.cli.",
+    "grader.app.api",
+    "grader.__main__",
+)
 
 
 @pytest.mark.slow
@@ -171,7 +231,7 @@ def defined_names(module: str) -> Iterator[str]:
 
 
 def used_names(path: Path) -> Iterator[str]:
-    """Yield the names that a module takes from others, `grader.names.near`: imported, or by way of an imported module."""
+    """Yield the names that a module takes from others, `grader.base.names.near`: imported, or by way of an imported module."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     modules: dict[str, str] = {}
     for node in ast.walk(tree):

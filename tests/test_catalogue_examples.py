@@ -9,18 +9,18 @@ from typing import Any
 
 import pytest
 
-from grader.checks.manual import MANUAL_CHECKS
-from grader.checks.meshes import mesh_problems
-from grader.checks.registry import own_checks
-from grader.grading.grade import grade
-from grader.grading.rubric import load_rubric
-from grader.package.found_problems import package_problems
+from grader.lab.checks.manual import MANUAL_CHECKS
+from grader.lab.checks.meshes import mesh_problems
+from grader.lab.checks.registry import own_checks
+from grader.lab.grading.grade import grade
+from grader.lab.rubric.rubric import load_rubric
+from grader.lab.submission.opening import open_submission
+from grader.lab.submission.submission import Lab, Submission
 from grader.report.explanations import EVERY_KIND, example_blocks, explanation
-from grader.submission.opening import open_submission
-from grader.submission.submission import Lab, Submission
-from grader.submission.urdf import Read
-from grader.workspace.name_problems import name_problems
-from grader.workspace.reading import read_agreement
+from grader.ros.package.found_problems import package_problems
+from grader.ros.package.robot_file import Read
+from grader.ros.workspace.name_problems import name_problems
+from grader.ros.workspace.reading import read_agreement
 from tests.checks.submissions import png
 from tests.command_line import ROOT
 from tests.oracles.check_urdf import check_urdf
@@ -162,7 +162,7 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(code: str, tmp_pa
         )
         found += package_problems(submission.package) if submission.package else []
         if code.startswith("REF"):
-            names = name_problems(read_agreement(submission))
+            names = name_problems(read_agreement(submission.workspace))
             found = [
                 it
                 for it in names

@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.batch_worker import ClassContext, Task, grade_all
-from grader.classroom.results import StoredResult
-from grader.classroom.roster import read_roster
-from grader.classroom.submissions import read_class
-from grader.grading.grade import grade
-from grader.submission.opening import read_submission
+from grader.classroom.intake.submissions import read_class
+from grader.classroom.results.results import StoredResult
+from grader.classroom.roster.roster import read_roster
+from grader.classroom.run.batch_worker import ClassContext, Task, grade_all
+from grader.lab.grading.grade import grade
+from grader.lab.submission.opening import read_submission
 from tests.examples import spread
 from tests.samples import LAB6, ROOT
 

@@ -14,17 +14,16 @@ import yaml
 from typer.main import get_command
 
 from grader import __version__
-from grader.authoring import rubric_test
-from grader.classroom.workers import pool
-from grader.cli import ending
-from grader.cli.app import COMMANDS, make_app
-from grader.documents import collection, converter, pictures
+from grader.app.cli import ending
+from grader.app.cli.app import COMMANDS, make_app
 from grader.files import limits
-from grader.grading.rubric import load_rubric, shipped_rubrics
-from grader.package import package
-from grader.python import budget, expressions, values
-from grader.robot import diagnostics
-from grader.submission import packages
+from grader.lab.authoring import rubric_test
+from grader.lab.documents import collection, converter, pictures
+from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
+from grader.ros.package import finding, package
+from grader.ros.python import budget, expressions, values
+from grader.ros.urdf import diagnostics
+from grader.workers import pool
 from tests.command_line import ROOT, run
 
 MIB = 1024 * 1024
@@ -186,7 +185,7 @@ LIMITS: dict[str, dict[str, tuple[float, ...]]] = {
         "| its first {} pages |": (converter.MAX_PAGES,),
         "| {} s; {} GiB of memory |": (collection.MAX_SECONDS, converter._MAX_MEMORY / MIB / 1024),
         "| `package.xml`; an RViz file | {} KiB; {} KiB |": (
-            packages._MAX_MANIFEST_SIZE / 1024,
+            finding._MAX_MANIFEST_SIZE / 1024,
             package._RVIZ_LIMIT / 1024,
         ),
         "| {} s of processor time; {} GiB of memory |": (

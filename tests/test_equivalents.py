@@ -9,11 +9,11 @@ from hypothesis import given, note
 from hypothesis import strategies as st
 from lxml import etree
 
-from grader.grading.grade import grade
-from grader.grading.report import Report
-from grader.grading.rubric import load_rubric
-from grader.submission.opening import read_submission
-from grader.xml.parsing import Element
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import Report
+from grader.lab.rubric.rubric import load_rubric
+from grader.lab.submission.opening import read_submission
+from grader.ros.xml.parsing import Element
 from tests.examples import examples
 from tests.rewriting import BEHAVING, Step, parse, rewritings, rewritten
 

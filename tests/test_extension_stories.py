@@ -71,8 +71,8 @@ REFERENCE = """\
 """
 FORMAT = '''"""A report as one line: the submission and its score."""
 
-from grader.grading.report import Report
-from grader.text import printable
+from grader.lab.grading.report import Report
+from grader.base.text import printable
 
 
 def render_line(report: Report) -> str:
@@ -132,13 +132,13 @@ def add_to_changelog(project: Path, line: str) -> None:
 def test_a_new_check(project: Path) -> None:
     """A check is a function, a line of the registry, a sample, an example and a line of the changelog; the catalogue is generated."""
     for file, text in (
-        ("grader/checks/appearance.py", CHECK),
+        ("grader/lab/checks/appearance.py", CHECK),
         ("docs/examples/checks.toml", EXAMPLE),
     ):
         with (project / file).open("a", encoding="utf-8") as family:
             family.write(text)
     replace(
-        project / "grader/checks/registry.py",
+        project / "grader/lab/checks/registry.py",
         "CHECKS = (\n",
         'CHECKS = (\n    "appearance.shows_cube",\n',
     )

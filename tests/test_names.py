@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.names import near
+from grader.base.names import near
 from tests.examples import examples
 
 SAME = [

@@ -12,13 +12,13 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import pytest
 
-from grader.checks.check import Check
-from grader.checks.outcome import Outcome, judged
-from grader.checks.registry import ENTRY_POINTS, check_names, find_check, own_checks
-from grader.errors import RubricError
-from grader.grading.rubric import load_rubric
+from grader.base.errors import RubricError
+from grader.lab.checks.check import Check
+from grader.lab.checks.outcome import Outcome, judged
+from grader.lab.checks.registry import ENTRY_POINTS, check_names, find_check, own_checks
+from grader.lab.rubric.rubric import load_rubric
 from grader.report.explanations import checks_text, explanation
-from grader.robot.kinematics import Configuration
+from grader.ros.urdf.kinematics import Configuration
 from tests.checks.cases import CASE, PACKAGE_CASE, PENDING_CASE
 from tests.checks.outcomes import AnyCheck, ask
 from tests.checks.submissions import REFERENCE

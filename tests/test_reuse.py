@@ -1,6 +1,6 @@
 """Equal small files are read once."""
 
-from grader.reuse import reuse
+from grader.base.reuse import reuse
 
 
 def test_equal_small_files_are_read_once() -> None:

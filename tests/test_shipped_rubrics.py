@@ -6,10 +6,10 @@ from decimal import Decimal
 
 import pytest
 
-from grader.commands.rubrics import DEFAULT_RUBRIC
-from grader.grading.grade import grade
-from grader.grading.rubric import Rubric
-from grader.submission.opening import read_submission
+from grader.lab.grading.grade import grade
+from grader.lab.rubric.rubric import Rubric
+from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
+from grader.lab.submission.opening import read_submission
 from tests.samples import ROOT, RUBRICS, SAMPLES
 from tests.test_architecture import MODULES
 
@@ -63,7 +63,7 @@ def test_the_code_knows_no_lab() -> None:
         for text in constants(ast.parse(path.read_text(encoding="utf-8")))
         if text in made_up
     ]
-    assert found == [("grader.commands.rubrics", DEFAULT_RUBRIC)]
+    assert found == [("grader.app.commands.rubrics", DEFAULT_RUBRIC)]
 
 
 # An example with a mistake for each family of names; what its robot may be is that of the other labs.

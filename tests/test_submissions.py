@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from grader.grading.grade import grade
-from grader.grading.rubric import load_rubric, shipped_rubrics
-from grader.submission.opening import open_submission
-from grader.submission.urdf import Read
+from grader.lab.grading.grade import grade
+from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
+from grader.lab.submission.opening import open_submission
+from grader.ros.package.robot_file import Read
 from tests.command_line import run
 from tests.sample_class import FOLDER, STUDENTS, TOP, package_files
 from tests.sample_files import generated, packages

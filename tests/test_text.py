@@ -1,6 +1,6 @@
 """Text for people: lists and counts in words."""
 
-from grader.text import counted, enumerated, first_lines
+from grader.base.text import counted, enumerated, first_lines
 
 
 def test_enumerated_names_all_items_or_counts_the_rest() -> None:

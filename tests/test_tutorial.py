@@ -10,9 +10,9 @@ from typing import Any
 import jsonschema
 import pytest
 
-from grader.checks.registry import find_check
-from grader.grading.keys import CRITERION, DEFAULTS, PART, RUBRIC
-from grader.grading.rubric import load_rubric
+from grader.lab.checks.registry import find_check
+from grader.lab.rubric.keys import CRITERION, DEFAULTS, PART, RUBRIC
+from grader.lab.rubric.rubric import load_rubric
 from tests.command_line import ROOT
 from tests.tutorial import PAGE, Step, follow
 

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from grader.grading.grade import grade
-from grader.grading.rubric import load_rubric
-from grader.submission.opening import open_submission
+from grader.lab.grading.grade import grade
+from grader.lab.rubric.rubric import load_rubric
+from grader.lab.submission.opening import open_submission
 from tests.command_line import ROOT
 from tests.work import limited_work
 

@@ -7,9 +7,9 @@ from xml.sax.saxutils import escape
 
 from lxml import etree
 
-from grader.xml.elements import FOREIGN
-from grader.xml.parsing import Element
-from grader.xml.urdf_format import PARTS
+from grader.ros.xml.elements import FOREIGN
+from grader.ros.xml.parsing import Element
+from grader.ros.xml.urdf_format import PARTS
 
 _COMMENTS = (
     "<!---->",

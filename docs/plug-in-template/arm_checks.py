@@ -2,9 +2,7 @@
 
 from math import hypot
 
-from grader.checks.outcome import Outcome, measured, place
-from grader.checks.toml_types import NonNegative
-from grader.robot.kinematics import Configuration
+from grader.plugin import Configuration, NonNegative, Outcome, measured, place
 
 
 def distance_between(

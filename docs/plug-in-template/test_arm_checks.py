@@ -3,9 +3,7 @@
 import pytest
 from arm_checks import distance_between
 
-from grader.errors import MissingElement
-from grader.robot.kinematics import Configuration
-from grader.robot.reader import read_urdf
+from grader import Configuration, MissingElement, read_urdf
 
 ARM = """<robot name="arm">
   <link name="base"/>

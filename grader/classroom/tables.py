@@ -18,9 +18,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from decimal import Decimal
 from typing import NamedTuple
 
-from grader.errors import InputError
+from grader.base.errors import InputError
+from grader.base.text import format_points
 from grader.files.reading import capped
-from grader.text import format_points
 
 SIZE_LIMIT = 16 * 1024 * 1024  # bytes
 _CELL_LIMIT = 1_000_000

@@ -20,12 +20,12 @@ from contextlib import AbstractContextManager, ExitStack
 from functools import partial
 from typing import IO, Any, Literal, NamedTuple
 
-from grader.errors import FileError, InputError, MachineError
+from grader.base.errors import FileError, InputError, MachineError
+from grader.base.text import printable_path
 from grader.files import limits
 from grader.files.limits import ignored_part, is_generated
 from grader.files.reading import advice_for, capped
 from grader.files.tree import IS_LINK, File, IgnoredFile, Tree, keep_small, make_tree, parents
-from grader.text import printable_path
 
 _MAX_NAME_LENGTH = 4096  # characters
 NOT_REGULAR = "is not a regular file, and was not read"

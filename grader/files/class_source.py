@@ -15,7 +15,8 @@ from itertools import islice
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, NamedTuple
 
-from grader.errors import FileError, InputError, MachineError
+from grader.base.errors import FileError, InputError, MachineError
+from grader.base.text import printable_path
 from grader.files import limits
 from grader.files.archive import (
     ARCHIVE_ERRORS,
@@ -39,7 +40,6 @@ from grader.files.limits import (
 from grader.files.opening import NOT_AN_ARCHIVE, archive_kind, outer_tree
 from grader.files.reading import open_regular, read_capped, read_error
 from grader.files.tree import IS_LINK, Tree, make_tree
-from grader.text import printable_path
 
 if TYPE_CHECKING:
     import hashlib

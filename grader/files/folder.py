@@ -9,12 +9,12 @@ from itertools import islice
 from operator import attrgetter
 from pathlib import Path
 
-from grader.errors import FileError, MachineError
+from grader.base.errors import FileError, MachineError
+from grader.base.text import printable_path
 from grader.files import limits
 from grader.files.limits import BUILD_FOLDERS, IGNORED_FOLDERS, ignored_part, is_generated
 from grader.files.reading import advice_for, read_capped, read_error, read_start, shown_below
 from grader.files.tree import IS_LINK, File, IgnoredFile, Tree, keep_small, make_tree
-from grader.text import printable_path
 
 _MAX_GENERATED = 10_000  # files of builds that are looked through for those of packages
 

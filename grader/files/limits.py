@@ -4,8 +4,8 @@ limits.
 Robots, packages and archives are known by their names.
 """
 
-from grader.errors import FileError, InputError
-from grader.text import size_text
+from grader.base.errors import FileError, InputError
+from grader.base.text import size_text
 
 ROBOT_ENDINGS = (".urdf", ".xacro")
 PACKAGE_FILES = frozenset({"package.xml", "setup.py"})

@@ -5,12 +5,12 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path, PurePosixPath
 
-from grader.errors import FileError, InputError
+from grader.base.errors import FileError, InputError
+from grader.base.text import printable_path
 from grader.files import limits
 from grader.files.limits import ARCHIVES, PACKAGE_FILES, ROBOT_ENDINGS
 from grader.files.reading import not_there, open_regular, read_error, read_start, shown_below
 from grader.files.tree import File, IgnoredFile, Tree, make_tree
-from grader.text import printable_path
 
 NOT_AN_ARCHIVE = "is not a readable archive: it is damaged or empty"
 _SIGNATURES = {

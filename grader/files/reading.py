@@ -15,9 +15,9 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from grader.errors import InputError, MachineError
+from grader.base.errors import InputError, MachineError
+from grader.base.text import printable_path, size_text
 from grader.files.limits import ROBOT_ENDINGS
-from grader.text import printable_path, size_text
 
 URDF_LIMIT = 1024 * 1024  # bytes
 # O_NONBLOCK: opening a FIFO would block. Anything but a regular file is refused before it is read.
@@ -180,7 +180,7 @@ def not_there(path: Path) -> InputError:
     """Return the error for a path that does not exist, with the existing name closest to its
     first wrong part.
     """
-    from grader.names import closest  # late: most paths are correct
+    from grader.base.names import closest  # late: most paths are correct
 
     wrong = path
     while wrong.name and not os.path.lexists(wrong.parent):

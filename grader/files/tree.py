@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple, Protocol
 
-from grader.errors import FileError, InputError
+from grader.base.errors import FileError, InputError
+from grader.base.text import size_text
 from grader.files import limits
 from grader.files.limits import ignored_part
-from grader.text import size_text
 
 IS_LINK = "is a symlink, and was not followed"
 _SMALL = 4096  # bytes

@@ -10,11 +10,20 @@ from decimal import Decimal
 from itertools import groupby
 from typing import NamedTuple
 
-from grader.checks.loading import urdf_loads
-from grader.checks.manual import picture_name, picture_named
-from grader.grading.criterion import worth
-from grader.grading.report import EvidenceResult, Report, Result
-from grader.problems import Problem
+from grader.base.problems import Problem
+from grader.base.text import (
+    counted,
+    counted_points,
+    enumerated,
+    first_lines,
+    format_points,
+    printable,
+    shell_quoted,
+)
+from grader.lab.checks.loading import urdf_loads
+from grader.lab.checks.manual import picture_name, picture_named
+from grader.lab.grading.report import EvidenceResult, Report, Result
+from grader.lab.rubric.criterion import worth
 from grader.report.criteria import (
     Answer,
     Entry,
@@ -35,16 +44,7 @@ from grader.report.criteria import (
     sum_text,
 )
 from grader.report.locations import location_text
-from grader.text import (
-    counted,
-    counted_points,
-    enumerated,
-    first_lines,
-    format_points,
-    printable,
-    shell_quoted,
-)
-from grader.xml.xml_problems import RECOVERED
+from grader.ros.xml.xml_problems import RECOVERED
 
 _REMARKS = ("Marked manually", "Corrected after grading", "Comments")
 UNDECIDED = "xacro that cannot be determined statically"

@@ -10,13 +10,20 @@ from decimal import Decimal
 from itertools import groupby
 from typing import Literal, NamedTuple, TypeVar
 
-from grader.checks.manual import MANUAL_CHECKS
-from grader.checks.outcome import Outcome
-from grader.grading.criterion import Criterion, worth
-from grader.grading.report import Hint, Report, Result
+from grader.base.source import Edits, Location
+from grader.base.text import (
+    by_name,
+    capitalised,
+    enumerated,
+    format_points,
+    printable,
+    signed_points,
+)
+from grader.lab.checks.manual import MANUAL_CHECKS
+from grader.lab.checks.outcome import Outcome
+from grader.lab.grading.report import Hint, Report, Result
+from grader.lab.rubric.criterion import Criterion, worth
 from grader.report.locations import SourceOf, excerpt_lines, location_text
-from grader.source import Edits, Location
-from grader.text import by_name, capitalised, enumerated, format_points, printable, signed_points
 
 _T = TypeVar("_T")
 _K = TypeVar("_K", bound=Hashable)

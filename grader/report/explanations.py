@@ -8,21 +8,21 @@ from functools import cache
 from string import digits
 from typing import Any
 
-from grader.checks.check import Check
-from grader.checks.registry import check_names, find_check, unused_checks
-from grader.errors import InputError
+from grader.base.errors import InputError
+from grader.base.names import did_you_mean
+from grader.base.problems import Kind
+from grader.base.text import enumerated, format_points, printable
 from grader.files.reading import shipped_folder
-from grader.grading.criterion import Criterion, worth
-from grader.grading.rubric import Rubric
-from grader.grading.toml_file import assignment, read_toml, toml_literal
-from grader.names import did_you_mean
-from grader.package.package_problems import PACKAGE_CATALOGUE
-from grader.problems import Kind
+from grader.lab.checks.check import Check
+from grader.lab.checks.registry import check_names, find_check, unused_checks
+from grader.lab.rubric.criterion import Criterion, worth
+from grader.lab.rubric.rubric import Rubric
+from grader.lab.rubric.toml_file import assignment, read_toml, toml_literal
 from grader.report.criteria import model_lines, sentence
-from grader.robot.urdf_problems import CATALOGUE
-from grader.text import enumerated, format_points, printable
-from grader.workspace.name_problems import NAME_CATALOGUE
-from grader.xacro.xacro_problems import XACRO_CATALOGUE
+from grader.ros.build.package_problems import PACKAGE_CATALOGUE
+from grader.ros.urdf.urdf_problems import CATALOGUE
+from grader.ros.workspace.name_problems import NAME_CATALOGUE
+from grader.ros.xacro.xacro_problems import XACRO_CATALOGUE
 
 _WIDTH = 80
 _MAX_SIMILAR = 6  # criteria that are named

@@ -8,13 +8,14 @@ from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal, Self
 
+from grader.base.text import without_commands
+from grader.report.json_data import schema_of
 from grader.report.screen import Screen, draw
-from grader.text import without_commands
 
 if TYPE_CHECKING:
-    from grader.grading.report import Report
+    from grader.base.source import Base
+    from grader.lab.grading.report import Report
     from grader.report.inspection import Inspection
-    from grader.source import Base
 
 _Need = Literal["", "console", "base", "identity"]
 
@@ -45,24 +46,29 @@ class Format(_FormatRow):
     of them.
     """
 
-    TERMINAL = "terminal", "terminal:render_terminal", "console", "txt"
-    MARKDOWN = "markdown", "markdown:render_markdown", "", "md"
-    JSON = "json", "as_json:render_json"
-    JUNIT = "junit", "junit:render_junit", "base", "xml"
-    GITHUB = "github", "annotations:render_github", "base", "github.txt"
-    GRADESCOPE = "gradescope", "platforms:render_gradescope", "", "gradescope.json"
-    CLASSROOM50 = "classroom50", "platforms:render_classroom50", "identity", "classroom50.json"
+    TERMINAL = "terminal", "writers.terminal:render_terminal", "console", "txt"
+    MARKDOWN = "markdown", "writers.markdown:render_markdown", "", "md"
+    JSON = "json", "writers.as_json:render_json"
+    JUNIT = "junit", "writers.junit:render_junit", "base", "xml"
+    GITHUB = "github", "writers.annotations:render_github", "base", "github.txt"
+    GRADESCOPE = "gradescope", "writers.platforms:render_gradescope", "", "gradescope.json"
+    CLASSROOM50 = (
+        "classroom50",
+        "writers.platforms:render_classroom50",
+        "identity",
+        "classroom50.json",
+    )
     HTML = "html", "pages.student:render_html"
-    SVG = "svg", "svg:render_svg"
+    SVG = "svg", "writers.svg:render_svg"
 
 
 class InspectFormat(_FormatRow):
     """The formats of an inspection."""
 
-    TERMINAL = "terminal", "inspection:inspection_terminal", "console"
-    JSON = "json", "inspection:inspection_json"
-    GITHUB = "github", "annotations:inspection_github"
-    SVG = "svg", "svg:inspection_svg"
+    TERMINAL = "terminal", "writers.inspection_terminal:inspection_terminal", "console"
+    JSON = "json", "writers.inspection_json:inspection_json"
+    GITHUB = "github", "writers.annotations:inspection_github"
+    SVG = "svg", "writers.svg:inspection_svg"
     HTML = "html", "pages.student:inspection_html"
 
 
@@ -75,23 +81,16 @@ class OutputFormat(StrEnum):
 
 # The object or the schema of each JSON document: its title, and where it is.
 _SCHEMAS = {
-    "report": ("report", "as_json:REPORT"),
-    "inspect": ("inspection", "inspection:INSPECTION"),
-    "rubric-test": ("rubric test", "rubric_test_result:RUBRIC_TEST"),
-    "class": ("class", "class_json:CLASS"),
-    "diff": ("diff", "class_json:DIFF"),
+    "report": ("report", "writers.as_json:REPORT"),
+    "inspect": ("inspection", "writers.inspection_json:INSPECTION"),
+    "rubric-test": ("rubric test", "writers.rubric_test_result:RUBRIC_TEST"),
 }
 
 
 def json_schema(name: str) -> dict[str, Any]:
-    """Return the schema of a report, rubric, inspection, class, diff or rubric test."""
-    from grader.grading.keys import rubric_schema
-
-    if name == "rubric":
-        return rubric_schema()
+    """Return the schema of a report, an inspection or a rubric test."""
     title, place = _SCHEMAS[name]
-    draft = "https://json-schema.org/draft/2020-12/schema"
-    return {"$schema": draft, "title": f"grader {title}", **_load(place).schema}
+    return schema_of(title, _load(place))
 
 
 def render(
@@ -136,11 +135,11 @@ def inputs_of(kind: Format, base: "Base | None" = None) -> tuple[object, ...]:
     """
     match kind.needs:
         case "base":
-            from grader.source import Base
+            from grader.base.source import Base
 
             return (base or Base(),)
         case "identity":
-            from grader.report.platforms import identity_from
+            from grader.report.writers.platforms import identity_from
 
             return (identity_from(os.environ),)
     return ()

@@ -7,44 +7,23 @@ from dataclasses import dataclass
 from itertools import islice
 from math import isfinite
 
-from rich.console import Console
-from rich.text import Text
-
-from grader.errors import MissingElement, NotDecided
-from grader.problems import Problem
-from grader.report.as_json import PROBLEM
+from grader.base.errors import MissingElement, NotDecided
+from grader.base.problems import Problem
+from grader.base.source import Base, Source
+from grader.base.text import counted, printable
 from grader.report.content import UNDECIDED, VERDICTS
 from grader.report.criteria import alike
-from grader.report.json_data import (
-    NUMBER,
-    TEXT,
-    JsonObject,
-    Many,
-    Maybe,
-    Schema,
-    array,
-    each,
-    mapping,
-    nullable,
-    schema_key,
-    to_json,
-)
-from grader.report.locations import calls_text
-from grader.report.terminal import INDENT, LOOKS, Page, block, excerpt_block
-from grader.robot.kinematics import Configuration
-from grader.robot.model import Joint
-from grader.robot.reader import Reading
-from grader.robot.transforms import Transform
-from grader.source import Base, Source
-from grader.text import counted, printable
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Joint
+from grader.ros.urdf.reader import Reading
+from grader.ros.urdf.transforms import Transform
 
-MAX_LISTED, _MAX_PROBLEMS = 500, 30  # links, or problems on a page; problems on a terminal
+MAX_LISTED = 500  # links, or problems on a page
 _MAX_INDENT = 60
-_EFFECTS = {
+EFFECTS = {
     **{verdict: text.replace("the file", "it") for verdict, text in VERDICTS.items()},
     "undecided": UNDECIDED,
 }
-_STYLES = dict(zip(_EFFECTS, ("green", "yellow", "bold red", "bold red"), strict=True))
 
 
 _NO_BASE = Base(is_outside=True)
@@ -113,94 +92,6 @@ def main_root(robot: Configuration) -> str | None:
     return next(iter(robot.main_tree), None)
 
 
-def _poses(inspection: Inspection) -> dict[str, list[list[float]] | None]:
-    """Return the poses of links as rows of numbers, rounded to 1e-12, because machines differ
-    beyond that.
-    """
-    poses = inspection.poses()
-    return {
-        name: _matrix_rows(pose) if isinstance(pose, Transform) else None for name, pose in poses
-    }
-
-
-def _matrix_rows(pose: Transform) -> list[list[float]]:
-    return [[round(value, 12) + 0.0 for value in row] for row in pose.matrix]
-
-
-def _vector(items: Schema, length: int) -> Schema:
-    return {**array(items), "minItems": length, "maxItems": length}
-
-
-_JOINT = JsonObject({**each(TEXT, "name type parent child"), "axis": nullable(_vector(NUMBER, 3))})
-_ROBOT = JsonObject(
-    {
-        "name": (TEXT, "robot.name"),
-        "root": (nullable(TEXT), main_root),
-        "links": (array(TEXT), lambda robot: [link.name for link in robot.robot.links]),
-        "joints": (Many(_JOINT), "robot.joints"),
-    }
-)
-INSPECTION = JsonObject(
-    {
-        **schema_key("grader/inspect/v1"),
-        "path": TEXT,
-        "verdict": (nullable({"enum": list(_EFFECTS)}), "verdict"),
-        "problems": Many(PROBLEM),
-        "robot": Maybe(_ROBOT),
-        "relative_to": nullable(TEXT),
-        "poses": (mapping(nullable(_vector(_vector(NUMBER, 4), 4))), _poses),
-    }
-)
-
-
-def inspection_json(inspection: Inspection) -> str:
-    """Return the inspection as JSON. An undefined pose is null."""
-    return to_json(INSPECTION.data(inspection))
-
-
-def inspection_terminal(inspection: Inspection, console: Console) -> None:
-    """Print the inspection."""
-    page = Page(console, [])
-    robot = inspection.robot
-    name = f"robot {robot.robot.name!r}" if robot is not None else "no robot"
-    verdict = (effect(inspection), _STYLES[inspection.verdict or "clean"])
-    page.inset(
-        Text.assemble((printable(inspection.path), "bold"), ": ", verdict, f", {printable(name)}"),
-        indent=0,
-    )
-    if inspection.problems:
-        page.title("Problems")
-        page.rows.extend(_problem_rows(console, inspection))
-    for title, rows in lists(inspection):
-        page.title(title)
-        for name, words in rows:
-            page.inset(Text.assemble(name, (words, "dim")))
-    page.print()
-
-
-def _problem_rows(console: Console, inspection: Inspection) -> Iterator[Text]:
-    """Yield problems with their code and location, errors with their source line."""
-    own = inspection.reading.source.path if inspection.reading is not None else ""
-    for problem in inspection.problems[:_MAX_PROBLEMS]:
-        where = problem.location
-        head = Text.assemble(
-            "  ", (f"{problem.code} {problem.severity:<7} ", LOOKS[problem.severity])
-        )
-        named = "" if where.path == own else f"{printable(where.path)}:"
-        message = Text.assemble(
-            (f"{named or 'line '}{where.line}{calls_text(where)}: ", "dim"),
-            printable(problem.message),
-        )
-        yield block(console, message, len(head), head)
-        source = inspection.source(where.path) if problem.severity == "error" else None
-        if source is not None:
-            yield excerpt_block(console, source, where, min(len(head), console.width // 5))
-    if len(inspection.problems) > _MAX_PROBLEMS:
-        yield block(
-            console, Text(f"... and {len(inspection.problems) - _MAX_PROBLEMS} more"), INDENT
-        )
-
-
 def lists(inspection: Inspection) -> Iterator[tuple[str, list[tuple[str, str]]]]:
     """Yield the links as a tree with their joints, and their poses: a title, and names with words
     about each.
@@ -234,7 +125,7 @@ def _first_rows(rows: Iterator[tuple[str, str]]) -> list[tuple[str, str]]:
 def effect(inspection: Inspection) -> str:
     """Return what ROS 2 does with a URDF; without one, how many names are wrong."""
     if inspection.verdict is not None:
-        return _EFFECTS[inspection.verdict]
+        return EFFECTS[inspection.verdict]
     return (
         f"{counted(len(inspection.names), 'problem')} of names"
         if inspection.names

@@ -11,7 +11,7 @@ from functools import cached_property
 from operator import attrgetter
 from typing import Any, TypeVar
 
-from grader.text import without_tag_commands
+from grader.base.text import without_tag_commands
 
 _ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
 _UNPRINTABLE = re.compile(r"[^\n -~]")  # or any other character that is not ASCII
@@ -232,6 +232,12 @@ def _optional(of: JsonObject, found: Any) -> dict[str, Any] | None:
 def inner(owner: str, keys: Mapping[str, KeyType]) -> dict[str, Key]:
     """Return keys that have the attributes of their names of an attribute of a value."""
     return {name: (kind, f"{owner}.{name}") for name, kind in keys.items()}
+
+
+def schema_of(title: str, described: "JsonObject") -> dict[str, Any]:
+    """Return the JSON Schema of a document."""
+    draft = "https://json-schema.org/draft/2020-12/schema"
+    return {"$schema": draft, "title": f"grader {title}", **described.schema}
 
 
 def schema_key(schema: str) -> dict[str, Key]:

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Sequence
 from difflib import SequenceMatcher
 from itertools import groupby
 
-from grader.source import Edit, Location, Source
-from grader.text import first_lines, printable
+from grader.base.source import Edit, Location, Source
+from grader.base.text import first_lines, printable
 
 # attribute, tag, word
 _MEANT = r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+"""

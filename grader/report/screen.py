@@ -5,7 +5,7 @@ import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.text import without_commands
+from grader.base.text import without_commands
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -3,7 +3,7 @@
 import tomllib
 from pathlib import Path
 
-from grader.grading.rubric import Rubric, load_rubric
+from grader.lab.rubric.rubric import Rubric, load_rubric
 
 ARM = (Path(__file__).parent / "birch.urdf").read_text(encoding="utf-8")
 CHANGES = tomllib.loads((Path(__file__).parent / "changes.toml").read_text(encoding="utf-8"))

@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 from grader.files.reading import URDF_LIMIT
-from grader.grading.grade import grade
-from grader.grading.rubric import Rubric, load_rubric
-from grader.submission.opening import open_submission
+from grader.lab.grading.grade import grade
+from grader.lab.rubric.rubric import Rubric, load_rubric
+from grader.lab.submission.opening import open_submission
 from tests.command_line import ROOT, Done, run
 from tests.workspace.carts import Edit, edited
 from tests.workspace.test_families import WRONG
@@ -145,7 +145,7 @@ def test_a_rubric_that_is_too_large_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The loader reads rubrics up to a size, so no larger one is written."""
-    monkeypatch.setattr("grader.commands.rubric_making.URDF_LIMIT", 1000)
+    monkeypatch.setattr("grader.app.commands.rubric_making.URDF_LIMIT", 1000)
     done = new(tmp_path, ARM)
     assert (done.returncode, b"too many facts for a rubric" in done.stderr) == (2, True)
     assert not (tmp_path / "lab.toml").exists()
@@ -381,7 +381,7 @@ def test_the_mistake_of_a_sample_costs_once(name: str, of_diffdrive: Rubric) -> 
 
 def test_more_values_of_a_node_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """In a comment that stays one if all lines become criteria."""
-    monkeypatch.setattr("grader.authoring.draft._MAX_VALUES", 1)
+    monkeypatch.setattr("grader.lab.authoring.draft._MAX_VALUES", 1)
     assert new(tmp_path, write_diffdrive(tmp_path)).returncode == 0
     text = (tmp_path / "lab.toml").read_text()
     assert "\n# # 1 more of drive_circle\n" in text

@@ -6,15 +6,15 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from grader.authoring.equivalents import Equivalent, RewritingRules, equivalents
-from grader.authoring.rubric_test import Trial
-from grader.authoring.trees import copied
-from grader.checks.check import EQUIVALENTS
-from grader.checks.registry import find_check
-from grader.robot.kinematics import Configuration, placed_by
-from grader.robot.model import Robot
-from grader.submission.opening import read_submission
-from grader.submission.urdf import Read
+from grader.lab.authoring.equivalents import Equivalent, RewritingRules, equivalents
+from grader.lab.authoring.rubric_test import Trial
+from grader.lab.authoring.trees import copied
+from grader.lab.checks.check import EQUIVALENTS
+from grader.lab.checks.registry import find_check
+from grader.lab.submission.opening import read_submission
+from grader.ros.package.robot_file import Read
+from grader.ros.urdf.kinematics import Configuration, placed_by
+from grader.ros.urdf.model import Robot
 from tests.authoring.robots import ARM, BOX, FRAME, TOP, rubric_in
 
 POSITIONS = (

@@ -2,12 +2,11 @@
 
 import pytest
 
-from grader.authoring.file_equivalents import file_equivalents
 from grader.files.tree import overlaid
-from grader.package.yaml_nodes import yaml_value
-from grader.submission.submission import Submission
-from grader.workspace.reading import read_agreement
-from grader.workspace.workspace import Workspace
+from grader.lab.authoring.file_equivalents import file_equivalents
+from grader.lab.submission.submission import Submission
+from grader.ros.config.yaml_nodes import yaml_value
+from grader.ros.workspace.reading import read_agreement
 from tests.workspace.carts import cart, cart_files
 
 DETECTOR = "cart_bringup/config/detector.yaml"
@@ -20,7 +19,7 @@ def workspace_with(detector: str) -> Submission:
 
 def parameters(submission: Submission) -> dict[str, list[object]]:
     """Return the values that nodes and controllers get, by their names."""
-    owners = Workspace(submission).parameter_owners
+    owners = submission.workspace.parameter_owners
     return {
         name: [{key: it.value for key, it in one.values.items()} for one in given]
         for name, given in owners.items()
@@ -46,7 +45,7 @@ def test_nodes_get_the_same_parameters_from_equivalents() -> None:
         )
         same = submission.reopen(changed)
         assert parameters(same) == parameters(submission)
-        assert read_agreement(same).mismatches == ()
+        assert read_agreement(same.workspace).mismatches == ()
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.authoring.mutants import mutants
+from grader.lab.authoring.mutants import mutants
 from tests.authoring.robots import ARM, CHANGES
 
 FOUND = {mutant.id: mutant for mutant in mutants(ARM, "birch.urdf")}

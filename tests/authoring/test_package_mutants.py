@@ -4,11 +4,11 @@ from collections.abc import Callable
 
 import pytest
 
-from grader.authoring.mutants import Mutant, package_mutants
 from grader.files.tree import overlaid
-from grader.grading.deciding import decide
-from grader.hints.edits import content
-from grader.submission.submission import Submission
+from grader.lab.authoring.mutants import Mutant, package_mutants
+from grader.lab.grading.deciding import decide
+from grader.lab.hints.edits import content
+from grader.lab.submission.submission import Submission
 from tests.authoring.robots import CHANGES
 from tests.samples import LAB6, reference
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from grader.authoring.equivalents import is_same_robot
-from grader.authoring.mutants import mutants
-from grader.submission.urdf import read_as_ros
+from grader.lab.authoring.equivalents import is_same_robot
+from grader.lab.authoring.mutants import mutants
+from grader.ros.package.robot_file import read_as_ros
 from tests.authoring.robots import ARM, CHANGES
 from tests.hints.behaviour import behaviour, differences
 from tests.hints.trials import BASES

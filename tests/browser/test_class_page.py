@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from pypdf import PdfReader
 
-from grader.classroom.gradebook import Gradebook
-from grader.commands.class_reports import write_class_page
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.reports.class_reports import write_class_page
 from tests.browser.conftest import OpenPage
 from tests.classroom.gradebooks import batch, lab_text, make_class, write_submission
 from tests.samples import ROOT

@@ -13,14 +13,14 @@ from pathlib import Path
 
 import pytest
 
-from grader.bundle import gradescope as installed
-from grader.bundle.gradescope import autograder_zip, package_files, requirements
-from grader.checks.check import describe
-from grader.checks.outcome import Outcome
-from grader.errors import InputError
+from grader.app.bundle import gradescope as installed
+from grader.app.bundle.gradescope import autograder_zip, package_files, requirements
+from grader.base.errors import InputError
 from grader.files.reading import sha256_of
-from grader.grading.rubric import load_rubric, shipped_rubrics
-from grader.robot.kinematics import Configuration
+from grader.lab.checks.check import describe
+from grader.lab.checks.outcome import Outcome
+from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
+from grader.ros.urdf.kinematics import Configuration
 from tests.bundle.gradescope import Autograder, environment_for, unpacked
 from tests.classroom.gradebooks import grader, lab_text, write_submission
 from tests.samples import LAB6, ROOT
@@ -54,7 +54,12 @@ def test_the_files(bundle: Path) -> None:
         if path.is_file()
     }
     assert reference
-    assert rendered == {*second, "grader/bundle/on_gradescope/run_autograder", *RUBRICS, *reference}
+    assert rendered == {
+        *second,
+        "grader/app/bundle/on_gradescope/run_autograder",
+        *RUBRICS,
+        *reference,
+    }
     assert {name for name in names if "rubrics/" in name} == {*RUBRICS, *reference}
     assert not [
         name for name in names if "__pycache__" in name or name.endswith(".pyc") or "tests" in name
@@ -96,7 +101,7 @@ def test_scripts_have_unix_lines(
     source: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Scripts have Unix line endings even if git checked them out with CRLF; bash accepts them."""
-    from grader.bundle import gradescope
+    from grader.app.bundle import gradescope
 
     for name in ("setup.sh", "run_autograder", "autograder.py"):
         (tmp_path / name).write_bytes((source / name).read_bytes().replace(b"\n", b"\r\n"))

@@ -6,8 +6,8 @@ from functools import partial
 from itertools import islice
 from typing import Any, Generic, TypeVar
 
-from grader.checks.check import Check
-from grader.checks.outcome import Outcome, Status
+from grader.lab.checks.check import Check
+from grader.lab.checks.outcome import Outcome, Status
 from tests.checks.robots import Scene
 from tests.checks.rows import edited, rows_of, submitted, tables
 from tests.checks.submissions import Submitted

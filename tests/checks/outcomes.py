@@ -9,15 +9,15 @@ from typing import Any
 
 import pytest
 
-from grader.checks.check import Subject, describe
-from grader.checks.outcome import Outcome
-from grader.errors import InputError, MissingElement
-from grader.grading.criterion import Criterion, Part
-from grader.grading.grade import grade
-from grader.grading.rubric import ReferenceSolution, Rubric
-from grader.robot.kinematics import Configuration
-from grader.robot.model import Robot
-from grader.submission.submission import Lab, Submission
+from grader.base.errors import InputError, MissingElement
+from grader.lab.checks.check import Subject, describe
+from grader.lab.checks.outcome import Outcome
+from grader.lab.grading.grade import grade
+from grader.lab.rubric.criterion import Criterion, Part
+from grader.lab.rubric.rubric import ReferenceSolution, Rubric
+from grader.lab.submission.submission import Lab, Submission
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Robot
 from tests.checks.robots import ARM, Scene
 from tests.checks.submissions import Submitted
 

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi, radians
 
-from grader.robot.kinematics import Configuration
-from grader.robot.reader import Reading, read_urdf
-from grader.submission.opening import read_submission
-from grader.submission.submission import Submission
+from grader.lab.submission.opening import read_submission
+from grader.lab.submission.submission import Submission
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.reader import Reading, read_urdf
 
 PATH = "urdf/robot.urdf"
 

@@ -12,11 +12,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from grader.checks.check import Check
-from grader.checks.registry import own_checks
-from grader.errors import MissingElement, NotDecided, RubricError
-from grader.robot.shapes import UnknownShape
-from grader.source import LazyLocation, Location
+from grader.base.errors import MissingElement, NotDecided, RubricError
+from grader.base.source import LazyLocation, Location
+from grader.lab.checks.check import Check
+from grader.lab.checks.registry import own_checks
+from grader.ros.urdf.shapes import UnknownShape
 from tests.checks.outcomes import AnyCheck, Arguments, NoSubject, ask, graded, own_message
 from tests.checks.robots import PATH, Scene
 from tests.checks.submissions import REFERENCE, Submitted

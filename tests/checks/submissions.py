@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from grader.errors import InputError
+from grader.base.errors import InputError
 from grader.files.tree import File, IgnoredFile, make_tree
-from grader.submission.opening import submission_of
-from grader.submission.submission import Lab, Submission
+from grader.lab.submission.opening import submission_of
+from grader.lab.submission.submission import Lab, Submission
 
 FOLDER = "my_robot"
 MANIFEST = "my_robot/package.xml"

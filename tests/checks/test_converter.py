@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from grader.checks.manual import answered
-from grader.checks.outcome import Outcome
-from grader.source import Location
-from grader.submission.submission import Opening
+from grader.base.source import Location
+from grader.lab.checks.manual import answered
+from grader.lab.checks.outcome import Outcome
+from grader.lab.submission.submission import Opening
 from tests.checks.outcomes import ask
 from tests.checks.submissions import REFERENCE, URDF, Submitted
 from tests.documents.files import docx
@@ -75,7 +75,7 @@ def test_without_the_readers_the_document_is_named(
     message = f"{name} could not be read on this machine: open it yourself"
     assert message in answer_in(ALONE.with_files({name: b""})).message
     monkeypatch.undo()
-    monkeypatch.setattr("grader.documents.converter.MISSING", 1)  # as a damaged document ends
+    monkeypatch.setattr("grader.lab.documents.converter.MISSING", 1)  # as a damaged document ends
     message = f"{name} is read only with the grader's extra `documents`: open it yourself"
     assert message in answer_in(ALONE.with_files({name: b"no document"})).message
 
@@ -89,7 +89,7 @@ TOO_LATE = (
 def converter(code: bytes, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Return a function that replaces the converter by other code."""
     path.write_bytes(code)
-    monkeypatch.setattr("grader.documents.converter.__file__", str(path))
+    monkeypatch.setattr("grader.lab.documents.converter.__file__", str(path))
 
 
 def test_all_documents_share_one_budget(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -98,7 +98,7 @@ def test_all_documents_share_one_budget(tmp_path: Path, monkeypatch: pytest.Monk
     converter(
         f"open({str(log)!r}, 'a').write('x')\n".encode() + SLOW, tmp_path / "slow.py", monkeypatch
     )
-    monkeypatch.setattr("grader.documents.collection.MAX_SECONDS", 0.5)
+    monkeypatch.setattr("grader.lab.documents.collection.MAX_SECONDS", 0.5)
     submitted = ALONE.with_files(
         {f"{name}.pdf": b"" for name in "abcd"} | {"e.txt": "Task 1 step 15: It vanishes."}
     )
@@ -118,10 +118,10 @@ def test_the_converter_bounds_its_own_processor_time(
 ) -> None:
     """The system stops a converter that the grader cannot stop."""
     code = f"import sys; sys.argv[2] = '1'; sys.path.insert(0, {str(ROOT)!r})\n"
-    code += "from grader.documents import converter\n"
+    code += "from grader.lab.documents import converter\n"
     code += "converter._pdf = lambda data: str(sum(0 for _ in iter(int, 1)))\nsys.exit(converter.main())"
     converter(code.encode(), tmp_path / "busy.py", monkeypatch)
-    monkeypatch.setattr("grader.documents.collection.MAX_SECONDS", 60.0)
+    monkeypatch.setattr("grader.lab.documents.collection.MAX_SECONDS", 60.0)
     message = answer_in(ALONE.with_files({"a.pdf": b""})).message
     assert "a.pdf was not read: the Word and PDF files take longer than 60 s in all" in message
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.checks.check import Documentation, documentation
+from grader.lab.checks.check import Documentation, documentation
 
 WHOLE = """A robot has wheels.
 

@@ -4,8 +4,8 @@ import re
 
 import pytest
 
-from grader.checks.check import describe
-from grader.checks.collisions import collides_as
+from grader.lab.checks.check import describe
+from grader.lab.checks.collisions import collides_as
 from tests.checks.cases import CASES, Case
 from tests.checks.outcomes import ask, graded, missing
 from tests.checks.robots import Scene, box, joint

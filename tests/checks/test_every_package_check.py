@@ -4,10 +4,10 @@ import sys
 
 import pytest
 
-from grader.checks.check import About, describe
-from grader.checks.outcome import Outcome, passed
-from grader.errors import InputError
-from grader.package.package import Package
+from grader.base.errors import InputError
+from grader.lab.checks.check import About, describe
+from grader.lab.checks.outcome import Outcome, passed
+from grader.ros.package.package import Package
 from tests.checks.cases import PACKAGE_CASES, Case
 from tests.checks.outcomes import ask, graded
 from tests.checks.submissions import (

@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from grader.grading.grade import grade
-from grader.grading.subjects import Subjects
-from grader.robot.reader import read_urdf
+from grader.lab.grading.grade import grade
+from grader.lab.grading.subjects import Subjects
+from grader.ros.urdf.reader import read_urdf
 from tests.samples import LAB6, opened
 
 NAMED = """

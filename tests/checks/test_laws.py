@@ -7,26 +7,26 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.checks.appearance import shows_box, shows_grey
-from grader.checks.collisions import collision_matches_visual
-from grader.checks.contact import clear_of
-from grader.checks.entries import entry_is
-from grader.checks.heights import bottom_at_height
-from grader.checks.inertia import inertia_plausible
-from grader.checks.joints import joint_axis
-from grader.checks.motion import axis_along, rolls_forward, turns_about_itself
-from grader.checks.placement import centre_at, frame_at
-from grader.checks.reference import kinematics_match_reference
-from grader.checks.structure import held_by
-from grader.checks.xacro_source import xacro_uses
-from grader.errors import MissingElement, NotDecided
-from grader.robot.kinematics import Configuration
-from grader.robot.mass_properties import turned as turned_inertia
-from grader.robot.mass_properties import uniform_solid
-from grader.robot.model import Box, Cylinder, Sphere
-from grader.robot.shapes import Shape
-from grader.robot.transforms import Transform, Vector, rotation_about, rotation_from_rpy
-from grader.xml.urdf_format import JOINT_TYPES
+from grader.base.errors import MissingElement, NotDecided
+from grader.lab.checks.appearance import shows_box, shows_grey
+from grader.lab.checks.collisions import collision_matches_visual
+from grader.lab.checks.contact import clear_of
+from grader.lab.checks.entries import entry_is
+from grader.lab.checks.heights import bottom_at_height
+from grader.lab.checks.inertia import inertia_plausible
+from grader.lab.checks.joints import joint_axis
+from grader.lab.checks.motion import axis_along, rolls_forward, turns_about_itself
+from grader.lab.checks.placement import centre_at, frame_at
+from grader.lab.checks.reference import kinematics_match_reference
+from grader.lab.checks.structure import held_by
+from grader.lab.checks.xacro_source import xacro_uses
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.mass_properties import turned as turned_inertia
+from grader.ros.urdf.mass_properties import uniform_solid
+from grader.ros.urdf.model import Box, Cylinder, Sphere
+from grader.ros.urdf.shapes import Shape
+from grader.ros.urdf.transforms import Transform, Vector, rotation_about, rotation_from_rpy
+from grader.ros.xml.urdf_format import JOINT_TYPES
 from tests.checks.cases import IN_XACRO
 from tests.checks.outcomes import Arguments, ask, fails, graded, passes
 from tests.checks.robots import (

@@ -5,9 +5,9 @@ from functools import partial
 
 import pytest
 
-from grader.checks.mesh_content import content_fault
-from grader.errors import InputError, NotDecided
+from grader.base.errors import InputError, NotDecided
 from grader.files.tree import File
+from grader.lab.checks.mesh_content import content_fault
 
 BINARY = b"\0" * 80 + struct.pack("<I", 1) + b"\0" * 50
 

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from grader.checks.check import describe
-from grader.checks.outcome import Outcome, judged
-from grader.grading.criterion import Criterion, Part
-from grader.grading.grade import grade
-from grader.grading.rubric import Rubric
-from grader.robot.kinematics import Configuration
-from grader.robot.model import Link, Robot
-from grader.submission.opening import read_submission
+from grader.lab.checks.check import describe
+from grader.lab.checks.outcome import Outcome, judged
+from grader.lab.grading.grade import grade
+from grader.lab.rubric.criterion import Criterion, Part
+from grader.lab.rubric.rubric import Rubric
+from grader.lab.submission.opening import read_submission
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Link, Robot
 
 MASS = """<robot name="r" xmlns:xacro="x">
 <link name="base_link"><inertial><mass value="$(env MASS)"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>

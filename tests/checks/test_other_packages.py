@@ -8,16 +8,16 @@ from typing import Any
 
 import pytest
 
-from grader.checks import registry
-from grader.checks.check import describe
-from grader.checks.outcome import Outcome, passed
-from grader.errors import InputError
-from grader.grading.criterion import Criterion, Part
-from grader.grading.grade import grade
-from grader.grading.keys import rubric_schema
-from grader.grading.rubric import Rubric
-from grader.robot.kinematics import Configuration
-from grader.submission.opening import read_submission
+from grader.base.errors import InputError
+from grader.lab.checks import registry
+from grader.lab.checks.check import describe
+from grader.lab.checks.outcome import Outcome, passed
+from grader.lab.grading.grade import grade
+from grader.lab.rubric.criterion import Criterion, Part
+from grader.lab.rubric.keys import rubric_schema
+from grader.lab.rubric.rubric import Rubric
+from grader.lab.submission.opening import read_submission
+from grader.ros.urdf.kinematics import Configuration
 from tests.checks.robots import BASE, PATH, scene
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.checks.registry import own_checks
+from grader.lab.checks.registry import own_checks
 from tests.checks.rows import CORPUS, Row, read_rows
 
 

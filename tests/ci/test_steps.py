@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.grading.rubric import load_rubric
+from grader.lab.rubric.rubric import load_rubric
 from tests.ci.conftest import git, repository
 from tests.ci.runner import Done, Runner, composite, load
 from tests.command_line import HANG_TIMEOUT, ROOT

@@ -18,7 +18,7 @@ from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
 
-from grader.cli.app import run as run_here
+from grader.app.cli.app import run as run_here
 from tests.command_line import GRADER, HANG_TIMEOUT, clean_environment, run, run_process
 from tests.samples import ROOT
 

@@ -3,7 +3,7 @@
 import subprocess
 from pathlib import Path
 
-from grader.grading.rubric import Rubric, read_rubric
+from grader.lab.rubric.rubric import Rubric, read_rubric
 from tests.command_line import clean_environment, run_with_input
 from tests.samples import ROOT
 

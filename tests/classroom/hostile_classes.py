@@ -22,10 +22,10 @@ from hypothesis import HealthCheck, seed, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
 
-from grader.classroom.class_files import open_class_submission
-from grader.classroom.roster import Roster, Student
-from grader.classroom.submissions import read_class
-from grader.errors import InputError
+from grader.base.errors import InputError
+from grader.classroom.intake.class_files import open_class_submission
+from grader.classroom.intake.submissions import read_class
+from grader.classroom.roster.roster import Roster, Student
 
 LAYOUTS = ("folders", "prefixed", "teams", "nbgrader", "moodle", "canvas")
 NAMES = ("alice", "bob", "cal")

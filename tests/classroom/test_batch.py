@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.gradebook import Gradebook
-from grader.commands.class_reports import report_of
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.reports.class_reports import report_of
 from grader.report.formats import Format, render
 from tests.classroom.class_runs import (
     class_with_roster,
@@ -51,7 +51,7 @@ def batch(path: Path, out: Path, *arguments: str, cwd: str = "") -> dict[str, by
 
 def reports_of(book: Path, reports: Path) -> dict[str, bytes]:
     """Return the reports in a folder by the key of their students."""
-    from grader.commands.class_reports import file_names
+    from grader.classroom.reports.class_reports import file_names
 
     names = file_names(sorted(verdicts(book)))
     found = contents(reports)

@@ -11,8 +11,8 @@ from random import Random
 
 import pytest
 
-from grader.classroom.results import ResultsWriter
-from grader.cli.app import run
+from grader.app.cli.app import run
+from grader.classroom.results.results import ResultsWriter
 from tests.classroom.class_runs import (
     HOSTILE_RUBRIC,
     WITH_HOSTILE,

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from grader.checks.outcome import Outcome, failed, how_far_off, judged, measured, measured_point
-from grader.classroom.batch_worker import ClassContext, Task, grade_all
-from grader.classroom.results import StoredResult
+from grader.classroom.results.results import StoredResult
+from grader.classroom.run.batch_worker import ClassContext, Task, grade_all
+from grader.lab.checks.outcome import Outcome, failed, how_far_off, judged, measured, measured_point
 from tests.classroom.class_runs import report_in_process
 from tests.samples import LAB6, ROOT
 

@@ -12,8 +12,8 @@ from unittest.mock import patch
 
 import pytest
 
-from grader.classroom.class_files import open_class_submission
-from grader.errors import InputError, MachineError
+from grader.base.errors import InputError, MachineError
+from grader.classroom.intake.class_files import open_class_submission
 from grader.files import reading
 from grader.files.folder import read_folder
 from grader.files.opening import outer_tree

@@ -7,9 +7,9 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.lateness import lateness, read_time
-from grader.classroom.roster import Student
-from grader.grading.rubric import Rubric
+from grader.classroom.roster.lateness import lateness, read_time
+from grader.classroom.roster.roster import Student
+from grader.lab.rubric.rubric import Rubric
 from tests.classroom.gradebooks import lab
 
 DUE = "due = 2026-09-10T12:00:00+02:00\n"

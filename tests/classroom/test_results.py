@@ -9,8 +9,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.results import Results, ResultsWriter, Run, StoredCriterion, StoredResult
-from grader.errors import GraderError, InputError, MachineError
+from grader.base.errors import GraderError, InputError, MachineError
+from grader.classroom.results.results import (
+    Results,
+    ResultsWriter,
+    Run,
+    StoredCriterion,
+    StoredResult,
+)
 from tests.examples import examples
 
 TEXT = st.text(st.characters(codec="utf-8"), max_size=8)

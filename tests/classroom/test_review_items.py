@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.gradebook import Gradebook
-from grader.classroom.results import digest_of
-from grader.classroom.review_items import ReviewFilter, review_items
-from grader.commands.review_session import ReviewSession
-from grader.errors import InputError
+from grader.base.errors import InputError
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.review_items import ReviewFilter, review_items
+from grader.classroom.results.results import digest_of
+from grader.classroom.review.review_session import ReviewSession
 from tests.checks.submissions import jpeg
 from tests.classroom.gradebooks import PNG, batch, grader, lab_text, urdf, write_submission
 from tests.documents.files import docx, pdf

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.roster import Student, iso_time, plain, read_roster
-from grader.errors import InputError
+from grader.base.errors import InputError
+from grader.classroom.roster.roster import Student, iso_time, plain, read_roster
 
 ROWS: list[dict[str, Any]] = tomllib.loads(
     Path(__file__).with_name("rosters.toml").read_text("utf-8")

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.gradebook_folder import (
+from grader.base.errors import InputError
+from grader.classroom.marks.gradebook_folder import (
     CLASS_FILE,
     ClassSettings,
     batch_lock,
@@ -16,7 +17,6 @@ from grader.classroom.gradebook_folder import (
     read_settings,
     settings_text,
 )
-from grader.errors import InputError
 from tests.examples import examples
 
 TEXT = st.text(st.characters(codec="utf-8"), max_size=8)

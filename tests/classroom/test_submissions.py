@@ -12,9 +12,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.roster import Roster, Student, letters, read_roster
-from grader.classroom.submissions import Intake, read_class
-from grader.errors import InputError
+from grader.base.errors import InputError
+from grader.classroom.intake.submissions import Intake, read_class
+from grader.classroom.roster.roster import Roster, Student, letters, read_roster
 from tests.classroom.hostile_classes import try_classes
 from tests.examples import examples
 from tests.work import limited_work

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.roster import Student
-from grader.classroom.typed_names import as_number, find_typed, number_in, read_points
-from grader.errors import InputError
+from grader.base.errors import InputError
+from grader.classroom.roster.roster import Student
+from grader.classroom.roster.typed_names import as_number, find_typed, number_in, read_points
 
 ASH = Student("s1", "Ash, Ann Marie", "ann.ash@example.org", "aash", canvas="101")
 BIRCH = Student("s2", "Jörg Birch-Müller", "JM@example.org", "jm2", moodle="77")

@@ -13,7 +13,7 @@ from zipfile import ZipFile
 
 import pytest
 
-from grader.classroom.gradebook import Gradebook
+from grader.classroom.gradebook.gradebook import Gradebook
 from tests.command_line import HANG_TIMEOUT, ROOT
 from tests.tutorial import Step, follow
 

@@ -41,5 +41,5 @@ def unwatched(monkeypatch: pytest.MonkeyPatch) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(
-        "grader.commands.watch.time", SimpleNamespace(sleep=interrupt, monotonic=time.monotonic)
+        "grader.app.commands.watch.time", SimpleNamespace(sleep=interrupt, monotonic=time.monotonic)
     )

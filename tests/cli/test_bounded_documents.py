@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.cli.app import run
-from grader.documents.converter import __file__ as converter
+from grader.app.cli.app import run
+from grader.lab.documents.converter import __file__ as converter
 from tests.classroom.class_runs import eventually, grader, newest, session_of, started
 from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
@@ -47,7 +47,7 @@ def test_a_slow_document_needs_manual_grading(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """It is not read, everything else has its result, and another document is read all the same."""
-    monkeypatch.setattr("grader.documents.collection.MAX_SECONDS", 1.0)
+    monkeypatch.setattr("grader.lab.documents.collection.MAX_SECONDS", 1.0)
     assert run(["grade", "--verbose", str(write_submission(tmp_path / "alice"))]) == 0
     shown = " ".join(capsys.readouterr().out.split())
     reason = "the Word and PDF files take longer than 1 s in all; needs manual grading"

@@ -254,7 +254,7 @@ def test_a_class_zip_of_archives_is_read_in_chunks(tmp_path: Path) -> None:
         )
     )
     code = (
-        "import sys; from grader.classroom.class_files import open_class_submission\n"
+        "import sys; from grader.classroom.intake.class_files import open_class_submission\n"
         "print(open_class_submission(sys.argv[1], ('ann.zip',), (), 'ann').digest)"
     )
     used = measured(sys.executable, "-c", code, tmp_path / "class.zip")

@@ -14,7 +14,7 @@ def test_without_the_extra_one_line_says_what_was_not_searched(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """If the packages for Word and PDF are not installed, a note names the document; its evidence is not called missing."""
-    monkeypatch.setattr("grader.documents.converter.MISSING", 1)  # as a damaged document ends
+    monkeypatch.setattr("grader.lab.documents.converter.MISSING", 1)  # as a damaged document ends
     (tmp_path / "report.pdf").write_bytes(b"no document")
     text = " ".join(run(("grade", tmp_path, "--verbose")).stdout.decode().split())
     reason = "report.pdf is read only with the grader's extra `documents`: open it yourself"

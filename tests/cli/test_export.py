@@ -9,12 +9,12 @@ from typing import Any
 
 import pytest
 
-from grader.classroom.workers.pool import WorkerError
-from grader.cli.streams import TERMINAL
-from grader.commands import class_reports
-from grader.commands.class_reports import ReportRun, write_reports
-from grader.errors import InputError
+from grader.app.cli.streams import TERMINAL
+from grader.base.errors import InputError
+from grader.classroom.reports import class_reports
+from grader.classroom.reports.class_reports import ReportRun, write_reports
 from grader.report.formats import Format
+from grader.workers.pool import WorkerError
 from tests.classroom.gradebooks import grader, refusal
 from tests.report.class_pages import ClassPageReader
 from tests.samples import ROOT
@@ -87,7 +87,7 @@ class FailingWorkers(Executor):
 def pages(error: Exception, top: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Write the pages of the class with workers that fail, and return what is said."""
     lines: list[str] = []
-    monkeypatch.setattr(class_reports, "Processes", lambda *_: FailingWorkers(error))
+    monkeypatch.setattr(class_reports, "Processes", lambda *_, **__: FailingWorkers(error))
     terminal = TERMINAL._replace(warn=lines.append)
     write_reports(ReportRun(top / "book", top / "pages", (Format.HTML,)), terminal)
     return lines

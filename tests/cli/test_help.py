@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from typer.main import get_command
 
-from grader.cli.app import COMMANDS, make_app
+from grader.app.cli.app import COMMANDS, make_app
 from tests.command_line import ROOT, run
 from tests.corpus.cases import read_corpus
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from grader.grading.hint_levels import LEVELS
+from grader.lab.rubric.hint_levels import LEVELS
 from tests.command_line import run
 from tests.samples import ROOT
 
@@ -172,8 +172,8 @@ def test_a_search_that_is_cut_off_is_reported(
     steps: int, reserve: int, written: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A note of every report, and the words of `--fix`, say that the budget ended the search."""
-    monkeypatch.setattr("grader.hints.search._MAX_GRADINGS", steps)
-    monkeypatch.setattr("grader.hints.search._RESERVE", reserve)
+    monkeypatch.setattr("grader.lab.hints.search._MAX_GRADINGS", steps)
+    monkeypatch.setattr("grader.lab.hints.search._RESERVE", reserve)
     note = "the search for hints ended at its limit: there may be more"
     assert note in graded(MISTAKES)["notes"]
     assert f"Note: {note}" in run(("grade", MISTAKES)).stdout.decode()
@@ -205,7 +205,10 @@ def _fail(*_: object, **__: object) -> None:
 
 @pytest.mark.parametrize(
     ("place", "failing"),
-    [("grader.hints.search.HintSearch.run", _fail), ("grader.hints.search.STAGES", (_fail,))],
+    [
+        ("grader.lab.hints.search.HintSearch.run", _fail),
+        ("grader.lab.hints.search.STAGES", (_fail,)),
+    ],
     ids=["run", "stages"],
 )
 def test_a_search_that_failed_has_its_own_sentence(
@@ -274,9 +277,9 @@ def test_what_is_missing_costs_no_other_hint(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("place", "failing"),
     [
-        ("grader.hints.package_edits.package_names", _fail),
-        ("grader.hints.generators.of_siblings", lambda *_: map(_fail, [1])),
-        ("grader.hints.search.missing_hints", _fail),
+        ("grader.lab.hints.package_edits.package_names", _fail),
+        ("grader.lab.hints.generators.of_siblings", lambda *_: map(_fail, [1])),
+        ("grader.lab.hints.search.missing_hints", _fail),
     ],
     ids=["of the package", "of the robot", "missing parts"],
 )

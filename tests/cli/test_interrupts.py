@@ -8,7 +8,7 @@ import pytest
 
 SCRIPT = """
 import signal, sys, time
-from grader.cli.ending import quiet_interrupts
+from grader.app.cli.ending import quiet_interrupts
 
 class Interrupted:
     def __del__(self):
@@ -44,7 +44,7 @@ def test_an_interrupt_that_is_repeated_too_early_is_not_lost() -> None:
     """On a busy machine it arrives in the hook that has asked for it."""
     start = "lambda self: Timer.start(self) if early else (early.append(1), signal.raise_signal(2))"
     timer = f"early = []; from threading import Timer; ending.Timer = type('Early', (Timer,), {{'start': {start}}})"
-    body = f"from grader.cli import ending; {timer}; Interrupted(); time.sleep(10)"
+    body = f"from grader.app.cli import ending; {timer}; Interrupted(); time.sleep(10)"
     assert ran(body) == ("interrupted\n", "")
 
 
@@ -85,7 +85,7 @@ def test_an_ignored_interrupt_stays_ignored() -> None:
 
 def test_the_handler_is_restored() -> None:
     """A caller in the same process gets its own handler back."""
-    from grader.cli.ending import quiet_interrupts
+    from grader.app.cli.ending import quiet_interrupts
 
     before = signal.getsignal(signal.SIGINT), sys.unraisablehook
     with quiet_interrupts():

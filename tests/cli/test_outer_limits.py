@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
-import grader.commands.hints_and_fix
-import grader.commands.inspect_urdf
-import grader.grading.subjects
-import grader.hints.hinting
-import grader.submission.opening
-from grader.cli import ending
-from grader.errors import OutOfTime
+import grader.app.commands.hints_and_fix
+import grader.app.commands.inspect_urdf
+import grader.lab.grading.subjects
+import grader.lab.hints.hinting
+import grader.lab.submission.opening
+from grader.app.cli import ending
+from grader.base.errors import OutOfTime
 from tests.command_line import ROOT, run
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX limits")
@@ -50,7 +50,7 @@ def test_reading_ends(
     """One line says which limit it was, and nothing was graded: exit code 2."""
     monkeypatch.setattr(ending, "_SECONDS", 1 if what is hang else 60)
     monkeypatch.setattr(ending, "_MEMORY", 512 * 1024**2)
-    monkeypatch.setattr(grader.submission.opening, "read_as_ros", what)
+    monkeypatch.setattr(grader.lab.submission.opening, "read_as_ros", what)
     done = run((command, URDF))
     assert (done.returncode, done.stdout, done.stderr) == (2, b"", b"grader: " + said + b"\n")
 
@@ -58,7 +58,7 @@ def test_reading_ends(
 def test_a_check_that_hangs_is_no_faulty_check(monkeypatch: pytest.MonkeyPatch) -> None:
     """The limit of time ends the command, not only the check."""
     monkeypatch.setattr(ending, "_SECONDS", 1)
-    monkeypatch.setattr(grader.grading.subjects.Subjects, "of", hang)
+    monkeypatch.setattr(grader.lab.grading.subjects.Subjects, "of", hang)
     done = run(("grade", URDF))
     assert (done.returncode, done.stderr) == (
         2,
@@ -75,7 +75,7 @@ def test_a_search_for_hints_costs_no_report(
     def stop(*_: object, **__: object) -> None:
         raise fault
 
-    monkeypatch.setattr(grader.commands.hints_and_fix, "hinted", stop)
+    monkeypatch.setattr(grader.app.commands.hints_and_fix, "hinted", stop)
     wrong = tmp_path / "my_robot.urdf"
     wrong.write_bytes(URDF.read_bytes().replace(b"0.15 0 0.225", b"0.15 0 0.3"))
     done = run(("grade", wrong))
@@ -102,7 +102,7 @@ def test_what_ignores_the_limit_is_ended(tmp_path: Path) -> None:
     """Work inside of one call into C, which no exception can interrupt, ends with the process."""
     program = tmp_path / "stuck.py"
     program.write_text(
-        "from grader.cli import ending\n"
+        "from grader.app.cli import ending\n"
         "ending._SECONDS, ending._GRACE = 1, 1\n"
         "with ending.outer_limits():\n"
         "    sum(range(10**12))\n"

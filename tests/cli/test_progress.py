@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.workers.queue import Progress as State
-from grader.cli import streams
+from grader.app.cli import streams
+from grader.workers.queue import Progress as State
 from tests.classroom.gradebooks import ENVIRONMENT, make_class
 from tests.samples import ROOT
 

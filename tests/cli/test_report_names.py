@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.commands.class_reports import file_names
+from grader.classroom.reports.class_reports import file_names
 
 AWKWARD = st.text(
     st.sampled_from('aA.-/\\:*?"<>| \u202e\u00e9e\u0301שß測😀\tcon01'), min_size=1, max_size=300

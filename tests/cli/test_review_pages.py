@@ -11,7 +11,7 @@ from urllib.parse import unquote, urlsplit
 
 import pytest
 
-from grader.commands.open_browser import opened_in_browser
+from grader.report.open_browser import opened_in_browser
 from tests.checks.submissions import png
 from tests.classroom.gradebooks import grader
 from tests.review_server import Review, marks_in, rows_of, running

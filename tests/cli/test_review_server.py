@@ -12,9 +12,9 @@ from urllib.request import urlopen
 
 import pytest
 
-from grader.classroom.gradebook import Gradebook
-from grader.commands import review_server
-from grader.commands.review_server import HOST, MAX_BODY
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.review import review_server
+from grader.classroom.review.review_server import HOST, MAX_BODY
 from tests.classroom.gradebooks import (
     ENVIRONMENT,
     PNG,
@@ -339,7 +339,7 @@ def test_faults_are_messages(review: Review, book: Path, monkeypatch: pytest.Mon
     assert 'href="end"' in review.get(str(ITEMS)).text
     (book / "marks" / "lee.csv").unlink()
     with monkeypatch.context() as patched:
-        patched.setattr("grader.report.pages.review_pages.item_page", lambda *_: 1 / 0)
+        patched.setattr("grader.classroom.review.review_pages.item_page", lambda *_: 1 / 0)
         found = review.get("1")
     assert (found.status, found.headers["content-type"]) == (500, "text/plain; charset=utf-8")
     assert found.text == "the grader failed on this request: ZeroDivisionError: division by zero\n"

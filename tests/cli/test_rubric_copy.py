@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.commands import rubrics
-from grader.grading.rubric import shipped_rubrics
+from grader.app.commands import rubrics
+from grader.lab.rubric.rubric import shipped_rubrics
 from tests.classroom.gradebooks import grader
 from tests.samples import ROOT, SAMPLES
 
@@ -43,7 +43,7 @@ def test_without_the_answers_no_line_names_them(
     shutil.copytree(ROOT / "rubrics/lab6", tmp_path / "lab6")
     (tmp_path / "lab6/answers.toml").unlink()
     monkeypatch.setattr(
-        "grader.grading.rubric.shipped_rubrics", lambda: {"lab6": tmp_path / "lab6/rubric.toml"}
+        "grader.lab.rubric.rubric.shipped_rubrics", lambda: {"lab6": tmp_path / "lab6/rubric.toml"}
     )
     assert "answers.toml" not in rubrics.copy("lab6", tmp_path / "copy")
     checked = grader("rubric", "check", tmp_path / "copy/lab6/rubric.toml")

@@ -8,10 +8,10 @@ from typing import Any
 import jsonschema
 import pytest
 
-from grader.checks.outcome import Outcome, judged
-from grader.checks.registry import find_check
-from grader.grading.rubric import shipped_rubrics
-from grader.robot.kinematics import Configuration
+from grader.lab.checks.outcome import Outcome, judged
+from grader.lab.checks.registry import find_check
+from grader.lab.rubric.rubric import shipped_rubrics
+from grader.ros.urdf.kinematics import Configuration
 from tests.authoring.robots import TOP, write_rubric
 from tests.command_line import Done, run
 from tests.samples import SAMPLES
@@ -105,7 +105,7 @@ def test_an_equivalent_that_loses_points_fails(
     assert frame_at is not None
     textual = frame_at._replace(function=is_written)
     monkeypatch.setattr(
-        "grader.grading.validation.find_check",
+        "grader.lab.rubric.validation.find_check",
         lambda name: textual if name == "frame_at" else find_check(name),
     )
     done = command(write_rubric(tmp_path, TOP + EXACT, SMALL))
@@ -132,7 +132,7 @@ def test_a_check_that_is_faulty_on_a_mutant_is_not_a_catch(
     assert frame_at is not None
     plain = frame_at._replace(function=divides)
     monkeypatch.setattr(
-        "grader.grading.validation.find_check",
+        "grader.lab.rubric.validation.find_check",
         lambda name: plain if name == "frame_at" else find_check(name),
     )
     found = data(write_rubric(tmp_path, TOP + EXACT, SMALL))

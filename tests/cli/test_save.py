@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.commands.writing import save
 from grader.report.formats import Format
+from grader.report.writing import save
 from tests.command_line import HANG_TIMEOUT, run
 from tests.report.reports import CLASSROOM50
 

@@ -60,7 +60,7 @@ def watch(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Rounds]:
         clock = SimpleNamespace(
             sleep=sleep, monotonic=time.monotonic, strftime=lambda _: "12:00:00"
         )
-        monkeypatch.setattr("grader.commands.watch.time", clock)
+        monkeypatch.setattr("grader.app.commands.watch.time", clock)
         done = run(("grade", "--watch", *map(str, arguments)))
         out, err = (stream.decode().split(NEXT) for stream in (done.stdout, done.stderr))
         assert (len(out), out[-1], err[-1]) == (len(edits) + 2, "", "grader: interrupted\n"), done

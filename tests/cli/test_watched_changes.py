@@ -5,9 +5,9 @@ from decimal import Decimal
 
 import pytest
 
-from grader.checks.outcome import Status
-from grader.commands.watch import comparison_lines
-from grader.grading.report import Report, Result
+from grader.app.commands.watch import comparison_lines
+from grader.lab.checks.outcome import Status
+from grader.lab.grading.report import Report, Result
 from tests.samples import SAMPLES
 
 SHORT = SAMPLES["lidar-offset-in-visual"].alone.grade()  # 64 of 70: lidar-frame fails

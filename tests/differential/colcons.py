@@ -9,10 +9,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from grader.files.folder import read_folder
-from grader.package.installation import Installation
-from grader.package.package import Package
-from grader.submission.packages import read_packages
-from grader.submission.submission import Lab
+from grader.ros.build.installation import Installation
+from grader.ros.package.finding import read_packages
+from grader.ros.package.package import Package
 from tests.differential.compared import Compared
 from tests.oracles.colcon_builds import IMPLIED, Build, build_all
 from tests.package.my_robot import write_package
@@ -44,7 +43,7 @@ def evaluated(folder: Path) -> tuple[Installation, str]:
 
 def package_in(folder: Path) -> Package:
     """Return the package in a folder."""
-    return read_packages(read_folder(folder), Lab("urdf/my_robot.urdf", "my_robot"))[0]
+    return read_packages(read_folder(folder), "urdf/my_robot.urdf", "my_robot")[0]
 
 
 def difference(build: Build, reported: Installation, ignored: str = "") -> str | None:

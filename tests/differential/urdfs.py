@@ -9,8 +9,8 @@ from functools import cache
 from pathlib import Path
 from random import Random
 
-from grader.robot.reader import read_urdf
-from grader.robot.urdf_problems import FORMAT_DIRECTIVE
+from grader.ros.urdf.reader import read_urdf
+from grader.ros.urdf.urdf_problems import FORMAT_DIRECTIVE
 from tests.differential.compared import Compared
 from tests.oracles.urdfdom import verdicts
 from tests.robot.edge_cases import EDGE_CASES

@@ -7,4 +7,4 @@ from tests.conversion import convert_here
 
 @pytest.fixture(autouse=True)
 def _convert_here(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("grader.documents.collection.DocumentCollection._run", convert_here)
+    monkeypatch.setattr("grader.lab.documents.collection.DocumentCollection._run", convert_here)

@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 
 import pytest
 
-from grader.checks.manual import answered
-from grader.checks.outcome import Outcome
-from grader.submission.submission import Submission
+from grader.lab.checks.manual import answered
+from grader.lab.checks.outcome import Outcome
+from grader.lab.submission.submission import Submission
 from tests.checks.submissions import REFERENCE, URDF, Submitted
 from tests.corpus.cases import read_corpus
 from tests.documents.files import PICTURE, docx, pdf

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from grader.documents.evidence import FoundEvidence, find_evidence
+from grader.lab.documents.evidence import FoundEvidence, find_evidence
 from tests.checks.submissions import REFERENCE, URDF, Submitted, png
 from tests.documents.files import PICTURE, docx, pdf
 

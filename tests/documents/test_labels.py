@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.documents.headings import matches, read_label
+from grader.lab.documents.headings import matches, read_label
 from tests.work import limited_work
 
 

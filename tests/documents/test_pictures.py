@@ -4,10 +4,10 @@ import struct
 
 import pytest
 
-from grader.documents import pictures
-from grader.documents.pictures import EmbeddedPicture, NotShown, read_picture
-from grader.errors import FileError
+from grader.base.errors import FileError
 from grader.files.tree import File
+from grader.lab.documents import pictures
+from grader.lab.documents.pictures import EmbeddedPicture, NotShown, read_picture
 
 SHOWN = {
     "PNG": b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR",

@@ -6,7 +6,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.commands.review_session import CONFIRMED
+from grader.classroom.review.review_session import CONFIRMED
 from tests.classroom.gradebooks import batch, grader, make_class, write_submission
 from tests.command_line import Done, run_process, run_with_input
 from tests.edits_rubric import copy_with_edits

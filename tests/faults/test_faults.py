@@ -13,10 +13,10 @@ from unittest.mock import patch
 
 import pytest
 
-from grader.classroom import batch_worker
-from grader.classroom.class_files import open_class_submission
-from grader.classroom.workers import pool
-from grader.classroom.workers.pool import Processes, WorkerError
+from grader.classroom.intake.class_files import open_class_submission
+from grader.classroom.run import batch_worker
+from grader.workers import pool
+from grader.workers.pool import Processes, WorkerError
 from tests.classroom.class_runs import newest
 from tests.classroom.gradebooks import batch, grader, make_class
 from tests.command_line import HANG_TIMEOUT, ROOT
@@ -28,7 +28,7 @@ needs_shim = pytest.mark.skipif(
 STUDENTS = ("anna", "ben", "cleo", "dora", "emil")
 _THREE_MARKS = """
 import sys
-from grader.cli.app import run
+from grader.app.cli.app import run
 from grader.__main__ import main
 for number in range(3):
     points, student = str(number % 4), sys.argv[2]  # each of a file: marks of two graders at one time are refused

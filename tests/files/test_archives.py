@@ -19,7 +19,7 @@ from random import Random
 
 import pytest
 
-from grader.errors import InputError
+from grader.base.errors import InputError
 from grader.files import limits
 from grader.files.archive import read_archive
 from grader.files.folder import read_folder

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.errors import InputError
+from grader.base.errors import InputError
 from grader.files.archive import read_archive
 from grader.files.class_source import ClassZip
 from grader.files.tree import Tree

@@ -9,16 +9,16 @@ from functools import cache, partial
 from itertools import combinations
 from pathlib import Path
 
+from grader.base.errors import RubricError
 from grader.classroom.lms.fill import FillOptions, fill
 from grader.classroom.lms.forms import FORMS
-from grader.classroom.roster import People, read_roster
+from grader.classroom.review import review_server
+from grader.classroom.review.review_server import LocalServer, ReviewPage
+from grader.classroom.review.review_session import ReviewSession
+from grader.classroom.roster.roster import People, read_roster
 from grader.classroom.tables import Table, TableRow, _split_rows, read_table
-from grader.commands import review_server
-from grader.commands.review_server import LocalServer, ReviewPage
-from grader.commands.review_session import ReviewSession
-from grader.errors import RubricError
-from grader.grading.grade import grade
-from grader.grading.rubric import read_rubric
+from grader.lab.grading.grade import grade
+from grader.lab.rubric.rubric import read_rubric
 from tests.classroom.gradebooks import ROSTER, batch, lab_text, make_class
 from tests.classroom.lms.lms_class import (
     CLASS,

@@ -5,15 +5,15 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from grader.classroom.submissions import read_class
-from grader.documents.answers import find_answer
-from grader.documents.collection import DocumentCollection, TextDocument
-from grader.documents.evidence import DOCUMENTS, find_evidence, read_labelled_files
-from grader.documents.pictures import EmbeddedPicture, read_picture
-from grader.errors import InputError
+from grader.base.errors import InputError
+from grader.classroom.intake.submissions import read_class
 from grader.files.archive import read_archive
 from grader.files.opening import archive_kind, with_inner
 from grader.files.tree import Tree, make_tree
+from grader.lab.documents.answers import find_answer
+from grader.lab.documents.collection import DocumentCollection, TextDocument
+from grader.lab.documents.evidence import DOCUMENTS, find_evidence, read_labelled_files
+from grader.lab.documents.pictures import EmbeddedPicture, read_picture
 from tests.checks.submissions import file_of, gif, jpeg, png
 from tests.files.archives import FILES, MAKERS, LinkMember, make_tar, make_zip
 from tests.fuzz.harness import GUARD, check_location, check_message, decoded, user_errors

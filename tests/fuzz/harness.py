@@ -9,9 +9,9 @@ from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple
 
-from grader.errors import GraderError
-from grader.source import Location
-from grader.text import printable
+from grader.base.errors import GraderError
+from grader.base.source import Location
+from grader.base.text import printable
 from tests.samples import ROOT
 
 FOLDER = Path(__file__).parent

@@ -3,15 +3,15 @@
 from collections.abc import Callable, Mapping
 from functools import partial
 
+from grader.base.source import Location
 from grader.files.tree import Tree, make_tree
-from grader.package.cmake.reader import read_cmake
-from grader.package.launch.reader import read_launch
-from grader.package.manifest import read_manifest
-from grader.package.rviz import read_rviz
-from grader.package.setup_py import read_setup
-from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
-from grader.python.parse import Position, parse
-from grader.source import Location
+from grader.ros.build.cmake.cmake_lists import read_cmake
+from grader.ros.build.manifest import read_manifest
+from grader.ros.build.setup_py import read_setup
+from grader.ros.config.rviz import read_rviz
+from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
+from grader.ros.launch.launch_file import read_launch
+from grader.ros.python.parse import Position, parse
 from tests.checks.submissions import file_of
 from tests.fuzz.harness import check_location, check_message, decoded
 from tests.package.launch_samples import Installed

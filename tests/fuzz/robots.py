@@ -8,21 +8,21 @@ from zlib import crc32
 
 from lxml import etree
 
-from grader.errors import MissingElement, NotDecided
-from grader.hints.edits import edited
-from grader.hints.xacro_edits import ExpandedEdits
-from grader.python.budget import Budget, OutOfBudget
-from grader.python.expressions import evaluate
-from grader.python.values import EvaluationFails, Undetermined
+from grader.base.errors import MissingElement, NotDecided
+from grader.base.source import Source
+from grader.lab.hints.edits import edited
+from grader.lab.hints.xacro_edits import ExpandedEdits
 from grader.report.formats import Format, InspectFormat, render_inspection
 from grader.report.inspection import Inspection, main_root
 from grader.report.screen import Screen
-from grader.robot.kinematics import Configuration
-from grader.robot.reader import Reading, read_urdf
-from grader.source import Source
-from grader.xacro.functions import GLOBALS, namespace, read_yaml_values
-from grader.xml.repair import repair
-from grader.xml.tinyxml2 import scan
+from grader.ros.python.budget import Budget, OutOfBudget
+from grader.ros.python.expressions import evaluate
+from grader.ros.python.values import EvaluationFails, Undetermined
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.reader import Reading, read_urdf
+from grader.ros.xacro.functions import GLOBALS, namespace, read_yaml_values
+from grader.ros.xml.repair import repair
+from grader.ros.xml.tinyxml2 import scan
 from tests.fuzz.harness import check_location, check_message, decoded, files_of
 from tests.report.harmless import is_harmless
 from tests.xacro.comparing import expand

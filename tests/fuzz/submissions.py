@@ -6,17 +6,17 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from unittest.mock import patch
 
-from grader.commands.hints_and_fix import add_hints, files_to_fix, write_fix
+from grader.app.commands.hints_and_fix import add_hints, files_to_fix, write_fix
+from grader.base.source import Base, Edit
+from grader.base.text import printable
 from grader.files.tree import make_tree
-from grader.grading.grade import grade
-from grader.grading.report import Hint, Report, Result
-from grader.grading.rubric import Rubric
-from grader.hints.search import gains_of
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import Hint, Report, Result
+from grader.lab.hints.search import gains_of
+from grader.lab.rubric.rubric import Rubric
+from grader.lab.submission.opening import read_submission, submission_of
+from grader.lab.submission.submission import Submission
 from grader.report.formats import Format, render
-from grader.source import Base, Edit
-from grader.submission.opening import read_submission, submission_of
-from grader.submission.submission import Submission
-from grader.text import printable
 from tests.checks.submissions import file_of
 from tests.fuzz.harness import GUARD, check_location, check_message, decoded, files_of, user_errors
 from tests.hints.trials import with_edits

@@ -2,10 +2,10 @@
 
 import pytest
 
-from grader.checks.outcome import failed
-from grader.grading.explanation import explain
-from grader.robot.reader import read_urdf
-from grader.source import Location
+from grader.base.source import Location
+from grader.lab.checks.outcome import failed
+from grader.lab.grading.explanation import explain
+from grader.ros.urdf.reader import read_urdf
 
 TEXT = '<robot name="a">\n<link name="x"><visual><orign/></visual></link>\n</robot>\n'
 

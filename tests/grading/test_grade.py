@@ -9,17 +9,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.checks.check import describe
-from grader.checks.outcome import Outcome, failed, passed
-from grader.errors import MissingElement
-from grader.grading.criterion import Adjustment, Carried, Criterion, Part
-from grader.grading.grade import grade
-from grader.grading.report import Report
-from grader.grading.rubric import Rubric
-from grader.robot.kinematics import Configuration
-from grader.robot.model import Mesh
-from grader.robot.shapes import UnknownShape
-from grader.submission.opening import read_submission
+from grader.base.errors import MissingElement
+from grader.lab.checks.check import describe
+from grader.lab.checks.outcome import Outcome, failed, passed
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import Report
+from grader.lab.rubric.criterion import Adjustment, Carried, Criterion, Part
+from grader.lab.rubric.rubric import Rubric
+from grader.lab.submission.opening import read_submission
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Mesh
+from grader.ros.urdf.shapes import UnknownShape
 from tests.examples import examples
 
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from grader.grading.grade import grade
-from grader.submission.opening import read_submission
+from grader.lab.grading.grade import grade
+from grader.lab.submission.opening import read_submission
 from tests.samples import LAB6, ROOT
 
 SAMPLES = (

@@ -6,23 +6,23 @@ from decimal import Decimal
 
 import pytest
 
-from grader.checks.loading import urdf_loads
-from grader.checks.manual import answered, evidence_shown
-from grader.checks.outcome import Outcome
-from grader.checks.registry import own_checks
-from grader.documents.pictures import EmbeddedPicture
-from grader.grading.criterion import Criterion
-from grader.grading.criterion_pictures import may_have_pictures, pictures_of
-from grader.grading.report import Result
-from grader.source import Location
-from grader.submission.submission import Opening
+from grader.base.source import Location
+from grader.lab.checks.loading import urdf_loads
+from grader.lab.checks.manual import answered, evidence_shown
+from grader.lab.checks.outcome import Outcome
+from grader.lab.checks.registry import own_checks
+from grader.lab.documents.pictures import EmbeddedPicture
+from grader.lab.grading.criterion_pictures import may_have_pictures, pictures_of
+from grader.lab.grading.report import Result
+from grader.lab.rubric.criterion import Criterion
+from grader.lab.submission.submission import Opening
 from tests.checks.submissions import Submitted, gif, png
 from tests.conversion import convert_here
 
 
 @pytest.fixture(autouse=True)
 def _convert_here(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("grader.documents.collection.DocumentCollection._run", convert_here)
+    monkeypatch.setattr("grader.lab.documents.collection.DocumentCollection._run", convert_here)
 
 
 STEP_8, STEP_18 = png(8, 8), png(18, 18)

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.errors import InputError, RubricError
-from grader.grading.rubric import Rubric, load_rubric, shipped_rubrics
+from grader.base.errors import InputError, RubricError
+from grader.lab.rubric.rubric import Rubric, load_rubric, shipped_rubrics
 from tests.command_line import ROOT
 from tests.examples import examples
 

@@ -9,8 +9,8 @@ from typing import Any
 import jsonschema
 import pytest
 
-from grader.checks.registry import check_names, own_checks
-from grader.grading.keys import (
+from grader.lab.checks.registry import check_names, own_checks
+from grader.lab.rubric.keys import (
     ADJUSTMENT,
     CARRIED,
     CRITERION,
@@ -22,7 +22,7 @@ from grader.grading.keys import (
     RUBRIC,
     TEST,
 )
-from grader.grading.rubric import load_rubric, shipped_rubrics
+from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
 from tests.command_line import ROOT, run
 from tests.corpus.cases import CORPUS, read_corpus
 

@@ -12,8 +12,8 @@ from statistics import mean
 from time import perf_counter
 from typing import NamedTuple
 
-from grader.authoring.mutants import mutants
-from grader.hints.hinting import message
+from grader.lab.authoring.mutants import mutants
+from grader.lab.hints.hinting import message
 from tests.hints.behaviour import behaviour, differences
 from tests.hints.students import MISTAKES
 from tests.hints.trials import BASES, Base, Hints, hints_for, text_after

@@ -5,11 +5,11 @@ from itertools import count
 
 import pytest
 
-from grader.grading.grade import grade
-from grader.hints.generators import Situation
-from grader.hints.hinting import hinted
-from grader.hints.search import _MAX_GRADINGS
-from grader.submission.opening import read_submission
+from grader.lab.grading.grade import grade
+from grader.lab.hints.generators import Situation
+from grader.lab.hints.hinting import hinted
+from grader.lab.hints.search import _MAX_GRADINGS
+from grader.lab.submission.opening import read_submission
 from tests.examples import spread
 from tests.hints.trials import BASES, graded, reference_draft, search_for
 from tests.samples import LAB6, ROOT, RUBRICS

@@ -2,10 +2,10 @@
 
 import pytest
 
-from grader.grading.grade import grade
-from grader.hints.hinting import hinted
+from grader.lab.grading.grade import grade
+from grader.lab.hints.hinting import hinted
+from grader.lab.submission.opening import read_submission
 from grader.report.content import failures
-from grader.submission.opening import read_submission
 from tests.hints.trials import BASES
 from tests.samples import LAB6, SAMPLES
 

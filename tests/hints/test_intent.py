@@ -5,10 +5,10 @@ from itertools import starmap
 
 import pytest
 
-from grader.grading.grade import grade
-from grader.hints.hinting import hinted
-from grader.submission.opening import read_submission
-from grader.submission.submission import Submission
+from grader.lab.grading.grade import grade
+from grader.lab.hints.hinting import hinted
+from grader.lab.submission.opening import read_submission
+from grader.lab.submission.submission import Submission
 from tests.hints.trials import BASES, hints_for
 from tests.samples import LAB6
 

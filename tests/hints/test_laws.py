@@ -7,15 +7,15 @@ from random import Random
 
 import pytest
 
-from grader.authoring.mutants import mutants
-from grader.grading.grade import grade
-from grader.grading.report import Report
-from grader.grading.rubric import Rubric
-from grader.hints.edits import content
-from grader.hints.hinting import fixed, hinted
-from grader.source import Edit
-from grader.submission.submission import Submission
-from grader.submission.urdf import Read
+from grader.base.source import Edit
+from grader.lab.authoring.mutants import mutants
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import Report
+from grader.lab.hints.edits import content
+from grader.lab.hints.hinting import fixed, hinted
+from grader.lab.rubric.rubric import Rubric
+from grader.lab.submission.submission import Submission
+from grader.ros.package.robot_file import Read
 from tests.hints.students import MISTAKES
 from tests.hints.trials import BASES, Base
 from tests.samples import LAB6, SAMPLES, reference

@@ -5,11 +5,11 @@ from random import Random
 
 import pytest
 
-from grader.hints.edits import FoundHint, edited_files
-from grader.hints.search import HintSearch
-from grader.submission.opening import read_submission
-from grader.submission.submission import Submission
-from grader.submission.urdf import Read
+from grader.lab.hints.edits import FoundHint, edited_files
+from grader.lab.hints.search import HintSearch
+from grader.lab.submission.opening import read_submission
+from grader.lab.submission.submission import Submission
+from grader.ros.package.robot_file import Read
 from tests.hints.broken_urdfs import BROKEN, REFERENCE, Broken
 from tests.hints.trials import graded, search_for
 from tests.samples import LAB6_SAMPLES, SAMPLES, opened

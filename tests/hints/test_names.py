@@ -5,13 +5,13 @@ from functools import cache
 
 import pytest
 
+from grader.base.source import Edits
 from grader.files.tree import overlaid
-from grader.grading.grade import grade
-from grader.grading.report import Report
-from grader.grading.rubric import Rubric, read_rubric
-from grader.hints.hinting import hinted
-from grader.hints.name_edits import name_proposals
-from grader.source import Edits
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import Report
+from grader.lab.hints.hinting import hinted
+from grader.lab.hints.name_edits import name_proposals
+from grader.lab.rubric.rubric import Rubric, read_rubric
 from tests.hints.trials import applied
 from tests.samples import RUBRICS, reference
 from tests.workspace.carts import FOLDER, cart, cart_files, edited

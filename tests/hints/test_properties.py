@@ -6,10 +6,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from grader.authoring.mutants import mutants
-from grader.grading.report import Result
-from grader.hints.edits import edited_files
-from grader.submission.opening import read_submission
+from grader.lab.authoring.mutants import mutants
+from grader.lab.grading.report import Result
+from grader.lab.hints.edits import edited_files
+from grader.lab.submission.opening import read_submission
 from tests.examples import examples
 from tests.hints.trials import BASES, applied, graded, search_for, with_edits
 from tests.rewriting import parse, rewritings

@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import pytest
 
-from grader.errors import InputError
+from grader.base.errors import InputError
+from grader.base.source import Edit
 from grader.files.tree import Tree, overlaid
-from grader.hints.edits import edited
-from grader.hints.search import HintSearch, Trials
-from grader.source import Edit
-from grader.submission.opening import read_submission
-from grader.submission.submission import Submission
+from grader.lab.hints.edits import edited
+from grader.lab.hints.search import HintSearch, Trials
+from grader.lab.submission.opening import read_submission
+from grader.lab.submission.submission import Submission
 from tests.hints.trials import graded, search_for
 from tests.samples import LAB6, RUBRICS, SAMPLES, reference
 

@@ -6,16 +6,16 @@ from functools import cache
 from itertools import count
 from typing import NamedTuple
 
-from grader.grading.grade import grade
-from grader.grading.report import Result
-from grader.grading.rubric import Rubric, load_rubric
-from grader.hints.edits import FoundHint, content, with_files
-from grader.hints.robot_draft import Draft
-from grader.hints.search import HintSearch, Trials
-from grader.source import Edit
-from grader.submission.opening import read_submission
-from grader.submission.submission import Submission
-from grader.submission.urdf import Read
+from grader.base.source import Edit
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import Result
+from grader.lab.hints.edits import FoundHint, content, with_files
+from grader.lab.hints.robot_draft import Draft
+from grader.lab.hints.search import HintSearch, Trials
+from grader.lab.rubric.rubric import Rubric, load_rubric
+from grader.lab.submission.opening import read_submission
+from grader.lab.submission.submission import Submission
+from grader.ros.package.robot_file import Read
 from tests.samples import LAB6, LAB6_SAMPLES, SAMPLES, reference
 
 

@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from grader.authoring.rubric_test import Trial, run_rubric_test
-from grader.grading.grade import grade
-from grader.grading.report import Report
-from grader.grading.rubric import Rubric, load_rubric
-from grader.submission.opening import open_submission
+from grader.lab.authoring.rubric_test import Trial, run_rubric_test
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import Report
+from grader.lab.rubric.rubric import Rubric, load_rubric
+from grader.lab.submission.opening import open_submission
 from tests.command_line import run
 from tests.examples import spread
 

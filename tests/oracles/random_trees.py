@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from grader.robot.kinematics import SINGLE, Configuration
-from grader.robot.model import Robot
-from grader.robot.reader import read_urdf
+from grader.ros.urdf.kinematics import SINGLE, Configuration
+from grader.ros.urdf.model import Robot
+from grader.ros.urdf.reader import read_urdf
 from tests.oracles.example_robots import MISSING
 
 pin: Any = pytest.importorskip("pinocchio", reason=MISSING)

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.robot.kinematics import Configuration
-from grader.robot.reader import read_urdf
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.reader import read_urdf
 from tests.oracles.check_urdf import check_urdf
 from tests.oracles.example_robots import MISSING, URDFS, each_robot
 

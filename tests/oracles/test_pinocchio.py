@@ -13,8 +13,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.robot.kinematics import Configuration
-from grader.robot.reader import read_urdf
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.reader import read_urdf
 from tests.examples import examples
 from tests.oracles.example_robots import each_robot
 from tests.oracles.random_trees import KINDS, difference, followed, joints_of, pin, random_tree

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.package.launch.model import Launch, LaunchFault, NamedFile
-from grader.package.launch.places import PREFIX
-from grader.package.launch.reader import read_launch
+from grader.ros.build.places import PREFIX
+from grader.ros.launch.launch_file import read_launch
+from grader.ros.launch.launch_model import Launch, LaunchFault, NamedFile
 
 SAMPLES = {
     path.name.removesuffix(".txt"): path

@@ -3,10 +3,9 @@
 import pytest
 
 from grader.files.tree import make_tree, overlaid
-from grader.package.entry_points import entry_fault
-from grader.package.package import Package
-from grader.submission.packages import read_packages
-from grader.submission.submission import Lab
+from grader.ros.package.entry_points import entry_fault
+from grader.ros.package.finding import read_packages
+from grader.ros.package.package import Package
 
 _SETUP = """
 from setuptools import setup
@@ -31,7 +30,7 @@ def package_of(scripts: str, **files: str) -> Package:
         make_tree("work", (), ()),
         {f"src/hub/{path}": text.encode() for path, text in texts.items()},
     )
-    [package] = read_packages(tree, Lab("urdf/hub.urdf"))
+    [package] = read_packages(tree, "urdf/hub.urdf")
     return package
 
 
@@ -115,6 +114,6 @@ def test_the_python_package_of_the_entry_point_may_be_missing_as_a_whole() -> No
     """An entry point in a Python package with the package's own name, which has no folder, is wrong."""
     package = package_of("'talk = hub.talker:main'")
     tree = package.tree.only(lambda path: not path.startswith("hub/"))
-    [renamed] = read_packages(tree, Lab("urdf/hub.urdf"))
+    [renamed] = read_packages(tree, "urdf/hub.urdf")
     fault = entry_fault(renamed, "talk")
     assert fault is not None and fault[0] == "there is no module hub.talker"

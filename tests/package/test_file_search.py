@@ -15,11 +15,11 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from grader.files.tree import File, Tree, make_tree
-from grader.package.file_search import ORDERS, PackageListing, file_functions
-from grader.python.interpreter import Interpreter
-from grader.python.library import standard_functions
-from grader.python.parse import Code, parse
-from grader.python.values import Undetermined, Unknown, Value
+from grader.ros.build.file_search import ORDERS, PackageListing, file_functions
+from grader.ros.python.interpreter import Interpreter
+from grader.ros.python.library import standard_functions
+from grader.ros.python.parse import Code, parse
+from grader.ros.python.values import Undetermined, Unknown, Value
 from tests.examples import examples, spread
 from tests.work import limited_work
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.package.launch.model import Launch
+from grader.ros.launch.launch_model import Launch
 from tests.examples import light
 from tests.package.launch_samples import FOLDER, SAMPLES, read, summarize, summarize_sample
 from tests.work import limited_work

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from grader.package.launch.reader import read_launch
+from grader.ros.launch.launch_file import read_launch
 from tests.command_line import ROOT
 from tests.package.launch_samples import Installed
 

@@ -4,10 +4,10 @@ from typing import Any
 
 import pytest
 
-from grader.package.launch.model import Launch
-from grader.package.launch.parameters import parameters_of
-from grader.package.launch.reader import read_launch
-from grader.python.values import Unknown
+from grader.ros.launch.launch_file import read_launch
+from grader.ros.launch.launch_model import Launch
+from grader.ros.launch.node_parameters import parameters_of
+from grader.ros.python.values import Unknown
 from tests.package.launch_samples import Installed, summarize
 
 PACKAGE = "share/arm_moveit_config"

@@ -3,10 +3,16 @@
 import pytest
 
 from grader.files.tree import make_tree, overlaid
-from grader.package.nodes import Endpoint, NodeParameter, PythonNode, PythonNodes, Timer, read_nodes
-from grader.python.values import Unknown
-from grader.submission.packages import read_packages
-from grader.submission.submission import Lab
+from grader.ros.package.finding import read_packages
+from grader.ros.package.python_nodes import (
+    Endpoint,
+    NodeParameter,
+    PythonNode,
+    PythonNodes,
+    Timer,
+    read_nodes,
+)
+from grader.ros.python.values import Unknown
 
 _SETUP = """
 from setuptools import setup
@@ -41,7 +47,7 @@ def nodes_of(text: str, **files: str) -> PythonNodes:
     tree = overlaid(
         make_tree("work", (), ()), {f"src/hub/{path}": it.encode() for path, it in texts.items()}
     )
-    [package] = read_packages(tree, Lab("urdf/hub.urdf"))
+    [package] = read_packages(tree, "urdf/hub.urdf")
     return read_nodes(package)
 
 
@@ -327,7 +333,7 @@ def test_a_script_that_cmake_installs_is_a_program(file: str, expected: list[str
     tree = overlaid(
         make_tree("work", (), ()), {f"src/hub/{path}": it.encode() for path, it in texts.items()}
     )
-    [package] = read_packages(tree, Lab("urdf/hub.urdf"))
+    [package] = read_packages(tree, "urdf/hub.urdf")
     found = [(it.name, [node.name for node in it.nodes]) for it in read_nodes(package).programs]
     assert found == ([(file, expected)] if expected else [])
 
@@ -335,7 +341,7 @@ def test_a_script_that_cmake_installs_is_a_program(file: str, expected: list[str
 def test_a_module_may_be_too_long_to_evaluate(monkeypatch: pytest.MonkeyPatch) -> None:
     """What is not read is a doubt."""
     text = _HEAD + _CLASS + "        self.create_client(Trigger, 'a' + 'b')\n" * 2000
-    monkeypatch.setattr("grader.python.constants._MAX_STEPS", 5_000)
+    monkeypatch.setattr("grader.ros.python.constants._MAX_STEPS", 5_000)
     assert "the module is too long to evaluate" in {it.reason for it in nodes_of(text).doubts}
 
 
@@ -345,5 +351,5 @@ def test_a_package_without_a_build_file_has_no_nodes() -> None:
         make_tree("work", (), ()),
         {"hub/package.xml": b"<package format='3'><name>hub</name></package>"},
     )
-    [package] = read_packages(tree, Lab("urdf/hub.urdf"))
+    [package] = read_packages(tree, "urdf/hub.urdf")
     assert read_nodes(package) == PythonNodes((), (), ())

@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
-from grader.package.launch.model import Launch, StartedNode
-from grader.package.launch.parameters import NodeParameters, controllers_of, parameters_of
-from grader.python.values import Unknown
+from grader.ros.launch.launch_model import Launch, StartedNode
+from grader.ros.launch.node_parameters import NodeParameters, controllers_of, parameters_of
+from grader.ros.python.values import Unknown
 from tests.package.launch_samples import Installed, read
 
 SHARE = "share/my_robot/config"

@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.package.rviz import RvizFile, read_rviz
+from grader.ros.config.rviz import RvizFile, read_rviz
 from tests.examples import spread
 from tests.work import limited_work
 

@@ -4,12 +4,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.errors import MissingElement, NotDecided
+from grader.base.errors import MissingElement, NotDecided
+from grader.base.source import Location
 from grader.files.tree import make_tree, overlaid
-from grader.package.trees import Entry, Search, is_path, read_tree, steps_of
-from grader.source import Location
-from grader.submission.packages import read_packages
-from grader.submission.submission import Lab
+from grader.ros.package.finding import read_packages
+from grader.ros.package.trees import Entry, Search, is_path, read_tree, steps_of
 from tests.examples import examples
 
 
@@ -19,7 +18,7 @@ def tree_of(text: str, file: str = "a.yaml") -> Entry:
     tree = overlaid(
         make_tree("work", (), ()), {f"hub/{path}": it.encode() for path, it in texts.items()}
     )
-    [package] = read_packages(tree, Lab("urdf/hub.urdf"))
+    [package] = read_packages(tree, "urdf/hub.urdf")
     return read_tree(package, file)
 
 

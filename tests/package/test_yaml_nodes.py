@@ -9,7 +9,7 @@ import yaml
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
+from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
 from tests.examples import examples
 from tests.work import limited_work
 

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.python.constants import Constants, constant_in
-from grader.python.parse import own_nodes
-from grader.python.values import SCALARS, Scope
+from grader.ros.python.constants import Constants, constant_in
+from grader.ros.python.parse import own_nodes
+from grader.ros.python.values import SCALARS, Scope
 from tests.examples import examples
 
 _NAMES = ("a", "b", "c")

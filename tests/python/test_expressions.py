@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.python.budget import Budget, OutOfBudget
-from grader.python.builtins import BUILTINS, MATH
-from grader.python.expressions import evaluate
-from grader.python.values import EvaluationFails, Undetermined, Value
+from grader.ros.python.budget import Budget, OutOfBudget
+from grader.ros.python.builtins import BUILTINS, MATH
+from grader.ros.python.expressions import evaluate
+from grader.ros.python.values import EvaluationFails, Undetermined, Value
 
 NAMES: dict[str, Value] = {
     **BUILTINS,

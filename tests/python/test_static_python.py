@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.files.tree import File, make_tree
-from grader.package.installation import Installation
-from grader.package.setup_py import read_setup
-from grader.python.parse import Code, parse
+from grader.ros.build.installation import Installation
+from grader.ros.build.setup_py import read_setup
+from grader.ros.python.parse import Code, parse
 from tests.examples import examples, spread
 from tests.package.my_robot import FILES
 from tests.work import limited_work

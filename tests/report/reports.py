@@ -3,11 +3,11 @@
 from decimal import Decimal
 from pathlib import Path
 
-from grader.checks.outcome import Outcome
-from grader.grading.grade import grade
-from grader.grading.report import Hint, ManualComment, ManualMark, Report
-from grader.grading.rubric import load_rubric, read_rubric
-from grader.source import Edit, Location
+from grader.base.source import Edit, Location
+from grader.lab.checks.outcome import Outcome
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import Hint, ManualComment, ManualMark, Report
+from grader.lab.rubric.rubric import load_rubric, read_rubric
 from tests.samples import LAB6, SAMPLES, opened
 
 # The variables that the runner of Classroom 50 sets for an autograder.

@@ -3,14 +3,14 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from grader.base.source import Location, Source
+from grader.base.text import printable
 from grader.files.tree import IgnoredFile
-from grader.grading.report import Hint, Report, Result
-from grader.package.package import Package
+from grader.lab.grading.report import Hint, Report, Result
+from grader.lab.submission.submission import Submission
 from grader.report.content import other_problems
-from grader.source import Location, Source
-from grader.submission.submission import Submission
-from grader.submission.urdf import Absent, OtherCandidate, Read, Urdf
-from grader.text import printable
+from grader.ros.package.package import Package
+from grader.ros.package.robot_file import Absent, OtherCandidate, Read, Urdf
 
 Words = Callable[[], str]
 

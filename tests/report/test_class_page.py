@@ -6,9 +6,9 @@ from urllib.parse import unquote
 
 import pytest
 
-from grader.classroom.gradebook import Gradebook
-from grader.commands.class_reports import write_class_page
-from grader.report.class_terminal import percent
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.reports.class_reports import write_class_page
+from grader.classroom.reports.class_words import percent
 from tests.classroom.gradebooks import batch, grader, lab_text, write_submission
 from tests.report.attacks import ATTACKS, make_attacked_class
 from tests.report.class_pages import ClassPageReader

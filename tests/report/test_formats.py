@@ -10,7 +10,7 @@ import pytest
 from junitparser import Error, Failure, Skipped
 from junitparser.xunit2 import JUnitXml
 
-from grader.grading.report import Report
+from grader.lab.grading.report import Report
 from grader.report.formats import Format, render
 from tests.report.readers import READERS
 from tests.report.reports import adjusted, half_points, marked

@@ -3,12 +3,12 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.grading.report import Report
-from grader.problems import Problem
-from grader.report.annotations import command, render_github
-from grader.robot.urdf_problems import UNDEFINED_MATERIAL
-from grader.source import Base, Location
-from grader.text import printable
+from grader.base.problems import Problem
+from grader.base.source import Base, Location
+from grader.base.text import printable
+from grader.lab.grading.report import Report
+from grader.report.writers.annotations import command, render_github
+from grader.ros.urdf.urdf_problems import UNDEFINED_MATERIAL
 from tests.report.readers import read_commands
 from tests.report.workflow_commands import Command
 from tests.samples import SAMPLES

@@ -2,10 +2,10 @@
 
 import pytest
 
-from grader.grading.report import ManualMark
+from grader.base.source import Edit, Source
+from grader.lab.grading.report import ManualMark
 from grader.report.formats import Format, render
 from grader.report.locations import diff_lines
-from grader.source import Edit, Source
 from tests.report.reports import hinted
 
 

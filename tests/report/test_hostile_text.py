@@ -12,10 +12,10 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from grader.grading.grade import grade
-from grader.grading.report import Report
+from grader.base.source import Base
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import Report
 from grader.report.formats import Format, InspectFormat, render
-from grader.source import Base
 from tests.command_line import run
 from tests.examples import examples, spread
 from tests.report.harmless import is_harmless

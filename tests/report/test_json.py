@@ -8,16 +8,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.grading.grade import grade
-from grader.grading.keys import rubric_schema
-from grader.grading.rubric import load_rubric
-from grader.report.as_json import render_json
-from grader.report.formats import json_schema
-from grader.report.inspection import Inspection, inspection_json, main_root
+from grader.app.commands.schemas import json_schema
+from grader.lab.grading.grade import grade
+from grader.lab.rubric.keys import rubric_schema
+from grader.lab.rubric.rubric import load_rubric
+from grader.lab.submission.opening import read_submission
+from grader.report.inspection import Inspection, main_root
 from grader.report.json_data import rounded, to_json
-from grader.robot.kinematics import Configuration
-from grader.robot.reader import read_urdf
-from grader.submission.opening import read_submission
+from grader.report.writers.as_json import render_json
+from grader.report.writers.inspection_json import inspection_json
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.reader import read_urdf
 from tests.robot.edge_cases import EDGE_CASES
 
 RUBRIC = load_rubric("lab6")

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from grader.grading.report import Report
-from grader.report.markdown import code, cut_markdown, escape, fence, render_markdown
-from grader.text import printable
+from grader.base.text import printable
+from grader.lab.grading.report import Report
+from grader.report.writers.markdown import code, cut_markdown, escape, fence, render_markdown
 from tests.report.hostile import TEXT
 from tests.report.readers import read_as_github, read_markdown
 from tests.samples import SAMPLES

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from grader.grading.grade import grade
-from grader.grading.report import Report
-from grader.hints.hinting import hinted
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import Report
+from grader.lab.hints.hinting import hinted
+from grader.lab.submission.opening import read_submission
 from grader.report.content import report_sections, result_line
 from grader.report.criteria import Entry
-from grader.submission.opening import read_submission
 from tests.report.reports import half_points
 from tests.samples import REPORTED, RUBRICS, SAMPLES
 

@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import html
 
+from grader.base.text import without_commands
 from grader.report.formats import Format, render
 from grader.report.pages.shell import Assets, render_page
-from grader.text import without_commands
 from tests.command_line import ROOT, run_with_input
 from tests.samples import SAMPLES
 
@@ -66,9 +66,9 @@ def test_grade_without_html_imports_nothing_of_it() -> None:
     """A cold `grade` loads neither the templates nor the pages."""
     program = """
 import sys
-from grader.cli.app import run
+from grader.app.cli.app import run
 assert run(["grade", "submissions/lab6/axis-negated", "--save", "markdown=/dev/null", "--save", "json=/dev/null"]) == 1
-loaded = [name for name in sys.modules if name.startswith(("jinja2", "markupsafe", "grader.report.pages", "grader.report.svg"))]
+loaded = [name for name in sys.modules if name.startswith(("jinja2", "markupsafe", "grader.report.pages", "grader.report.writers.svg"))]
 assert not loaded, loaded
 """
     subprocess.run([sys.executable, "-c", program], check=True, cwd=ROOT, stdout=subprocess.DEVNULL)

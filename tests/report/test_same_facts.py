@@ -10,11 +10,11 @@ from unittest.mock import patch
 
 import pytest
 
-from grader.grading.report import Report, Result
+from grader.base.text import format_points, printable
+from grader.lab.grading.report import Report, Result
 from grader.report.content import other_problems
 from grader.report.criteria import is_absent, is_not_found
 from grader.report.formats import Format, render
-from grader.text import format_points, printable
 from tests.report.readers import READERS, read_commands
 from tests.report.reports import adjusted
 from tests.samples import REPORTED, SAMPLES

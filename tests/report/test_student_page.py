@@ -9,13 +9,13 @@ from typing import Any
 import pytest
 from lxml import html
 
-from grader.grading.grade import grade
-from grader.grading.report import ManualMark, Report
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import ManualMark, Report
+from grader.lab.submission.opening import read_submission
+from grader.lab.submission.submission import Submission
 from grader.report.formats import Format, render
 from grader.report.pages.student import render_html
-from grader.submission.opening import read_submission
-from grader.submission.submission import Submission
-from grader.submission.urdf import Absent
+from grader.ros.package.robot_file import Absent
 from tests.report.reports import AXLE, hinted, marked
 from tests.samples import LAB6, ROOT, SAMPLES
 

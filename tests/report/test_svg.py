@@ -8,13 +8,13 @@ from typing import Any
 
 import pytest
 
+from grader.base.text import format_points
 from grader.report.drawing.picture import picture_of
 from grader.report.formats import Format, render
 from grader.report.inspection import Inspection, main_root
-from grader.report.svg import drawing_element, inspection_svg
-from grader.robot.kinematics import Configuration
-from grader.robot.reader import read_urdf
-from grader.text import format_points
+from grader.report.writers.svg import drawing_element, inspection_svg
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.reader import read_urdf
 from tests.command_line import run, run_with_input
 from tests.report.readers import read_svg
 from tests.robot.edge_cases import EDGE_CASES

@@ -8,15 +8,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
-from grader.grading.grade import grade
-from grader.grading.report import ManualMark, Report
-from grader.grading.rubric import load_rubric
-from grader.report.inspection import Inspection, inspection_terminal, main_root
-from grader.report.terminal import Page, excerpt_block, render_terminal
-from grader.robot.kinematics import Configuration
-from grader.source import Location, Source
-from grader.submission.opening import read_submission
-from grader.text import printable
+from grader.base.source import Location, Source
+from grader.base.text import printable
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import ManualMark, Report
+from grader.lab.rubric.rubric import load_rubric
+from grader.lab.submission.opening import read_submission
+from grader.report.inspection import Inspection, main_root
+from grader.report.writers.inspection_terminal import inspection_terminal
+from grader.report.writers.terminal import Page, excerpt_block, render_terminal
+from grader.ros.urdf.kinematics import Configuration
 from tests.samples import SAMPLES, opened
 
 URDF = "submissions/lab6/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from grader.robot.reader import read_urdf
+from grader.ros.urdf.reader import read_urdf
 from tests.oracles.check_urdf import check_urdf
 from tests.robot.edge_cases import EDGE_CASES, EdgeCase
 

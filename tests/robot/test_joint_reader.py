@@ -4,10 +4,10 @@ from math import isnan
 
 import pytest
 
-from grader.errors import MissingElement
-from grader.robot.kinematics import Configuration
-from grader.robot.model import Calibration, Dynamics, Joint, Limit, Mimic, SafetyController
-from grader.robot.reader import read_urdf
+from grader.base.errors import MissingElement
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Calibration, Dynamics, Joint, Limit, Mimic, SafetyController
+from grader.ros.urdf.reader import read_urdf
 from tests.robot.builders import joint, links, one_joint, robot
 
 

@@ -11,12 +11,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.errors import MissingElement
-from grader.robot.joint_reader import MOVING_TYPES
-from grader.robot.kinematics import SINGLE, Configuration
-from grader.robot.model import Joint, Link, Mimic, Origin, Robot
-from grader.robot.reader import read_urdf
-from grader.robot.transforms import (
+from grader.base.errors import MissingElement
+from grader.ros.urdf.joint_reader import MOVING_TYPES
+from grader.ros.urdf.kinematics import SINGLE, Configuration
+from grader.ros.urdf.model import Joint, Link, Mimic, Origin, Robot
+from grader.ros.urdf.reader import read_urdf
+from grader.ros.urdf.transforms import (
     IDENTITY,
     Transform,
     Vector,

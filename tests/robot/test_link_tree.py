@@ -4,10 +4,10 @@ from itertools import permutations
 
 import pytest
 
-from grader.robot.kinematics import Configuration
-from grader.robot.link_tree import parent_joints
-from grader.robot.model import Joint, Link, Robot
-from grader.robot.reader import read_urdf
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.link_tree import parent_joints
+from grader.ros.urdf.model import Joint, Link, Robot
+from grader.ros.urdf.reader import read_urdf
 
 
 def joint(name: str, parent: str, child: str) -> Joint:

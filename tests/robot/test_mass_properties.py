@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.robot.mass_properties import (
+from grader.ros.urdf.mass_properties import (
     MassProperties,
     Tensor,
     largest_difference,
@@ -18,9 +18,9 @@ from grader.robot.mass_properties import (
     turned,
     uniform_solid,
 )
-from grader.robot.model import Box, Cylinder, Sphere
-from grader.robot.shapes import Shape
-from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_from_rpy
+from grader.ros.urdf.model import Box, Cylinder, Sphere
+from grader.ros.urdf.shapes import Shape
+from grader.ros.urdf.transforms import IDENTITY, Transform, Vector, rotation_from_rpy
 
 _edge = st.floats(0.01, 3.0)
 _number = st.floats(-2.0, 2.0)

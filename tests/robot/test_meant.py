@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.robot.reader import read_urdf
+from grader.ros.urdf.reader import read_urdf
 
 JOINT = '<joint name="j{0}" type="fixed"><parent link="{1}"/><child link="{2}"/></joint>'
 

@@ -4,8 +4,8 @@ import re
 
 import pytest
 
-from grader.robot.normal_form import robot_hash
-from grader.robot.reader import read_urdf
+from grader.ros.urdf.normal_form import robot_hash
+from grader.ros.urdf.reader import read_urdf
 from tests.samples import LAB6, SAMPLES
 
 REFERENCE = (LAB6.path.parent / LAB6.reference / LAB6.urdf).read_text(encoding="utf-8")

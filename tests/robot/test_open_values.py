@@ -2,10 +2,10 @@
 
 import pytest
 
-from grader.errors import NotDecided
-from grader.robot.kinematics import Configuration
-from grader.robot.model import Joint, Link, Material, Robot, UnresolvedPart
-from grader.source import LazyLocation, Source
+from grader.base.errors import NotDecided
+from grader.base.source import LazyLocation, Source
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Joint, Link, Material, Robot, UnresolvedPart
 
 OPEN = UnresolvedPart(
     "the argument is not known", LazyLocation(Source("robot.urdf", "<robot/>"), 0)

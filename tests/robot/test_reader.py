@@ -7,11 +7,11 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from grader.errors import MissingElement
-from grader.robot.kinematics import Configuration
-from grader.robot.model import Origin
-from grader.robot.reader import Reading, read_urdf
-from grader.robot.urdf_problems import CATALOGUE
+from grader.base.errors import MissingElement
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Origin
+from grader.ros.urdf.reader import Reading, read_urdf
+from grader.ros.urdf.urdf_problems import CATALOGUE
 from tests.examples import examples, spread
 from tests.robot.builders import joint, links, robot
 from tests.robot.problem_samples import SAMPLES, ProblemSample

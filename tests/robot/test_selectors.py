@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.errors import MissingElement, NotDecided
-from grader.robot.link_tree import parent_joints, selected_name, selected_or_name
-from grader.robot.model import Joint, Link, Mimic, Robot
+from grader.base.errors import MissingElement, NotDecided
+from grader.ros.urdf.link_tree import parent_joints, selected_name, selected_or_name
+from grader.ros.urdf.model import Joint, Link, Mimic, Robot
 
 # base -fixed- mount -m1- upper -fixed- flange -m2- hand -fixed- tool, and a camera on the base
 ARM = ("bm:fixed", "mu:revolute", "uf:fixed", "fh:prismatic", "ht:fixed", "bc:fixed")

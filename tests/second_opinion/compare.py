@@ -11,14 +11,14 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from grader.authoring.rubric_test import Trial
-from grader.grading.grade import grade
-from grader.grading.report import Result
-from grader.grading.rubric import Rubric as GraderRubric
-from grader.grading.rubric import load_rubric
-from grader.robot.reader import read_urdf
-from grader.submission.opening import read_submission
-from grader.xml.xml_problems import RECOVERED
+from grader.lab.authoring.rubric_test import Trial
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import Result
+from grader.lab.rubric.rubric import Rubric as GraderRubric
+from grader.lab.rubric.rubric import load_rubric
+from grader.lab.submission.opening import read_submission
+from grader.ros.urdf.reader import read_urdf
+from grader.ros.xml.xml_problems import RECOVERED
 from tests.second_opinion.elements import Unclear
 from tests.second_opinion.opinion import Opinion, Rubric
 from tests.second_opinion.robot import Robot

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.hints.edits import content
-from grader.submission.urdf import Read
+from grader.lab.hints.edits import content
+from grader.ros.package.robot_file import Read
 from tests.examples import spread
 from tests.samples import SAMPLES
 from tests.second_opinion.compare import (

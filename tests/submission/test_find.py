@@ -8,17 +8,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.errors import InputError
+from grader.base.errors import InputError
 from grader.files.tree import File, Tree, make_tree
-from grader.grading.grade import grade
-from grader.package.package import Package
-from grader.submission.labs import LabFolders
-from grader.submission.opening import open_submission, submission_of
-from grader.submission.packages import find_packages, read_packages
-from grader.submission.robots import find_robots
-from grader.submission.selection import UrdfChoice, UrdfSearch
-from grader.submission.submission import DEFAULTS, Lab
-from grader.submission.urdf import OtherCandidate
+from grader.lab.grading.grade import grade
+from grader.lab.submission.labs import LabFolders
+from grader.lab.submission.opening import open_submission, submission_of
+from grader.lab.submission.selection import UrdfChoice, UrdfSearch
+from grader.lab.submission.submission import DEFAULTS, Lab
+from grader.ros.package.finding import find_packages, read_packages
+from grader.ros.package.package import Package
+from grader.ros.package.robot_file import OtherCandidate
+from grader.ros.package.robots import find_robots
 from tests.samples import LAB6, ROOT
 from tests.work import limited_work
 
@@ -67,7 +67,13 @@ def find_urdf(tree: Tree, urdf: str) -> UrdfChoice:
     """Return which robot of a tree is graded."""
     robots = find_robots(tree, urdf.rpartition("/")[2])
     lab = Lab(urdf, "my_robot", links=frozenset({"base_link"}))
-    found = UrdfSearch(tree, lab, LabFolders([]), DEFAULTS, read_packages(tree, lab)).choose(robots)
+    found = UrdfSearch(
+        tree,
+        lab,
+        LabFolders([]),
+        DEFAULTS,
+        read_packages(tree, lab.urdf, lab.package, lab.packages),
+    ).choose(robots)
     return found._replace(reading=None)
 
 
@@ -462,7 +468,7 @@ def packages(expected: str, names: dict[str, str | None]) -> tuple[Package, ...]
         )
         for folder, name in names.items()
     ]
-    return read_packages(make_tree("upload", files, ()), Lab("", expected))
+    return read_packages(make_tree("upload", files, ()), "", expected)
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import pytest
 
-from grader.submission.labs import Belonging, LabFolders
+from grader.lab.submission.labs import Belonging, LabFolders
 from tests.submission.trees import BOX, PICTURE, ROBOT, manifest, others, package, submission
 
 OTHER_LAB = "it is in the folder of another lab"

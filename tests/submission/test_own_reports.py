@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.grading.grade import grade
+from grader.lab.grading.grade import grade
 from grader.report.formats import Format, render
 from tests.samples import LAB6, ROOT, opened
 

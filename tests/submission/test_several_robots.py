@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import pytest
 
-from grader.submission.labs import is_part
+from grader.lab.submission.labs import is_part
 from tests.submission.trees import BOX, PICTURE, ROBOT, manifest, package, submission
 
 LAB = {"lab", "6"}

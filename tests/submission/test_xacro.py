@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from grader.grading.grade import grade
-from grader.submission.opening import read_submission
-from grader.submission.submission import Submission
-from grader.submission.urdf import Read
+from grader.lab.grading.grade import grade
+from grader.lab.submission.opening import read_submission
+from grader.lab.submission.submission import Submission
+from grader.ros.package.robot_file import Read
 from tests.samples import LAB6, opened
 
 REFERENCE = (LAB6.path.parent / LAB6.reference / LAB6.urdf).read_text(encoding="utf-8")

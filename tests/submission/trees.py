@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from functools import partial
 
 from grader.files.tree import File, make_tree
-from grader.submission.opening import submission_of
-from grader.submission.submission import Lab, Submission
+from grader.lab.submission.opening import submission_of
+from grader.lab.submission.submission import Lab, Submission
 
 FOLDERS = ("Lab6",)
 ROBOT = b"<?xml version='1.0'?><robot name='my_robot'><link name='base_link'/></robot>"

@@ -5,10 +5,10 @@ from functools import cache
 from pathlib import Path
 
 from grader.files.tree import make_tree, overlaid
-from grader.submission.opening import submission_of
-from grader.submission.submission import Lab, Submission
-from grader.workspace.names import Agreement, Mismatch
-from grader.workspace.reading import read_agreement
+from grader.lab.submission.opening import submission_of
+from grader.lab.submission.submission import Lab, Submission
+from grader.ros.workspace.names import Agreement, Mismatch
+from grader.ros.workspace.reading import read_agreement
 
 Edit = tuple[str, str, str]  # the end of a path, and a text there that occurs once, with a new one
 FOLDER = Path(__file__).parent.parent / "corpus" / "given" / "cartkit" / "src"
@@ -49,7 +49,7 @@ def cart(texts: Mapping[str, str], lab: Lab = LAB) -> Submission:
 
 def agreement_of(texts: Mapping[str, str]) -> Agreement:
     """Return what does not agree in these files."""
-    return read_agreement(cart(texts))
+    return read_agreement(cart(texts).workspace)
 
 
 def sure(found: Agreement) -> list[Mismatch]:

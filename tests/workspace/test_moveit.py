@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from grader.files.tree import make_tree, overlaid
-from grader.submission.opening import submission_of
-from grader.submission.submission import Lab
-from grader.workspace.reading import read_agreement
+from grader.lab.submission.opening import submission_of
+from grader.lab.submission.submission import Lab
+from grader.ros.workspace.reading import read_agreement
 
 _ARM = Path(__file__).parent.parent / "corpus" / "given" / "moveit" / "arm"
 _CONTROLLERS = """\
@@ -61,7 +61,7 @@ def found_in(
     }
     texts = {path: text.encode() for path, text in {**_FILES, **changed}.items() if text}
     tree = overlaid(make_tree("arm", (), ()), {**files, **texts})
-    found = read_agreement(submission_of(tree, "arm", Lab(urdf)))
+    found = read_agreement(submission_of(tree, "arm", Lab(urdf)).workspace)
     return [
         it.message
         for it in found.mismatches

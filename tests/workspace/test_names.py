@@ -1,7 +1,7 @@
 """A name that is used has to be defined: definitions and uses made by hand."""
 
-from grader.source import Location
-from grader.workspace.names import (
+from grader.base.source import Location
+from grader.ros.workspace.names import (
     Agreement,
     Compared,
     Correction,

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.hints.name_edits import correction_edits
-from grader.source import Edit
-from grader.workspace.names import FAMILY_OF, Correction, Family, Use
-from grader.workspace.reading import read_facts
+from grader.base.source import Edit
+from grader.lab.hints.name_edits import correction_edits
+from grader.ros.workspace.names import FAMILY_OF, Correction, Family, Use
+from grader.ros.workspace.reading import read_facts
 from tests.examples import examples
 from tests.hints.trials import applied
 from tests.workspace.carts import agreement_of, cart, cart_files, edited, sure
@@ -79,7 +79,9 @@ def test_a_name_that_is_used_in_one_place_only_gives_exactly_one_sure_problem(
 def _uses() -> list[tuple[Use, Edit]]:
     """Return every use of a name that is written as a whole, with the edit that makes a slip in its last letter."""
     facts = {
-        (it.location, it.name): it for it in read_facts(cart(cart_files())) if isinstance(it, Use)
+        (it.location, it.name): it
+        for it in read_facts(cart(cart_files()).workspace)
+        if isinstance(it, Use)
     }
     slips = (
         (use, Correction(use.location, use.name, f"{use.name[:-1]}{_SLIP}"))

@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 
 from grader.files.tree import make_tree, overlaid
-from grader.submission.opening import submission_of
-from grader.submission.submission import Lab, Submission
-from grader.workspace.reading import read_agreement
+from grader.lab.submission.opening import submission_of
+from grader.lab.submission.submission import Lab, Submission
+from grader.ros.workspace.reading import read_agreement
 
 _XACRO = """\
 <robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -51,7 +51,7 @@ def workspace(*packages: Mapping[str, str]) -> Submission:
 
 def errors_in(*packages: Mapping[str, str]) -> list[str]:
     """Return the messages of what certainly does not agree, without undeclared dependencies."""
-    found = read_agreement(workspace(*packages)).mismatches
+    found = read_agreement(workspace(*packages).workspace).mismatches
     return [it.message for it in found if it.is_sure and it.family != "dependencies"]
 
 
@@ -175,7 +175,7 @@ def generate_launch_description():
         f"<depend>{it}</depend>" for it in ("gazebo_ros_pkgs", "tf2_ros", "warehouse_ros_mongo")
     )
     own["m/package.xml"] = own["m/package.xml"].replace("<export>", f"{needed}<export>")
-    assert [it.message for it in read_agreement(workspace(own)).mismatches] == []
+    assert [it.message for it in read_agreement(workspace(own).workspace).mismatches] == []
 
 
 def test_a_file_of_macros_is_the_robot_only_if_there_is_no_other() -> None:

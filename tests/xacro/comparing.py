@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 
 from lxml import etree
 
-from grader.errors import InputError
-from grader.python.budget import READING, Budget
-from grader.robot.reader import read_urdf
-from grader.xacro.xacro_problems import WRITTEN_TO_STDERR
-from grader.xml.xml_problems import MISPLACED_DECLARATION
+from grader.base.errors import InputError
+from grader.ros.python.budget import READING, Budget
+from grader.ros.urdf.reader import read_urdf
+from grader.ros.xacro.xacro_problems import WRITTEN_TO_STDERR
+from grader.ros.xml.xml_problems import MISPLACED_DECLARATION
 from tests.xacro import oracle
 from tests.xacro.documents.document import PACKAGES, Document
 
@@ -44,7 +44,7 @@ class _Workspace(NamedTuple):
 
 def expand(document: Document, asked: list[str] | None = None, limit: int = READING) -> Any:
     """Return the grader's expansion of a document; `asked` receives the paths of the files that it reads, `limit` are parts."""
-    expansion: Any = import_module("grader.xacro.expansion")
+    expansion: Any = import_module("grader.ros.xacro.expansion")
     files = {document.path: document.text, **document.files}
 
     workspace = _Workspace(files, Budget(limit), sorted(files), [] if asked is None else asked)

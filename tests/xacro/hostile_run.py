@@ -9,7 +9,7 @@ import resource
 import sys
 from typing import Any
 
-from grader.python.budget import READING
+from grader.ros.python.budget import READING
 from tests.work import TooMuchWork, limited_work
 from tests.xacro.comparing import expand
 from tests.xacro.documents.document import Document, named, robot, shown

@@ -6,9 +6,9 @@ from typing import Any
 import pytest
 from lxml import etree
 
-from grader.problems import Problem
-from grader.source import Location
-from grader.xacro.xacro_problems import XACRO_REDEFINED
+from grader.base.problems import Problem
+from grader.base.source import Location
+from grader.ros.xacro.xacro_problems import XACRO_REDEFINED
 from tests.xacro import comparing
 from tests.xacro.documents.document import Dependence, Document, robot
 from tests.xacro.oracle import Accepted, Refused

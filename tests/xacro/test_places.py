@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.source import Location
+from grader.base.source import Location
 from tests.command_line import run
 from tests.xacro import grammar
 from tests.xacro.comparing import expand

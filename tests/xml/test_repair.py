@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
-from grader.hints.edits import edited
-from grader.source import Source
-from grader.xml.repair import repair
-from grader.xml.tinyxml2 import scan
+from grader.base.source import Source
+from grader.lab.hints.edits import edited
+from grader.ros.xml.repair import repair
+from grader.ros.xml.tinyxml2 import scan
 from tests.command_line import ROOT, run
 from tests.examples import examples
 from tests.work import limited_work

@@ -7,10 +7,10 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from lxml import etree
 
-from grader.robot.reader import read_urdf
-from grader.xml.parsing import is_plain
-from grader.xml.tinyxml2 import MAX_NAME_LENGTH, Scan, scan
-from grader.xml.xml_problems import MISPLACED_DECLARATION
+from grader.ros.urdf.reader import read_urdf
+from grader.ros.xml.parsing import is_plain
+from grader.ros.xml.tinyxml2 import MAX_NAME_LENGTH, Scan, scan
+from grader.ros.xml.xml_problems import MISPLACED_DECLARATION
 from tests.examples import examples, spread
 from tests.robot.random_text import data
 from tests.work import limited_work

@@ -21,12 +21,12 @@ from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import PurePosixPath
 
-from grader.classroom.roster import Student
+from grader.base.text import cut, first_lines, format_points
+from grader.classroom.roster.roster import Student
 from grader.classroom.tables import protected, spelt_out
 from grader.files.reading import sha256_of
 from grader.files.zip_writing import tar_gz_of, zip_of
-from grader.grading.report import Result
-from grader.text import cut, first_lines, format_points
+from grader.lab.grading.report import Result
 
 MAX_LINES = 40
 _MAX_LINE = 700  # characters: with all lines less than a cell of Excel has

@@ -12,13 +12,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import ROUND_FLOOR, Decimal
 from typing import NamedTuple
 
+from grader.base.errors import InputError
+from grader.base.text import enumerated, first_lines, format_points, named, people_text, printable
 from grader.classroom.lms.feedback import is_own_comment
 from grader.classroom.lms.forms import IDS, Form
-from grader.classroom.roster import Student, plain
+from grader.classroom.roster.roster import Student, plain
+from grader.classroom.roster.typed_names import number_in
 from grader.classroom.tables import Table, TableRow, read_table
-from grader.classroom.typed_names import number_in
-from grader.errors import InputError
-from grader.text import enumerated, first_lines, format_points, named, people_text, printable
 
 _Note = tuple[str, str, str]  # a kind, which begins the message, who is concerned, and why
 _OPEN, _KEPT, _REFUSED = "without a grade", "kept the comment", "the LMS would refuse the grade"

@@ -11,17 +11,17 @@ from dataclasses import dataclass, replace
 from math import isfinite
 from typing import NamedTuple
 
-from grader.checks.motion import travel_of, turning_joint
-from grader.errors import InputError, MissingElement, NotDecided
-from grader.grading.criterion import Criterion
-from grader.grading.report import Report, Result
-from grader.grading.rubric import Rubric
-from grader.robot.kinematics import Configuration, placed_by
-from grader.robot.link_tree import selected_or_name, texts_in
-from grader.robot.model import Box, Cylinder, Link, Mesh, Sphere, Visual
-from grader.robot.shapes import Shape, UnknownShape, is_empty
-from grader.robot.transforms import Z_AXIS, Transform, Vector
-from grader.text import counted, enumerated, quoted
+from grader.base.errors import InputError, MissingElement, NotDecided
+from grader.base.text import counted, enumerated, quoted
+from grader.lab.checks.motion import travel_of, turning_joint
+from grader.lab.grading.report import Report, Result
+from grader.lab.rubric.criterion import Criterion
+from grader.lab.rubric.rubric import Rubric
+from grader.ros.urdf.kinematics import Configuration, placed_by
+from grader.ros.urdf.link_tree import selected_or_name, texts_in
+from grader.ros.urdf.model import Box, Cylinder, Link, Mesh, Sphere, Visual
+from grader.ros.urdf.shapes import Shape, UnknownShape, is_empty
+from grader.ros.urdf.transforms import Z_AXIS, Transform, Vector
 
 _Rgba = tuple[float, float, float, float]
 

@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from grader.text import printable
+from grader.base.text import printable
 
-_FILES = Path(__file__).parent / "files"  # templates, styles and scripts
+_FILES = Path(__file__).parent / "files"  # templates, styles and scripts of several pages
 _NOTHING = "'none'"
 _UNSAFE = str.maketrans({character: f"\\u{ord(character):04x}" for character in "<>&\u2028\u2029"})
 
@@ -27,6 +27,7 @@ class Assets(NamedTuple):
     scripts: str = ""  # names between spaces
     rules: str = ""  # more CSS rules, from the grader only
     sources: str = ""  # directives for the policy of a page that is served: "img-src 'self'"
+    folder: Path = _FILES  # the templates, styles and scripts, besides those of all pages
 
 
 def render_page(
@@ -42,10 +43,10 @@ def render_page(
             `JSON.parse(document.getElementById("data").textContent)`.
         assets: The styles and scripts.
     """
-    styles = [*map(_file, ("base.css", *assets.styles.split()))]
+    styles = [_file(assets.folder, name) for name in ("base.css", *assets.styles.split())]
     if assets.rules:
         styles.append(assets.rules)
-    scripts = [*map(_file, assets.scripts.split())]
+    scripts = [_file(assets.folder, name) for name in assets.scripts.split()]
     policy = [
         f"default-src {_NOTHING}",
         f"style-src {' '.join(map(_source_hash, styles))}",
@@ -61,13 +62,13 @@ def render_page(
         "scripts": [*map(Markup, scripts)],
         "data": _json(data),
     }
-    return _environment().get_template(template).render(**values, **shell)
+    return _environment(assets.folder).get_template(template).render(**values, **shell)
 
 
 @cache
-def _environment() -> Environment:
+def _environment(folder: Path) -> Environment:
     return Environment(
-        loader=FileSystemLoader(_FILES),
+        loader=FileSystemLoader([folder, _FILES]),
         autoescape=True,
         undefined=StrictUndefined,
         finalize=_printable,
@@ -83,8 +84,9 @@ def _printable(value: object) -> object:
 
 
 @cache
-def _file(name: str) -> str:
-    return (_FILES / name).read_text(encoding="utf-8")
+def _file(folder: Path, name: str) -> str:
+    path = folder / name
+    return (path if path.exists() else _FILES / name).read_text(encoding="utf-8")
 
 
 def _source_hash(text: str) -> str:

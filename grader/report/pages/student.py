@@ -9,9 +9,10 @@ from itertools import groupby
 from markupsafe import Markup
 
 from grader import __version__
-from grader.documents.pictures import PDF, EmbeddedPicture
-from grader.grading.criterion_pictures import may_have_pictures, pictures_of
-from grader.grading.report import Report
+from grader.base.text import format_points, printable
+from grader.lab.documents.pictures import PDF, EmbeddedPicture
+from grader.lab.grading.criterion_pictures import may_have_pictures, pictures_of
+from grader.lab.grading.report import Report
 from grader.report import content
 from grader.report.content import report_sections
 from grader.report.criteria import (
@@ -29,8 +30,7 @@ from grader.report.drawing.picture import Picture, picture_of, plain_picture
 from grader.report.inspection import MAX_LISTED, Inspection, effect, lists
 from grader.report.locations import diff_lines, location_text, source_lines
 from grader.report.pages.shell import Assets, render_page
-from grader.report.svg import NO_PICTURE, STYLE, callout_lines, drawing_element
-from grader.text import format_points, printable
+from grader.report.writers.svg import NO_PICTURE, STYLE, callout_lines, drawing_element
 
 _MAX_PICTURES = 6 * 1024 * 1024  # bytes on a page
 _CLASSES = {"clean": "passed", "degraded": "skipped"}  # of verdicts

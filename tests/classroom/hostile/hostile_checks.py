@@ -8,8 +8,8 @@ import time
 from types import FrameType
 from typing import Any
 
-from grader.checks.outcome import Outcome, passed
-from grader.robot.kinematics import Configuration
+from grader.lab.checks.outcome import Outcome, passed
+from grader.ros.urdf.kinematics import Configuration
 
 _RETURNED: dict[str, Any] = {
     "returns_nothing": None,

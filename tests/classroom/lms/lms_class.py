@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from decimal import Decimal
 
 from grader.classroom.lms.fill import PublishedGrade
-from grader.classroom.roster import Student
+from grader.classroom.roster.roster import Student
 
 NAMES = (
     "Zoë Ash",

@@ -7,10 +7,10 @@ from pathlib import Path
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.checks.outcome import Outcome
 from grader.classroom.lms.feedback import MAX_LINES, comment_html, is_own_comment, lost_points
-from grader.grading.report import ManualComment, ManualMark, Result
-from grader.grading.rubric import read_rubric
+from grader.lab.checks.outcome import Outcome
+from grader.lab.grading.report import ManualComment, ManualMark, Result
+from grader.lab.rubric.rubric import read_rubric
 from tests.samples import ROOT
 
 SMALL = ROOT / "tests/corpus/class/small/small.toml"

@@ -11,11 +11,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grader.base.errors import InputError
 from grader.classroom.lms.fill import Filled, FillOptions, PublishedGrade, fill
 from grader.classroom.lms.forms import FORMS
-from grader.classroom.roster import Student
+from grader.classroom.roster.roster import Student
 from grader.classroom.tables import read_table
-from grader.errors import InputError
 
 CASES = tomllib.loads(Path(__file__).with_name("fills.toml").read_text(encoding="utf-8"))["case"]
 NAMES = ("A wheeled base", "lab6")

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grader.base.errors import InputError
 from grader.classroom import tables
 from grader.classroom.tables import Table, read_table
-from grader.errors import InputError
 
 CELLS = st.text(st.sampled_from("ab ü=é😀א\"\n\r\t,;'\\\u202e\xa0"), max_size=6)
 WELL_FORMED = st.lists(st.lists(CELLS, max_size=5), max_size=6)

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from grader.classroom.marks import Mark, Marks, read_marks
+from grader.classroom.marks.marks import Mark, Marks, read_marks
 from tests.classroom.gradebooks import lab
 
 LAB = lab()  # loads (3), box (2.5), tall (0.5), essay (4), picture (1)

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from grader.errors import InputError
+from grader.base.errors import InputError
 from tests.classroom.marks import folder_of, read, said
 
 CASES = tomllib.loads(Path(__file__).with_name("counting.toml").read_text(encoding="utf-8"))["case"]

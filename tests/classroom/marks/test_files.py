@@ -16,8 +16,10 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from grader.classroom import marks
-from grader.classroom.marks import (
+from grader.base.errors import InputError
+from grader.base.text import format_points
+from grader.classroom.marks import marks
+from grader.classroom.marks.marks import (
     COLUMNS,
     EXCUSED,
     WITHDRAWN,
@@ -27,9 +29,7 @@ from grader.classroom.marks import (
     mark_file,
 )
 from grader.classroom.tables import protected, unprotected
-from grader.errors import InputError
-from grader.grading.criterion import DEADLINE, TOTAL
-from grader.text import format_points
+from grader.lab.rubric.criterion import DEADLINE, TOTAL
 from tests.classroom.marks import STUDENTS, read, said
 from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
@@ -227,7 +227,7 @@ def test_a_row_is_in_the_style_of_its_file(start: str, row: str, tmp_path: Path)
 WRITER = """
 from decimal import Decimal
 from pathlib import Path
-from grader.classroom.marks import Mark, append_marks
+from grader.classroom.marks.marks import Mark, append_marks
 for number in range(20):
     time = f"2026-11-23T14:05:{number:02}.000+00:00"
     append_marks(Path(FOLDER) / "lee.csv", [Mark(time, WHO, WHO, "essay", str(Decimal(number) / 8), "x" * 5000)])

@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.mark_import import MarkImport, exported_text
-from grader.classroom.marks import Mark, Marks, append_marks
-from grader.classroom.roster import Student
+from grader.base.errors import InputError
+from grader.classroom.marks.mark_import import MarkImport, exported_text
+from grader.classroom.marks.marks import Mark, Marks, append_marks
+from grader.classroom.roster.roster import Student
 from grader.classroom.tables import write_table
-from grader.errors import InputError
 from tests.classroom.marks import LAB, folder_of, read, said
 
 CASES = tomllib.loads(Path(__file__).with_name("import.toml").read_text(encoding="utf-8"))["case"]

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from grader.classroom.workers.pool import Processes, WorkerError, processors
+from grader.workers.pool import Processes, WorkerError, processors
 from tests.command_line import HANG_TIMEOUT
 
 MEMORY = 512 * 1024**2

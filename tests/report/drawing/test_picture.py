@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from grader.grading.grade import grade
-from grader.grading.rubric import load_rubric
+from grader.lab.grading.grade import grade
+from grader.lab.rubric.rubric import load_rubric
+from grader.lab.submission.opening import open_submission
 from grader.report.drawing.picture import Picture, picture_of, scene_of
-from grader.robot.kinematics import Configuration
-from grader.robot.reader import read_urdf
-from grader.submission.opening import open_submission
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.reader import read_urdf
 from tests.command_line import run
 
 ROOT = Path(__file__).parents[3]

@@ -1,0 +1,193 @@
+"""The `grader` command: its subcommands and its error messages."""
+
+import os
+import sys
+from collections.abc import Collection, Sequence
+from contextlib import nullcontext, redirect_stderr, suppress
+from importlib import import_module
+from io import StringIO
+from typing import Annotated
+
+import typer
+
+from grader import __version__
+from grader.app.cli.ending import outer_limits, quiet_interrupts
+from grader.app.cli.streams import warn
+from grader.base.errors import GraderError
+from grader.base.text import printable_path, shell_quoted
+from grader.files.limits import ROBOT_ENDINGS
+from grader.report.invocation import ExitCode
+from grader.report.writing import write_stdout
+
+# In the order of the help, with the module of each: it holds a function, or a group of commands, of
+# this name.
+COMMANDS = {
+    "grade": "grade",
+    "inspect": "inspect",
+    "batch": "batch",
+    "mark": "review",
+    "review": "review",
+    "export": "class_grades",
+    "diff": "class_grades",
+    "stats": "class_grades",
+    "bundle": "rubric",
+    "explain": "explain",
+    "schema": "explain",
+    "rubric": "rubric",
+}
+_LIMITED = ("grade", "inspect")  # the commands that read one submission
+# Of options that take a file, for one that is given without.
+_EXAMPLES = {
+    "--fix": "my_robot.urdf --fix fixed.urdf",
+    "--save": "my_robot.urdf --save html=report.html",
+}
+_COMPLETION = ("--show-completion", "--install-completion")
+
+
+def _print_version(is_given: bool) -> None:
+    if is_given:
+        write_stdout(f"grader {__version__}\n")
+        raise typer.Exit
+
+
+def _root(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version",
+            "-V",
+            help="Print the version and exit.",
+            callback=_print_version,
+            is_eager=True,
+        ),
+    ] = False,
+) -> None:
+    """Grade robotics lab submissions: URDF, forward kinematics, ROS 2 package.
+
+    Students start with grade, instructors with rubric show and batch. Each command describes its
+    arguments under --help, with examples.
+
+    Examples:
+
+      grader grade my_robot.urdf
+
+      grader rubric show lab6
+
+      grader batch submissions.zip
+    """
+
+
+def make_app(names: Collection[str]) -> typer.Typer:
+    """Return the command line with these commands: importing all of them takes longer than to grade
+    a URDF.
+    """
+    app = typer.Typer(
+        name="grader",
+        no_args_is_help=True,
+        add_completion=len(names) > 1,
+        rich_markup_mode=None,  # plain help takes a third of the time
+        pretty_exceptions_enable=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+    app.callback()(
+        _root if len(names) > 1 else lambda: None
+    )  # the options of `grader` itself precede the command
+    for name in names:
+        command = getattr(import_module(f"grader.app.cli.{COMMANDS[name]}"), name)
+        if isinstance(command, typer.Typer):
+            app.add_typer(command, name=name)
+        else:
+            app.command()(command)
+    return app
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run a command, print the text that it returns, and return the exit code.
+
+    Every error is one line on standard error, never a traceback.
+    """
+    with quiet_interrupts():
+        return _run(arguments)
+
+
+def _run(arguments: Sequence[str]) -> int:
+    try:
+        if os.environ.get("_GRADER_COMPLETE"):
+            return _complete()
+        app = make_app(_command(arguments) or COMMANDS)
+        is_limited = arguments and arguments[0] in _LIMITED and "--watch" not in arguments
+        with outer_limits() if is_limited else nullcontext():
+            result = app(list(arguments), standalone_mode=False, prog_name="grader")
+        if isinstance(result, str):
+            write_stdout(result)
+    except (GraderError, OSError) as error:
+        reason = _reason_of(error) if isinstance(error, OSError) else str(error)
+        for line in reason.split("\n"):
+            warn(line)
+        return ExitCode.NOT_GRADED
+    except (KeyboardInterrupt, typer.Abort):  # typer raises its own for Ctrl-C
+        return ExitCode.INTERRUPTED
+    except Exception as error:  # noqa: BLE001  no traceback ever reaches a user
+        return _other_error(error)
+    if (
+        result == 1 and arguments[0] in _COMPLETION
+    ):  # typer's code for a shell that it does not know
+        return ExitCode.NOT_GRADED
+    return result if isinstance(result, int) else ExitCode.PASSED
+
+
+def _reason_of(error: OSError) -> str:
+    what = f"use {printable_path(error.filename)}" if isinstance(error.filename, str) else "write"
+    return f"cannot {what}: {error.strerror or error}"
+
+
+def _complete() -> int:
+    """Print the completions of the word at the cursor; nothing if there is an error, which the
+    shell would show.
+    """
+    with redirect_stderr(StringIO()), suppress(Exception):
+        try:
+            make_app(COMMANDS)(prog_name="grader")
+        except SystemExit as end:  # its code tells fish whether there are completions
+            return end.code if isinstance(end.code, int) else 0
+    return 0
+
+
+def _command(arguments: Sequence[str]) -> list[str]:
+    """Return the command that is typed, if it is one. Raises GraderError if a file is named
+    instead.
+    """
+    first = arguments[0] if arguments else "-"
+    if first in COMMANDS:
+        return [first]
+    is_submission = os.path.lexists(first) or first.lower().endswith((*ROBOT_ENDINGS, ".zip"))
+    if not first.startswith("-") and is_submission:
+        raise GraderError(
+            f"there is no command {first!r}; to grade it, use `grader grade {shell_quoted(first)}`"
+        )
+    return []
+
+
+def _other_error(error: Exception) -> ExitCode:
+    if not hasattr(error, "format_message"):  # which typer's errors of usage have
+        warn(_one_line(f"internal error, please report it: {type(error).__name__}: {error}"))
+        return ExitCode.FAULT
+    message, context = error.format_message(), getattr(error, "ctx", None)
+    example = _EXAMPLES.get(getattr(error, "option_name", ""), "")
+    if (
+        context is not None and message == context.get_help()
+    ):  # a group of commands without arguments
+        print(message, file=sys.stderr)
+    else:
+        command = context.command_path if context is not None else "grader"
+        advice = (
+            f"for example `grader grade {example}`"
+            if example
+            else f"`{command} --help` shows the usage"
+        )
+        warn(_one_line(f"{message} ({advice})"))
+    return ExitCode.NOT_GRADED
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())

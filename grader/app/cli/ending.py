@@ -1,0 +1,128 @@
+"""What ends a command early: Ctrl-C, without the interpreter's messages, and limits of processor
+time and memory.
+
+Everything that reads a student's files counts its own work. The outer limits are for work that is
+not counted.
+"""
+
+import os
+import signal
+import sys
+from _thread import interrupt_main
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from importlib.util import find_spec
+from math import ceil
+from pathlib import Path
+from threading import Timer, current_thread, main_thread
+from types import FrameType
+from typing import Any
+
+from grader.base.errors import GraderError, OutOfTime
+
+_DELAY = 0.01  # seconds until an interrupt is repeated
+_SECONDS = 60  # of processor time, after which the command ends with a message
+_GRACE = 30  # more seconds, after which the process is ended, whatever it does
+_MEMORY = 2 * 1024**3  # bytes more than at the start
+
+
+@contextmanager
+def quiet_interrupts() -> Iterator[None]:
+    """Ctrl-C raises KeyboardInterrupt as always, but Python prints nothing about what it
+    interrupts.
+
+    It can arrive where Python cannot raise an exception (a finalizer, a callback of an import):
+    there Python would print the KeyboardInterrupt and go on, so it is raised again afterwards.
+    Files that the interrupted code leaves open are no mistake.
+    """
+    before = signal.getsignal(signal.SIGINT)
+    if before is not signal.default_int_handler:  # ignored, as after nohup, or somebody else's
+        yield
+        return
+    arrived: list[int] = []
+    is_in_hook = False
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        arrived.append(number)
+        if is_in_hook:  # the machine is so busy that the repeated one is early
+            Timer(_DELAY, _interrupt).start()
+        else:
+            signal.default_int_handler(number, frame)
+
+    def ignored(found: "sys.UnraisableHookArgs") -> None:
+        nonlocal is_in_hook
+        if issubclass(found.exc_type, KeyboardInterrupt):
+            is_in_hook = True
+            Timer(_DELAY, _interrupt).start()  # not here: an exception in a hook is printed, too
+            is_in_hook = False
+        elif not (arrived and issubclass(found.exc_type, ResourceWarning)):
+            hook(found)
+
+    hook, sys.unraisablehook = sys.unraisablehook, ignored
+    signal.signal(signal.SIGINT, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+        sys.unraisablehook = hook
+
+
+def _interrupt() -> None:
+    """Interrupt the main thread, also while it waits."""
+    if hasattr(signal, "pthread_kill"):
+        signal.pthread_kill(main_thread().ident or 0, signal.SIGINT)
+    else:  # Windows
+        interrupt_main()
+
+
+@contextmanager
+def outer_limits() -> Iterator[None]:
+    """Limit the processor time and the memory of what follows. Raises GraderError."""
+    if (
+        sys.platform == "win32"
+        or find_spec("resource") is None
+        or current_thread() is not main_thread()
+    ):
+        yield
+        return
+    import resource
+
+    def stop(*_: Any) -> None:
+        signal.signal(signal.SIGXCPU, signal.SIG_IGN)  # it is sent again every second
+        raise OutOfTime
+
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # each thread reserves memory
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    wanted = {
+        resource.RLIMIT_CPU: ceil(used.ru_utime + used.ru_stime) + _SECONDS,
+        resource.RLIMIT_AS: _size() + _MEMORY,
+    }
+    before = {limit: resource.getrlimit(limit) for limit in wanted}
+    handler = signal.signal(signal.SIGXCPU, stop)
+    signal.setitimer(signal.ITIMER_PROF, _SECONDS + _GRACE)
+    try:
+        for limit, value in wanted.items():
+            soft, hard = before[limit]
+            with suppress(ValueError, OSError):  # one that is lower already stays
+                resource.setrlimit(
+                    limit, (value if soft == resource.RLIM_INFINITY else min(soft, value), hard)
+                )
+        yield
+    except OutOfTime:
+        raise GraderError(f"this takes more than {_SECONDS} s of processor time") from None
+    except MemoryError:
+        raise GraderError(f"this needs more than {_MEMORY // 1024**2} MiB of memory") from None
+    finally:
+        for limit, values in before.items():
+            resource.setrlimit(limit, values)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGXCPU, handler)
+
+
+def _size() -> int:
+    """Return the address space that this process uses; 0 where the system does not tell."""
+    with suppress(OSError, ValueError):
+        return int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * os.sysconf(
+            "SC_PAGE_SIZE"
+        )
+    return 0

@@ -1,0 +1,58 @@
+"""grader explain and grader schema: what codes and checks mean, and what the files of the grader
+hold.
+"""
+
+from typing import Annotated, Literal, get_args
+
+import typer
+
+from grader.app.cli.options import RubricOption
+from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
+
+_NAME = "For example URDF051, frame_at or lidar-frame."
+
+
+def explain(
+    name: Annotated[str, typer.Argument(metavar="CODE|CHECK|CRITERION", help=_NAME)],
+    rubric: RubricOption = DEFAULT_RUBRIC,
+) -> str:
+    """Explain a problem code, a check or a criterion.
+
+    Examples:
+
+      grader explain lidar-frame
+
+      grader explain URDF051
+
+      grader explain my-criterion --rubric my_lab.toml
+    """
+    from grader.lab.rubric.rubric import load_rubric
+    from grader.report.explanations import explanation
+
+    return explanation(name, load_rubric(rubric))
+
+
+SchemaName = Literal["report", "rubric", "inspect", "class", "diff", "rubric-test"]
+
+
+def schema(
+    name: Annotated[
+        SchemaName,
+        typer.Argument(metavar="|".join(get_args(SchemaName)), help="The schema to print."),
+    ],
+) -> str:
+    """Print a JSON Schema of the grader's input or output.
+
+    These are reports, rubrics, inspections, classes (batch, stats, export json), diffs and rubric
+    tests.
+
+    Examples:
+
+      grader schema report
+
+      grader schema rubric > rubric.schema.json
+    """
+    from grader.app.commands.schemas import json_schema
+    from grader.report.json_data import to_json
+
+    return to_json(json_schema(name))

@@ -1,0 +1,69 @@
+"""Options that several commands share."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from grader.base.errors import InputError
+from grader.base.text import enumerated, printable_path
+from grader.report.formats import OutputFormat
+
+PartOption = Annotated[
+    list[str] | None,
+    typer.Option("--part", metavar="ID", help="Grade only this part; repeatable."),
+]
+RUBRIC_VARIABLE = "GRADER_RUBRIC"
+RubricOption = Annotated[
+    str,
+    typer.Option(
+        metavar="ID|FILE", envvar=RUBRIC_VARIABLE, help="The rubric: an id or a .toml file."
+    ),
+]
+_GRADEBOOK = "The gradebook; default: the only one in the current folder."
+_NOT_NAMED = Path("*")  # no folder is searched for --help
+
+
+def only_gradebook(named: Path = _NOT_NAMED) -> Path:
+    """Return the gradebook that is named, else the only one in the current folder. Raises
+    InputError.
+    """
+    if named != _NOT_NAMED:
+        return named
+    from grader.classroom.marks.gradebook_folder import CLASS_FILE
+
+    found = sorted(file.parent for file in Path().glob(f"*/{CLASS_FILE}"))
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise InputError(
+            f"name one with --gradebook: {enumerated([*map(printable_path, found)], 10, 'or')}"
+        )
+    raise InputError(
+        "there is no gradebook here: name one with --gradebook; `grader batch PATH` makes it"
+    )
+
+
+_ONLY: Any = {
+    "default_factory": lambda: _NOT_NAMED,
+    "callback": only_gradebook,
+    "show_default": False,
+}
+GradebookOption = Annotated[
+    Path, typer.Option("--gradebook", metavar="FOLDER", help=_GRADEBOOK, **_ONLY)
+]
+MaxSizeOption = Annotated[int, typer.Option(metavar="BYTES", min=1, help="Maximum size of a URDF.")]
+AnswersOption = Annotated[
+    Path | None,
+    typer.Option("--answers", metavar="FILE", help="The .toml file with the model answers."),
+]
+ArgOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--arg", metavar="NAME=VALUE", help="The value of an argument of a xacro file; repeatable."
+    ),
+]
+ByOption = Annotated[
+    str, typer.Option("--by", metavar="NAME", help="Your name in reports; default: none.")
+]
+FormatOption = Annotated[OutputFormat, typer.Option("--format", help="Output format.")]

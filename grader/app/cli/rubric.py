@@ -1,0 +1,192 @@
+"""grader rubric and grader bundle: list, show, write, check and test rubrics, and pack one for a
+grading platform.
+"""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from grader.app.cli.options import AnswersOption, FormatOption, RubricOption
+from grader.app.cli.streams import TERMINAL, warn
+from grader.app.commands import rubrics
+from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
+from grader.report.formats import OutputFormat
+from grader.report.writing import write_stdout
+
+_HELP = """List, show, write, check and test rubrics, and list the checks.
+
+Examples:
+
+  grader rubric list
+
+  grader rubric show lab6
+
+  grader rubric new my_lab.toml --from solution.urdf
+
+  grader rubric check my_lab.toml
+
+  grader rubric test my_lab.toml
+"""
+_FOLDER = "A folder with samples: submissions with an expected.toml."
+_LEAST = "Exit 1 if the mutation score is less, in percent."
+rubric = typer.Typer(help=_HELP, no_args_is_help=True)
+RubricArgument = Annotated[
+    str, typer.Argument(metavar="ID|FILE", help="The rubric: an id or a .toml file.")
+]
+
+
+@rubric.command("list")
+def list_rubrics() -> str:
+    """List the rubrics that come with the grader.
+
+    Examples:
+
+      grader rubric list
+    """
+    return rubrics.list_rubrics()
+
+
+@rubric.command("show")
+def show_rubric(
+    name: RubricArgument,
+    answers: AnswersOption = None,
+) -> str:
+    """Show the parts and criteria of a rubric with their points.
+
+    Examples:
+
+      grader rubric show lab6
+
+      grader rubric show my_lab.toml --answers my_lab.answers.toml
+    """
+    from grader.report.explanations import rubric_overview
+
+    return rubric_overview(rubrics.load(name, answers))
+
+
+@rubric.command("checks")
+def list_checks() -> str:
+    """List the checks for rubrics, with their arguments.
+
+    `grader explain` describes one of them in detail.
+
+    Examples:
+
+      grader rubric checks
+    """
+    from grader.report.explanations import checks_text
+
+    return checks_text()
+
+
+@rubric.command("new")
+def new_rubric(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="The .toml file to write.")],
+    reference: Annotated[
+        str,
+        typer.Option(
+            "--from",
+            metavar="PATH",
+            help="The reference: a URDF, xacro, package, workspace or archive.",
+        ),
+    ],
+    force: Annotated[bool, typer.Option("--force", help="Replace FILE if it exists.")] = False,
+) -> str:
+    """Write a rubric from a reference solution.
+
+    It has a criterion for each fact that can be measured. It is graded on the reference, which must
+    get full marks. The output lists the facts that no check can test.
+
+    Examples:
+
+      grader rubric new my_lab.toml --from solution.urdf
+
+      grader rubric new my_lab.toml --from my_lab/my_robot
+
+      grader rubric new my_lab.toml --from solution.urdf --force
+    """
+    from grader.app.commands.rubric_making import write_rubric
+
+    return write_rubric(file, reference, warn, force=force)
+
+
+@rubric.command("copy")
+def copy_rubric(
+    name: Annotated[str, typer.Argument(metavar="ID", help="A rubric of the grader.")],
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", help="The folder to write into: FOLDER/ID.")
+    ],
+) -> str:
+    """Copy a rubric with its files, to change it.
+
+    Examples:
+
+      grader rubric copy lab6 rubrics
+    """
+    return rubrics.copy(name, folder)
+
+
+@rubric.command("check")
+def check_rubric(file: RubricArgument) -> int:
+    """Check a rubric and its reference solution.
+
+    Exits 2 if there are mistakes, and lists all of them with their lines; 1 if automatic criteria
+    cannot be decided on the reference, such as the radius of a wheel that is a mesh.
+
+    Examples:
+
+      grader rubric check my_lab.toml
+    """
+    text, code = rubrics.check(file, warn)
+    write_stdout(text)
+    return code
+
+
+@rubric.command("test")
+def run_test(
+    name: RubricArgument,
+    folder: Annotated[Path | None, typer.Argument(metavar="[FOLDER]", help=_FOLDER)] = None,
+    fail_under: Annotated[str | None, typer.Option(metavar="N|N%", help=_LEAST)] = None,
+    output_format: FormatOption = OutputFormat.TERMINAL,
+) -> int:
+    """Test a rubric on variants of its reference and on samples.
+
+    The reference and its equivalents must keep full marks; every mutant must lose points. Mutants
+    that get full marks are listed with their diff.
+
+    Exit codes: 0 no correct robot loses points, all samples are as expected, and the score reaches
+    --fail-under; 1 otherwise; 2 the rubric is broken or has no reference; 3 a check is faulty.
+
+    Examples:
+
+      grader rubric test lab6
+
+      grader rubric test my_lab.toml samples --fail-under 100%
+    """
+    from grader.app.commands.rubric_making import test_rubric
+
+    is_json = output_format is OutputFormat.JSON
+    text, code = test_rubric(name, folder, fail_under, is_json, TERMINAL)
+    write_stdout(text)
+    return code
+
+
+def bundle(
+    platform: Annotated[
+        Literal["gradescope"], typer.Argument(metavar="PLATFORM", help="The platform: gradescope.")
+    ],
+    output: Annotated[Path, typer.Argument(metavar="OUT.zip", help="The file to write.")],
+    rubric: RubricOption = DEFAULT_RUBRIC,
+) -> str:
+    """Write an autograder zip for Gradescope.
+
+    Upload it to Gradescope: it installs the grader there and grades submissions against the rubric.
+
+    Examples:
+
+      grader bundle gradescope autograder.zip
+
+      grader bundle gradescope autograder.zip --rubric my_lab.toml
+    """
+    return rubrics.bundle(platform, output, rubric)

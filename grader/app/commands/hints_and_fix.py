@@ -1,0 +1,123 @@
+"""Hints of one submission: `--hints` and the rubric decide how much they tell, `--fix` writes
+their edits.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from grader.base.errors import InputError, MachineError, OutOfTime
+from grader.base.text import enumerated, format_points, printable, printable_path
+from grader.files.limits import ROBOT_ENDINGS
+from grader.lab.grading.report import INCOMPLETE_HINTS, Report
+from grader.lab.hints.hinting import Fix, fixed, hinted
+from grader.lab.rubric.hint_levels import LEVELS, HintLevel
+from grader.lab.submission.submission import Submission
+from grader.report.writing import Warn, make_folder, refuse_inputs, refuse_symlinks, save_bytes
+
+_MAX_NAMED = 6
+_FILES = (*ROBOT_ENDINGS, ".zip")  # endings that no folder has
+
+
+def add_hints(
+    report: Report, submission: Submission, wanted: HintLevel | None, warn: Warn, *, is_fixed: bool
+) -> tuple[Report, Fix]:
+    """Return a report with hints up to the wanted level, and the edits of all of them if they are
+    to be written.
+
+    The level cannot exceed the rubric's. At the levels `none` and `place`, pictures of the report
+    do not show the reference. Raises InputError if edits are to be written at a level that does not
+    show them.
+    """
+    allowed = report.rubric.hints
+    level = allowed if wanted is None else min(allowed, wanted, key=LEVELS.index)
+    if is_fixed and level != "edit":
+        cause = f"the rubric {report.rubric.id} allows" if level == allowed else "--hints asks for"
+        raise InputError(f"--fix needs hints of the level edit; {cause} {level}")
+    if wanted is not None and level != wanted:
+        warn(
+            f"--hints {wanted}: the rubric {report.rubric.id} allows hints up to the level "
+            f"{allowed}"
+        )
+    if level != allowed:
+        report = report._replace(rubric=replace(report.rubric, hints=level))
+    fix = Fix({}, report, "no criterion failed")
+    if level == "none" or not report.has_failures:
+        return report, fix
+    try:
+        found = hinted(report, submission, level)
+    except (Exception, OutOfTime) as error:  # noqa: BLE001  a fault of the search must not cost the report
+        own = f"the grader itself failed ({type(error).__name__}); please report it"
+        warn(f"no hints: {error if isinstance(error, MachineError) else own}")
+        return report, fix._replace(why_nothing="the search for edits failed")
+    if found.faults:
+        warn(
+            f"some hints are missing: the grader itself failed ({found.faults[0]}); please "
+            "report it"
+        )
+    return found.report, fixed(found, submission) if is_fixed else fix
+
+
+def files_to_fix(
+    target: Path,
+    graded: str,
+    report: Report,
+    fix: Fix,
+    besides: Sequence[Path],
+    others: Iterable[Path],
+) -> dict[Path, bytes]:
+    """Return the files to write that edits change. Raises InputError if one of them may not be
+    written.
+
+    A folder gets each file under its path; of a submission that is one file, the target may be a
+    file. `besides` are the files that were read besides a single one, `others` what else the run
+    reads or writes.
+    """
+    files = {path: data for path, data in fix.files.items() if data is not None}
+    own, is_folder = report.submission.path, _is_folder(target, report)
+    if is_folder and (
+        target.is_file() or (target.suffix.lower() in _FILES and not target.exists())
+    ):
+        raise InputError(
+            f"--fix: {printable_path(target)} names a file: of a folder or an archive name a folder"
+        )
+    if not is_folder and (len(files) > 1 or (files and besides and own not in files)):
+        names, only = ", ".join(map(printable, files)), f"only {own}" if own in files else own
+        raise InputError(f"--fix: the edits change {names}, not {only}: name a folder that exists")
+    written = {(target / path if is_folder else target): data for path, data in files.items()}
+    for file in written:
+        refuse_symlinks(file, (graded,))
+        refuse_inputs("--fix", file, (Path(graded), *besides, *others))
+    return written
+
+
+def _is_folder(target: Path, report: Report) -> bool:
+    """Return whether a target is to be a folder: always, unless the submission is one file."""
+    return target.is_dir() or not report.submission.is_single
+
+
+def write_fix(
+    target: Path, graded: str, report: Report, fix: Fix, written: Mapping[Path, bytes]
+) -> str:
+    """Write the files that edits change, and return what was done in a sentence. Raises
+    InputError.
+    """
+    if not written:
+        return f"--fix: nothing was written: {fix.why_nothing}"
+    for file, data in written.items():
+        if _is_folder(target, report):
+            make_folder(file.parent)
+        save_bytes(file, data, (graded,))
+    gone = [
+        f"; {printable(path)} was renamed: delete the old file"
+        for path, data in fix.files.items()
+        if data is None
+    ]
+    if not report.hints_complete:
+        gone.append(f"; {INCOMPLETE_HINTS}")
+    names = enumerated(
+        [printable(path) for path, data in fix.files.items() if data is not None], _MAX_NAMED
+    )
+    before, after = format_points(report.score), format_points(fix.report.score)
+    score = f"{before} -> {after} of {format_points(report.max_score)} points"
+    return f"--fix: wrote {names} to {printable_path(target)}: {score}{''.join(gone)}"

@@ -1,0 +1,208 @@
+"""Write a rubric from a reference solution, and test a rubric: its reference, equivalents, samples
+and mutants.
+"""
+
+import os
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
+from itertools import chain
+from pathlib import Path
+
+from grader.app.commands.rubrics import load, rubric_summary
+from grader.base.errors import GraderError, InputError
+from grader.base.text import enumerated, printable, printable_path, shell_quoted
+from grader.classroom.run.preloading import PRELOAD
+from grader.files.reading import URDF_LIMIT
+from grader.lab.authoring.draft import Head, RubricDraft, draft
+from grader.lab.authoring.facts import Omission, Solution
+from grader.lab.authoring.mutants import Mutant
+from grader.lab.authoring.rubric_test import MutantOutcome, Trial, mutant_outcomes, run_rubric_test
+from grader.lab.authoring.samples import read_samples
+from grader.lab.checks.loading import urdf_loads
+from grader.lab.rubric.rubric import Rubric
+from grader.lab.submission.opening import STANDARD_INPUT, open_submission
+from grader.lab.submission.submission import Lab, Submission
+from grader.report.invocation import ExitCode, read_threshold
+from grader.report.writers.rubric_test_result import (
+    render_rubric_test,
+    render_rubric_test_json,
+    unexamined_line,
+)
+from grader.report.writing import Terminal, Warn, missing_folder, save_bytes
+from grader.ros.package.finding import is_backup, package_around
+from grader.ros.package.package import MANIFEST
+from grader.ros.package.robot_file import Absent, Read, Unreadable
+from grader.ros.urdf.kinematics import Configuration
+from grader.workers.pool import Processes, processors
+from grader.workers.queue import Progress
+
+_URDF = "robot.urdf"
+_SCHEMA = "rubric.schema.json"  # beside the rubric, as the documentation calls it
+_MAX_NAMED = 4
+_GROUP, _SECONDS = 20, 60.0  # mutants that a worker grades at once, and how long they may take
+
+
+def write_rubric(file: Path, reference: str, warn: Warn, *, force: bool) -> str:
+    """Write a rubric of a reference's facts; return what it contains, omits, and the next step.
+    Raises GraderError.
+    """
+    _check_target(file, force=force)
+    if reference == STANDARD_INPUT:
+        raise GraderError("--from takes a file or folder, which the rubric names as its reference")
+    submission = _open_reference(reference)
+    solution = _solution(submission, reference, warn)
+    made = draft(submission, solution, _rubric_head(file, reference, submission), file)
+    if len(made.data) > URDF_LIMIT:
+        raise GraderError(
+            f"the reference has too many facts for a rubric: {len(made.rubric.criteria)} criteria"
+        )
+    save_bytes(file, made.data)
+    return "".join(f"{printable(line)}\n" for line in _result_lines(file, made))
+
+
+def _check_target(file: Path, *, force: bool) -> None:
+    shown = printable_path(file)
+    if file.suffix != ".toml":
+        raise GraderError(f"a rubric is a .toml file: give a name that ends in .toml, not {shown}")
+    if os.path.lexists(file) and not force:
+        raise GraderError(f"{shown} exists already: give another name, or --force to replace it")
+    if not file.parent.is_dir():
+        raise missing_folder(file)
+
+
+def _solution(submission: Submission, reference: str, warn: Warn) -> Solution | None:
+    """Return the robot of the reference, which ROS 2 must load; None of packages without one.
+    Raises GraderError.
+    """
+    shown = printable_path(reference)
+    match submission.urdf:
+        case Absent() if submission.packages:
+            return None
+        case Absent():
+            raise InputError(
+                f"{shown} has neither a URDF nor a package: no file has a <robot>, none is "
+                "a package.xml"
+            )
+        case Unreadable(reason=reason):
+            raise InputError(reason)
+        case Read(reading=reading, loaded=loaded):
+            loading = urdf_loads(loaded)
+            if reading.robot is None or loading.status != "passed":
+                reason = loading.mistake if loading.status == "pending" else loading.message
+                advice = f"see `grader inspect {shell_quoted(reference)}`"
+                raise InputError(f"{shown} is no reference solution: {reason} ({advice})")
+            for found in (it for it in submission.urdf.problems if it.kind.effect == "drops"):
+                warn(f"{found.location.path}:{found.location.line}: {found.code}: {found.message}")
+    others = [file.path for file in submission.other_candidates if not file.path.endswith(MANIFEST)]
+    if others:
+        warn(
+            f"the rubric is made from {submission.path}; other candidates: "
+            f"{enumerated(others, _MAX_NAMED)}"
+        )
+    return Solution(submission, reading, Configuration(reading.robot))
+
+
+def _open_reference(reference: str) -> Submission:
+    """Return the reference as a submission in which all of its packages are graded, the one with
+    the URDF first.
+    """
+    submission = open_submission(reference, Lab(_URDF))
+    main = package_around(submission.packages, submission.path) or submission.package
+    packages = [
+        it.name for it in submission.packages if it is not main and not is_backup(it.folder)
+    ]
+    if main is None or not packages:
+        return submission
+    urdf = (submission.path or _URDF).removeprefix(main.path(""))
+    return open_submission(
+        reference, Lab(urdf, packages=tuple(dict.fromkeys([main.name, *packages])))
+    )
+
+
+def _rubric_head(file: Path, reference: str, submission: Submission) -> Head:
+    words = re.sub(r"[\s_-]+", " ", printable(file.stem)).strip() or "lab"
+    place = _relative(Path(reference), file.parent)
+    package, path = submission.package, submission.path or ""
+    if package is not None and package.holds(path):
+        path = path.removeprefix(package.path(""))
+    names = tuple(it.name for it in submission.lab_packages.values())
+    schema = f"./{_SCHEMA}" if (file.parent / _SCHEMA).is_file() else ""
+    title = words[0].upper() + words[1:]
+    return Head(words.replace(" ", "-"), title, place, path, names, schema)
+
+
+def _relative(reference: Path, folder: Path) -> str:
+    """Return the path of the reference as a rubric in a folder names it; raise GraderError if it is
+    no text.
+    """
+    try:
+        path = os.path.relpath(reference.resolve(), folder.resolve())
+    except ValueError:  # on another drive
+        path = str(reference.resolve())
+    try:
+        path.encode()
+    except UnicodeEncodeError:
+        raise GraderError(f"the path {printable_path(path)} is not UTF-8: rename it") from None
+    return path.replace(os.sep, "/")
+
+
+def _result_lines(file: Path, made: RubricDraft) -> Iterator[str]:
+    yield (
+        f"wrote {printable_path(file)}: {rubric_summary(made.rubric)}; its reference gets full "
+        "marks"
+    )
+    if made.rubric.reference.startswith(("..", "/")):
+        yield (
+            f"note: the reference is {made.rubric.reference}, outside the rubric's folder: move "
+            "both together"
+        )
+    yield from (f"omitted: {line}" for line in _omission_lines(made.omissions))
+    paths, count = Trial(made.rubric).unexamined()
+    if paths:
+        yield unexamined_line(paths, count)
+    yield f"next: grader rubric test {shell_quoted(file)}"
+
+
+def _omission_lines(omissions: Iterable[Omission]) -> Iterator[str]:
+    """Yield what is omitted, in one line for each reason."""
+    by_reason: dict[str, list[str]] = {}
+    for omission in omissions:
+        by_reason.setdefault(omission.why, []).append(omission.what)
+    yield from (f"{enumerated(names, _MAX_NAMED)}: {why}" for why, names in by_reason.items())
+
+
+def test_rubric(
+    name: str, folder: Path | None, fail_under: str | None, is_json: bool, terminal: Terminal
+) -> tuple[str, ExitCode]:
+    """Return the result of testing a rubric, and the exit code.
+
+    Raises GraderError for a broken rubric or one without a reference.
+    """
+    least = read_threshold(fail_under)[0] if fail_under is not None else 0
+    rubric = load(name)
+    samples = read_samples(folder) if folder is not None else None
+    with (
+        terminal.show_class(f"Testing {rubric.id}") as show,
+        Processes(processors(), _SECONDS, preload=PRELOAD) as executor,
+    ):
+        progress = lambda done, total: show(Progress(total, done))  # noqa: E731
+        result = run_rubric_test(rubric, samples, progress, partial(_graded, executor, rubric))
+    text = (
+        render_rubric_test_json(result)
+        if is_json
+        else render_rubric_test(result, terminal.screen().width)
+    )
+    is_passed = result.is_sound and result.score >= least
+    code = ExitCode.PASSED if is_passed else ExitCode.FAILED
+    return text, ExitCode.FAULT if result.is_faulty else code
+
+
+def _graded(
+    executor: Processes, rubric: Rubric, mutants: Sequence[Mutant]
+) -> Iterator[MutantOutcome]:
+    """Yield the outcomes of mutants, which are graded in groups. Raises WorkerError."""
+    groups = [mutants[at : at + _GROUP] for at in range(0, len(mutants), _GROUP)]
+    return chain.from_iterable(
+        executor.map(partial(mutant_outcomes, rubric.data, str(rubric.path)), groups)
+    )

@@ -1,0 +1,152 @@
+"""Load, list, copy, check and bundle rubrics."""
+
+import os
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.base.errors import GraderError, RubricError
+from grader.base.text import counted, format_points, printable, printable_path, shell_quoted
+from grader.lab.rubric.rubric_files import files_of
+from grader.report.invocation import ExitCode
+from grader.report.writing import Warn, make_folder, save_bytes
+
+if TYPE_CHECKING:
+    from grader.lab.rubric.rubric import Rubric
+
+
+def load(name: str, answers: Path | None = None) -> "Rubric":
+    """Return a rubric, with model answers if their file is named. Raises RubricError or
+    InputError.
+    """
+    if answers is None:
+        from grader.lab.rubric.rubric import load_rubric
+
+        return load_rubric(name)
+    from grader.lab.rubric.model_answers import load_with_answers
+
+    return load_with_answers(name, answers)
+
+
+def list_rubrics() -> str:
+    """Return a line for each rubric that comes with the grader."""
+    from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
+
+    return "".join(
+        f"{rubric.id}  {rubric_summary(rubric)}\n" for rubric in map(load_rubric, shipped_rubrics())
+    )
+
+
+def rubric_summary(rubric: "Rubric") -> str:
+    """Return a rubric's title and size: Lab 6 (56 criteria, 100 points)."""
+    return f"{rubric.title} ({_size(rubric)})"
+
+
+def _size(rubric: "Rubric") -> str:
+    from grader.lab.rubric.criterion import worth
+
+    return (
+        f"{counted(len(rubric.criteria), 'criterion', 'criteria')}, {worth(rubric.criteria).text}"
+    )
+
+
+def copy(name: str, folder: Path) -> str:
+    """Copy the files of a shipped rubric; return what was written, and the next step. Raises
+    GraderError.
+    """
+    from shutil import copyfile, copytree, ignore_patterns
+
+    from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
+
+    file = shipped_rubrics().get(name)
+    if file is None:
+        raise GraderError(
+            f"{printable_path(name)} is not a rubric of the grader: {', '.join(shipped_rubrics())}"
+        )
+    copies = {
+        source: folder / name / source.relative_to(file.parent)
+        for source in files_of(name)
+        if source.exists()
+    }
+    if there := [*filter(os.path.lexists, copies.values())]:
+        raise GraderError(f"{printable_path(there[0])} exists already: nothing was copied")
+    for source, target in copies.items():
+        make_folder(target.parent)
+        if source.is_dir():
+            copytree(
+                source, target, ignore=ignore_patterns("__pycache__")
+            )  # pip compiles the files of a package
+        else:
+            copyfile(source, target)
+    if not (
+        file.parent / load_rubric(name).answers
+    ).exists():  # students have the package, without the answers
+        text = copies[file].read_text(encoding="utf-8")
+        copies[file].write_text(re.sub(r"(?m)^answers = .*\n", "", text), encoding="utf-8")
+    lines = [
+        *map(str, copies.values()),
+        f"next: change it, then `grader rubric check {shell_quoted(copies[file])}`",
+    ]
+    return "".join(f"{printable(line)}\n" for line in lines)
+
+
+def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
+    """Check a rubric; return a summary and the exit code: 1 if criteria cannot be decided on the
+    reference solution.
+
+    Raises RubricError if the reference loses points.
+    """
+    from grader.lab.authoring.rubric_check import likely_mistakes, reference_failures
+    from grader.lab.rubric.model_answers import load_with_answers, missing_answers
+
+    rubric = load_with_answers(name)
+    if missing_answers(rubric) and not rubric.is_shipped:
+        warn(missing_answers(rubric))
+    for message in likely_mistakes(rubric):
+        warn(printable(f"warning: {message}"))
+    found = f"{rubric.id}: {_size(rubric)}, no mistakes found"
+    if rubric.solution is None:
+        return f"{found}\n", ExitCode.PASSED
+    failures = reference_failures(rubric)
+    if failures.is_failed:
+        raise RubricError(tuple(map(printable, failures.lines)))
+    if not failures.lines:
+        return f"{found}; its reference gets full marks\n", ExitCode.PASSED
+    criteria = counted(failures.undecided, "criterion", "criteria")
+    found += f"; its reference does not get full marks: {criteria} cannot be decided on it"
+    return "".join(f"{printable(line)}\n" for line in (found, *failures.lines)), ExitCode.FAILED
+
+
+def bundle(platform: str, output: Path, name: str) -> str:
+    """Write the autograder zip for a platform; return what to do next, in two lines. Raises
+    GraderError.
+    """
+    from grader.app.bundle.gradescope import autograder_zip
+
+    if output.suffix.lower() != ".zip":
+        raise GraderError(
+            f"{platform} takes a zip: give a name that ends in .zip, not {str(output)!r}"
+        )
+    rubric = load(name)
+    save_bytes(output, autograder_zip(rubric))
+    lines = f"wrote {output}: {rubric_summary(rubric)}", f"next: {_next_step(rubric)}"
+    return "".join(f"{printable(line)}\n" for line in lines)
+
+
+def _next_step(rubric: "Rubric") -> str:
+    from grader.lab.checks.manual import MANUAL_CHECKS
+    from grader.lab.rubric.criterion import worth
+
+    asked = (
+        criterion for criterion in rubric.criteria if criterion.check.function in MANUAL_CHECKS
+    )
+    manual = [criterion for criterion in asked if criterion.adjustment is None]
+    points = worth(manual)
+    step = (
+        "upload it under Configure Autograder; autograder points: "
+        f"{format_points(rubric.points - points.points)}"
+    )
+    if not manual:
+        return step
+    listed = ", ".join(f"{criterion.id} ({worth((criterion,)).short})" for criterion in manual)
+    return f"{step}; manual grading: {points.text} for {listed}"

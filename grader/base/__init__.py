@@ -1,0 +1,1 @@
+"""What all other packages use: places in a file, names, printable text, errors, problems."""

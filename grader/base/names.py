@@ -1,0 +1,218 @@
+"""The known name that is closest to a mistyped one: to suggest it, or to read it in its place."""
+
+import re
+from collections.abc import Iterable
+from itertools import islice, product
+
+from grader.base.text import quoted
+
+_MAX_CANDIDATES = 300
+_MAX_KNOWN = 1000
+_MARGIN = 0.1  # of difflib's ratios
+MAX_LENGTH = 60  # characters of names that are compared
+_CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
+_WORD = re.compile(r"\d+|[^\W\d_]+")
+_LETTER_BORDER = re.compile(r"(?<!\d) (?!\d)")
+_AXES_AND_SIDES = frozenset("xyzlrfb")
+# Words of side, place, axis and measure: none is a misspelling of another one.
+_DISTINCT = frozenset(
+    {
+        "left",
+        "right",
+        "front",
+        "rear",
+        "back",
+        "fore",
+        "top",
+        "bottom",
+        "upper",
+        "lower",
+        "inner",
+        "outer",
+        "middle",
+        "side",
+        "first",
+        "second",
+        "third",
+        "last",
+        "start",
+        "end",
+        "forward",
+        "backward",
+        "minimum",
+        "maximum",
+        "min",
+        "max",
+        "roll",
+        "pitch",
+        "yaw",
+        "width",
+        "length",
+        "height",
+        "depth",
+        "thickness",
+        "radius",
+        "diameter",
+        "size",
+        "mass",
+        "weight",
+    }
+)
+
+
+def closest(name: str, known: Iterable[str]) -> str | None:
+    """Return the known name that is most like this one, or None if none is close."""
+    from difflib import get_close_matches  # imported late: most files have no misspelt name
+
+    if len(name) > MAX_LENGTH:
+        return None
+    lower = name.lower()
+    others = (
+        other for other in sorted(known, reverse=True) if other != name and len(other) <= MAX_LENGTH
+    )
+    candidates = {other.lower(): other for other in others}
+    if len(candidates) > _MAX_CANDIDATES:  # comparing is slow: keep those that begin or end alike
+        alike = (
+            other for other in candidates if other[:3] == lower[:3] or other[-3:] == lower[-3:]
+        )
+        candidates = {other: candidates[other] for other in islice(alike, _MAX_CANDIDATES)}
+    matches = get_close_matches(lower, candidates, n=1, cutoff=0.7)
+    if not matches:  # difflib rates swapped letters in short names too low, such as xzy for xyz
+        matches = [other for other in candidates if sorted(other) == sorted(lower)]
+    return candidates[matches[0]] if matches else None
+
+
+def clearly_closest(name: str, known: Iterable[str]) -> str | None:
+    """Return the known name that is most like this one, if no other one is nearly as like it."""
+    from difflib import SequenceMatcher  # imported late, as above
+
+    names = list(known)
+    first = closest(name, names)
+    second = closest(name, (it for it in names if it != first))
+    if first is None or second is None:
+        return first
+    ratios = [SequenceMatcher(None, name.lower(), it.lower()).ratio() for it in (first, second)]
+    return first if ratios[0] - ratios[1] > _MARGIN else None
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """Return `; did you mean 'x'?` for the end of a message, or nothing if no known name is
+    close.
+    """
+    match = closest(name, known)
+    return f"; did you mean {quoted(match)}?" if match else ""
+
+
+def folded(name: str) -> str:
+    """Return the letters and digits of a name in lower case: my_robot, My-Robot and MYROBOT are
+    one name.
+    """
+    return "".join(filter(str.isalnum, name.casefold()))
+
+
+def near(name: str, known: Iterable[str], suffix: str = "") -> str | None:
+    """Return the known name that another one surely stands for; None if none is near, or several
+    are equally near.
+
+    Words are compared one by one, whatever their case: one letter, or one exchanged pair, may
+    differ in a known word of four letters or more, two in seven or more. `suffix`, the kind of
+    thing that is named, may be missing at the end.
+    """
+    own, others = _words(name), set(islice(known, _MAX_KNOWN + 1)) - {name}
+    if len(others) > _MAX_KNOWN:
+        return None
+    distances: dict[str, tuple[int, bool]] = {}
+    for other in others:
+        distance = _distance(own, _words(other), suffix)
+        if distance is not None:
+            distances[other] = distance
+    nearest = min(distances.values(), default=None)
+    found = [other for other, distance in distances.items() if distance == nearest]
+    return found[0] if len(found) == 1 else None
+
+
+def are_of_one_side(name: str, other: str) -> bool:
+    """Return whether two names have the same numbers and words of side, place and measure, in
+    any order.
+    """
+    words = _words(name), _words(other)
+    first, second = (sorted(it for it in each if it.isdigit() or it in _DISTINCT) for each in words)
+    pairs = (
+        zip(*words, strict=True)
+        if len(words[0]) == len(words[1]) and sorted(words[0]) != sorted(words[1])
+        else ()
+    )
+    return first == second and not any(
+        one != known and _are_distinct(one, known) for one, known in pairs
+    )
+
+
+def _words(name: str) -> list[str]:
+    return _WORD.findall(_CAMEL.sub(" ", name[: MAX_LENGTH + 1]).casefold())
+
+
+def _distance(name: list[str], known: list[str], suffix: str) -> tuple[int, bool] | None:
+    """Return how many letters differ, and whether the suffix is missing; None for names that are
+    not near.
+    """
+    texts = [_LETTER_BORDER.sub("", " ".join(words)) for words in (name, known)]
+    if not all(texts) or max(map(len, texts)) > MAX_LENGTH:
+        return None
+    if texts[0] == texts[1]:
+        return 0, False
+    shorter, longer = sorted((name, known), key=len)
+    is_cut = len(longer) == len(shorter) + 1 and longer[-1] == suffix
+    if not is_cut and len(name) != len(known):
+        return None
+    differing = 0
+    for pair in zip(name, known, strict=False):
+        letters = _differing_letters(*pair)
+        if letters is None:
+            return None
+        differing += letters
+    return differing, is_cut
+
+
+def _differing_letters(word: str, known: str) -> int | None:
+    """Return how many letters or exchanged pairs differ in two words; None if these are too
+    many.
+    """
+    if word == known:
+        return 0
+    most = _most_differing(word, known)
+    if abs(len(word) - len(known)) > most:
+        return None
+    before, row = [0], [*range(len(known) + 1)]
+    for i, letter in enumerate(word):
+        earlier, before, row = before, row, [i + 1]
+        for j, other in enumerate(known):
+            cost = min(before[j] + (0 if letter == other else 1), before[j + 1] + 1, row[j] + 1)
+            if i and j and (letter, other) == (known[j - 1], word[i - 1]):
+                cost = min(cost, earlier[j - 1] + 1)
+            row.append(cost)
+    return row[-1] if row[-1] <= most else None
+
+
+def _most_differing(word: str, known: str) -> int:
+    """Return how many letters of a known word may be mistyped."""
+    if len(known) < 4 or known.isdigit() or _are_distinct(word, known):
+        return 0
+    return 1 if len(known) < 7 else 2
+
+
+def _are_distinct(word: str, known: str) -> bool:
+    """Return whether two words differ in a side, axis or measure that is, or may be, joined to
+    another word.
+    """
+    if {word, known} <= _DISTINCT or word[1:] == known[1:]:  # posx and posy, lwheel and rwheel
+        return True
+    if (
+        len(word) == len(known)
+        and word[:-1] == known[:-1]
+        and {word[-1], known[-1]} <= _AXES_AND_SIDES
+    ):
+        return True
+    ends = [
+        (one for one in _DISTINCT if it.startswith(one) or it.endswith(one)) for it in (word, known)
+    ]
+    return any(one != other for one, other in product(*map(list, ends)))

@@ -1,0 +1,84 @@
+"""Problems of files: their kinds, each with a stable code, and one problem at its location."""
+
+from collections.abc import Iterable
+from functools import partial
+from typing import Literal, NamedTuple
+
+from grader.base.source import Location
+
+Severity = Literal["error", "warning", "note"]
+Effect = Literal["rejects", "undetermined", "drops", "loads", "other"]
+
+
+class Kind(NamedTuple):
+    """One kind of problem. docs/examples/ says how to fix the file.
+
+    The effect of a URDF's problems decides the verdict: ROS 2 rejects the file, drops content of
+    it, or loads all of it. The effect of a problem of another file is `other`.
+    """
+
+    code: str  # which never changes
+    title: str
+    severity: Severity
+    effect: Effect
+    is_consequence: bool = False  # another problem of the same file usually causes it
+    detaches_links: bool = False  # ROS 2 loads the file without links that are apart from the tree
+    is_before_ros: bool = False  # xacro stops at it, before ROS 2 gets the file
+
+
+class Problem(NamedTuple):
+    """One problem of one file."""
+
+    kind: Kind
+    message: str  # a sentence
+    location: Location
+    # what it is about: the link that loses content with it, a tag, or a few words
+    subject: str = ""
+
+    @property
+    def code(self) -> str:
+        """The stable code of its kind, such as URDF012."""
+        return self.kind.code
+
+    @property
+    def severity(self) -> Severity:
+        """The severity of its kind: an error keeps ROS 2 from loading the file."""
+        return self.kind.severity
+
+
+rejects = partial(Kind, severity="error", effect="rejects")  # ROS 2 loads nothing of the file
+drops = partial(
+    Kind, severity="warning", effect="drops"
+)  # ROS 2 loads the file without part of its content
+warns = partial(
+    Kind, severity="warning", effect="loads"
+)  # ROS 2 loads everything, but it deserves a warning
+notes = partial(Kind, severity="note", effect="loads")
+
+
+def kinds_in(namespace: Iterable[object]) -> tuple[Kind, ...]:
+    """Return the kinds among the values of a module, sorted by code."""
+    return tuple(
+        sorted(
+            (value for value in namespace if isinstance(value, Kind)), key=lambda kind: kind.code
+        )
+    )
+
+
+def in_order(problems: Iterable[Problem]) -> tuple[Problem, ...]:
+    """Return problems in the order of their locations."""
+    return tuple(
+        sorted(
+            problems,
+            key=lambda problem: (problem.location.line, problem.location.column, problem.code),
+        )
+    )
+
+
+def causes(problems: Iterable[Problem]) -> list[Problem]:
+    """Return the problems for which ROS 2 rejects a file; only those of xacro if that stops
+    before.
+    """
+    found = [problem for problem in problems if problem.kind.effect == "rejects"]
+    own = [problem for problem in found if not problem.kind.is_consequence]
+    return [problem for problem in own if problem.kind.is_before_ros] or own or found

@@ -1,0 +1,235 @@
+"""Export the current grades: as CSV, JSON or pages, into a file of an LMS, and the reports as
+feedback for an LMS.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from decimal import ROUND_FLOOR, Decimal
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from zipfile import is_zipfile
+
+from grader.base.errors import GraderError, InputError
+from grader.base.text import counted, enumerated, format_points, printable_path
+from grader.classroom.gradebook.gradebook import Gradebook, grade_table
+from grader.classroom.gradebook.student_grade import Reason, StudentGrade
+from grader.classroom.lms.feedback import (
+    canvas_names,
+    comment_html,
+    lost_points,
+    moodle_names,
+    write_feedback,
+)
+from grader.classroom.lms.fill import Filled, FillOptions, PublishedGrade, by_reason, fill
+from grader.classroom.lms.forms import FORMS
+from grader.classroom.marks import gradebook_folder as names
+from grader.classroom.reports.class_figures import record_run, warn_of_ignored
+from grader.classroom.tables import SIZE_LIMIT, write_table
+from grader.files.reading import read_capped
+from grader.report.formats import Format
+from grader.report.invocation import ExitCode
+from grader.report.writing import Terminal, is_same_file, is_stdout, refuse_symlinks, save_bytes
+
+_DOUBTS = (
+    Reason.OLDER_MARKS,
+    Reason.EARLY_MARK,
+    Reason.UNKNOWN_TIME,
+)  # about grades that are exported
+_BOM = b"\xef\xbb\xbf"  # by which Excel recognises UTF-8
+# The targets of each option that not all targets take.
+_TARGETS = {"--into": tuple(FORMS), "--feedback": ("moodle", "canvas"), "--excel": ("csv",)}
+
+
+@dataclass(frozen=True, slots=True)
+class ExportRequest:
+    """The options of `grader export`."""
+
+    target: str  # csv, json, html or an LMS
+    gradebook: Path
+    into: Path | None = None  # the file of the LMS to fill in
+    # the file or folder to write; default: standard output, or the gradebook
+    output: Path | None = None
+    strict: bool = False  # whether nothing is written if something is unmatched or does not count
+    column: str = ""  # the title of the grade's column
+    pending_as_zero: bool = False  # whether points that need manual grading count as zero
+    any_maximum: bool = False  # whether the maximum of the LMS may be another one
+    only: bool = False  # whether the columns of other assignments are omitted
+    excel: bool = False  # whether Excel opens the CSV with a double click
+    feedback: Path | None = None  # the zip of reports to write
+    feedback_format: str = "html"
+
+
+def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]:
+    """Export the grades to the output file; return what to print, and the exit code. Raises
+    GraderError.
+    """
+    _refuse_options(request)
+    book = Gradebook(request.gradebook)
+    roots = book.settings.roots(book.folder)
+    if request.target == "html":
+        from grader.classroom.reports import class_reports  # it loads what runs processes
+
+        folder = request.output or book.folder / names.REPORTS
+        if request.output is not None:
+            class_reports.refuse_report_folder(folder, roots)
+        class_reports.write_reports(
+            class_reports.ReportRun(book.folder, folder, (Format.HTML,)), terminal
+        )
+        return b"", ExitCode.PASSED
+    for path in (request.output, request.feedback):
+        if path is None:
+            continue
+        refuse_symlinks(path, roots)
+        if book.folder.resolve() in path.resolve().parents:
+            raise InputError(
+                f"cannot write {printable_path(path)}: the gradebook is written by its own commands"
+            )
+    warn_of_ignored(book, terminal.warn)
+    exported = _exported(request, book, terminal)
+    doubts = [
+        (why, one.student.key, detail)
+        for one in book
+        for why, detail in one.concerns.items()
+        if why in _DOUBTS
+    ]
+    for line in by_reason(doubts):
+        terminal.warn(line)
+    is_doubtful = any(why is not Reason.OLDER_MARKS for why, _, _ in doubts)
+    if request.strict and (book.marks.ignored or is_doubtful or not exported.is_complete):
+        why = (
+            "rows or students are unmatched, marks or times are in doubt, or the LMS would "
+            "refuse a grade"
+        )
+        terminal.warn(f"nothing was written, because of --strict: {why}")
+        return b"", ExitCode.FAILED
+    record_run(book.folder, terminal.warn)
+    if request.feedback is not None:
+        save_bytes(request.feedback, _feedback(request, book, exported.numbers, terminal), roots)
+    if request.output is None:
+        return exported.data, ExitCode.PASSED
+    save_bytes(request.output, exported.data, roots)
+    return b"", ExitCode.PASSED
+
+
+def _exported(request: ExportRequest, book: Gradebook, terminal: Terminal) -> Filled:
+    """Return the exported file, empty if only feedback is asked for."""
+    if request.target == "csv":
+        data = write_table(*grade_table(book, book, is_exported=True)).encode()
+        return Filled(_BOM + data if request.excel else data)
+    if request.target == "json":
+        from grader.classroom.reports.class_json import render_class_json
+
+        return Filled(render_class_json(book).encode())
+    if request.into is None:
+        return Filled()
+    form, lab, shown = (
+        FORMS[request.target],
+        (book.rubric.title, book.rubric.id),
+        printable_path(request.into),
+    )
+    options = FillOptions(
+        book.maximum, lab, request.column, request.any_maximum, request.only, shown
+    )
+    grades = [
+        _class_grade(book, one, request, has_comment="comment" in form.columns) for one in book
+    ]
+    filled = fill(read_capped(request.into, SIZE_LIMIT, advice=""), grades, form, options)
+    for line in filled.lines:
+        terminal.warn(line)
+    return filled
+
+
+def _class_grade(
+    book: Gradebook, grade: StudentGrade, request: ExportRequest, *, has_comment: bool
+) -> PublishedGrade:
+    """Return a grade as it is published; points that need manual grading count as zero with
+    --pending-as-zero.
+    """
+    is_zero = (
+        request.pending_as_zero and grade.pending and grade.why_open.endswith("manual grading")
+    )
+    total = grade.total if is_zero else grade.published
+    comment = _comment(book, grade, total) if has_comment and total is not None else ""
+    return PublishedGrade(grade.student, total, grade.is_excused, grade.why_open, comment)
+
+
+def _comment(book: Gradebook, grade: StudentGrade, total: Decimal) -> str:
+    from grader.classroom.reports import class_reports
+
+    report = class_reports.report_of(book, grade, has_hints=False)
+    lost = () if grade.has_final else lost_points(report.results)
+    exported = format_points(total.quantize(Decimal("0.01"), ROUND_FLOOR))
+    opening = f"Grade: {exported} of {format_points(book.maximum)} points."
+    return comment_html(opening, [*lost, *class_reports.notes_of(grade, report)])
+
+
+def _feedback(
+    request: ExportRequest, book: Gradebook, numbers: Mapping[str, str], terminal: Terminal
+) -> bytes:
+    """Return the zip of the reports, named as the LMS gives them to its students; `numbers` are of
+    --into.
+    """
+    from grader.classroom.reports import class_reports
+
+    kind = Format(request.feedback_format)
+    name, grades = (
+        f"report.{kind.ending}",
+        [one for one in book if one.stored is not None or one.has_final],
+    )
+    if request.target == "canvas":
+        paths, without = canvas_names(
+            [(one.student, one.stored.paths if one.stored else ()) for one in grades], name
+        )
+    else:
+        students = [one.student for one in grades]
+        if request.into is not None:
+            students = [one._replace(moodle=numbers.get(one.key, "")) for one in students]
+        paths, without = moodle_names(students, name)
+    files = {key: str(number) for number, key in enumerate(paths)}
+    with TemporaryDirectory() as folder:
+        run = class_reports.ReportRun(book.folder, Path(folder), (kind,))
+        without |= class_reports.render_reports(run, files, terminal)
+        written = {
+            key: Path(folder, f"{file}.{kind.ending}")
+            for key, file in files.items()
+            if key not in without
+        }
+        zipped, left = write_feedback(
+            {key: path.read_bytes() for key, path in written.items()}, paths, name
+        )
+    for line in by_reason(
+        ("without feedback", key, why) for key, why in {**without, **left}.items()
+    ):
+        terminal.warn(line)
+    terminal.warn(
+        f"{counted(len(written) - len(left), 'report')} in "
+        f"{printable_path(request.feedback or Path())}"
+    )
+    return zipped
+
+
+def _refuse_options(request: ExportRequest) -> None:
+    """Raise GraderError for an option that the target does not take, and for a file that must not
+    be replaced.
+    """
+    into, output, feedback = request.into, request.output, request.feedback
+    for option, given in {"--into": into, "--feedback": feedback, "--excel": request.excel}.items():
+        if given and request.target not in _TARGETS[option]:
+            raise GraderError(
+                f"export {request.target} takes no {option}: it is for "
+                f"{enumerated(_TARGETS[option])}"
+            )
+    if request.target in FORMS and into is None and (output or not feedback):
+        raise GraderError(
+            f"export {request.target} fills in a file that the LMS exported: give it with --into"
+        )
+    if into is not None and (is_stdout(into) if output is None else is_same_file(output, into)):
+        why = "--into reads it, and rows without a grade would be lost"
+        raise GraderError(f"cannot write {printable_path(into)}: {why}; choose another file")
+    if feedback is not None and (
+        feedback.is_symlink() or (feedback.exists() and not is_zipfile(feedback))
+    ):
+        shown = printable_path(feedback)
+        raise InputError(
+            f"cannot write {shown}: it is a symlink, or exists and is no zip; name another file"
+        )

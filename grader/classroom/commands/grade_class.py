@@ -1,0 +1,449 @@
+"""Grade a class into its gradebook, and write its grades and reports.
+
+The inputs are the options of the command, else what the gradebook has of the last run; it gets
+copies of them.
+"""
+
+import gc
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import Executor
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
+from decimal import Decimal
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from grader import __version__
+from grader.base.errors import GraderError, InputError
+from grader.base.text import (
+    counted,
+    enumerated,
+    first_lines,
+    printable,
+    printable_path,
+    shell_quoted,
+)
+from grader.classroom.gradebook.gradebook import Gradebook, grade_table
+from grader.classroom.gradebook.student_grade import StudentGrade
+from grader.classroom.intake.submissions import Intake, read_class
+from grader.classroom.lms.forms import FORMS
+from grader.classroom.marks import gradebook_folder as names
+from grader.classroom.marks.gradebook_folder import (
+    CLASS_FILE,
+    ClassSettings,
+    read_settings,
+    relative,
+    settings_text,
+)
+from grader.classroom.reports.class_figures import append_run, warn_of_ignored
+from grader.classroom.reports.class_reports import ReportRun, refuse_report_folder, write_reports
+from grader.classroom.reports.class_terminal import ClassTable
+from grader.classroom.results.equal_work import hashes_of
+from grader.classroom.results.results import Results, ResultsWriter, Run, digest_of, time_of_run
+from grader.classroom.roster.lateness import read_time, time_text
+from grader.classroom.roster.roster import Roster, read_roster
+from grader.classroom.run.batch_run import Batch
+from grader.classroom.run.batch_worker import ClassContext, reference_hashes
+from grader.classroom.run.preloading import PRELOAD
+from grader.classroom.tables import SIZE_LIMIT, write_table
+from grader.files.reading import read_capped, sha256_of
+from grader.lab.rubric.rubric import Rubric, load_rubric
+from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC, files_of
+from grader.lab.submission.opening import open_submission
+from grader.report.formats import Format, OutputFormat
+from grader.report.invocation import read_arguments
+from grader.report.screen import draw
+from grader.report.writing import Terminal, Warn, refuse_symlinks, save, save_bytes
+from grader.workers.pool import Processes, processors
+from grader.workers.queue import Progress
+
+_MAX_LINES, _MAX_NAMED = 10, 5
+_LEAST_SECONDS = 15.0  # in which hints are searched, and a few reports written
+_PRIVATE = 0o600
+_FORMAT = 2  # of results: those of another one are graded again
+
+
+@dataclass(frozen=True, slots=True)
+class ClassRequest:
+    """The options of `grader batch`.
+
+    Up to `max_size`, None stands for what the gradebook keeps of the last run; it does not keep the
+    others.
+    """
+
+    paths: Sequence[Path] | None  # the class folders or zips
+    gradebook: Path | None
+    rubric: str | None  # an id or a file
+    usual_rubric: str  # of a new gradebook, if no other one is named
+    roster: Path | None
+    due: str | None  # the deadline
+    layout: str | None
+    assignment: str | None  # of nbgrader
+    ignore: Sequence[str] | None  # names of entries that are no student's
+    part: Sequence[str] | None  # the ids of the parts to grade
+    arg: Sequence[str] | None  # NAME=VALUE, of xacro
+    ignore_file: Sequence[Path] | None  # starter files
+    max_size: int | None  # of a URDF, in bytes
+    jobs: int | None  # worker processes
+    timeout: float  # for a submission, in seconds
+    force: bool  # whether unchanged submissions are graded again
+    cluster: str | None  # the address of a Dask scheduler
+    reports: Path | None  # the folder to write reports into
+    report_format: Sequence[Format] | None
+    answers: Path | None  # the model answers
+    verbose: bool  # whether the table lists all students
+    output_format: OutputFormat
+
+
+@dataclass(frozen=True, slots=True)
+class _ClassInputs:
+    """What a run reads: the gradebook and its settings, the rubric as it was named, the roster."""
+
+    folder: Path
+    settings: ClassSettings
+    rubric: Rubric
+    roster: Roster | None
+
+    @property
+    def roots(self) -> tuple[Path, ...]:
+        """The absolute paths of the submissions."""
+        return self.settings.roots(self.folder)
+
+    @property
+    def near_roots(self) -> tuple[Path, ...]:
+        """The same, relative to the current folder if they are in it."""
+        here = Path.cwd()
+        return tuple(
+            root.relative_to(here) if root.is_relative_to(here) else root for root in self.roots
+        )
+
+
+def _read_inputs(options: ClassRequest, warn: Warn) -> _ClassInputs:
+    """Return the inputs of a run; raise InputError and RubricError. Nothing is written."""
+    usual = load_rubric(options.usual_rubric)
+    rubric = load_rubric(options.rubric) if options.rubric is not None else None
+    folder = options.gradebook or Path(f"{(rubric or usual).id}-grades")
+    is_new = not names.is_gradebook(folder)
+    names.check_free(folder)
+    settings = ClassSettings() if is_new else read_settings(folder)
+    if rubric is None:
+        rubric = usual if is_new else load_rubric(folder / settings.rubric)
+        if options.usual_rubric != DEFAULT_RUBRIC and usual.id != rubric.id:
+            warn(
+                f"{printable_path(folder)} keeps its rubric {rubric.id}, not {usual.id}: "
+                "name it with --rubric"
+            )
+    elif (recorded := settings.rubric_id) not in ("", rubric.id):
+        raise InputError(
+            f"{printable_path(folder)} is the gradebook of {recorded}, not of {rubric.id}: "
+            "name another folder"
+        )
+    if not (options.paths or settings.submissions):
+        raise InputError("name the PATH of the submissions, a folder or the zip of an LMS")
+    if options.due is None and (due := settings.deadline(folder)) is not None:
+        warn(f"deadline of the last run: {time_text(due, due.tzinfo)} (--due changes it)")
+    if options.roster is None:
+        names.check_roster(folder, settings)
+    roster_file = options.roster or (folder / names.ROSTER)
+    roster = None
+    if options.roster or roster_file.exists():
+        roster = read_roster(_read_csv(roster_file), printable_path(roster_file))
+    inputs = _ClassInputs(folder, _updated(options, settings, folder, rubric), rubric, roster)
+    if not options.paths and (
+        gone := [printable_path(root) for root in inputs.near_roots if not root.exists()]
+    ):
+        raise InputError(
+            f"{enumerated(gone)} of the last run cannot be found: name the new PATH; of "
+            "several sections, name all"
+        )
+    return inputs
+
+
+def _updated(
+    options: ClassRequest, settings: ClassSettings, folder: Path, rubric: Rubric
+) -> ClassSettings:
+    """Return the settings with the options of the command."""
+    for name in options.part or ():
+        rubric.part(name)
+    paths = tuple(relative(path, folder) for path in options.paths or ())
+    if {*paths} <= {*settings.submissions}:
+        paths = ()  # a section alone: the others stay
+    given: dict[str, Any] = {  # None where the option is not given
+        "due": read_time(options.due).isoformat() if options.due else None,
+        "layout": options.layout,
+        "assignment": options.assignment,
+        "ignore": tuple(options.ignore) if options.ignore else None,
+        "parts": tuple(options.part) if options.part else None,
+        "arguments": read_arguments(options.arg or ()) or None,
+        "max_size": options.max_size,
+        "submissions": paths or None,
+    }
+    settings = replace(
+        settings, **{name: value for name, value in given.items() if value is not None}
+    )
+    if options.ignore_file or not settings.handed_out:
+        own = tuple(_handed_out(options.ignore_file or (), rubric))
+        settings = replace(
+            settings, handed_out=(*own, *reference_hashes(rubric.data, str(rubric.path)))
+        )
+    return settings
+
+
+def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
+    """Yield the hashes of the work that the course handed out. Raises InputError for a file without
+    any.
+    """
+    for path in files:
+        hashes = hashes_of(open_submission(str(path), rubric.lab))
+        if not hashes:
+            raise InputError(f"--ignore-file {printable_path(path)}: there is no URDF in it")
+        yield from hashes
+
+
+def _keep_inputs(inputs: _ClassInputs, options: ClassRequest, warn: Warn) -> _ClassInputs:
+    """Write the settings and the copies of the roster and the rubric into the gradebook. Raises
+    InputError.
+    """
+    folder, settings, rubric = inputs.folder, inputs.settings, inputs.rubric
+    if options.roster is not None:
+        data, file = _read_csv(options.roster), folder / names.ROSTER
+        _warn_of_edits(file, (settings.roster_hash, sha256_of(data)), options.roster, warn)
+        save_bytes(file, data, inputs.roots, _PRIVATE)
+        settings = replace(settings, roster_hash=sha256_of(data))
+    if options.rubric is not None or not settings.rubric:
+        _warn_of_edits(
+            folder / settings.rubric, (settings.rubric_hash, rubric.sha256), rubric.path, warn
+        )
+        copy = _copy_rubric(folder, rubric)
+        settings = replace(settings, rubric=copy, rubric_id=rubric.id, rubric_hash=rubric.sha256)
+    if not (folder / CLASS_FILE).exists() or settings != read_settings(folder):
+        save(folder / CLASS_FILE, settings_text(settings), inputs.roots, _PRIVATE)
+    return replace(inputs, settings=settings, rubric=load_rubric(folder / settings.rubric))
+
+
+def _warn_of_edits(file: Path, known: Sequence[str], new: Path, warn: Warn) -> None:
+    """Say that a copy which a person has edited is replaced."""
+    if file.is_file() and sha256_of(_read_csv(file)) not in known:
+        warn(f"{printable_path(file)} was edited: it is replaced by {printable_path(new)}")
+
+
+def _read_csv(file: Path) -> bytes:
+    return read_capped(file, SIZE_LIMIT, advice="")
+
+
+def _copy_rubric(folder: Path, rubric: Rubric) -> str:
+    """Copy a rubric and its reference into a gradebook, placed to each other as before; return
+    where it is.
+    """
+    target, own = folder / names.RUBRIC, rubric.path.resolve()
+    files = [
+        file for file in files_of(str(rubric.path)) if file.name != rubric.answers and file.exists()
+    ]
+    near = [
+        file.resolve()
+        for file in files
+        if not Path(rubric.reference).is_absolute() or file == rubric.path
+    ]
+    base = Path(os.path.commonpath([file.parent for file in near]))
+    found = {path for file in near for path in (file, *file.rglob("*")) if path.is_file()} - {own}
+    copies = {
+        target / path.relative_to(base): path for path in found if path.parent.name != "__pycache__"
+    }
+    copies[target / own.relative_to(base)] = own  # when all that it needs is there
+    try:
+        for place, path in copies.items():
+            place.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+            save_bytes(place, path.read_bytes(), (), _PRIVATE)
+        for path in target.rglob("*"):
+            if path.is_file() and path not in copies:
+                path.unlink()
+    except OSError as error:
+        raise InputError(f"cannot write {printable_path(target)}: {error.strerror}") from None
+    return (target / own.relative_to(base)).relative_to(folder).as_posix()
+
+
+def grade_class(request: ClassRequest, terminal: Terminal) -> str:
+    """Grade a class and return its table. Raises InputError and RubricError."""
+    gc.freeze()  # loaded modules are not garbage
+    gc.set_threshold(50_000)
+    gc.enable()  # unlike other commands, this one may run for long
+    if not isfinite(request.timeout):
+        raise InputError(f"--timeout takes a number of seconds, not {request.timeout}")
+    warn, inputs = terminal.warn, _read_inputs(request, terminal.warn)
+    folder, rubric, settings = inputs.folder, inputs.rubric, inputs.settings
+    if request.due and rubric.late is None:
+        no_late = f"because the rubric {rubric.id} has no [late]: only the days late are shown"
+        warn(f"--due has no effect on grades, {no_late}")
+    if request.reports is not None:
+        refuse_report_folder(request.reports, inputs.roots)
+    layout, lab = (settings.layout, settings.assignment), (rubric.id, rubric.folders)
+    intake = read_class(inputs.near_roots, inputs.roster, *layout, *lab, settings.ignore)
+    warn(
+        f"{counted(len({(one.root, one.paths) for one in intake.submissions}), 'submission')}, "
+        f"layout {intake.layout}"
+    )
+    for lines in (intake.notes, intake.unmatched, [f"ignored: {line}" for line in intake.ignored]):
+        for line in first_lines(lines, _MAX_LINES):
+            warn(printable(line))
+    refuse_symlinks(folder, inputs.roots)
+    names.make_gradebook(folder)
+    with names.batch_lock(folder):
+        results = Results(folder / names.RESULTS)
+        _check_same_class(folder, results, intake)
+        if results.runs and results.runs[-1].rubric != rubric.sha256:
+            with suppress(
+                GraderError
+            ):  # such as that of an old rubric that an edit broke: then it is not compared
+                results = append_run(Gradebook(folder)) or results
+        inputs = _keep_inputs(inputs, request, warn)
+        table, done = _grade(request, inputs, results, intake, terminal)
+    formats = tuple(request.report_format or ())
+    if request.reports is not None and not formats:
+        formats = (Format.TERMINAL,)
+    if formats:
+        run = ReportRun(folder, request.reports or folder / names.REPORTS, formats, request.answers)
+        write_reports(run, terminal, request.jobs, max(request.timeout, _LEAST_SECONDS))
+    if request.output_format is OutputFormat.JSON:
+        from grader.classroom.reports.class_json import render_class_json
+
+        return render_class_json(Gradebook(folder), done)
+    table.ending = _ending(folder, table, intake.layout)
+    return draw(table.print, terminal.screen())
+
+
+def _ending(folder: Path, table: ClassTable, layout: str) -> str:
+    """Return where the grades are, how many students need attention, and the next command."""
+    is_only = [file.parent.resolve() for file in Path().glob(f"*/{CLASS_FILE}")] == [
+        folder.resolve()
+    ]
+    lms = layout if layout in FORMS else "csv"
+    command = f"grader {'review' if table.open else f'export {lms}'}"
+    option = "" if is_only else f" --gradebook {shell_quoted(folder)}"
+    attention = (
+        f" · {table.attention} need{'s' * (table.attention == 1)} attention"
+        if table.attention
+        else ""
+    )
+    return f"grades: {printable_path(folder / names.GRADES)}{attention} · next: {command}{option}"
+
+
+def _grade(
+    request: ClassRequest,
+    inputs: _ClassInputs,
+    results: Results,
+    intake: Intake,
+    terminal: Terminal,
+) -> tuple[ClassTable, Progress]:
+    """Grade what has no current result, append the run, and write the grades of the class."""
+    folder, rubric, settings = inputs.folder, inputs.rubric, inputs.settings
+    roots, arguments = tuple(map(str, inputs.roots)), dict(settings.arguments)
+    shared = ClassContext(
+        roots, rubric.data, str(rubric.path.resolve()), settings.max_size, settings.parts, arguments
+    )
+    context = _context(inputs)
+    present = dict.fromkeys(one.student.key for one in intake.submissions)
+    with ResultsWriter(folder / names.RESULTS, results.end) as writer:
+        batch = Batch(results, writer, shared, context)
+        done = _batch(request, inputs, batch, intake, terminal)
+        run = Run(
+            results.next_run,
+            time_of_run(),
+            __version__,
+            rubric.sha256,
+            context,
+            present,
+            sorted(intake.unclear),
+        )
+        book, table = Gradebook(folder, run=run), ClassTable(rubric, verbose=request.verbose)
+        published: dict[str, Decimal | None] = {}
+
+        def passing() -> Iterator[StudentGrade]:
+            for grade in book:
+                table.add(grade)
+                published[grade.student.key] = grade.published
+                yield grade
+
+        write_grades(book, passing())
+        writer.append(book.run_with(published)._replace(written=sorted(batch.written)).line)
+        writer.sync()
+    warn_of_ignored(book, terminal.warn)
+    return table, done
+
+
+def _context(inputs: _ClassInputs) -> str:
+    """Return the hash of all that results depend on besides the submissions."""
+    folder, settings = inputs.folder, inputs.settings
+    copies = sorted(
+        path for path in (folder / names.RUBRIC).rglob("*") if path.is_file()
+    )  # with the reference
+    reference = sha256_of(
+        repr([(path.relative_to(folder).as_posix(), path.read_bytes()) for path in copies]).encode()
+    )
+    options = settings.parts, sorted(settings.arguments.items()), settings.max_size
+    return digest_of(inputs.rubric.sha256, reference, *options, __version__, _FORMAT)
+
+
+def _batch(
+    request: ClassRequest, inputs: _ClassInputs, batch: Batch, intake: Intake, terminal: Terminal
+) -> Progress:
+    """Grade what has no current result, and say how many that were."""
+    with _executor(request, inputs) as (executor, workers), terminal.show_class("grading") as show:
+        try:
+            done = batch.grade(intake.submissions, executor, workers, show, force=request.force)
+        except BaseException:
+            graded = f"{batch.kept} of {batch.progress.total} have a result, which is kept"
+            terminal.warn(f"stopped: {graded}; rerun the same command to resume")
+            raise
+    errored = f" ({done.errored} errored)" if done.errored else ""
+    terminal.warn(f"{done.graded} graded{errored}, {done.unchanged} unchanged")
+    return done
+
+
+@contextmanager
+def _executor(request: ClassRequest, inputs: _ClassInputs) -> Iterator[tuple[Executor, int]]:
+    """Open what runs the tasks; yield it with the number of tasks at a time."""
+    if request.cluster is None:
+        with Processes(
+            workers := request.jobs or processors(), request.timeout, preload=PRELOAD
+        ) as local:
+            yield local, workers
+        return
+    from grader.workers.cluster import Cluster
+
+    with Cluster(request.cluster, request.timeout, inputs.roots, PRELOAD) as remote:
+        yield remote, remote.workers
+
+
+def write_grades(book: Gradebook, grades: Iterable[StudentGrade] | None = None) -> None:
+    """Write the grades of a class, by default the current ones, into its gradebook. Raises
+    InputError.
+    """
+    table = write_table(*grade_table(book, book if grades is None else grades))
+    save(book.folder / names.GRADES, table, book.settings.roots(book.folder), _PRIVATE)
+
+
+def write_grades_with(marks: int, book: Gradebook) -> None:
+    """Write the grades after some marks were saved. Raises InputError, which says that they are."""
+    try:
+        write_grades(book)
+    except InputError as error:
+        saved = "the mark is saved" if marks == 1 else f"{marks} marks are saved"
+        raise InputError(
+            f"{saved}, {names.GRADES} is not: {error}; the next command writes it"
+        ) from None
+
+
+def _check_same_class(folder: Path, results: Results, intake: Intake) -> None:
+    """Raise InputError if most of the students who submitted in the last run are missing."""
+    recorded = results.runs[-1].totals if results.runs else {}
+    here = intake.unclear | {one.student.key for one in intake.submissions}
+    missing = sorted(recorded.keys() - here)
+    if 2 * len(missing) > len(recorded):
+        raise InputError(
+            f"{printable_path(folder)} is the gradebook of another class, or a section is missing: "
+            f"{counted(len(missing), 'student')} of {len(recorded)} have no submission now "
+            f"({printable(enumerated(missing, _MAX_NAMED))}); name the paths of all "
+            "sections, or another --gradebook"
+        )

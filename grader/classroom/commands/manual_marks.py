@@ -1,0 +1,174 @@
+"""Give and withdraw marks by command: of one student, of all who submitted nothing, and of a CSV
+file.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
+from getpass import getuser
+from pathlib import Path
+
+from grader.base.errors import InputError
+from grader.base.text import (
+    by_name,
+    counted,
+    counted_points,
+    format_points,
+    named,
+    people_text,
+    printable,
+    printable_path,
+)
+from grader.classroom.commands.grade_class import write_grades_with
+from grader.classroom.gradebook.gradebook import Gradebook, points_of
+from grader.classroom.gradebook.review_items import review_items
+from grader.classroom.gradebook.student_grade import Reason, StudentGrade
+from grader.classroom.marks import gradebook_folder as names
+from grader.classroom.marks.mark_import import MarkImport
+from grader.classroom.marks.marks import (
+    COLUMNS,
+    SURPLUS,
+    WITHDRAWN,
+    Cells,
+    Mark,
+    append_marks,
+    mark_file,
+)
+from grader.classroom.tables import SIZE_LIMIT
+from grader.files.reading import read_capped
+from grader.lab.rubric.criterion import DEADLINE, TOTAL
+from grader.report.writing import Warn
+
+_MAX_NAMED = 12
+_EMPTY = dict.fromkeys((*COLUMNS, SURPLUS), "")
+
+
+def give_mark(gradebook: Path, row: Cells, warn: Warn) -> str:
+    """Append the mark in a row to the file of its grader, and return what counts for the student
+    now.
+
+    Raises InputError.
+    """
+    if not (row["student"] and row["criterion"] and (row["points"] or row["comment"])):
+        raise InputError("name a STUDENT and a CRITERION, and give POINTS or --comment")
+    book = Gradebook(gradebook)
+    [mark] = _mark_import(book).marks_in({**_EMPTY, **row})
+    now = _append_marks(book, [mark], row["by"])
+    for line in _warnings(book, mark):
+        warn(printable(line))
+    grade = now.grade(mark.student)
+    late = f"; {grade.late.reason}" if mark.criterion == DEADLINE and grade.late.reason else ""
+    line = f"{named(mark.student, grade.student.name)}: {_grade_text(now, grade)}{late}"
+    return f"{printable(line)}\n"
+
+
+def mark_missing(gradebook: Path, row: Cells, warn: Warn) -> str:
+    """Give a final mark to all students who submitted nothing and have none; return how many.
+    Raises InputError.
+    """
+    if row["criterion"] != TOTAL or row["points"] in ("", WITHDRAWN):
+        raise InputError(f"write it as --missing {TOTAL} POINTS")
+    book = Gradebook(gradebook)
+    reader = _mark_import(book)
+    grades = list(book)
+    missing = [one.student.key for one in grades if Reason.MISSING in one.concerns]
+    marks = [mark for key in missing for mark in reader.marks_in({**_EMPTY, **row, "student": key})]
+    if marks:
+        _append_marks(book, marks, row["by"])
+    for line in _unassigned(grades):
+        warn(printable(line))
+    return (
+        f"final mark {row['points']} for {len(missing)} of {counted(len(book.keys), 'student')}\n"
+    )
+
+
+def _unassigned(grades: Sequence[StudentGrade]) -> Iterator[str]:
+    """Yield which submissions have no student for certain: one of them may be that of a student
+    who has none.
+    """
+    visitors = (
+        one.stored for one in grades if Reason.NOT_ON_ROSTER in one.concerns and not one.is_gone
+    )
+    if paths := [stored.paths[0] for stored in visitors if stored is not None and stored.paths]:
+        yield (
+            f"still unassigned: {people_text(paths, _MAX_NAMED)}: a student with this mark may "
+            "have submitted it"
+        )
+    if unclear := [one.student.key for one in grades if Reason.UNCLEAR in one.concerns]:
+        yield f"no mark for {people_text(unclear, _MAX_NAMED)}: {Reason.UNCLEAR}"
+
+
+def import_marks(gradebook: Path, file: Path, by: str) -> str:
+    """Append the marks in a CSV file; return how many. Raises InputError, and records none, if a
+    row is wrong.
+    """
+    book = Gradebook(gradebook)
+    items = review_items(book, with_final=True).items()
+    reader = _mark_import(book)._replace(
+        answers={at: [one.student.key for one in item.members] for at, item in items},
+        points={one.student.key: points_of(book, one) for one in book},
+    )
+    new, same = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file))
+    _append_marks(book, new, by)
+    return f"{printable_path(file)}: {len(new)} recorded, {same} the same as before\n"
+
+
+def _mark_import(book: Gradebook) -> MarkImport:
+    graded = {one.student: one for one in book.results.all()}
+    students = [book.student(key, graded.get(key)) for key in book.keys]
+    return MarkImport(
+        students, book.rubric, book.marks, {key: one.digest for key, one in graded.items()}
+    )
+
+
+def _append_marks(book: Gradebook, marks: Iterable[Mark], by: str) -> Gradebook:
+    """Append marks to the file of a grader, and return the class with them; its grades are
+    written.
+    """
+    new = [
+        one._replace(by=one.by or by, time=book.marks.next_time((one.student, one.criterion)))
+        for one in marks
+    ]
+    with suppress(
+        OSError, KeyError
+    ):  # of an account without a name: the files of two gradebooks can be merged
+        by = by or getuser()
+    if new:
+        append_marks(mark_file(book.folder / names.MARKS, by), new)
+    now = Gradebook(book.folder)
+    write_grades_with(len(new), now)
+    return now
+
+
+def _warnings(before: Gradebook, mark: Mark) -> Iterator[str]:
+    """Yield what a mark replaced, and that it does not count."""
+    criterion, marks = mark.criterion, before.marks
+    if old := marks.counting.get((mark.student, criterion)) or marks.comments.get(
+        (mark.student, criterion)
+    ):
+        what = "mark" if old.value else "comment"
+        words = f"{old.value}{by_name(old.by)}: {' '.join(old.comment.split())}".strip(": ")
+        yield f"this replaces the {what} of {criterion} in {old.place}: {words}"
+    elif mark.value == WITHDRAWN:
+        yield f"there was no mark of {criterion} to withdraw"
+    if any(row.id == criterion and row.adjustment is not None for row in before.rubric.criteria):
+        yield (
+            f"{criterion} is corrected after grading, by [adjust] in the rubric: its marks do "
+            "not count"
+        )
+
+
+def _grade_text(book: Gradebook, grade: StudentGrade) -> str:
+    """Return what counts: an excuse, a final mark, or the points of the criteria."""
+    if grade.total is None:
+        return "excused" if grade.is_excused else "no submission"
+    whole = book.maximum
+    if not grade.has_final:  # also with marks of parts that are not graded
+        whole = grade.report.max_score
+    final = "final mark " if grade.has_final else ""
+    late = (
+        f" after the late penalty of {format_points(-grade.late.points)}"
+        if grade.late.points
+        else ""
+    )
+    pending = f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else ""
+    return f"{final}{format_points(grade.total)} of {format_points(whole)} points{late}{pending}"

@@ -1,0 +1,1 @@
+"""Results, marks, roster and deadlines as the grade of each student."""

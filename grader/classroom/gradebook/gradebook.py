@@ -1,0 +1,288 @@
+"""A gradebook: the grades of a class, computed from the results, the rubric, the roster and the
+marks of people.
+
+Last, the grades as a table, one row a student: `grades.csv`, and `export csv`, which people may
+change.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from decimal import Decimal
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from grader import __version__
+from grader.base.errors import InputError
+from grader.base.text import format_points, printable_path
+from grader.classroom.gradebook.student_grade import Reason, SharedResult, StudentGrade
+from grader.classroom.intake.class_files import open_class_submission
+from grader.classroom.marks import gradebook_folder as names
+from grader.classroom.marks.gradebook_folder import read_settings
+from grader.classroom.marks.mark_import import exported_text
+from grader.classroom.marks.marks import Mark, Marks, read_marks
+from grader.classroom.results.results import Results, Run, StoredResult, digest_of
+from grader.classroom.roster.lateness import Lateness, lateness
+from grader.classroom.roster.roster import Roster, Student, read_roster
+from grader.classroom.tables import SIZE_LIMIT, CellValue
+from grader.files.reading import read_capped
+from grader.lab.checks.outcome import Outcome, Status
+from grader.lab.grading.report import ManualComment, ManualMark, Report, without_gifts
+from grader.lab.rubric.criterion import DEADLINE, TOTAL, Criterion
+from grader.lab.rubric.rubric import load_rubric
+from grader.lab.submission.submission import Opening, Submission
+from grader.ros.package.robot_file import Absent, Unreadable
+
+_NOT_SUBMITTED = Outcome("skipped", "not graded: this part was not submitted")
+_MAX_SHARED = 10_000  # results
+# The columns before and after those of the criteria; `submission` is the digest of what was graded.
+_FIRST = ("id", "name", "section", "status", "total")
+_LAST = (
+    "score",
+    "max_score",
+    "pending",
+    "late_days",
+    "late_points",
+    "not_final_because",
+    "email",
+    "submission",
+)
+
+
+class Gradebook:
+    """A class in a gradebook: iterating yields the grade of every student, in the order of the
+    keys.
+
+    `batch` ends with one, and every other command on a class begins with one. It keeps nothing: the
+    grades are computed again from the files of its folder.
+    """
+
+    def __init__(self, folder: Path, run: Run | None = None, answers: Path | None = None) -> None:
+        """`run` is one that is not in the file yet; `answers` is the file of the model answers, for
+        those who grade.
+        """
+        names.check_gradebook(folder)
+        self.folder, self.settings = folder, read_settings(folder)
+        names.check_roster(folder, self.settings)
+        rubric, roster = folder / self.settings.rubric, folder / names.ROSTER
+        self.rubric = load_rubric(rubric)
+        if answers is not None:
+            from grader.lab.rubric.model_answers import load_with_answers
+
+            self.rubric = load_with_answers(str(rubric), answers)
+        self.roster: Roster | None = None
+        if roster.exists():
+            self.roster = read_roster(
+                read_capped(roster, SIZE_LIMIT, advice=""), printable_path(roster)
+            )
+        self.results = Results(folder / names.RESULTS)
+        if run is None:
+            self.results.check_newest()
+        if run is None and not self.results.runs:
+            raise InputError(
+                f"nothing is graded yet in {printable_path(folder)}: run `grader batch PATH`"
+            )
+        self.run: Run = run or self.results.runs[-1]
+        self.due = self.settings.deadline(folder)
+        self._on_roster = (
+            {one.key: one for one in self.roster.students} if self.roster is not None else {}
+        )
+        others = self.results.students if self.roster is None else ()
+        self.keys = sorted(
+            {*self._on_roster, *self.run.totals, *others}
+        )  # a submission may have been assigned since
+        self.marks: Marks = read_marks(folder / names.MARKS, self.keys, self.rubric)
+        self._marked = {student for student, _ in (*self.marks.counting, *self.marks.comments)}
+        self.is_outdated = (self.run.rubric, self.run.version) != (self.rubric.sha256, __version__)
+        self._rows = {row.id: row for row in self.rubric.criteria}
+        # Most results of a class are equal, and are shared: it is read in half the time.
+        self._result = lru_cache(_MAX_SHARED)(self._new_result)
+
+    def __iter__(self) -> Iterator[StudentGrade]:
+        return map(self._grade, self.keys, self.results.each(self.keys))
+
+    @property
+    def criteria(self) -> tuple[Criterion, ...]:
+        """The criteria of the graded parts."""
+        return tuple(
+            row for row in self.rubric.criteria if row.part in (self.settings.parts or {row.part})
+        )
+
+    @property
+    def maximum(self) -> Decimal:
+        """The most points that are no extra credit."""
+        return sum((row.maximum for row in self.criteria), Decimal(0))
+
+    def run_with(self, published: Mapping[str, Decimal | None]) -> Run:
+        """Return the newest run with these grades, as they are published."""
+        texts = {key: format_points(total) for key, total in published.items() if total is not None}
+        totals = {key: texts.pop(key, None) for key in self.run.totals}
+        return self.run._replace(totals=totals, others=texts, maximum=format_points(self.maximum))
+
+    def grade(self, key: str) -> StudentGrade:
+        """Return the grade of the student with a key."""
+        return self._grade(key, self.results.of(key))
+
+    def student(self, key: str, stored: StoredResult | None) -> Student:
+        """Return a student as the roster has it, completed by the LMS ids in the names of the
+        submission.
+        """
+        person: dict[str, Any] = dict(stored.person) if stored is not None else {}
+        found = self._on_roster.get(key)
+        if found is None:
+            return Student(key, **person, is_on_roster=self.roster is None)
+        return found._replace(
+            **{name: value for name, value in person.items() if not getattr(found, name)}
+        )
+
+    def report(self, stored: StoredResult) -> Report:
+        """Return the points of a result: outcomes without places, values and hints."""
+        unread = stored.reason if stored.verdict == "unreadable" else ""
+        why = stored.reason if stored.verdict == "errored" else ""
+        if unread:
+            why = f"{unread}; needs manual grading"
+        entries = ((name, stored.results[name]) for name in self._rows if name in stored.results)
+        results = (
+            self._result(name, status, words or why, *more)
+            for name, (_, status, words, *more) in entries
+        )
+        urdf = Unreadable("", unread) if unread else Absent()
+        submission = Submission(stored.student, urdf, is_single=False)
+        return Report(submission, self.rubric, stored.parts, without_gifts(results, submission))
+
+    def reopened(self, stored: StoredResult) -> Submission | None:
+        """Return a submission as it was graded; None if it has moved or changed since, or cannot be
+        read.
+        """
+        settings, roots = self.settings, self.settings.roots(self.folder)
+        if stored.root >= len(roots) or not stored.paths:
+            return None
+        root = str(roots[stored.root].resolve())
+        try:
+            opened = open_class_submission(
+                root, stored.paths, stored.names, stored.student, settings.max_size
+            )
+            if digest_of(opened.digest) != stored.digest:
+                return None
+            known = Opening(
+                0, settings.arguments, stored.no_documents, converted=self.results.texts(stored)
+            )
+            return opened.submission(self.rubric, known)
+        except InputError:
+            return None
+
+    def _new_result(
+        self, name: str, status: Status, words: str, carried: str, off: float | None = None
+    ) -> SharedResult:
+        return SharedResult(self._rows[name], Outcome(status, words, off), carried=carried)
+
+    def _grade(self, key: str, stored: StoredResult | None) -> StudentGrade:
+        whole = (key, TOTAL)
+        student, final = (
+            self.student(key, stored),
+            self.marks.counting.get(whole) or self.marks.comments.get(whole),
+        )
+        known = set[Reason]()
+        if not student.is_on_roster:
+            known.add(Reason.NOT_ON_ROSTER)
+        if key in self.run.unclear:
+            known.add(Reason.UNCLEAR)
+        if stored is None:
+            if key in self.run.totals:
+                known.add(Reason.DAMAGED)
+            nothing = Report(
+                Submission(key, Absent(), is_single=False), self.rubric, self.settings.parts, ()
+            )
+            return StudentGrade(student, None, nothing, final=final, known=frozenset(known))
+        if key not in self.run.totals:
+            known.add(Reason.GONE)
+        if self.is_outdated or stored.context != self.run.context:
+            known.add(Reason.OUTDATED)
+        report, older = self.with_marks(self.report(stored), stored)
+        if final is not None and _is_older(final, stored):
+            older = (*older, TOTAL)
+        late = self._lateness(student, stored, report)
+        if final is not None and final.value:
+            late = Lateness(late.days, reason=late.reason)
+        return StudentGrade(student, stored, report, late, final, older, frozenset(known))
+
+    def _lateness(self, student: Student, stored: StoredResult, report: Report) -> Lateness:
+        """Return the lateness; what the roster says counts before what the LMS says."""
+        own = self.marks.counting.get((stored.student, DEADLINE))
+        times = student._replace(
+            is_late=stored.is_late if student.is_late is None else student.is_late,
+            submitted=student.submitted or stored.submitted,
+            days_late=0.0
+            if student.is_late is False and student.days_late is None
+            else student.days_late,
+        )
+        return lateness(
+            self.rubric, times, report.score, self.due, own.value if own is not None else ""
+        )
+
+    def with_marks(self, report: Report, stored: StoredResult) -> tuple[Report, tuple[str, ...]]:
+        """Return a report with marks and comments, and the criteria that were marked before the
+        submission changed.
+        """
+        if stored.student not in self._marked:
+            return report, ()
+        results = {one.criterion.id: one for one in report.results}
+        older: list[str] = []
+        for name, row in self._rows.items():
+            key = stored.student, name
+            mark, comment = self.marks.counting.get(key), self.marks.comments.get(key)
+            if comment is not None and name in results:
+                results[name] = results[name]._replace(
+                    comment=ManualComment(comment.comment, comment.by)
+                )
+            if mark is None or mark.points is None or row.adjustment is not None:
+                continue
+            given = ManualMark(mark.points, mark.by, mark.comment)
+            result = results.get(name) or SharedResult(row, _NOT_SUBMITTED)
+            results[name] = result._replace(manual_mark=given, hint=None, comment=None)
+            if _is_older(mark, stored):
+                older.append(name)
+        return report._replace(
+            results=tuple(results[name] for name in self._rows if name in results)
+        ), tuple(older)
+
+
+def _is_older(mark: Mark, stored: StoredResult) -> bool:
+    return bool(mark.submission) and mark.submission != stored.digest
+
+
+def grade_table(
+    book: Gradebook, grades: Iterable[StudentGrade], *, is_exported: bool = False
+) -> tuple[list[str], Iterator[list[CellValue]]]:
+    """Return the header, and the rows of grades; what is not decided is empty.
+
+    A table that `is_exported` has a column by which `mark --import` knows which cells a person
+    changed.
+    """
+    header = [*_FIRST, *(row.id for row in book.rubric.criteria), *_LAST]
+    if is_exported:
+        header.append("exported")
+    return header, (_table_row(book, one, is_exported) for one in grades)
+
+
+def points_of(book: Gradebook, grade: StudentGrade) -> dict[str, str]:
+    """Return the cells of a student that `mark --import` takes for marks, by criterion and for the
+    total.
+    """
+    points = dict.fromkeys((row.id for row in book.rubric.criteria), "")
+    if grade.stored is not None and not grade.is_excused:
+        points |= {one.criterion.id: one.cell for one in grade.results}
+    return {**points, TOTAL: grade.total_text}
+
+
+def _table_row(book: Gradebook, grade: StudentGrade, is_exported: bool) -> list[CellValue]:
+    student, late, points = grade.student, grade.late, points_of(book, grade)
+    numbers: list[CellValue] = [None] * 5
+    digest = ""
+    if grade.stored is not None:
+        digest = grade.stored.digest
+        if not grade.is_excused:
+            numbers = [grade.score, grade.report.max_score, grade.pending, late.days, late.points]
+    row: list[CellValue] = [student.key, student.name, student.section, grade.status, points[TOTAL]]
+    row += [points[name.id] for name in book.rubric.criteria]
+    row += [*numbers, grade.why_open, student.email, digest]
+    return [*row, exported_text(points)] if is_exported else row

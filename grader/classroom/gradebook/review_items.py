@@ -1,0 +1,166 @@
+"""What a person decides: the items of a class, each a criterion of the students whose answer is
+the same.
+"""
+
+from collections import defaultdict
+from collections.abc import Collection
+from typing import NamedTuple
+
+from grader.base.text import named
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.marks.marks import Key, Mark
+from grader.classroom.results.results import StoredResult, digest_of
+from grader.classroom.roster.roster import Student, plain
+from grader.lab.rubric.criterion import TOTAL, Criterion
+
+UNMARKED, OLDER = "unmarked", "older"
+STATES = {
+    UNMARKED: "unmarked",
+    "marked": "marked",
+    OLDER: "marked before the submission changed",
+    "": "all",
+}
+Place = tuple[str, str]  # a criterion and the key of an answer
+
+
+class ReviewStudent(NamedTuple):
+    """A student of an item."""
+
+    student: Student
+    stored: StoredResult
+    mark: Mark | None = None  # the mark or comment that counts
+    number: int = 0  # of an anonymous student
+
+    @property
+    def label(self) -> str:
+        """The name and key of the student, or the number of an anonymous one."""
+        return (
+            f"submission {self.number}"
+            if self.number
+            else named(self.student.key, self.student.name)
+        )
+
+    @property
+    def order(self) -> tuple[int, str, str]:
+        """What students are sorted by: the number of an anonymous one, else the name and the
+        key.
+        """
+        return self.number, "" if self.number else self.label.casefold(), self.student.key
+
+    @property
+    def state(self) -> str:
+        """One of STATES."""
+        if self.mark is None or self.mark.points is None:
+            return UNMARKED
+        return "marked" if self.mark.submission in ("", self.stored.digest) else OLDER
+
+
+class ReviewItem(NamedTuple):
+    """A criterion of the students whose answers are equal: one mark serves all. The first student's
+    is shown.
+
+    `answer` is the key of the answer, empty without one. `also` are other criteria of these
+    students that are open for the same reason: a page shows them together.
+    """
+
+    criterion: Criterion
+    answer: str
+    members: tuple[ReviewStudent, ...]
+    also: "tuple[ReviewItem, ...]" = ()
+
+    @property
+    def place(self) -> Place:
+        """What the item is listed by."""
+        return self.criterion.id, self.answer
+
+    @property
+    def view(self) -> str:
+        """A text that tells whether the item is as a page shows it, without the names of its
+        students.
+        """
+        shown = (
+            (one.student.key, one.stored.digest, one.mark and one.mark._replace(place=""))
+            for one in self.members
+        )
+        return digest_of(self.criterion.id, [*shown], *(other.view for other in self.also))
+
+    @property
+    def all(self) -> "tuple[ReviewItem, ...]":
+        """The item, and those that are shown with it."""
+        return self, *self.also
+
+    @property
+    def reason(self) -> tuple[object, ...]:
+        """What items have in common that are shown together: why no check could decide them, and
+        the students.
+        """
+        _, status, why, *_ = self.members[0].stored.results.get(
+            self.criterion.id, (None, "pending", "", "")
+        )
+        alone = "" if why and self.answer and status == "pending" else self.criterion.id
+        return alone, why, self.answer, *(one.student.key for one in self.members)
+
+
+class ReviewFilter(NamedTuple):
+    """Which items a review shows: of a criterion, of a section, and of a state, one of STATES."""
+
+    criterion: str = ""
+    section: str = ""
+    state: str = UNMARKED
+
+    def members(self, item: ReviewItem, kept: Collection[Key] = ()) -> tuple[ReviewStudent, ...]:
+        """Return the students of an item that are shown; those in `kept` whatever their state
+        is.
+        """
+        return tuple(
+            one
+            for one in (item.members if self.criterion in ("", item.criterion.id) else ())
+            if (self.state in ("", one.state) or (one.student.key, item.criterion.id) in kept)
+            and (not self.section or plain(self.section) == plain(one.student.section))
+        )
+
+
+def review_items(
+    book: Gradebook, *, is_anonymous: bool = False, with_final: bool = False
+) -> dict[Place, ReviewItem]:
+    """Return what needs manual grading, and what else has a mark: in the rubric's order, each
+    criterion by student.
+
+    Those without an answer are the last item of a criterion. Unreadable submissions are omitted:
+    they need a fix, not points. So are criteria that the rubric adjusts, and students with a final
+    mark or an excuse, unless `with_final`. Students of one submission have the same answers.
+    Numbers and order of anonymous students reveal no names.
+    """
+    groups: defaultdict[Place, list[ReviewStudent]] = defaultdict(list)
+    keys = sorted(book.keys, key=digest_of) if is_anonymous else book.keys
+    order, counting = {key: at for at, key in enumerate(keys, 1)}, book.marks.counting
+    stored = [
+        one
+        for one in book.results.all()
+        if one.verdict != "unreadable" and one.student in book.run.totals
+    ]
+    # Several files are a submission named after the student, so digests of members differ, and with
+    # them the keys:
+    of_files = {
+        (one.root, one.paths): one.answers for one in stored
+    }  # in any order of the items the same
+    for one in sorted(stored, key=lambda one: order[one.student]):
+        answers = of_files[one.root, one.paths]
+        student, number = book.student(one.student, one), order[one.student] if is_anonymous else 0
+        for name in one.results if with_final or (one.student, TOTAL) not in counting else ():
+            mark = counting.get((one.student, name))
+            if name in answers or mark is not None:
+                member = ReviewStudent(
+                    student, one, mark or book.marks.comments.get((one.student, name)), number
+                )
+                groups[name, answers.get(name, one.digest)].append(member)
+    rows = {row.id: row for row in book.rubric.criteria if row.adjustment is None}
+    items = (
+        ReviewItem(rows[name], answer, (*some,))
+        for (name, answer), some in groups.items()
+        if name in rows
+    )
+    return {
+        one.place: one
+        for one in sorted(items, key=lambda one: (one.criterion.position, not one.answer))
+    }

@@ -1,0 +1,288 @@
+"""The grade of one student: what counts, what is open, and why a person should look at it."""
+
+from dataclasses import dataclass
+from decimal import Decimal
+from enum import StrEnum
+from functools import cached_property
+from typing import cast
+
+from grader.base.text import counted_points, format_points
+from grader.classroom.marks.marks import EXCUSED, Mark
+from grader.classroom.results.results import StoredResult
+from grader.classroom.roster.lateness import Lateness
+from grader.classroom.roster.roster import Student
+from grader.lab.grading.report import Report, Result
+
+_ON_TIME = Lateness()
+
+
+class Reason(StrEnum):
+    """Why a grade needs attention, the most urgent reason first; the last two only keep it from
+    being published.
+
+    UNCLEAR means that there are possible submissions, of which none was graded, GONE that the
+    newest run did not find the submission, and OUTDATED that it was graded by another rubric or
+    version, or on other parts.
+    """
+
+    FAILED = "the grader failed"
+    UNREADABLE = "could not be graded"
+    DAMAGED = "its result is damaged: run `grader batch` again"
+    UNCLEAR = "it is unclear which submission counts"
+    MISSING = "nothing was submitted"
+    SEVERAL = "several robots fit: check that the correct one was graded"
+    GONE = "no longer in the class folder"
+    OUTDATED = "graded with another rubric or version: run `grader batch` again"
+    NOT_ON_ROSTER = "not on the roster"
+    OLDER_MARKS = "marked before the submission changed"
+    EARLY_MARK = "marked before there was a submission"
+    UNKNOWN_TIME = "late, time unknown: give `submitted` or `late` in the roster"
+    PENDING = "needs manual grading"
+    EXCUSED = "excused"
+
+
+# They keep a grade from being published; of a final mark only GONE needs attention.
+_OBSTACLES = {
+    *(
+        Reason.FAILED,
+        Reason.UNREADABLE,
+        Reason.DAMAGED,
+        Reason.UNCLEAR,
+        Reason.MISSING,
+        Reason.GONE,
+        Reason.OUTDATED,
+    )
+}
+
+
+class SharedResult(Result):
+    """The result of a criterion in a class: most students share it, so what follows from it is
+    computed once.
+    """
+
+    @cached_property
+    def points(self) -> Decimal:
+        """The points earned."""
+        return super().points
+
+    @cached_property
+    def is_open(self) -> bool:
+        """Whether the criterion still needs manual grading."""
+        return super().is_open
+
+    @cached_property
+    def is_faulty(self) -> bool:
+        """Whether the grader failed on the criterion, and nobody has marked it."""
+        return (
+            self.outcome.status == "errored" and self.manual_mark is None and not self.is_adjusted
+        )
+
+    @cached_property
+    def kinds(self) -> tuple[str, ...]:
+        """What it counts as in the figures of a class: a mark, a given point, or the status of the
+        check.
+        """
+        if self.manual_mark is not None:
+            return "marked", "decided"
+        if self.carried or self.is_adjusted:
+            return "carried", "decided"
+        status = self.outcome.status
+        return (status,) if status in ("pending", "errored") else (status, "decided")
+
+    @cached_property
+    def mistake(self) -> str:
+        """The message about a mistake of the student, as a check found it; empty without one."""
+        is_mistake = self.is_lost and self.manual_mark is None and not self.criterion.bonus
+        return self.outcome.message if is_mistake else ""
+
+    @cached_property
+    def cell(self) -> str:
+        """The points in a table; empty if they are not decided."""
+        return "" if self.is_open or self.is_faulty else format_points(self.points)
+
+
+@dataclass(frozen=True)
+class StudentGrade:
+    """The grade of one student: what counts, what is open, and why a person should look at it.
+
+    A `Gradebook` makes it from the stored result, the marks and the roster, and nothing else
+    decides what a student
+    gets: `grades.csv`, exports, reports, statistics and pages read it. `total` is the grade as it
+    is now, `published` what may leave the house, `obstacle` what is in the way, and `concerns` all
+    that a person should look at.
+
+    A student who submitted nothing has no grade until a person gives a final mark:
+
+    >>> from dataclasses import replace
+    >>> from grader.lab.rubric.rubric import load_rubric
+    >>> from grader.lab.submission.submission import Absent, Submission
+    >>> nothing = Report(Submission("ann", Absent(), is_single=False), load_rubric("lab6"), (), ())
+    >>> missing = StudentGrade(Student("ann"), None, nothing)
+    >>> missing.status, missing.published, missing.why_open
+    ('missing', None, 'nothing was submitted')
+    >>> mark = Mark(time="", by="Kim", student="ann", criterion="total", value="12.5")
+    >>> replace(missing, final=mark).published
+    Decimal('12.5')
+    """
+
+    student: Student
+    stored: StoredResult | None  # None without a submission
+    report: Report  # its points with the manual marks; without a submission no results
+    late: Lateness = _ON_TIME
+    final: Mark | None = None  # the mark, comment or excuse of the whole submission
+    older: tuple[
+        str, ...
+    ] = ()  # the criteria (or `total`) that were marked before the submission changed
+    known: frozenset[Reason] = (
+        frozenset()
+    )  # what the class says: NOT_ON_ROSTER, UNCLEAR, DAMAGED, GONE, OUTDATED
+
+    @property
+    def is_excused(self) -> bool:
+        """Whether the student is excused."""
+        return self.final is not None and self.final.value == EXCUSED
+
+    @property
+    def final_points(self) -> Decimal | None:
+        """The points of the final mark; None without one."""
+        return self.final.points if self.final is not None else None
+
+    @property
+    def has_final(self) -> bool:
+        """Whether a person has decided the whole grade: then there is no late penalty."""
+        return self.is_excused or self.final_points is not None
+
+    @property
+    def is_marked_early(self) -> bool:
+        """Whether the whole grade was decided when there was no submission: the mark has a time,
+        but no digest.
+        """
+        mark = self.final if self.stored is not None and self.has_final else None
+        return mark is not None and bool(mark.time) and not mark.submission
+
+    @property
+    def is_gone(self) -> bool:
+        """Whether the newest run did not find the submission."""
+        return Reason.GONE in self.known
+
+    @property
+    def status(self) -> str:
+        """How the submission went: graded, unreadable, errored, missing or excused."""
+        if self.is_excused:
+            return "excused"
+        if Reason.DAMAGED in self.known:
+            return "errored"
+        return self.stored.verdict if self.stored is not None else "missing"
+
+    @property
+    def results(self) -> tuple[SharedResult, ...]:
+        """The results of the criteria."""
+        return cast("tuple[SharedResult, ...]", self.report.results)
+
+    @cached_property
+    def score(self) -> Decimal:
+        """The points of the criteria, without a submission 0."""
+        return self.report.score
+
+    @cached_property
+    def total(self) -> Decimal | None:
+        """The final mark, else the points after the late penalty; None for an excuse, and without a
+        submission.
+        """
+        return (
+            self.final_points
+            if self.has_final or self.stored is None
+            else self.score + self.late.points
+        )
+
+    @cached_property
+    def pending(self) -> Decimal:
+        """The points that still need manual grading and can change the grade."""
+        return self.report.pending if not self.has_final else Decimal(0)
+
+    @property
+    def shown_total(self) -> Decimal | None:
+        """The grade; None where there is none or nothing could be graded."""
+        is_ungraded = self.status in ("unreadable", "errored") and self.obstacle and not self.total
+        return None if is_ungraded else self.total
+
+    @property
+    def total_text(self) -> str:
+        """The grade; empty where there is none or nothing could be graded."""
+        return "" if self.shown_total is None else format_points(self.shown_total)
+
+    @cached_property
+    def losses(self) -> list[tuple[Decimal, str]]:
+        """The points that were lost by mistakes or marks, and the criterion.
+
+        The most points come first, and after all others what was skipped because of another
+        criterion.
+        """
+        lost = [
+            (one.outcome.status == "skipped", one.points - one.criterion.maximum, one.criterion.id)
+            for one in (self.results if not self.has_final else ())
+            if (one.is_lost or one.manual_mark) and one.points < one.criterion.maximum
+        ]
+        return [(-points, name) for _, points, name in sorted(lost)]
+
+    @cached_property
+    def concerns(self) -> dict[Reason, str]:
+        """Why a person should look at this grade, each reason with its details."""
+        reason, found = self.stored.reason if self.stored is not None else "", {*self.known}
+        if any(one.is_faulty for one in self.results):
+            found.add(Reason.FAILED)
+        if self.status == "unreadable" and self.pending:
+            found.add(Reason.UNREADABLE)
+        if self.status == "graded" and reason:
+            found.add(Reason.SEVERAL)
+        if self.stored is None and found.isdisjoint((Reason.UNCLEAR, Reason.DAMAGED)):
+            found.add(Reason.MISSING)
+        if self.has_final:
+            found -= _OBSTACLES - {Reason.GONE}
+        if self.older:
+            found.add(Reason.OLDER_MARKS)
+        if self.is_marked_early:
+            found.add(Reason.EARLY_MARK)
+        if self.late.is_guess and self.late.points:
+            found.add(Reason.UNKNOWN_TIME)
+        details = dict.fromkeys((Reason.FAILED, Reason.UNREADABLE, Reason.SEVERAL), reason)
+        details[Reason.OLDER_MARKS] = ", ".join(self.older)
+        if self.final is not None:
+            details[Reason.EARLY_MARK] = (
+                f"{self.final.value} instead of {format_points(self.score)}"
+            )
+        return {one: details.get(one, "") for one in Reason if one in found}
+
+    @cached_property
+    def obstacle(self) -> Reason | None:
+        """What keeps this grade from being published; None if it is final."""
+        if self.has_final:
+            return Reason.EXCUSED if self.is_excused else None
+        pending = Reason.PENDING if self.pending else None
+        return next((one for one in self.concerns if one in _OBSTACLES), pending)
+
+    @property
+    def why_open(self) -> str:
+        """Why this grade must not be published yet; empty if it is final."""
+        if self.obstacle is Reason.PENDING:
+            return (
+                f"{counted_points(self.pending)} {'needs' if self.pending == 1 else 'need'} "
+                "manual grading"
+            )
+        if self.obstacle is None:
+            return ""
+        detail = self.concerns.get(self.obstacle)
+        return f"{self.obstacle}: {detail}" if detail else str(self.obstacle)
+
+    @property
+    def published(self) -> Decimal | None:
+        """The grade that is published: the total, unless something is open."""
+        return self.total if self.obstacle is None else None
+
+    @property
+    def is_counted(self) -> bool:
+        """Whether the grade is in the figures of the class: also one that is open, if the
+        submission was graded.
+        """
+        is_graded = self.status == "graded" and not self.is_gone
+        return self.student.is_on_roster and (is_graded or self.published is not None)

@@ -1,0 +1,1 @@
+"""Assign the files of a class to its students."""

@@ -1,0 +1,342 @@
+"""The layouts of a class: what the names in a folder or zip say about each submission. No
+submission is opened.
+
+- folders: a folder, archive or URDF for each student, with or without a prefix (GitHub's
+  `lab6-{login}/`).
+- Canvas (canvas-lms, lib/content_zipper.rb): `{name}[_LATE]_{user id}_{upload}_{file}`,
+  `[LATE_]anon_{5 letters}_...`; `..._text.html` is a text, `..._link.html` an address; a second
+  `robot.urdf` is saved as `robot-1.urdf`.
+- Moodle (mod/assign/classes/downloader.php): `{full name}_{participant
+  id}_assignsubmission_{plugin}[_{file}]`.
+- Students' folders further down: nbgrader's `submitted/{student}/{lab}`, and
+  `{team}/Lab6/{student}`.
+"""
+
+import re
+from collections import Counter, defaultdict
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass, replace
+from datetime import datetime
+from typing import NamedTuple
+
+from grader.base.errors import InputError
+from grader.base.names import folded
+from grader.base.text import enumerated, printable_path
+from grader.classroom.intake.class_files import ClassListing
+from grader.classroom.roster.roster import People, Student, iso_time
+from grader.files.class_source import Children
+from grader.files.limits import BUILD_FOLDERS, PACKAGE_FILES
+from grader.lab.submission.labs import LabFolders, is_part, lab_words
+
+# The files that are submissions.
+_ENDINGS = (
+    ".zip",
+    ".gz",
+    ".tgz",
+    ".bz2",
+    ".xz",
+    ".tar",
+    ".7z",
+    ".rar",
+    ".urdf.xacro",
+    ".urdf",
+    ".xacro",
+)
+_ID = r"[1-9][0-9]{0,19}"  # Canvas writes no leading zeros
+_PATTERNS = {
+    "folders": re.compile(
+        # alice/, alice.urdf; a browser saves further copies as alice (1).zip and alice.tar (1).gz
+        r"(?P<login>.+?)(?i:\.tar(?=[ .(]))?(?: ?\((?P<upload>[0-9]{1,4})\))?"
+        rf"(?P<ending>/|(?i:{'|'.join(map(re.escape, _ENDINGS))}))",
+        re.DOTALL,
+    ),
+    "canvas": re.compile(  # the name is before it
+        rf"(?:(?<!\A)(?P<late>_LATE)?_(?P<canvas>{_ID})|\A(?:LATE_)?(?P<login>anon_[1-9A-HJ-NP-Za-km-z]{{5}}))"
+        rf"(?=_(?:(?P<upload>{_ID})_(?P<file>.+)|(?:text|link)\.(?:html|url))\Z)",
+        re.DOTALL,
+    ),
+    "moodle": re.compile(  # not if two participants could have chosen it
+        r"\A(?!.*_assignsubmission_.*_assignsubmission_)(?P<name>.+?)(?:_(?P<moodle>[0-9]{1,20}))?"
+        r"_assignsubmission_(?:file(?![a-z])|(?P<plugin>[a-z]+))_?(?P<file>.*)\Z",
+        re.DOTALL,
+    ),
+}
+# Canvas numbers the uploads of all courses in order: a number far below the others' is part of a
+# student's name.
+_MAX_GROWTH = 1000
+_NAME_IN_CANVAS = re.compile(r"[^\x00-,./:-@[-^`{-\x7f\s]*")
+_MAX_NAMED = 10
+_MAX_TIME = 100  # bytes
+
+
+class NamedPath(NamedTuple):
+    """A path in a class folder, and what its name tells of the student and the file."""
+
+    path: str
+    student: Student
+    name: str = ""  # of the student or team, in the file's name
+    upload: int = 0  # later ones have higher numbers
+    ending: str = ""  # a slash for a folder
+    plugin: str = ""  # of Moodle
+    file: str = ""  # the student's own name of it
+    is_late: bool = False
+    submitted: str = ""  # ISO 8601
+
+    @property
+    def order(self) -> tuple[int, bool, str]:
+        """The order of copies: by the number, then a folder counts."""
+        return self.upload, self.ending == "/", self.path
+
+    def is_written_by(self, lms: str) -> bool:
+        """Return whether an LMS may have written the name: Canvas writes those of students in
+        lower case.
+        """
+        return lms == "moodle" or self.student.name == self.student.name.lower()
+
+
+@dataclass(frozen=True, slots=True)
+class ClassFolder:
+    """A folder of submissions."""
+
+    listing: ClassListing
+    children: Children  # what is in it
+    start: str  # its path in the listing: empty, or with a slash at the end
+    people: People
+    labs: LabFolders  # tells which folders are those of the lab
+    lab: str  # the assignment, or the id of the rubric
+    is_explicit: bool  # whether the user has named the layout
+    ignored: list[str]  # collects lines for the user
+
+    @property
+    def names(self) -> list[str]:
+        """All names in it."""
+        return self.children.folders + self.children.files
+
+    @property
+    def entries(self) -> list[str]:
+        """The names in it that may be submissions."""
+        return [*self.children.folders, *filter(is_submission, self.children.files)]
+
+    def inside(self, name: str) -> "ClassFolder":
+        """Return a folder in it."""
+        start = f"{self.start}{name}"
+        return replace(self, children=self.listing.children(start), start=f"{start}/")
+
+    def ignore(self, names: Iterable[str], reason: str = "is not named like a submission") -> None:
+        """Say why some names are no submissions; the reason continues a sentence that begins
+        with the name.
+        """
+        self.ignored.extend(f"{printable_path(self.start + name)} {reason}" for name in names)
+
+    def list_refused(self) -> None:
+        """Say which names are not read, such as symlinks."""
+        for name, reason in self.children.refused:
+            self.ignore([name], reason)
+
+
+def is_submission(name: str) -> bool:
+    """Return whether a file has the ending of a submission."""
+    return name.lower().endswith(_ENDINGS)
+
+
+def readings_of(name: str, layout: str) -> list[NamedPath]:
+    """Return how a name can be read: in Canvas as team and 7, or team_7 and 101, of
+    team_7_101_555_lab6.zip.
+    """
+    found = [_read_path(one) for one in _PATTERNS[layout].finditer(name)]
+    is_known = layout == "moodle" or bool(
+        found and not found[0].student.name
+    )  # an anonymous student's
+    return (
+        found[:1]
+        if is_known
+        else [one for one in found if _NAME_IN_CANVAS.fullmatch(one.student.name)]
+    )
+
+
+def _read_path(found: re.Match[str]) -> NamedPath:
+    text = {
+        "name": found.string[: found.start()],
+        **dict.fromkeys(("canvas", "moodle", "login"), ""),
+    }
+    text |= found.groupdict(default="")
+    name, canvas, moodle = text["name"], text["canvas"], text["moodle"]
+    key = text["login"] or "_".join(word for word in (name, canvas, moodle) if word)
+    student = Student(key, name, canvas=canvas, moodle=moodle)
+    if "plugin" in text:
+        return NamedPath(found.string, student, plugin=text["plugin"], file=text["file"])
+    upload, is_late = int(text["upload"] or 0), bool(text["late"]) or found[0].startswith("LATE")
+    return NamedPath(
+        found.string,
+        student,
+        upload=upload,
+        file=text["file"] or "text_entry.html",
+        is_late=is_late,
+    )
+
+
+def entries_of(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
+    """Yield the submissions by their names; `aliases` are the numbers of which one is the
+    user's.
+    """
+    folder.list_refused()
+    if layout == "folders":
+        yield from _folders(folder)
+        return
+    readings = {name: readings_of(name, layout) for name in folder.names}
+    folder.ignore(name for name, found in readings.items() if not found)
+    first = min(
+        (found[0].upload for found in readings.values() if len(found) == 1 and found[0].upload),
+        default=0,
+    )
+    for found in readings.values():
+        possible = [one for one in found if not 0 < one.upload * _MAX_GROWTH < first] or found
+        for one in possible[-1:]:
+            users = tuple(other.student.canvas for other in possible)
+            student = (
+                one.student._replace(canvas="", aliases=users) if len(users) > 1 else one.student
+            )
+            yield one._replace(student=student)
+
+
+def names_in(children: Children) -> dict[str, re.Match[str]]:
+    """Return the names of the layout `folders` in a folder, each with what it tells; a folder
+    ends in a slash.
+    """
+    names = [f"{name}/" for name in children.folders if name not in BUILD_FOLDERS] + children.files
+    return {name: found for name in names if (found := _PATTERNS["folders"].fullmatch(name))}
+
+
+def _folders(folder: ClassFolder) -> Iterator[NamedPath]:
+    """Yield each folder, archive and URDF, without the prefix of the assignment in its name."""
+    read = names_in(folder.children)
+    folder.ignore(name for name in folder.names if not {name, f"{name}/"} & read.keys())
+    logins = {found["login"] for found in read.values()}
+    prefix, tops = (
+        _prefix(logins, folder),
+        {found["login"] for found in read.values() if not found["upload"]},
+    )
+    for name, found in read.items():
+        login, upload = found["login"], int(found["upload"] or 0)
+        if upload and login not in tops and not folder.people.knows(_without(prefix, login)):
+            login = name.removesuffix(found["ending"])  # Team (1) and Team (2) are two teams
+        own = _without(prefix, login)
+        yield NamedPath(name.rstrip("/"), Student(own, login=own), login, upload, found["ending"])
+
+
+def _without(prefix: str, name: str) -> str:
+    return (
+        name[len(prefix) :] if len(name) > len(prefix) and name.lower().startswith(prefix) else name
+    )
+
+
+def _prefix(names: Collection[str], folder: ClassFolder) -> str:
+    """Return the prefix of the assignment: the rubric's id, or what precedes the ids of most
+    students.
+    """
+    knows, own = folder.people.knows, f"{folder.lab.lower()}-"
+    known = sum(map(knows, names))
+    if known < len(names) and len(own) > 1 and any(_without(own, name) != name for name in names):
+        return own
+    dashes = ((name, dash.end()) for name in names for dash in re.finditer("-", name))
+    before = Counter(name[:end].lower() for name, end in dashes if knows(name[end:]))
+    prefix, count = max(before.items(), key=lambda item: (item[1], item[0]), default=("", 0))
+    return prefix if count > max(1, known) else ""
+
+
+def nbgrader(course: ClassFolder) -> Iterator[NamedPath]:
+    """Yield the submissions for one assignment with their times; raises InputError if there is
+    none of its name.
+    """
+    folder = course.inside("submitted") if "submitted" in course.children.folders else course
+    found: dict[str, list[str]] = defaultdict(list)
+    for student in sorted(folder.children.folders):
+        for name in folder.listing.children(folder.start + student).folders:
+            found[name].append(student)
+    wanted = (
+        [folder.lab]
+        if folder.lab in found
+        else [name for name in found if folded(name) == folded(folder.lab)]
+    )
+    if len(wanted) != 1:
+        named = enumerated([printable_path(name) for name in sorted(found)], _MAX_NAMED) or "none"
+        raise InputError(f"name the assignment to grade with --assignment; there are: {named}")
+    lab = wanted[0]
+    folder.ignore(
+        {*folder.children.folders}.difference(found[lab]),
+        f"has no submission for {printable_path(lab)}",
+    )
+    folder.ignore(folder.children.files)
+    folder.list_refused()
+    for student in found[lab]:
+        path = f"{folder.start}{student}/{lab}"
+        time = _time_of(folder, path)
+        yield NamedPath(
+            path.removeprefix(course.start),
+            Student(student, login=student),
+            ending="/",
+            submitted=time,
+        )
+
+
+def _time_of(folder: ClassFolder, path: str) -> str:
+    """Return the time, in UTC, in the file beside an assignment; empty if there is none."""
+    try:
+        data = folder.listing.read(f"{path}/timestamp.txt", _MAX_TIME)
+    except InputError:
+        return ""
+    time = iso_time(data.decode("utf-8", "replace"))
+    return f"{time}Z" if time and datetime.fromisoformat(time).tzinfo is None else time
+
+
+def teams(folder: ClassFolder) -> Iterator[NamedPath]:
+    """Yield the submissions of the students in lab folders, and all other submissions as a
+    whole.
+    """
+    whole = []
+    for team in sorted(folder.children.folders):
+        if students := list(_student_paths(folder.inside(team), team)):
+            yield from students
+        else:
+            whole.append(team)
+    yield from entries_of(
+        replace(folder, children=folder.children._replace(folders=whole)), "folders"
+    )
+
+
+def _student_paths(top: ClassFolder, team: str) -> Iterator[NamedPath]:
+    """Yield the submissions of the students in the lab folders of a team."""
+    for lab in filter(top.labs.is_lab, top.children.folders):
+        below = top.inside(lab)
+        if names := _students(below, team, lab_words(lab)):
+            others = {*below.children.folders}.difference(names)
+            below.ignore(others, "is named like a part of a submission")
+            children = below.children._replace(
+                folders=[name for name in below.children.folders if name in names]
+            )
+            for entry in entries_of(
+                replace(below, children=children, people=People(()), lab=""), "folders"
+            ):
+                name, path = entry.student.login, f"{team}/{lab}/{entry.path}"
+                yield entry._replace(
+                    path=path, student=Student(f"{team}/{name}", name, login=name, group=team)
+                )
+
+
+def _students(lab: ClassFolder, team: str, words: Collection[str]) -> set[str]:
+    """Return the names in a lab's folder that are those of students; none if it is one submission.
+
+    Members of the team on the roster are certain, and with them others; without a roster several
+    folders of which none is a package or has the name of a part. The folder of the only member
+    alone stays with the rest of the repository.
+    """
+    people, folders = lab.people, lab.children.folders
+    read = names_in(lab.children).items()
+    known = {name.rstrip("/") for name, found in read if people.knows(found["login"], team)}
+    others = {name for name in folders if name not in known and not is_part(name, words)}
+    is_package = any(lab.listing.has(f"{lab.start}{name}/package.xml") for name in folders)
+    are_students = not (people.students or is_package) and 1 < len(others) == len(folders)
+    if not (lab.is_explicit or known or are_students):
+        return set()
+    is_alone = bool(known) and len(lab.entries) == 1 == len(people.members(team))
+    return set() if is_alone or not PACKAGE_FILES.isdisjoint(lab.children.files) else known | others

@@ -1,0 +1,487 @@
+"""The submissions of a class, one a student, in one or several folders or zips, and whose each of
+them is.
+
+The names prove a layout. All files of a student are one submission, of several versions the last.
+Submissions are matched with students by the roster's column `submission`, ids, names and groups.
+"""
+
+import os
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from hashlib import sha256
+from itertools import pairwise
+from pathlib import Path
+from typing import NamedTuple
+
+from grader.base.errors import InputError
+from grader.base.text import enumerated, first_lines, printable_path, shell_quoted
+from grader.classroom.intake.class_files import ClassListing, listing_of
+from grader.classroom.intake.layouts import (
+    ClassFolder,
+    NamedPath,
+    entries_of,
+    is_submission,
+    names_in,
+    nbgrader,
+    readings_of,
+    teams,
+)
+from grader.classroom.roster.roster import GROUP, People, Roster, Student, plain
+from grader.files.class_source import ClassZip
+from grader.files.limits import PACKAGE_FILES
+from grader.files.tree import parents
+from grader.lab.submission.labs import MAX_WRAPPERS, LabFolders, is_part
+
+_NUMBERED = re.compile(
+    r"(.+?)-[1-9][0-9]?((?:\.[A-Za-z][A-Za-z0-9]*)*(?:\.[A-Za-z0-9]*)?)", re.DOTALL
+)
+_MAX_LINES, _MAX_NAMED = 200, 10
+_ANONYMOUS = (
+    "this is an anonymous download: its submissions (anon_...) match no student. "
+    "Canvas shows the names when the grades are posted: download again then"
+)
+_LAYOUTS = ("folders", "canvas", "moodle", "teams", "nbgrader")
+
+
+class ClassSubmission(NamedTuple):
+    """The submission of a student: one folder or file, or several files."""
+
+    student: Student
+    root: int  # the index of the class folder or zip
+    paths: tuple[str, ...]  # below it
+    names: tuple[str, ...] = ()  # the student's own of several files
+    is_late: bool = False
+    submitted: str = ""  # ISO 8601; empty if unknown
+
+
+class Intake(NamedTuple):
+    """The submissions of a class, and lines for the user."""
+
+    layout: str
+    submissions: list[ClassSubmission]  # in the order of the students' keys
+    unclear: frozenset[str]  # keys of students with possible submissions of which none counts
+    unmatched: tuple[
+        str, ...
+    ]  # submissions without a certain student, and which row of the roster assigns them
+    notes: tuple[str, ...]  # what was chosen
+    ignored: tuple[str, ...]  # what in the folders is no submission
+
+
+def read_class(
+    paths: Sequence[Path],
+    roster: Roster | None,
+    layout: str = "auto",
+    assignment: str = "",
+    rubric_id: str = "",
+    folders: tuple[str, ...] = (),
+    ignore: Sequence[str] = (),
+) -> Intake:
+    """Return the submissions in class folders or zips, the sections of one class; raises InputError
+    if there are none.
+
+    `assignment` is the one to grade in nbgrader; `rubric_id` is the name of the lab in names of
+    folders, and `folders` are the names of its own (default: its id). `ignore` names entries that
+    are no student's, such as a template.
+    """
+    if layout not in ("auto", *_LAYOUTS):
+        raise InputError(
+            f"there is no layout {layout!r}; the layouts are: auto, {', '.join(_LAYOUTS)}"
+        )
+    roots = list(zip(map(listing_of, paths), _names_of_roots(paths), strict=True))
+    owners = _Owners(roster, roots)
+    if not folders and rubric_id:
+        folders = (rubric_id,)
+    labs = LabFolders(folders)
+    found: list[ClassSubmission] = []
+    layouts: dict[str, None] = {}
+    for root, (path, (listing, _)) in enumerate(zip(paths, roots, strict=True)):
+        lab, is_explicit = assignment or rubric_id, layout != "auto"
+        top = ClassFolder(
+            listing, listing.children(""), "", owners.people, labs, lab, is_explicit, owners.ignored
+        )
+        folder = _inner_class(_without_gradebooks(top))
+        chosen = layout
+        if not is_explicit:
+            chosen = "nbgrader" if assignment else _layout_of(folder)
+        if chosen == "teams" and not is_explicit and "package.xml" in folder.children.files:
+            what = (
+                f"{printable_path(path)} is one submission and not a class: it contains a "
+                "package.xml"
+            )
+            raise InputError(f"{what} (grade it with `grader grade {shell_quoted(path)}`)")
+        some = list(
+            _submissions_in(
+                folder, _without_ignored(folder, _paths_in(folder, chosen), ignore), root
+            )
+        )
+        if not some:
+            example = f": {min(owners.ignored)}" if owners.ignored else ""
+            raise InputError(f"there is no submission in {printable_path(path)}{example}")
+        has_teams = is_explicit or chosen != "teams" or any(one.student.group for one in some)
+        layouts[chosen if has_teams else "folders"] = None
+        found += some
+    owners.find(found)
+    return owners.intake(" and ".join(layouts))
+
+
+def _names_of_roots(paths: Sequence[Path]) -> list[str]:
+    """Return a name for each class folder, if necessary with the folder around it. Raises
+    InputError.
+    """
+    for count in (1, 2):
+        names = ["/".join(path.resolve().parts[-count:]) for path in paths]
+        if len(set(names)) == len(names):
+            return names
+    raise InputError(
+        "the class folders have the same names: rename one, so that the roster can name them"
+    )
+
+
+def _paths_in(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
+    """Yield the paths of submissions in a class folder with a layout."""
+    if layout == "teams":
+        return teams(folder)
+    return nbgrader(folder) if layout == "nbgrader" else entries_of(folder, layout)
+
+
+def _without_ignored(
+    folder: ClassFolder, entries: Iterable[NamedPath], ignore: Sequence[str]
+) -> Iterator[NamedPath]:
+    """Yield the entries without those of which a folder or the student has a name to be ignored."""
+    names = {*map(plain, ignore)}
+    for one in entries:
+        if names.isdisjoint(
+            map(plain, (*one.path.split("/"), one.student.login, one.student.name))
+        ):
+            yield one
+        else:
+            folder.ignore([one.path], "has a name to be ignored")
+
+
+def _without_gradebooks(folder: ClassFolder) -> ClassFolder:
+    """Return a folder without the gradebooks in it."""
+    has, folders = folder.listing.has, folder.children.folders
+    found = {name for name in folders if has(f"{name}/class.toml")}
+    books = {name for name in found if has(f"{name}/results.jsonl") or has(f"{name}/marks")}
+    folder.ignore(books, "is a gradebook")
+    return replace(
+        folder,
+        children=folder.children._replace(folders=[name for name in folders if name not in books]),
+    )
+
+
+def _layout_of(folder: ClassFolder) -> str:
+    """Return the layout that the names prove, else `teams`, which may be plain folders."""
+    for layout, share in (("moodle", 1), ("canvas", 3)):
+        read = {name: readings_of(name, layout) for name in folder.names}
+        fitting = {
+            name for name, found in read.items() if any(one.is_written_by(layout) for one in found)
+        }
+        if fitting and len(fitting) >= share * sum(name not in fitting for name in folder.entries):
+            return layout
+    is_course = (
+        "submitted" in folder.children.folders and folder.inside("submitted").children.folders
+    )
+    return "nbgrader" if is_course else "teams"
+
+
+def _inner_class(folder: ClassFolder) -> ClassFolder:
+    """Return the folder that contains the submissions.
+
+    A download may be in folders that contain nothing else. In a zip, it can be any folder that
+    contains all submissions, unless it is itself one.
+    """
+    around, is_zip = [folder], isinstance(folder.listing, ClassZip)
+    while len(around) <= MAX_WRAPPERS and (name := _only_folder(around[-1])):
+        around.append(around[-1].inside(name))
+        if _layout_of(around[-1]) in (
+            ["canvas", "moodle", "nbgrader"] if is_zip else ["canvas", "moodle"]
+        ):
+            return around[-1]
+    if len(around) == 1 or folder.children.files or not is_zip:
+        return folder
+    folders, files, _ = around[1].children
+    is_package = not PACKAGE_FILES.isdisjoint(files) or any(map(is_part, folders))
+    return folder if is_package or len(around[1].entries) <= 1 else around[1]
+
+
+def _only_folder(folder: ClassFolder) -> str:
+    """Return the only folder in a folder without other submissions; empty if there is none, or
+    it is a student's.
+    """
+    name, *others = folder.entries or [""]
+    is_student = (
+        name not in folder.children.folders or name == "submitted" or folder.people.knows(name)
+    )
+    return "" if others or is_student else name
+
+
+def _submissions_in(
+    folder: ClassFolder, entries: Iterable[NamedPath], root: int
+) -> Iterator[ClassSubmission]:
+    """Yield one submission for each student whom the file names identify."""
+    of_student: dict[tuple[Student, str], list[NamedPath]] = defaultdict(list)
+    for entry in entries:
+        of_student[entry.student, entry.name].append(entry)
+    folders = frozenset(folder.children.folders)
+    while of_student:  # of a large class not all is kept twice
+        (student, _), own = of_student.popitem()
+        kept = _last_versions(folder, own)
+        is_late, submitted = any(one.is_late for one in kept), kept[0].submitted
+        yield ClassSubmission(
+            student, root, *_paths_and_names(folder, kept, folders), is_late, submitted
+        )
+
+
+def _last_versions(folder: ClassFolder, entries: Sequence[NamedPath]) -> list[NamedPath]:
+    """Return the last upload of each file: `robot-1.urdf` is a later `robot.urdf` only if there
+    is a `robot.urdf`.
+    """
+    own = {entry.file for entry in entries}
+    versions: dict[tuple[str, str], list[NamedPath]] = defaultdict(list)
+    for entry in entries:
+        numbered = _NUMBERED.fullmatch(entry.file) if entry.upload else None
+        first = numbered[1] + numbered[2] if numbered else ""
+        versions[entry.plugin, first if first in own else entry.file].append(entry)
+    kept = []
+    for _, copies in sorted(versions.items()):
+        *others, last = sorted(copies, key=lambda entry: entry.order)
+        folder.ignore(
+            (other.path for other in others), f"is not graded: {printable_path(last.path)} counts"
+        )
+        kept.append(last)
+    return kept
+
+
+def _paths_and_names(
+    folder: ClassFolder, kept: Sequence[NamedPath], folders: frozenset[str]
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the paths of a student's files, or of the folder, and the own names of files.
+
+    An empty folder, such as that of an empty text, counts only if there is nothing else.
+    """
+    named, full = dict[str, str](), list[str]()
+    tops = {folder.start + one.path: one for one in kept}
+    for top, one in tops.items() if len(kept) > 1 else ():
+        part = f"{one.plugin}/" if one.plugin else ""
+        paths = _files_below(folder.listing, top) if one.path in folders else [top]
+        named |= {path: part + (path[len(top) + 1 :] or one.file or one.path) for path in paths}
+        if paths:
+            full.append(top)
+    if len(full) > 1:
+        return tuple(named), tuple(named.values())
+    top = next(iter(full or tops))
+    only = tops[top]
+    if only.path not in folders:
+        return (top,), (only.file,) if only.file else ()
+    return (top if only.ending or only.upload else _only_file(folder.listing, top),), ()
+
+
+def _only_file(listing: ClassListing, top: str) -> str:
+    """Return the archive or URDF that is alone in a folder, as in Canvas; else the folder."""
+    inner = listing.children(top, 9)
+    names = inner.files if not (inner.folders or inner.refused) else []
+    return f"{top}/{names[0]}" if len(names) == 1 and is_submission(names[0]) else top
+
+
+def _files_below(listing: ClassListing, top: str) -> list[str]:
+    """Return the paths of the files below a folder, in order."""
+    found, folders = list[str](), [top]
+    for here in folders:
+        children = listing.children(here)
+        found += [f"{here}/{name}" for name in children.files]
+        folders += [f"{here}/{name}" for name in children.folders]
+    return sorted(found)
+
+
+class _Owners:
+    """The submission of each student, by the index on the roster; those that match none; those
+    that are ambiguous.
+    """
+
+    def __init__(self, roster: Roster | None, roots: Sequence[tuple[ClassListing, str]]) -> None:
+        self.people, self.roots = People(roster.students if roster is not None else ()), roots
+        self.notes = [*roster.notes] if roster is not None else []
+        self.ignored: list[str] = []
+        self._has_roster = roster is not None
+        self._owned: dict[int, ClassSubmission] = {}
+        self._unclear: set[int] = set()
+        self._visitors: list[ClassSubmission] = []
+        self._unmatched: list[str] = []
+
+    def find(self, found: Sequence[ClassSubmission]) -> None:
+        """Assign all submissions: what a person has assigned decides, then ids and names, then
+        groups.
+        """
+        if all(one.student.key.startswith("anon_") for one in found):
+            self.notes.append(_ANONYMOUS)
+            self._unclear.update(range(len(self.people.students)))
+        if not self._has_roster:
+            self._visitors = [*found]
+            return
+        self._assign(found)
+        claims: dict[int, dict[ClassSubmission, int]] = defaultdict(dict)
+        possible: dict[ClassSubmission, tuple[int, ...]] = {}
+        for one in sorted(
+            set(found).difference(self._owned.values()),
+            key=lambda one: (one.student.key, one.root, one.paths),
+        ):
+            match = self.people.match(one.student)
+            possible[one] = match.students
+            owners = () if match.by == GROUP and self._holds_students(one) else match.owners
+            for index in owners:
+                claims[index][one] = match.by
+            if not owners:
+                self._unclear.update(match.students)
+        given, contested = self._decide(claims)
+        for one, students in possible.items():
+            if one not in given:
+                self._list(one, students, is_contested=one in contested)
+
+    def _decide(
+        self, claims: Mapping[int, Mapping[ClassSubmission, int]]
+    ) -> tuple[set[ClassSubmission], set[ClassSubmission]]:
+        """Give each student the submission with the only best claim; return those given, and
+        those equally good.
+        """
+        given, contested = set[ClassSubmission](), set[ClassSubmission]()
+        for index, claimed in claims.items():
+            best = min(claimed.values())
+            first = [one for one, by in claimed.items() if by == best]
+            if self.people.students[index].submission:
+                continue
+            if len(first) == 1:  # of a group's, the ids in its name are those of one member
+                self._owned[index] = (
+                    first[0]._replace(student=Student("")) if best == GROUP else first[0]
+                )
+                given.add(first[0])
+            else:
+                self._unclear.add(index)
+                contested.update(first)
+        return given, contested - given
+
+    def _holds_students(self, one: ClassSubmission) -> bool:
+        """Return whether two students or more have submissions in a folder: it is a section, not
+        a team's work.
+        """
+        inner = self.roots[one.root][0].children(one.paths[0], 1000)
+        return sum(self.people.knows(found["login"]) for found in names_in(inner).values()) > 1
+
+    def _assign(self, found: Iterable[ClassSubmission]) -> None:
+        """Give students what the roster's column `submission` names."""
+        wanted = {index: one for index, one in enumerate(self.people.students) if one.submission}
+        places: dict[str, set[ClassSubmission]] = defaultdict(set)
+        for one in found if wanted else ():
+            for path in one.paths:
+                places[self._shown(one, path)].add(one)
+        for index, student in wanted.items():
+            place = _plain_path(student.submission)
+            named = [*(places.get(place) or self._at(place))]
+            if len(named) == 1:
+                self._owned[index] = named[0]
+            else:
+                self._unclear.add(index)
+                self.notes.append(
+                    f"{student.key} has the submission {place!r} on the roster, which does "
+                    "not exist"
+                )
+
+    def _at(self, place: str) -> Iterator[ClassSubmission]:
+        """Yield what is at a place in the class folders, and no submission by itself."""
+        for root, (listing, name) in enumerate(self.roots):
+            path = place.removeprefix(f"{name}/") if len(self.roots) > 1 else place
+            inner = (
+                (listing.children(one.rpartition("/")[0]), one.rpartition("/")[2])
+                for one in (path, *parents(path))
+            )
+            is_here = len(self.roots) == 1 or path != place
+            if is_here and all(
+                part in children.folders + children.files for children, part in inner
+            ):  # no symlink
+                yield ClassSubmission(Student(""), root, (path,))
+
+    def _shown(self, one: ClassSubmission, path: str = "") -> str:
+        """Return a path as a person can write it on the roster, of several class folders with
+        the name of its own.
+        """
+        top = f"{self.roots[one.root][1]}/" if len(self.roots) > 1 else ""
+        return _plain_path(top + (path or one.paths[0]))
+
+    def _list(self, one: ClassSubmission, students: Sequence[int], *, is_contested: bool) -> None:
+        """List a submission without an owner, and what assigns it; a contested one is not
+        graded.
+        """
+        if not is_contested:
+            self._visitors.append(one)
+        keys = enumerated([self.people.students[index].key for index in students], _MAX_NAMED, "or")
+        reason = f"may belong to {keys}" if students else "is not on the roster"
+        reason += ", and so may another submission: none is graded" if is_contested else ""
+        key, place = (
+            _csv_cell(text) for text in (printable_path(one.student.key), self._shown(one))
+        )
+        row = "" if is_contested else f", or add the row `{key},{place}` below `id,submission`"
+        advice = f"write {place} in the column `submission` of its student{row}"
+        self._unmatched.append(f"{self._shown(one)} {reason}; to assign it, {advice}")
+
+    def intake(self, layout: str) -> Intake:
+        """Return what was found, of a student on the roster only the LMS's name and ids: other
+        names are anyone's.
+        """
+        students, found = self.people.students, list[ClassSubmission]()
+        unclear = frozenset(students[index].key for index in self._unclear - self._owned.keys())
+        while self._owned:  # of a large class not all is kept twice
+            index, one = self._owned.popitem()
+            name = "" if one.student.canvas else one.student.name
+            own = one.student._replace(key=students[index].key, name=name, login="")
+            found.append(one._replace(student=own))
+        twice = {
+            one
+            for one, other in pairwise(sorted(one.student.key for one in self._visitors))
+            if one == other
+        }
+        taken = {plain(one.key) for one in students}
+        for one in self._visitors:
+            key, is_chosen = one.student.key, bool(one.student.canvas or one.student.aliases)
+            if key in twice or not key.isprintable() or plain(key) in taken:
+                key = _path_key(
+                    f"{self.roots[one.root][1]}/{one.paths[0]}"
+                    if len(self.roots) > 1
+                    else one.paths[0]
+                )
+            name = "" if is_chosen else one.student.name
+            visitor = one.student._replace(
+                key=key, name=name, aliases=(), is_on_roster=not self._has_roster
+            )
+            found.append(one if visitor == one.student else one._replace(student=visitor))
+        found.sort(key=lambda one: one.student.key)
+        ignored = first_lines(sorted(self.ignored), _MAX_LINES)
+        return Intake(
+            layout,
+            found,
+            unclear,
+            tuple(sorted(self._unmatched)),
+            tuple(self.notes),
+            tuple(ignored),
+        )
+
+
+def _plain_path(path: str) -> str:
+    return " ".join(printable_path(path).split())
+
+
+def _csv_cell(text: str) -> str:
+    """Return a text as a cell of a CSV file."""
+    return '"' + text.replace('"', '""') + '"' if set(text) & set(',;"') else text
+
+
+def _path_key(path: str) -> str:
+    """Return the key of a submission whose name cannot be one: `./` begins no name that a student
+    can give a folder.
+    """
+    return (
+        f"./{path}"
+        if path.isprintable()
+        else f"./{printable_path(path)}-{sha256(os.fsencode(path)).hexdigest()}"
+    )

@@ -1,0 +1,1 @@
+"""What people typed: the folder of a gradebook, marks, imported marks."""

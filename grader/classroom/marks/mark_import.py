@@ -1,0 +1,181 @@
+"""Marks of many students in one CSV file: rows of a file of marks, a review sheet, or the grades as
+they were exported.
+
+A row of a sheet names an answer: it is a mark of the students with that answer, of those among them
+whom the column `students` names. An export becomes marks where a person changed a cell: the column
+`exported` has hashes of what the cells were, and `submission` the digest of what was graded.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from grader.base.errors import InputError
+from grader.base.text import enumerated, quoted
+from grader.classroom.marks.marks import (
+    COLUMNS,
+    WITHDRAWN,
+    Cells,
+    Key,
+    Mark,
+    Marks,
+    collect,
+    mark_in,
+    maxima,
+    read_rows,
+)
+from grader.classroom.results.results import digest_of
+from grader.classroom.roster.typed_names import (
+    as_number,
+    criterion_of,
+    find_typed,
+    known,
+    number_in,
+)
+from grader.lab.rubric.criterion import DEADLINE, TOTAL
+from grader.lab.rubric.rubric import Rubric
+
+_EXPORTED = re.compile("(d[0-9a-f]{16})(d[0-9a-f]{16})")
+_MAX_DIGITS = 9  # of a number that is compared
+
+
+class MarkImport(NamedTuple):
+    """What the rows of a file refer to."""
+
+    students: Sequence[Any]
+    rubric: Rubric
+    marks: Marks
+    digests: Mapping[str, str]  # of the submissions, by the key of the student
+    answers: Mapping[
+        tuple[str, str], Sequence[str]
+    ] = {}  # students by criterion and the key of the answer
+    points: Mapping[
+        str, Mapping[str, str]
+    ] = {}  # the cells of each student in an export, the total last
+
+    def read(self, data: bytes, shown: str) -> tuple[list[Mark], int]:
+        """Return the new marks in a CSV file, without times, and how many count already; raises
+        as `read_marks`.
+        """
+        _, titles, rows = read_rows(data, shown)
+        has_marks = (
+            "criterion" in titles
+            and {"student", "answer"} & {*titles}
+            and {"points", "comment"} & {*titles}
+        )
+        if not (has_marks or {"id", "exported"} <= {*titles}):
+            raise InputError(
+                f"the first line of {shown} must name the columns {enumerated(COLUMNS[2:6])}"
+            )
+        mistakes: list[str] = []
+        found = collect(rows, self.marks_in, mistakes, mistakes).newest
+        new = [mark for key, mark in found.items() if not self._is_same(key, mark)]
+        return new, len(found) - len(new)
+
+    def _is_same(self, key: Key, mark: Mark) -> bool:
+        before = (
+            self.marks.counting.get(key)
+            or self.marks.comments.get(key)
+            or Mark("", "", *key, WITHDRAWN)
+        )
+        is_current = not mark.value or before.submission in ("", mark.submission)
+        return is_current and (before.value, before.comment) == (
+            mark.value or before.value,
+            mark.comment,
+        )
+
+    def marks_in(self, row: Cells, place: str = "") -> Iterator[Mark]:
+        """Yield the marks in a row, without a time; raises InputError."""
+        for cells in self._changed(row) if "exported" in row else self._expanded(row):
+            key = student, criterion = cells["student"], cells["criterion"]
+            if criterion not in (TOTAL, DEADLINE):
+                if student not in self.digests:
+                    raise InputError(
+                        f"{student} has submitted nothing that could be marked: `{TOTAL}` "
+                        "is a final mark"
+                    )
+                criterion_of(self.rubric, criterion)
+            digest = row["submission"] or (
+                "" if criterion == DEADLINE else self.digests.get(student, "")
+            )
+            yield mark_in(
+                {**cells, "submission": digest, "time": ""},
+                key,
+                maxima(self.rubric)[criterion],
+                place,
+            )
+
+    def _expanded(self, row: Cells) -> Iterator[Cells]:
+        """Yield the cells of a row for each of its students."""
+        for student in self._students(row) if row["points"] or row["comment"] else ():
+            yield {**row, "student": student}
+
+    def _students(self, row: Cells) -> Sequence[str]:
+        cell, keys = row["student"], {one.key: one for one in self.students}
+        if "answer" in row:
+            where, named = (row["criterion"], row["answer"]), {*row.get("students", "").split("; ")}
+            if some := [
+                key for key in self.answers.get(where, ()) if key in named or named.isdisjoint(keys)
+            ]:
+                return some
+            raise InputError(f"no student has this answer to {where[0]} now: remove the row")
+        if cell in keys or as_number(cell, tuple(keys)):
+            return [known("student", cell, keys)]
+        return [find_typed(self.students, cell, "; `grades.csv` lists all students").key]
+
+    def _changed(self, row: Cells) -> Iterator[Cells]:
+        """Yield the cells of an export that a person changed, as a row for each; a comment
+        stays.
+        """
+        exported = _EXPORTED.fullmatch(row["exported"])
+        if exported is None:
+            raise InputError(
+                f"{quoted(row['exported'])} in the column `exported` is not what was exported"
+            )
+        student = known("student", row["id"], {one.key: one for one in self.students})
+        now = self.points[student]
+        *criteria, total = now
+        given = {name: row.get(name, text) for name, text in now.items()}
+        for names, hashed in ((criteria, exported[1]), ([total], exported[2])):
+            changed = [name for name in names if _plain(given[name]) != _plain(now[name])]
+            if not changed or _hash_of(given, names) == hashed:
+                continue
+            if _hash_of(now, names) != hashed:
+                raise InputError(
+                    f"{student} has other points now than when they were exported: export "
+                    "them again"
+                )
+            for name in changed:
+                if not given[name]:
+                    raise InputError(
+                        f"{name} was {now[name]} and is empty: write `-` to withdraw a mark"
+                    )
+                mark = self.marks.counting.get((student, name))
+                comment = mark.comment if mark is not None else ""
+                yield {
+                    **row,
+                    "student": student,
+                    "criterion": name,
+                    "points": given[name],
+                    "comment": comment,
+                }
+
+
+def exported_text(points: Mapping[str, str]) -> str:
+    """Return the hashes of the points in a row of an export: that of all criteria, and that of the
+    total.
+    """
+    *criteria, total = points
+    return _hash_of(points, criteria) + _hash_of(points, [total])
+
+
+def _hash_of(points: Mapping[str, str], names: Sequence[str]) -> str:
+    return digest_of(*(_plain(points[name]) for name in names))
+
+
+def _plain(text: str) -> str:
+    """Return a number as it is written in one way only, another text unchanged."""
+    number = number_in(text)
+    return (
+        text if number is None or abs(number.adjusted()) > _MAX_DIGITS else str(number.normalize())
+    )

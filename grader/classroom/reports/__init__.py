@@ -1,0 +1,1 @@
+"""Show a class: in a terminal, as JSON, as a page."""

@@ -1,0 +1,95 @@
+"""The statistics of a class on a terminal and as JSON, and what changed in its grades."""
+
+from functools import partial
+from pathlib import Path
+
+from grader.base.errors import InputError
+from grader.base.text import first_lines
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.statistics import statistics
+from grader.classroom.marks.gradebook_folder import RESULTS, batch_lock, check_gradebook
+from grader.classroom.results.results import Results, ResultsWriter, time_of_run
+from grader.report.formats import OutputFormat
+from grader.report.screen import Screen, draw
+from grader.report.writing import Terminal, Warn
+
+_MAX_LINES = 20
+
+
+def warn_of_ignored(book: Gradebook, warn: Warn) -> None:
+    """Print the marks that do not count, and the lines of results that are damaged."""
+    if book.results.damage:
+        warn(book.results.damage)
+    for line in first_lines(book.marks.ignored, _MAX_LINES):
+        warn(f"this mark does not count: {line}")
+
+
+def record_run(folder: Path, warn: Warn) -> None:
+    """Record the current grades as a run, unless the newest one has them, so that `diff` compares
+    with them.
+    """
+    try:
+        with batch_lock(folder):
+            append_run(Gradebook(folder))
+    except InputError as error:
+        warn(f"`grader diff` cannot compare with these grades: {error}")
+
+
+def append_run(book: Gradebook) -> Results | None:
+    """Append a run with the current grades, and return the results with it; None if there is no
+    need, or no way.
+    """
+    now = book.run_with({one.student.key: one.published for one in book})
+    if (
+        book.results.unfinished
+        or book.is_outdated
+        or (now.totals, now.others) == (book.run.totals, book.run.others)
+    ):
+        return None
+    with ResultsWriter(book.folder / RESULTS, book.results.end) as writer:
+        writer.append(now._replace(run=book.results.next_run, time=time_of_run(), written=()).line)
+        writer.sync()
+    return Results(book.folder / RESULTS)
+
+
+def class_statistics(
+    gradebook: Path, kind: OutputFormat, terminal: Terminal, *, verbose: bool
+) -> str:
+    """Return the statistics of a class. Raises InputError."""
+    book = Gradebook(gradebook)
+    warn_of_ignored(book, terminal.warn)
+    if kind is OutputFormat.JSON:
+        from grader.classroom.reports.class_json import render_class_json
+
+        return render_class_json(book)
+    from grader.classroom.reports.class_terminal import render_class
+
+    return draw(partial(render_class, statistics(book, book), verbose=verbose), terminal.screen())
+
+
+def compare(
+    books: tuple[Path, ...],
+    before: int | None,
+    after: int | None,
+    kind: OutputFormat,
+    screen: Screen,
+) -> str:
+    """Return what changed between two runs of a gradebook, or two gradebooks. Raises InputError."""
+    from grader.classroom.gradebook.grade_changes import changes, snapshot
+
+    if len(books) > 2:
+        raise InputError("name one gradebook, or two")
+    if len(books) == 1 and before is None:
+        check_gradebook(books[0])
+        before = (after or len(Results(books[0] / RESULTS).runs)) - 1
+        if before < 1:
+            raise InputError(f"{books[0]} has one run: grade the class again, and compare then")
+    old, new = snapshot(books[0], before), snapshot(books[-1], after)
+    found, runs = [*changes(old, new)], (old.run, new.run)
+    if kind is OutputFormat.JSON:
+        from grader.classroom.reports.class_json import render_changes_json
+
+        return render_changes_json(found, runs)
+    from grader.classroom.reports.class_terminal import render_changes
+
+    return draw(partial(render_changes, found, runs), screen)

@@ -1,0 +1,285 @@
+"""Write a report for each student of a class, and the class's page beside reports in HTML."""
+
+import re
+import unicodedata
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache, partial
+from pathlib import Path
+from typing import NamedTuple
+from urllib.parse import quote
+
+from grader.base.errors import InputError, MachineError, OutOfTime, RubricError
+from grader.base.text import (
+    by_name,
+    counted,
+    counted_points,
+    enumerated,
+    format_points,
+    printable,
+    printable_path,
+    without_commands,
+)
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.student_grade import StudentGrade
+from grader.classroom.marks import gradebook_folder as names
+from grader.classroom.results.results import StoredResult
+from grader.classroom.run.preloading import PRELOAD
+from grader.files.reading import sha256_of
+from grader.lab.checks.outcome import Outcome
+from grader.lab.grading.grade import grade as grade_submission
+from grader.lab.grading.report import Grade, Report, Result
+from grader.lab.hints.hinting import hinted
+from grader.lab.submission.submission import Submission
+from grader.report.formats import Format, render
+from grader.report.writing import Terminal, make_folder, refuse_symlinks, save
+from grader.ros.package.robot_file import Absent
+from grader.workers.pool import Processes, WorkerError, processors
+from grader.workers.queue import Progress, Queue
+
+# No device of Windows, no class's page, and nothing that ends like a name with a digest.
+_SAFE = re.compile(
+    r"(?i)(?!(?:con|prn|aux|nul|com\d|lpt\d)(?:\.|$)|index$|.*-[0-9a-f]{64}$)[\w=][\w.@+=,'()-]{0,39}(?<!\.)"
+)
+_CLASS_PAGE = "index.html"
+_TASK_SIZE = 4  # reports
+_SECONDS = 60.0  # in which hints are searched, and a few reports written
+_NOTHING = Outcome("skipped", "not graded, because nothing was submitted")
+_MOVED = (
+    "The submission has moved or changed since it was graded, so this report has no details: "
+    "run `grader batch` again."
+)
+
+
+class ReportRun(NamedTuple):
+    """The reports to write of a gradebook."""
+
+    gradebook: Path
+    folder: Path  # to write into
+    formats: tuple[Format, ...]
+    answers: Path | None = None  # the model answers
+    class_page: str = ""  # its address as seen from a report, if it is written
+    time: str = ""  # of the newest run: workers read the gradebook once for it
+
+
+class _ReportTask(NamedTuple):
+    """A report to write: the student and the name of the file; without hints if their search was
+    lost.
+    """
+
+    key: str
+    name: str
+    has_hints: bool = True
+
+
+def report_of(book: Gradebook, grade: StudentGrade, *, has_hints: bool = True) -> Report:
+    """Return the report on a student's submission, with the marks, the grade and notes.
+
+    There is a note for a final mark, an excuse, a comment, a late penalty, and who graded if a
+    person did. Without notes, the report is the same as that of `grader grade`. A submission that
+    has changed since has its points only.
+    """
+    if grade.stored is not None:
+        report, _ = book.with_marks(
+            _graded_again(book, grade.stored, has_hints=has_hints), grade.stored
+        )
+    else:
+        results = tuple(Result(criterion, _NOTHING) for criterion in book.criteria)
+        nothing = Submission(grade.student.key, Absent(), is_single=False)
+        report = Report(nothing, book.rubric, book.settings.parts, results)
+    is_changed = (
+        grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
+    )
+    counting = (
+        Grade(grade.total, grade.late.points, grade.final_points is not None)
+        if is_changed
+        else None
+    )
+    student = grade.student.name or grade.student.key
+    return report._replace(
+        notes=(*report.notes, *notes_of(grade, report)), grade=counting, student=student
+    )
+
+
+def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
+    """Yield the sentences about the mark, the excuse or the comment of the whole submission,
+    graders, and lateness.
+    """
+    mark, late = grade.final, grade.late
+    if mark is not None:
+        by = by_name(mark.by)
+        what = f"Excused{by}." if grade.is_excused else f"Comment{by}:"
+        if mark.points is not None:
+            points = counted_points(mark.points)
+            what = (
+                f"Final mark: {points}, given{by or ' manually'} instead of the sum of the "
+                "criteria."
+            )
+        yield " ".join((what, *mark.comment.split()))
+    people = {row.manual_mark.by for row in report.results if row.manual_mark is not None}
+    if people and not grade.has_final:
+        is_automatic = any(not (row.manual_mark or row.is_open) for row in report.results)
+        graders = by_name(enumerated(sorted(filter(None, people))))
+        yield f"Graded {'automatically, and manually' if is_automatic else 'manually'}{graders}."
+    if late.points and grade.total is not None:
+        points, total = format_points(-late.points), format_points(grade.total)
+        yield f"{late.reason}: the late penalty is {points} points, the grade is {total}"
+    elif late.reason:
+        yield late.reason
+
+
+def _graded_again(book: Gradebook, stored: StoredResult, *, has_hints: bool) -> Report:
+    """Return the report on a submission as it was graded, with its details if it is still there."""
+    submission = book.reopened(stored) if stored.verdict != "errored" else None
+    if submission is None:
+        report = book.report(stored)
+        return report._replace(notes=(_MOVED,)) if stored.verdict == "graded" else report
+    report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
+    if not has_hints or book.rubric.hints == "none" or not report.has_failures:
+        return report
+    try:
+        return hinted(report, submission, book.rubric.hints).report
+    except (Exception, OutOfTime):  # noqa: BLE001  a fault of the search must not cost the report
+        return report
+
+
+def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
+    """Raise InputError if reports cannot be written to a folder, or the next run would read it as a
+    submission.
+    """
+    refuse_symlinks(folder, submissions)
+    cannot = f"cannot write files to {printable_path(folder)}"
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{cannot}: it is not a folder")
+    if not {folder.resolve(), *folder.resolve().parents}.isdisjoint(submissions):
+        why = (
+            "the next run would take them for a submission; choose a folder outside of the "
+            "class folder"
+        )
+        raise InputError(f"{cannot}: {why}")
+
+
+def write_reports(
+    run: ReportRun, terminal: Terminal, jobs: int | None = None, timeout: float = _SECONDS
+) -> None:
+    """Write a report for each student who has a result, a final mark or an excuse; in HTML also the
+    class's page.
+
+    Raises InputError and RubricError, which concern all reports.
+    """
+    make_folder(run.folder)
+    book = Gradebook(run.gradebook)
+    files = file_names([one.student.key for one in book if one.stored is not None or one.has_final])
+    place = run.gradebook if run.folder == run.gradebook / names.REPORTS else run.folder
+    class_page = (
+        ""
+        if Format.HTML not in run.formats
+        else f"{'' if place == run.folder else '../'}{_CLASS_PAGE}"
+    )
+    run = run._replace(time=book.run.time, class_page=class_page)
+    lost = render_reports(run, files, terminal, jobs, timeout)
+    if Format.HTML in run.formats:
+        prefix = "" if place == run.folder else f"{names.REPORTS}/"
+        write_class_page(
+            book, place, {key: prefix + name for key, name in files.items() if key not in lost}
+        )
+    terminal.warn(
+        f"{counted(len(files) - len(lost), 'report')} written to {printable_path(run.folder)}"
+    )
+    for key, why in lost.items():
+        terminal.warn(printable(f"no report for {key}: {why}"))
+
+
+def render_reports(
+    run: ReportRun,
+    files: Mapping[str, str],
+    terminal: Terminal,
+    jobs: int | None = None,
+    timeout: float = _SECONDS,
+) -> dict[str, str]:
+    """Write the reports of students, by their file names; return who has none, and why. Raises as
+    `write_reports`.
+    """
+    lost, workers, done = dict[str, str](), jobs or processors(), 0
+    with (
+        Processes(workers, timeout, preload=PRELOAD) as executor,
+        terminal.show_class("writing reports") as show,
+    ):
+        show(Progress(len(files)))
+        queue = Queue(
+            executor, workers, partial(_write_some, run), _without_hints, _not_written, _TASK_SIZE
+        )
+        for results in queue.results(_ReportTask(*item) for item in files.items()):
+            lost |= {key: why for key, why in results if why}
+            done += len(results)
+            show(Progress(len(files), graded=done))
+    return {key: lost[key] for key in files if key in lost}
+
+
+def _without_hints(task: _ReportTask, _: WorkerError) -> _ReportTask | None:
+    """Return a lost task without the search for hints, which may be the cause."""
+    return task._replace(has_hints=False) if task.has_hints else None
+
+
+def _not_written(task: _ReportTask, error: Exception) -> tuple[str, str]:
+    """Return the student without a report, and why."""
+    if isinstance(error, InputError | RubricError):
+        raise error
+    is_known = isinstance(error, WorkerError | MachineError)
+    return task.key, str(
+        error
+    ) if is_known else f"the grader itself failed: {type(error).__name__}: {error}"
+
+
+def _write_some(run: ReportRun, tasks: Sequence[_ReportTask]) -> list[tuple[str, str]]:
+    """Write the reports of some students, in a worker; return the students."""
+    book = _opened_gradebook(run)
+    for task in tasks:
+        report = report_of(book, book.grade(task.key), has_hints=task.has_hints)._replace(
+            class_page=run.class_page
+        )
+        for kind in run.formats:
+            save(Path(run.folder, f"{task.name}.{kind.ending}"), render(report, kind))
+    return [(task.key, "") for task in tasks]
+
+
+@lru_cache(maxsize=1)
+def _opened_gradebook(run: ReportRun) -> Gradebook:
+    return Gradebook(
+        run.gradebook.absolute(), answers=run.answers
+    )  # no report names a rubric by its place in a gradebook
+
+
+def file_names(keys: Sequence[str]) -> dict[str, str]:
+    """Return a file name without ending for each key: valid on every system, and unique without
+    regard to case.
+
+    A key that is not a valid name, or that differs from another one only in case, gets its digest
+    appended.
+    """
+    folds = {key: unicodedata.normalize("NFC", key).casefold() for key in keys}
+    counts = Counter(folds.values())
+    return {
+        key: key if _SAFE.fullmatch(key) and counts[folds[key]] == 1 else _with_digest(key)
+        for key in keys
+    }
+
+
+def _with_digest(key: str) -> str:
+    readable = re.sub(r"[^\w-]+", "_", unicodedata.normalize("NFC", key))[:30].strip(" .-") or "_"
+    return f"{readable}-{sha256_of(key.encode('utf-8', 'surrogateescape'))}"
+
+
+def write_class_page(book: Gradebook, folder: Path, pages: Mapping[str, str]) -> None:
+    """Write the class's page into a folder, with links to the pages of students, by their names
+    from there.
+    """
+    from grader.classroom.gradebook.statistics import statistics
+    from grader.classroom.reports.class_page import render_class_page
+
+    grades = list(book)
+    links = {key: quote(f"{name}.{Format.HTML.ending}") for key, name in pages.items()}
+    save(
+        folder / _CLASS_PAGE,
+        without_commands(render_class_page(book, grades, statistics(book, grades), links)),
+    )

@@ -1,0 +1,253 @@
+"""A class on a terminal: the table that `batch` prints, the statistics, what changed between two
+runs.
+
+Text of submissions is never interpreted as markup or control codes.
+"""
+
+from collections import Counter, defaultdict
+from collections.abc import Sequence
+from decimal import Decimal
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from grader.base.text import (
+    counted,
+    counted_points,
+    cut,
+    first_lines,
+    format_points,
+    named,
+    people_text,
+    printable,
+    signed_points,
+)
+from grader.classroom.gradebook.grade_changes import Change, PointsChange
+from grader.classroom.gradebook.statistics import ClassStatistics, CriterionFigures, summary
+from grader.classroom.gradebook.student_grade import Reason, StudentGrade
+from grader.classroom.reports.class_words import (
+    EQUAL_NOTE,
+    SHARE_NOTE,
+    family_name_order,
+    head_lines,
+    late_text,
+    means,
+    percent,
+    span,
+)
+from grader.classroom.results.results import Run
+from grader.classroom.roster.lateness import time_text
+from grader.lab.rubric.rubric import Rubric
+from grader.report.criteria import alike
+from grader.report.writers.terminal import INDENT, Page
+
+_LOST, _OTHER_COLUMNS = 3, 42  # the column of lost points, and the characters of the others
+_MAX_ROWS = 40
+_MAX_COSTS = 3  # criteria named in a row
+_BAR_WIDTH = 40
+_MAX_MISTAKES, _MAX_GROUPS = 10, 20
+_MAX_NAMED = 12
+_MAX_STEPS = 5  # criteria of a student that changed
+
+
+class ClassTable:
+    """One row a student, first of those who need attention, then by family name; the mean, and what
+    needs attention.
+
+    `add` takes the grades one by one, so that a large class is never held whole.
+    """
+
+    def __init__(self, rubric: Rubric, *, verbose: bool = False) -> None:
+        self.rubric, self.verbose = rubric, verbose
+        self.rows: list[
+            tuple[bool, tuple[str, ...], Sequence[str]]
+        ] = []  # in the order of the first two
+        self.count = self.attention = self.open = (
+            0  # students; of them those who need attention, or manual grading
+        )
+        self.ending = ""  # the last line
+        self._totals = Counter[Decimal]()
+        self._concerns: defaultdict[Reason, list[tuple[str, str]]] = defaultdict(list)
+
+    def add(self, grade: StudentGrade) -> None:
+        """Add the next student."""
+        self.count += 1
+        self.attention += bool(grade.concerns)
+        self.open += bool(grade.pending)
+        name = grade.student.name or grade.student.key
+        why_open = grade.obstacle.name.lower() if grade.obstacle is not None else ""
+        if grade.obstacle is Reason.PENDING:
+            why_open = counted_points(grade.pending)
+        row = (name, grade.total_text or "–", late_text(grade), _costs(grade), why_open)
+        self.rows.append((not grade.concerns, family_name_order(name, grade.student.key), row))
+        if not self.verbose and len(self.rows) > 2 * _MAX_ROWS:
+            self._keep_first()
+        if grade.total is not None and grade.is_counted:
+            self._totals[grade.total] += 1
+        for reason, detail in grade.concerns.items():
+            self._concerns[reason].append((name, detail))
+
+    def _keep_first(self) -> None:
+        self.rows.sort()
+        if not self.verbose:
+            del self.rows[_MAX_ROWS:]
+
+    def _table(self, width: int) -> Table:
+        """Return the rows without empty columns, lost points in so many characters."""
+        table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
+        titles = ("student", f"of {format_points(self.rubric.points)}", "late", "lost", "open")
+        rows = [row for *_, row in self.rows]
+        filled = [at for at in range(len(titles)) if any(row[at] for row in rows)]
+        for at in filled:
+            table.add_column(titles[at], overflow="fold", justify="right" if at == 1 else "left")
+        for row in rows:
+            table.add_row(
+                *(Text(printable(cut(row[at], width) if at == _LOST else row[at])) for at in filled)
+            )
+        return table
+
+    def print(self, console: Console) -> None:
+        """Print the table."""
+        self._keep_first()
+        page = Page(console, [])
+        page.inset(printable(self.rubric.title), "bold", 0)
+        page.table(self._table(console.width - _OTHER_COLUMNS))
+        if rest := self.count - len(self.rows):
+            page.inset(f"... and {counted(rest, 'more student')} (--verbose lists all)", "dim", 0)
+        page.leave_row()
+        if self._totals:
+            found = summary(self._totals.elements())
+            words = means(found.mean, found.median).capitalize()
+            page.inset(f"{words} ({counted(found.students, 'student')})", indent=0)
+        for reason in filter(self._concerns.get, Reason):
+            page.inset(
+                printable(_attention_line(reason, self._concerns[reason], verbose=self.verbose))
+            )
+        if self.ending:
+            page.leave_row()
+            page.rows.append(
+                Text(printable(self.ending))
+            )  # not wrapped: its path and command are copied
+        page.print()
+
+
+def _costs(grade: StudentGrade) -> str:
+    """Return the criteria that cost most, with their points."""
+    costs = [*grade.losses[:_MAX_COSTS]]
+    if rest := grade.losses[_MAX_COSTS:]:
+        costs.append((sum((points for points, _ in rest), Decimal(0)), f"{len(rest)} more"))
+    return ", ".join(f"{name} {format_points(-points)}" for points, name in costs)
+
+
+def render_class(found: ClassStatistics, console: Console, *, verbose: bool = False) -> None:
+    """Print the statistics."""
+    page = Page(console, [])
+    page.inset(printable(found.rubric.title), "bold", 0)
+    for line in head_lines(found):
+        page.inset(printable(line), indent=0)
+    most = max(map(len, found.tenths))
+    for tenth, keys in enumerate(found.tenths if most else ()):
+        bar = "#" * -(-len(keys) * min(_BAR_WIDTH, console.width - 30) // most)
+        page.rows.append(Text(f"  {span(found, tenth):>14} {len(keys):>6}  {bar}"))
+    if most:
+        _show_criteria(found.criteria, page)
+
+    def name(key: str) -> str:
+        return named(key, found.names[key])
+
+    mistakes = [
+        f"{len(one.students):>4}  {one.criterion}: {one.message}"
+        for one in found.mistakes[:_MAX_MISTAKES]
+    ]
+    equal = [
+        f"{people_text([*map(name, one.students)], _MAX_NAMED)}: {one.equal}"
+        for one in found.equal[:_MAX_GROUPS]
+    ]
+    attention = [
+        _attention_line(reason, [(name(key), detail) for key, detail in those], verbose=verbose)
+        for reason, those in found.attention.items()
+    ]
+    sections = (
+        ("Common mistakes", mistakes, 8, ""),
+        ("Equal work", equal, 4, EQUAL_NOTE),
+        ("Needs attention", attention, 4, ""),
+    )
+    for title, lines, indent, note in sections:
+        if lines:
+            page.title(title)
+            if note:
+                page.inset(note, "dim")
+        for line in lines:
+            page.inset(printable(line), indent=indent, head=Text(" " * INDENT))
+    page.print()
+
+
+def _attention_line(
+    reason: Reason, who: Sequence[tuple[str, str]], *, verbose: bool = False
+) -> str:
+    """Return the students who need attention for one reason, each with a detail."""
+    names = [f"{name} ({detail})" if detail else name for name, detail in who]
+    return (
+        f"{reason[:1].upper()}{reason[1:]} ({len(who)}): "
+        f"{people_text(names, len(who) if verbose else _MAX_NAMED)}"
+    )
+
+
+def _show_criteria(rows: Sequence[CriterionFigures], page: Page) -> None:
+    optional = [
+        name
+        for name in ("carried", "marked", "pending", "errored")
+        if any(row.counts[name] for row in rows)
+    ]
+    columns = ["passed", "failed", *optional]
+    table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0), header_style="bold")
+    table.add_column("criterion", no_wrap=True)
+    for name in ("points", *columns, "share"):
+        title = "not deducted" if name == "carried" else name
+        table.add_column(title, justify="right", no_wrap=name != "carried")
+    for row in rows:
+        name = printable(f"{row.criterion.id} (bonus)" if row.criterion.bonus else row.criterion.id)
+        counts = (str(row.counts[column]) for column in columns)
+        share = percent(row.share) if row.share is not None else ""
+        table.add_row(name, format_points(row.criterion.points), *counts, share)
+    page.leave_row()
+    page.table(table)
+    page.inset(SHARE_NOTE, "dim", 0)
+
+
+def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Console) -> None:
+    """Print the two runs, and by reason whose grade changed, by how much, and in which criteria."""
+    before, after = (f"run {run.run} of {time_text(run.time)}" for run in runs)
+    page = Page(console, [])
+    page.inset(printable(f"From {before} to {after}"), "dim", 0)
+    if runs[0].maximum != runs[1].maximum != "" != runs[0].maximum:
+        page.inset(
+            f"the maximum changed from {runs[0].maximum} to {runs[1].maximum} points", indent=0
+        )
+    if not changes:
+        page.inset("nothing changed", indent=0)
+    for why, found in sorted(
+        alike(changes, lambda change: change.why), key=lambda group: -len(group[1])
+    ):
+        page.leave_row()
+        page.inset(printable(f"{'; '.join(why)} ({counted(len(found), 'student')})"), "bold", 0)
+        for one in found:
+            steps = [f"{step.id} {_before_and_after(step, 'none')}" for step in one.criteria]
+            total = f"{named(one.key, one.name)}: {_before_and_after(one, 'not final')}"
+            page.inset(
+                printable("; ".join([total, *first_lines(steps, _MAX_STEPS)])),
+                indent=4,
+                head=Text("  "),
+            )
+    page.print()
+
+
+def _before_and_after(change: Change | PointsChange, nothing: str) -> str:
+    """Return points before and after: "50 to 60 (+10)"."""
+    before, after = change.before, change.after
+    first, last = (
+        nothing if points is None else format_points(points) for points in (before, after)
+    )
+    more = f" ({signed_points(after - before)})" if before is not None and after is not None else ""
+    return f"{first}, as before" if first == last else f"{first} to {last}{more}"

@@ -1,0 +1,94 @@
+"""A class in words: what the terminal and the class's page say of it."""
+
+import unicodedata
+from collections.abc import Iterator
+from decimal import Decimal
+
+from grader.base.text import counted, format_points
+from grader.classroom.gradebook.statistics import ClassStatistics
+from grader.classroom.gradebook.student_grade import StudentGrade
+
+_LETTERS = str.maketrans(
+    {"ł": "l", "ø": "o", "đ": "d", "æ": "ae", "œ": "oe", "ı": "i"}
+)  # have no accents
+EQUAL_NOTE = (
+    "The same robot may differ in names, order, comments and the spelling of numbers. This "
+    "is no verdict: students who"
+    " follow the handout and make the same mistake have the same robot."
+)
+SHARE_NOTE = "Share: the mean share of the points that students earned."
+
+
+def family_name_order(name: str, key: str) -> tuple[str, str, str]:
+    """Return the family name, which is before a comma or the last word, then the name and the
+    key.
+    """
+    family = name.partition(",")[0] if "," in name else (name.split() or [""])[-1]
+    return _letters(family), _letters(name), key
+
+
+def _letters(name: str) -> str:
+    """Return a name without accents, so that Öz is not after Zed."""
+    apart = unicodedata.normalize("NFKD", name.casefold().translate(_LETTERS))
+    return "".join(letter for letter in apart if not unicodedata.combining(letter))
+
+
+def late_text(grade: StudentGrade) -> str:
+    """Return the days late and the penalty; empty where they do not count."""
+    penalty = f", {format_points(grade.late.points)}" if grade.late.points else ""
+    return (
+        f"{counted(grade.late.days, 'day')}{penalty}"
+        if grade.late.days and not grade.has_final
+        else ""
+    )
+
+
+def head_lines(found: ClassStatistics) -> Iterator[str]:
+    """Yield how many students were graded and how many not, the grades in one line, what is open,
+    and the sections.
+    """
+    words = {
+        "graded": "graded",
+        "unreadable": "could not be graded",
+        "errored": "errored",
+        "excused": "excused",
+    }
+    words["missing"] = "without a submission"
+    counts = [
+        f"{found.statuses[status]} {text}"
+        for status, text in words.items()
+        if status in found.statuses
+    ]
+    if found.late:
+        counts.append(f"{found.late} late")
+    yield ", ".join(counts) or "no students"
+    if found.all is not None:
+        yield (
+            f"Grades of {format_points(found.maximum)}: {means(found.all.mean, found.all.median)}"
+        )
+    if found.open:
+        yield (
+            f"{counted(found.open, 'grade')} still {'needs' if found.open == 1 else 'need'} "
+            "manual grading"
+        )
+    for name, one in found.sections.items():
+        yield (
+            f"Section {name or '(none)'}: {means(one.mean, one.median)} "
+            f"({counted(one.students, 'student')})"
+        )
+
+
+def means(mean: Decimal | float, median: Decimal | float) -> str:
+    """Return a mean and a median to one decimal."""
+    return f"mean {mean:.1f}, median {median:.1f}"
+
+
+def span(found: ClassStatistics, tenth: int) -> str:
+    """Return the grades of a tenth of the maximum: "10 to 20"."""
+    step = found.maximum / len(found.tenths)
+    return f"{format_points(step * tenth)} to {format_points(step * (tenth + 1))}"
+
+
+def percent(share: float) -> str:
+    """Return a share in percent, not rounded up to 100 % or down to 0 %."""
+    return f"{share:.0%}" if share in (0, 1) else f"{min(99, max(1, round(100 * share)))}%"

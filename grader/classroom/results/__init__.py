@@ -1,0 +1,1 @@
+"""What grading a class found: the results of all runs, and equal work."""

@@ -1,0 +1,78 @@
+"""Equal and nearly equal work: submissions with the same URDF or robot. It is no verdict."""
+
+from collections.abc import Iterable
+from itertools import starmap
+from typing import NamedTuple
+
+from grader.classroom.results.results import StoredResult
+from grader.files.reading import sha256_of
+from grader.lab.submission.submission import Submission
+from grader.ros.package.robot_file import Read
+from grader.ros.urdf.normal_form import robot_hash, written_form
+
+# students, or a tenth of the class: what more have in common comes from the handout
+_MAX_SHARING = 4
+_DIGITS = 16  # of a hash
+_LABELS = {
+    "urdf": "the same file",
+    "robot": "the same robot",
+    "written": "the same links, joints and materials",
+}
+
+
+class EqualWork(NamedTuple):
+    """Students with work that is equal, and what of it is: "the same file"."""
+
+    students: tuple[str, ...]
+    equal: str
+
+
+def forms_of(submission: Submission, *, is_handed_out: bool = False) -> dict[str, str]:
+    """Return the hashes of a robot's forms, without what is empty.
+
+    `urdf` is that of the file, `robot` that of its normal form, `written` that of its links, joints
+    and materials as written.
+    """
+    urdf, found = submission.urdf, dict[str, str]()
+    if isinstance(urdf, Read):
+        if urdf.data.strip():
+            found |= {"urdf": sha256_of(urdf.data), "robot": robot_hash(urdf.reading)}
+        found["written"] = written_form(urdf.reading.elements, is_handed_out=is_handed_out)
+    return {name: form[:_DIGITS] for name, form in found.items() if form}
+
+
+def hashes_of(submission: Submission) -> tuple[str, ...]:
+    """Return the hashes of a robot, which is no equal work if the course handed it out."""
+    return tuple(forms_of(submission, is_handed_out=True).values())
+
+
+def equal_work(results: Iterable[StoredResult], handed_out: Iterable[str]) -> list[EqualWork]:
+    """Return the groups of students with equal work, without what the course handed out.
+
+    The same file comes first, then the same robot, then the same elements.
+    """
+    known, works = {*handed_out}, [one for one in results if one.work]
+    most = max(_MAX_SHARING, len(works) // 10)
+    found: dict[tuple[str, ...], str] = {}
+    own = [one for one in works if known.isdisjoint((one.work.get("urdf"), one.work.get("robot")))]
+    for kind, label in _LABELS.items():
+        for group in _groups(
+            (one.work[kind], one) for one in own if one.work.get(kind, "") not in {"", *known}
+        ):
+            is_rare = len(group) <= most and len({one.work.get("robot") for one in group}) > 1
+            if kind != "written" or is_rare:
+                found.setdefault(tuple(one.student for one in group), label)
+    return [*starmap(EqualWork, found.items())]
+
+
+def _groups(works: Iterable[tuple[str, StoredResult]]) -> list[list[StoredResult]]:
+    """Return the groups with the same hash that come from more than one submission, the largest
+    first.
+    """
+    groups: dict[str, list[StoredResult]] = {}
+    for form, work in works:
+        groups.setdefault(form, []).append(work)
+    several = (
+        group for group in groups.values() if len({(one.root, one.paths) for one in group}) > 1
+    )
+    return sorted(several, key=lambda group: (-len(group), [one.student for one in group]))

@@ -1,0 +1,1 @@
+"""Grade criteria manually, in a browser."""

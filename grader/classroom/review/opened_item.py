@@ -1,0 +1,179 @@
+"""What a person looks at to give a mark: the submission is read again, as it was graded.
+
+Of a question it is the answer, of evidence the pictures, of the robot or package the views of the
+robot and the file around the line that decides.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import lru_cache
+from itertools import islice, starmap
+from pathlib import PurePosixPath
+
+from grader.base.errors import InputError
+from grader.base.source import Location
+from grader.base.text import capitalised, shell_quoted
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.review_items import ReviewItem
+from grader.classroom.review.review_pages import OpenedItem
+from grader.lab.checks.outcome import location_of
+from grader.lab.documents.pictures import EmbeddedPicture, NotShown
+from grader.lab.grading.criterion_pictures import (
+    evidence_files,
+    loose_lines,
+    may_have_pictures,
+    pictures_of,
+)
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import Report, Result
+from grader.lab.rubric.criterion import Criterion
+from grader.lab.submission.submission import Submission
+from grader.report.criteria import answer_lines, counts_lines, is_manual
+from grader.report.drawing.picture import Picture, picture_of
+from grader.report.locations import location_text, source_lines
+from grader.report.writers.svg import callout_lines, drawing_element
+from grader.ros.build.package_problems import LAUNCH_UNKNOWN, SETUP_UNKNOWN
+from grader.ros.package.package import SETUP
+
+_MAX_PLACES, _AROUND = 3, 6  # places in files, and lines before and after each
+_UNKNOWN = {SETUP: SETUP_UNKNOWN, "launch": LAUNCH_UNKNOWN}  # by what a check looks at
+_OF_ROBOT = ("urdf", "robot")  # subjects of checks
+
+
+@lru_cache(maxsize=1)  # a page asks for its pictures one by one
+def _graded_again(book: Gradebook, key: str) -> tuple[Submission, Report]:
+    """Return a student's submission as it was graded, and its report. Raises InputError."""
+    graded = book.results.of(key)
+    submission = book.reopened(graded) if graded is not None else None
+    if submission is None:
+        command = (
+            f"`grader batch NEWPATH --gradebook {shell_quoted(book.folder)}` with its class folder"
+        )
+        raise InputError(f"the submission has moved or changed since it was graded: run {command}")
+    return submission, grade(book.rubric, submission, book.settings.parts, is_one_of_class=True)
+
+
+def open_item(book: Gradebook, item: ReviewItem) -> OpenedItem:
+    """Return what a person looks at for an item. Raises InputError if its submission has moved or
+    changed.
+
+    Of an anonymous student it has no names of files and no lines of them, because students choose
+    them.
+    """
+    first = item.members[0]
+    if item.members[1:] and not item.answer:
+        return OpenedItem("")
+    submission, report = _graded_again(book, first.student.key)
+    graded = {one.criterion.id: one for one in report.results}
+    results = [graded[one.criterion.id] for one in item.all if one.criterion.id in graded]
+    if len(results) < len(item.all):
+        raise InputError("this criterion is no longer graded for this student")
+    result, outcome = results[0], results[0].outcome
+    opened = OpenedItem(
+        capitalised(outcome.message),
+        answer_lines(outcome),
+        pictures_of(result, submission) if may_have_pictures(result) else (),
+        [*_paths(book, item, result)],
+    )
+    documents = loose_lines(result, submission, is_anonymous=bool(first.number))
+    if documents:
+        opened = opened._replace(answer=documents, title="Documents")
+    if not is_manual(result):
+        opened = _with_robot(opened, report, results, is_anonymous=bool(first.number))
+    return _anonymous(opened, item, result) if first.number else opened
+
+
+def _paths(book: Gradebook, item: ReviewItem, result: Result) -> Iterator[str]:
+    """Yield the places in a submission and its path below the class folder, which is named if there
+    are several.
+    """
+    stored, location = item.members[0].stored, result.outcome.location
+    root = book.settings.roots(book.folder)[stored.root]
+    above = PurePosixPath(root.name if len(book.settings.submissions) > 1 else "")
+    submitted = ", ".join(str(above / path) for path in stored.paths)
+    places = [*evidence_files(result)]
+    if location is not None:
+        places.append(
+            f"{location.path}, line {location.line}" if counts_lines(location) else location.path
+        )
+    yield from (f"{place} in {submitted}" for place in places)
+    if not places:
+        yield submitted
+
+
+def _anonymous(opened: OpenedItem, item: ReviewItem, result: Result) -> OpenedItem:
+    """Return an item without what a student has named."""
+    status = result.outcome.status
+    question = str(item.criterion.arguments.get("question", ""))
+    message = question if status == "pending" else f"the check: {status}"
+    pictures = [*starmap(_without_name, enumerate(opened.pictures, 1))]
+    return opened._replace(message=message, pictures=pictures, paths=(), legend=(), places=())
+
+
+def _without_name(number: int, found: EmbeddedPicture | NotShown) -> EmbeddedPicture | NotShown:
+    if isinstance(found, EmbeddedPicture):
+        return found._replace(where=f"picture {number}")
+    return NotShown(f"file {number}", found.reason.replace(found.where, f"file {number}"))
+
+
+def _with_robot(
+    opened: OpenedItem, report: Report, results: Sequence[Result], *, is_anonymous: bool
+) -> OpenedItem:
+    """Return an item with the views of the robot, and the files around the places that decide its
+    criteria.
+    """
+    picture, views, legend = picture_of(report), "", list[str]()
+    if picture is not None:
+        legend = callout_lines(picture)
+        views = drawing_element(_without_names(picture) if is_anonymous else picture, legend=False)
+    found = dict.fromkeys(
+        place for result in results if (place := _deciding_place(report, result)) is not None
+    )
+    shown = (
+        (location_text(one), source_lines(one, report.submission.source, _AROUND)) for one in found
+    )
+    places = [*islice(((words, lines) for words, lines in shown if lines), _MAX_PLACES)]
+    return opened._replace(views=views, legend=legend, places=places)
+
+
+def _without_names(picture: Picture) -> Picture:
+    """Return a picture without the names of links, and so without the numbers and sentences about
+    them.
+    """
+    bodies = tuple(body._replace(link="") for body in picture.scene.bodies)
+    return replace(picture, scene=replace(picture.scene, bodies=bodies, missing=()), callouts=())
+
+
+def _deciding_place(report: Report, result: Result) -> Location | None:
+    """Return the place that decides a criterion of the robot or package; None if there is none.
+
+    It is that of the outcome, else that of what cannot be determined, else that of the link that is
+    examined.
+    """
+    outcome, criterion, robot = result.outcome, result.criterion, report.submission.robot
+    if outcome.location is not None:
+        return outcome.location
+    if outcome.status == "pending":
+        unknown = _unknown_place(report, criterion)
+        if unknown is not None:
+            return unknown
+    if robot is None or not robot.links or criterion.check.subject not in _OF_ROBOT:
+        return None
+    link = criterion.arguments.get("link")
+    examined = (
+        robot.link(link) if isinstance(link, str) and robot.has_link(link) else robot.links[0]
+    )
+    return location_of(examined.known.location)
+
+
+def _unknown_place(report: Report, criterion: Criterion) -> Location | None:
+    """Return the place of what keeps a criterion from being determined: first in a file that its
+    check looks at.
+    """
+    if criterion.check.subject in _OF_ROBOT:
+        found = [one for one in report.problems if one.kind.effect == "undetermined"]
+    else:
+        own = [_UNKNOWN[name] for name in criterion.check.about.looks_at if name in _UNKNOWN]
+        found = [one for one in report.problems if one.kind in _UNKNOWN.values()]
+        found.sort(key=lambda one: one.kind not in own)
+    return found[0].location if found else None

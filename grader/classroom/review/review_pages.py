@@ -1,0 +1,188 @@
+"""The pages of a review in the browser: one item in words and pictures, the end of the review, a
+message.
+"""
+
+from collections.abc import Mapping, Sequence
+from datetime import datetime
+from decimal import Decimal
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from markupsafe import Markup
+
+from grader import __version__
+from grader.base.text import counted, counted_points, format_points, printable, shell_quoted
+from grader.classroom.gradebook.review_items import (
+    OLDER,
+    STATES,
+    UNMARKED,
+    ReviewFilter,
+    ReviewItem,
+)
+from grader.classroom.lms.forms import FORMS
+from grader.classroom.marks.marks import Mark
+from grader.classroom.roster.lateness import time_text
+from grader.lab.documents.pictures import EmbeddedPicture, NotShown
+from grader.report.criteria import model_lines
+from grader.report.locations import SourceLine
+from grader.report.pages.shell import Assets, render_page
+from grader.report.writers.svg import STYLE
+
+_SOURCES = "img-src 'self'; frame-src 'self'; connect-src 'self'"
+_FILES = Path(__file__).parent / "files"
+_ASSETS = Assets("text.css robot.css review.css", "review.js", STYLE, _SOURCES, _FILES)
+NO_ANSWER = "No answer"
+_DECIMALS = Decimal("0.0001")
+
+
+class OpenedItem(NamedTuple):
+    """What was found for an item, as a page or a sheet shows it.
+
+    `views` is an SVG element with the robot, empty without one, and `legend` says what is marked in
+    it. `places` are the lines of files around the places that decide, each with its location in
+    words.
+    """
+
+    message: str
+    answer: Sequence[str] = ()
+    pictures: Sequence[EmbeddedPicture | NotShown] = ()
+    paths: Sequence[str] = ()  # of the files, below the class folder
+    views: str = ""
+    legend: Sequence[str] = ()
+    places: Sequence[tuple[str, Sequence[SourceLine]]] = ()
+    title: str = "Answer"  # of the answer
+
+
+def filters(
+    shown: ReviewFilter, questions: Sequence[str], sections: Sequence[str]
+) -> list[tuple[object, ...]]:
+    """Return the lists to filter by: the name of each, its label, its values with their words,
+    the chosen value.
+    """
+    values = (
+        {"": "all questions"} | dict(zip(questions, questions, strict=True)),
+        {"": "all sections"} | dict(zip(sections, sections, strict=True)),
+        STATES,
+    )
+    return [
+        *zip(ReviewFilter._fields, ("Question", "Section", "Items"), values, shown, strict=True)
+    ]
+
+
+def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) -> str:
+    """Return the page of an item; `place` has its `number` and address among a `total`, and the
+    filters.
+
+    The addresses of the pictures are ADDRESS/picture/1 and so on.
+    """
+    criterion, first, members = item.criterion, item.members[0], [one.label for one in item.members]
+    is_alone, marks = len(members) == 1, [one.members[0].mark for one in item.all]
+    maximum = sum((one.criterion.points for one in item.all), Decimal(0))
+    choices = criterion.choices if not item.also else {}
+    who = members[0] if is_alone else f"{len(members)} students"
+    values = {
+        **place,
+        "title": f"{place['number']} of {place['total']}: {who}, {criterion.title}",
+        "who": who,
+        "members": [] if is_alone else members,
+        "item": item,
+        "maximum": format_points(maximum),
+        "each": [
+            (one.criterion.title, one.criterion.id, format_points(one.criterion.points))
+            for one in item.all
+        ],
+        "opened": opened,
+        "views": Markup(opened.views),  # noqa: S704  an element, whose text is escaped
+        "model": model_lines(criterion),
+        "pictures": [
+            (f"{place['address']}/picture/{at}", one)
+            for at, one in enumerate(opened.pictures, 1)
+            if isinstance(one, EmbeddedPicture)
+        ],
+        "marked": _marked_text(marks, is_older=first.state == OLDER),
+        "buttons": _buttons(maximum),
+        "choices": [f"{text} ({format_points(points)})" for text, points in choices.items()],
+    }
+    data = {
+        "shown": item.view,
+        "points": _total(marks),
+        "each": [mark.value if mark else "" for mark in marks] if item.also else [],
+        "comment": marks[0].comment if marks[0] else "",
+        "choices": [[text, float(points)] for text, points in choices.items()],
+        "maximum": float(maximum),
+        "people": members,
+    }
+    return _page("review.html", values, data)
+
+
+def _total(marks: Sequence[Mark | None]) -> str:
+    """Return the points of the marks of an item together; empty if one is missing."""
+    points = [mark.points for mark in marks if mark is not None and mark.points is not None]
+    return format_points(sum(points, Decimal(0))) if len(points) == len(marks) else ""
+
+
+def _marked_text(marks: Sequence[Mark | None], *, is_older: bool) -> str:
+    """Return what is marked of an item: the first mark, with the points of all; empty without
+    one.
+    """
+    given = [mark for mark in marks if mark is not None]
+    if not given:
+        return ""
+    text = mark_text(given[0]._replace(value=_total(marks) or given[0].value))
+    if len(given) < len(marks):
+        text = f"{len(given)} of {len(marks)} criteria, the first: {text}"
+    return f"{text}, before the submission changed" if is_older else text
+
+
+def end_page(marked: int, left: int, place: Mapping[str, Any], gradebook: str, lms: str) -> str:
+    """Return the page after the last item: how many marks were given, how many are left, and the
+    next command.
+
+    It exports the grades to the LMS that the class came from, if that is known.
+    """
+    command = f"grader export {lms or 'csv'} --gradebook {shell_quoted(gradebook)}"
+    values = {
+        **place,
+        "title": "Manual grading complete" if not left else f"{counted(left, 'mark')} left",
+        "summary": f"{counted(marked, 'mark')} given in this review.",
+        "left": left,
+        "is_filtered": any(chosen not in ("", UNMARKED) for *_, chosen in place["filters"]),
+        "how": f"fill the grade file that {FORMS[lms].lms} has exported"
+        if lms
+        else "export the grades",
+        "command": f"{command} --into EXPORTED.csv --output upload.csv" if lms else command,
+    }
+    return _page("review-end.html", values)
+
+
+def error_page(message: str, following: str) -> str:
+    """Return the page of an item that cannot be shown; `following` is the address of the next
+    one.
+    """
+    title = "This item cannot be shown"
+    return _page("review-error.html", {"title": title, "message": message, "following": following})
+
+
+def _page(template: str, values: Mapping[str, object], data: Mapping[str, Any] = {}) -> str:
+    return render_page(template, {"version": __version__, **values}, data, _ASSETS)
+
+
+def _buttons(maximum: Decimal) -> list[tuple[str, str]]:
+    """Return the points that have a button, and the name of each."""
+    named = {Decimal(0): "none", maximum / 2: "half", maximum: "all"}
+    return [
+        (format_points(value), name)
+        for value, name in named.items()
+        if value == value.quantize(_DECIMALS)
+    ]
+
+
+def mark_text(mark: Mark) -> str:
+    """Return a mark or comment in one printable line: points, name, time, comment."""
+    points = "withdrawn" if mark.value else "comment"
+    if mark.points is not None:
+        points = counted_points(mark.points)
+    time = f"at {time_text(datetime.fromisoformat(mark.time))}" if mark.time else f"in {mark.place}"
+    words = f"{points} by {mark.by or 'an unnamed person'} {time}"
+    comment = " ".join(mark.comment.split())
+    return printable(f"{words}: {comment}" if comment else words)

@@ -1,0 +1,339 @@
+"""A review: one person goes through the items of a class. Each mark is saved immediately.
+
+An item is opened by reading its submission again: what was found for its criterion, and its
+pictures. Instead of the page, a person can fill in a sheet of the open items, a CSV file, which
+`grader mark --import` records.
+"""
+
+import os
+from collections import defaultdict
+from pathlib import Path
+
+from grader.base.errors import InputError
+from grader.base.text import (
+    counted,
+    counted_points,
+    cut,
+    enumerated,
+    format_points,
+    printable,
+    printable_path,
+    shell_quoted,
+)
+from grader.classroom.commands.grade_class import write_grades_with
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.review_items import (
+    UNMARKED,
+    Place,
+    ReviewFilter,
+    ReviewItem,
+    ReviewStudent,
+    review_items,
+)
+from grader.classroom.marks import gradebook_folder as names
+from grader.classroom.marks.gradebook_folder import CLASS_FILE
+from grader.classroom.marks.marks import Key, Mark, append_marks, mark_file, mark_in
+from grader.classroom.review.opened_item import open_item
+from grader.classroom.review.review_pages import NO_ANSWER
+from grader.classroom.roster.roster import plain
+from grader.classroom.roster.typed_names import criterion_of
+from grader.classroom.tables import write_table
+from grader.lab.rubric.model_answers import load_with_answers
+from grader.report.criteria import alike
+from grader.report.writing import save
+
+CONFIRMED = "!"  # ends what the page sends to replace marks that it was asked about
+_MAX_NAMED = 5
+_GONE = "this answer has changed, or its students have final marks: go to the next item"
+_READ = (names.RESULTS, CLASS_FILE, names.ROSTER, f"{names.RUBRIC}/**/*.toml", f"{names.MARKS}/*")
+_SHEET_COLUMNS = ("criterion", "answer", "points", "maximum", "comment", "text", "students")
+_PRIVATE = 0o600
+_MAX_TEXT = 30_000  # characters; a cell of Excel has at most 32,767
+
+
+class ReviewSession:
+    """The items of a review, which keep their positions.
+
+    `by` is the name that reports show, `answers` the file of the model answers. `own` are the
+    newest marks that the review has given.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        shown: ReviewFilter = ReviewFilter(),  # noqa: B008  it never changes
+        by: str = "",
+        answers: Path | None = None,
+        *,
+        is_anonymous: bool = False,
+    ) -> None:
+        self.folder, self.by, self.answers, self.is_anonymous = folder, by, answers, is_anonymous
+        self.file = mark_file(folder / names.MARKS, by)
+        self.own = dict[Key, Mark]()
+        self._kept = set[Key]()  # marked since the filter was chosen: these stay in the list
+        self.filter = shown
+        self.places: tuple[Place, ...] = ()
+        self._stamps: object = None
+        self.refresh()
+        self.show_only(shown)
+
+    def refresh(self) -> None:
+        """Read the gradebook again if it has changed. Raises InputError."""
+        found = ((path, path.stat()) for pattern in _READ for path in self.folder.glob(pattern))
+        stamps = [
+            (path, status.st_ino, status.st_size, status.st_mtime_ns) for path, status in found
+        ]
+        if stamps != self._stamps:
+            self.book = Gradebook(self.folder)
+            rubric = str(self.folder / self.book.settings.rubric)
+            self.book.rubric = load_with_answers(rubric, self.answers)
+            self.items = review_items(self.book, is_anonymous=self.is_anonymous)
+            self.places = tuple(dict.fromkeys((*self.places, *self.items)))
+            self._stamps = stamps
+            self._arrange()
+
+    def _arrange(self) -> None:
+        """Find the items that are shown, and join those of the same students that are open for
+        the same reason.
+        """
+        found = ((at, self.items.get(place)) for at, place in enumerate(self.places))
+        some = (
+            (at, item, self.filter.members(item, self._kept))
+            for at, item in found
+            if item is not None
+        )
+        self.shown = {at: item._replace(members=members) for at, item, members in some if members}
+        joined = [those for _, those in alike(self.shown, lambda at: self.shown[at].reason)]
+        self._joined = {
+            at: self.shown[those[0]]._replace(also=tuple(self.shown[other] for other in those[1:]))
+            for those in joined
+            for at in those
+        }
+        self.listed = [those[0] for those in joined]
+
+    @property
+    def sections(self) -> dict[str, str]:
+        """The sections of the roster, by their names without differences of spelling."""
+        students = self.book.roster.students if self.book.roster is not None else ()
+        return {plain(one.section): one.section for one in students if one.section}
+
+    @property
+    def left(self) -> int:
+        """The number of results that need manual grading, of the question and section that are
+        shown.
+        """
+        unmarked = ReviewFilter(*self.filter[:2])
+        return sum(len(unmarked.members(item)) for item in self.items.values())
+
+    def item_at(self, at: int) -> ReviewItem:
+        """Return an item with the students that are shown, with others if none is. Raises
+        InputError if it is gone.
+        """
+        if at in self._joined:
+            return self._joined[at]
+        item = self.items.get(self.places[at])
+        if item is None:
+            raise InputError(_GONE)
+        return item._replace(
+            members=ReviewFilter("", self.filter.section, "").members(item) or item.members
+        )
+
+    def following(self, position: int = -1) -> int:
+        """Return the position of the next item that is shown, beyond the last one at the end."""
+        return next((at for at in self.listed if at > position), len(self.places))
+
+    def previous(self, position: int) -> int:
+        """Return the position of the previous item that is shown, the same position if there is
+        none.
+        """
+        return max((at for at in self.listed if at < position), default=position)
+
+    def next_question(self, position: int) -> int:
+        """Return the position of the student's next item, after the last one that of the next
+        student's first.
+
+        An item of several students is that of the first one.
+        """
+        if position >= len(self.places):
+            return position
+        here = self.item_at(position).members[0].order, position
+        shown = ((self._joined[at].members[0], at) for at in self.listed)
+        later = [(one.order, at) for one, at in shown if (one.order, at) > here]
+        return min(later)[1] if later else len(self.places)
+
+    def people(self, position: int) -> list[tuple[str, int, int]]:
+        """Return the students with items of the question and section that are shown, whatever their
+        state is.
+
+        Each has a label, the number of unmarked criteria, and the position of an item: of the same
+        question as that at a position, else the first unmarked one.
+        """
+        question = self.places[position][0] if position < len(self.places) else ""
+        of_any_state = ReviewFilter(*self.filter[:2], "")
+        found = defaultdict[tuple[int, str, str], list[tuple[int, ReviewStudent]]](list)
+        for at, item in (
+            (at, self.items[place]) for at, place in enumerate(self.places) if place in self.items
+        ):
+            for one in of_any_state.members(item):
+                found[one.order].append((at, one))
+        people = list[tuple[str, int, int]]()
+        for _, items in sorted(found.items()):
+            left = [at for at, one in items if one.state == UNMARKED]
+            same = [at for at, _ in items if self.places[at][0] == question]
+            people.append((items[0][1].label, len(left), [*same, *left, items[0][0]][0]))
+        return people
+
+    def so_far(self, item: ReviewItem) -> str:
+        """Return the points of a student so far, and how many need manual grading; empty for
+        several students.
+        """
+        grade = self.book.grade(item.members[0].student.key)
+        if item.members[1:] or grade.total is None:
+            return ""
+        points = f"{format_points(grade.total)} of {counted_points(grade.report.max_score)} so far"
+        return (
+            f"{points}; {format_points(grade.pending)} left to grade" if grade.pending else points
+        )
+
+    @property
+    def lms(self) -> str:
+        """The LMS that the class came from, as its submissions or roster say; empty if they do
+        not.
+        """
+        students = (self.book.student(one.student, one) for one in self.book.results.all())
+        return next(
+            (name for one in students for name in ("canvas", "moodle") if getattr(one, name)), ""
+        )
+
+    def show_only(self, wanted: ReviewFilter) -> None:
+        """Show the items that a filter lets through. Raises InputError."""
+        sections = self.sections
+        if wanted.criterion:
+            criterion_of(self.book.rubric, wanted.criterion)
+        if wanted.section and plain(wanted.section) not in sections:
+            known = enumerated([*map(repr, sorted(sections.values()))], _MAX_NAMED) or "none"
+            raise InputError(
+                f"no student has the section {wanted.section!r} in the roster; it has {known}"
+            )
+        self.filter = wanted._replace(section=sections.get(plain(wanted.section), ""))
+        self._kept.clear()
+        self._arrange()
+
+    def mark(self, at: int, points: str, comment: str, shown: str) -> list[Mark] | None:
+        """Append a mark for each student of an item; `-` as points withdraws marks.
+
+        Of criteria that are shown together, `points` has a word for each.
+        `shown` is the item's view that the person saw: without effect, returns None if it is
+        another one. Returns the marks of others that would be replaced; nothing is saved then,
+        unless `shown` ends with CONFIRMED. Raises InputError.
+        """
+        item = self.item_at(at)
+        self._check_rows()
+        if shown.removesuffix(CONFIRMED) != item.view:
+            return None
+        values = points.split() if item.also else [points.strip()]
+        if len(values) != len(item.all) or not all(values):
+            raise InputError("points are missing")
+        new, replaced = dict[Key, Mark](), list[Mark]()
+        for one, value in zip(item.all, values, strict=True):
+            new |= self._marks_of(one, value, comment)
+            replaced += [
+                it.mark for it in one.members if it.mark is not None and it.mark.points is not None
+            ]
+        others = [mark for mark in replaced if mark.by != self.by]
+        if others and not shown.endswith(CONFIRMED):
+            return others
+        append_marks(self.file, new.values())
+        self.own |= new
+        self._kept |= new.keys()
+        self.refresh()
+        write_grades_with(len(new), self.book)
+        return []
+
+    def _marks_of(self, item: ReviewItem, points: str, comment: str) -> dict[Key, Mark]:
+        """Return the new mark of each student of an item. Raises InputError."""
+        cells = {"time": "", "by": self.by, "points": points, "comment": comment, "": ""}
+        found = dict[Key, Mark]()
+        for one in item.members:
+            key = one.student.key, item.criterion.id
+            mark = mark_in(
+                {**cells, "submission": one.stored.digest}, key, item.criterion.points, ""
+            )
+            found[key] = mark._replace(time=self.book.marks.next_time(key))
+        return found
+
+    def _check_rows(self) -> None:
+        """Raise InputError, once, if rows that this review wrote are no longer in the file."""
+        newest = self.book.marks.newest
+        lost = [
+            key
+            for key, mark in self.own.items()
+            if key not in newest or "" < newest[key].time < mark.time
+        ]
+        found = [self.own.pop(key) for key in lost]
+        if found:
+            rows = [f"{one.criterion} {one.value}" for one in found]
+            if not self.is_anonymous:
+                rows = [f"{row} of {one.student}" for row, one in zip(rows, found, strict=True)]
+            shown = printable_path(Path(names.MARKS, self.file.name))
+            why = (
+                f"rows of this review are no longer in {shown}, which another program has replaced"
+            )
+            raise InputError(
+                f"Not saved: {why}: {enumerated(rows, _MAX_NAMED)}. Save again to go on "
+                "without them."
+            )
+
+
+def write_sheet(session: ReviewSession, file: Path) -> str:
+    """Write the items that are shown into a new file, and return what to do with it. Raises
+    InputError.
+    """
+    if os.path.lexists(file):
+        raise InputError(
+            f"{printable_path(file)} exists, perhaps with marks in it: name another file "
+            "for --sheet"
+        )
+    items = [*session.shown.values()]
+    by_student = sorted(
+        items, key=lambda item: item.members[0].student.key
+    )  # a submission is read once
+    texts = {item.place: _sheet_text(session.book, item) for item in by_student}
+    rows = [
+        (
+            *item.place,
+            "",
+            format_points(item.criterion.maximum),
+            "",
+            texts[item.place],
+            _students(item),
+        )
+        for item in items
+    ]
+    save(
+        file,
+        write_table(_SHEET_COLUMNS, rows),
+        session.book.settings.roots(session.folder),
+        _PRIVATE,
+    )
+    command = (
+        f"grader mark --import {shell_quoted(file)} --gradebook {shell_quoted(session.folder)}"
+    )
+    return (
+        f"{counted(len(items), 'item')} written for {session.left} marks; fill in the points, "
+        f"then: {command}\n"
+    )
+
+
+def _students(item: ReviewItem) -> str:
+    return "; ".join(one.label if one.number else one.student.key for one in item.members)
+
+
+def _sheet_text(book: Gradebook, item: ReviewItem) -> str:
+    """Return the answer, else what was found, and the files, which may show more."""
+    try:
+        opened = open_item(book, item)
+    except InputError as error:
+        return f"Not shown: {error}"
+    lines = [*filter(str.strip, opened.answer)] or [opened.message or NO_ANSWER]
+    return cut("\n".join(map(printable, [*lines, *opened.paths])), _MAX_TEXT)

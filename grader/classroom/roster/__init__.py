@@ -1,0 +1,1 @@
+"""Who is in a class: the roster, deadlines, typed names."""

@@ -1,0 +1,442 @@
+"""The students of a class, and which of them a name or id means.
+
+The roster is a CSV file of a person or an LMS, whose columns are known by their titles. `People`
+finds the students to whom a submission may belong: by an LMS's id, any other id, or a full name, in
+this order.
+"""
+
+import re
+import unicodedata
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from datetime import datetime
+from operator import itemgetter
+from typing import NamedTuple
+
+from grader.base.errors import InputError
+from grader.base.names import folded
+from grader.base.text import counted, first_lines, printable_path
+from grader.classroom.tables import rows_with_lines
+
+_TITLES = {
+    "id": "id userid key identifier identifiant identificador identificativo identificatie",
+    "sis": "sis sisid sisuserid studentid studentnumber studentno idnumber matriculationnumber "
+    "matrikelnummer"
+    " idnummer númerodeid",
+    "login": "login loginid username user sisloginid netid account",
+    "github": "github githubusername githublogin githubuser githubid githubaccount",
+    "name": "name fullname student studentname sortablename vollständigername nomcomplet "
+    "nombrecompleto nomecompleto"
+    " volledigenaam",
+    "first": "first firstname firstnames givenname givennames forename vorname nombre",
+    "last": "last lastname surname familyname nachname apellidos",
+    "email": "email emailaddress mail sisemail emailadresse direccióndecorreo correoelectrónico",
+    "canvas": "canvas canvasid canvasuserid",
+    "moodle": "moodle moodleid participantid participant",
+    "group": "group groupname team teamname gruppe",
+    "section": "section class tutorial",
+    "due": "due duedate dueat deadline dueuntil extendeduntil extensionuntil",
+    "extension": "extension extensiondays extradays",
+    "submitted": "submitted submittedat submissiontime",
+    "late": "late islate dayslate latedays",
+    "status": "status",
+    "submission": "submission",
+}
+_FIELD_OF = {title: field for field, titles in _TITLES.items() for title in titles.split()}
+_WHO = frozenset({"id", "sis", "login", "github", "email", "name", "last", "canvas", "moodle"})
+_UNIQUE = {
+    "key": "id",
+    "canvas": "canvas id",
+    "moodle": "moodle id",
+    "sis": "sis id",
+    "login": "login",
+    "email": "email address",
+}
+_TEST_STUDENT = ("student, test", "test student")  # whom Canvas makes for "View as Student"
+_MAX_MISTAKES = 20
+# Characters that count as spaces; Moodle removes the others from the names of files (moodlelib.php,
+# PARAM_FILE).
+_ALIKE = str.maketrans("_-", "  ", "&<>\"`|':\\/")
+_PARTICIPANT = re.compile(r"(?i:(?:part[ie]ci|teilnehm|deelnem)\D*)([0-9]+)")  # Moodle's Identifier
+_DAYS = re.compile(r"([0-9]{1,4}(?:[.,][0-9]{1,4})?)\s*(?:days?)?")
+_LATE = {"yes": True, "true": True, "late": True, "no": False, "false": False, "on time": False}
+_TIMES = ("due", "extension", "submitted")
+# The form of a cell that is no time, and what to write in it.
+_FORMS = {
+    "canvas": ("[0-9]+", "a number"),
+    "moodle": ("[0-9]+", "a number (put other ids in a column `id`)"),
+    "email": (r"[^@\s]+@[^@\s]+", "an address with an @"),
+    "late": (rf"{'|'.join(_LATE)}|{_DAYS.pattern}", "yes, no, or a number of days from 0"),
+    "group": (
+        r"(?!(?:none|n/a|null|nil|no group)\Z).*\w.*",
+        "nothing for a student without a group",
+    ),
+    "submission": (r"(?!/|(?:.*/)?\.\.(?:/|\Z)).+", "a path below the class folder"),
+    "due": ("(?!)", "2026-09-01 or 2026-09-01T23:59"),
+    "extension": (_DAYS.pattern, "a number of days from 0, or a date"),
+    "submitted": ("(?!)", "2026-09-01T10:00"),
+}
+# moodle, mod/assign/gradingtable.php, col_status: parts with ` - ` between them, one of them `1 day
+# 2 hours late`, from the deadline that Moodle knows. Other parts with a number have a colon:
+# overdue by, extension granted until.
+_UNITS = {"year": 365.0, "day": 1.0, "hour": 1 / 24, "min": 1 / 1440, "sec": 1 / 86400}
+_UNIT = rf"([0-9]{{1,6}}) ({'|'.join(_UNITS)})s?"
+# What identifies the student: an id of the LMS, another id as it is spelt, in another spelling or a
+# name; a group.
+_LMS_ID, _EXACT, _WORD, GROUP, _UNCLEAR = range(5)
+_MAX_WORDS = 8
+
+
+class Student(NamedTuple):
+    """A student of a class, whose `key` is unique in it; what is not known of the others is
+    empty or None.
+    """
+
+    key: str
+    name: str = ""
+    email: str = ""
+    login: str = ""
+    sis: str = ""  # the id at the university
+    canvas: str = ""  # the user id in Canvas
+    moodle: str = ""  # the participant id in Moodle
+    aliases: tuple[str, ...] = ()  # further logins, such as that of GitHub
+    group: str = ""
+    section: str = ""
+    due: str = ""  # ISO 8601, as `submitted`
+    submitted: str = ""
+    extension_days: float = 0.0
+    is_late: bool | None = None
+    days_late: float | None = None
+    measured_by: str = ""  # the LMS that measured the days, from the deadline that it knows
+    submission: str = ""  # the path that a person has assigned, relative to its class folder
+    is_on_roster: bool = True  # False beside a roster that lacks the student
+
+
+class Roster(NamedTuple):
+    """The students of a class in the order of the file, and what was not understood in it."""
+
+    students: tuple[Student, ...]
+    notes: tuple[str, ...] = ()
+
+
+def plain(word: str) -> str:
+    """Return an id, name or group without differences of case, spaces, `_` and `-`: `Doe, Jane`
+    is Jane Doe.
+    """
+    if not word.isascii():
+        word = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", word).casefold())
+    last, _, first = word.casefold().translate(_ALIKE).partition(",")
+    return " ".join(f"{first} {last}".replace(",", " ").split())
+
+
+def read_roster(data: bytes, shown: str) -> Roster:
+    """Return the roster in a CSV file, called `shown` in messages; raises InputError with a line
+    for each mistake.
+
+    A student's key is the id, else the university's id, login, address, name, or LMS id.
+    """
+    rows = rows_with_lines(data, shown)
+    _, header = next(rows, (1, []))
+    titles = [*map(folded, header)]
+    fields = [_FIELD_OF.get(title, "") for title in titles]
+    if header and _WHO.isdisjoint(fields):
+        named = ", ".join(filter(None, header))[:200]
+        raise InputError(
+            f"{shown} has no column for an id, login, name or email in its first line, "
+            f"only: {named}"
+        )
+    is_canvas = {"student", "id"} <= {*titles} and any(title.startswith("sis") for title in titles)
+    students: dict[int, Student] = {}  # by the line
+    mistakes, notes = list[tuple[int, str]](), list[str]()
+    for line, cells in rows:
+        if len(cells) < len(fields) or any(cells[len(fields) :]):
+            mistakes.append(
+                (line, f"has {counted(len(cells), 'cell')}, but the first line has {len(fields)}")
+            )
+            continue  # of several columns for a field the first that is not empty counts
+        filled = {
+            field: cell for field, cell in reversed([*zip(fields, cells, strict=False)]) if cell
+        }
+        row = dict.fromkeys(_TITLES, "") | filled
+        if is_canvas and (
+            row["name"].casefold() in _TEST_STUDENT or not (row["id"] + row["sis"] + row["login"])
+        ):
+            continue  # a row of points above the students
+        row["canvas"] = row["canvas"] or (row["id"] if is_canvas and row["id"].isdecimal() else "")
+        mistakes += ((line, why) for why in _normalise(row))
+        students[line] = student = _student(row)
+        if (
+            student.is_late
+            and student.days_late is None
+            and not row["late"]
+            and _days_of(row["status"]) is None
+        ):
+            late = (
+                f"{row['status']!r} does not say clearly how late the submission is, and counts "
+                "as late"
+            )
+            notes.append(
+                f"line {line} of {shown}: {late}: add a column `late` with `no` or a number of days"
+            )
+    mistakes += _duplicates(students)
+    if mistakes or not students:
+        named_lines = [
+            f"line {line} of {shown} {why}" for line, why in sorted(mistakes, key=itemgetter(0))
+        ]
+        raise InputError(
+            "\n".join(first_lines(named_lines or [f"{shown} has no students"], _MAX_MISTAKES))
+        )
+    return Roster(tuple(students.values()), tuple(first_lines(notes, _MAX_MISTAKES)))
+
+
+def _normalise(row: dict[str, str]) -> Iterator[str]:
+    """Move Moodle's numbers to their field, write times as ISO 8601, empty the cells that are
+    wrong, and yield why.
+    """
+    for field in ("id", "moodle"):
+        if found := _PARTICIPANT.fullmatch(row[field]):
+            row[field], row["moodle"] = "", found[1]
+    if not any(map(row.__getitem__, _WHO)):
+        yield "has no id, login, name or email address: add one of them"
+    if row["due"] and iso_time(row["extension"]):
+        yield (
+            f"has both {row['due']!r} for due and {row['extension']!r} for extension: write one "
+            "date"
+        )
+    for field, (pattern, meant) in _FORMS.items():
+        time = iso_time(row[field]) if field in _TIMES else ""
+        if row[field] and not time and not re.fullmatch(pattern, row[field], re.IGNORECASE):
+            yield f"has {row[field]!r} for {_UNIQUE.get(field, field)}: write {meant}"
+            row[field] = ""
+        row[field] = time or row[field]
+
+
+def _student(row: dict[str, str]) -> Student:
+    """Return the student in a row with values as they should be; without a key if it identifies
+    none.
+    """
+    own, canvas, moodle = row["id"], row["canvas"], row["moodle"]
+    aliases = (row["github"],) if row["github"] else ()
+    login, sis = row["login"] or row["github"], row["sis"] or ("" if own == canvas else own)
+    name = row["name"] or f"{row['first']} {row['last']}".strip()
+    extension, days_late = _days(row["extension"]), _days(row["late"])
+    due, days = row["due"] or (row["extension"] if extension is None else ""), extension or 0.0
+    is_late, measured_by = (
+        days_late > 0 if days_late is not None else _LATE.get(row["late"].casefold()),
+        "",
+    )
+    if (
+        moodle
+        and not (row["late"] or row["submitted"])
+        and (status := _days_of(row["status"])) != 0
+    ):
+        is_late = status is None or status > days  # Moodle does not know this extension
+        if status is not None:
+            days_late, measured_by = max(0.0, status - days), "Moodle"
+    return Student(
+        printable_path(own or row["sis"] or login or row["email"] or name or canvas or moodle),
+        name,
+        row["email"],
+        login,
+        sis,
+        canvas,
+        moodle,
+        aliases,
+        row["group"],
+        row["section"],
+        due,
+        row["submitted"],
+        days,
+        is_late,
+        days_late,
+        measured_by,
+        row["submission"].strip("/"),
+    )
+
+
+def _days(text: str) -> float | None:
+    found = _DAYS.fullmatch(text)
+    return float(found[1].replace(",", ".")) if found else None
+
+
+def _days_of(status: str) -> float | None:
+    """Return by how many days Moodle's Status says that a submission was late; None if that is
+    not clear.
+    """
+    for part in map(str.strip, status.casefold().split(" - ")):
+        if re.fullmatch(rf"{_UNIT}(?: {_UNIT})? late", part):
+            return sum(int(number) * _UNITS[unit] for number, unit in re.findall(_UNIT, part))
+        if re.search(r"\d|\blate\b", part) and ":" not in part:
+            return None
+    return 0.0
+
+
+def _duplicates(students: Mapping[int, Student]) -> Iterator[tuple[int, str]]:
+    """Yield a line and a message for each student with an id or address that another student
+    has.
+    """
+    wrong: set[int] = set()
+    for field, title in _UNIQUE.items():
+        first: dict[str, int] = {}
+        for line, student in students.items():
+            word = getattr(student, field)
+            if not word:
+                continue
+            other = first.setdefault(word if field == "key" else word.casefold(), line)
+            if other != line and line not in wrong:
+                wrong.add(line)
+                yield line, f"repeats the {title} {word} of line {other}"
+
+
+def iso_time(text: str) -> str:
+    """Return a date or time as ISO 8601, to the second if it has seconds; empty if it is neither.
+
+    A time without a zone gets none.
+    """
+    zoned = re.sub(r"\s*(?:UTC|UCT|GMT|Z)\Z", "+00:00", text.strip()) if ":" in text else text
+    try:
+        time = datetime.fromisoformat(re.sub(r"\s+(?=[+-][0-9:]+\Z)", "", zoned))
+    except ValueError:
+        return ""
+    if ":" not in text:
+        return time.date().isoformat() if len(text) == len("2026-09-01") else ""
+    precision = "seconds" if re.search(":[0-9]+:", text) else "minutes"
+    return time.isoformat(timespec=precision).replace("+00:00", "Z")
+
+
+class _Match(NamedTuple):
+    """The indices of the students that a submission may belong to, and by what."""
+
+    students: tuple[int, ...] = ()
+    by: int = _UNCLEAR
+
+    @property
+    def owners(self) -> tuple[int, ...]:
+        """The student whom it belongs to, or each member of its group; empty if that is not
+        certain.
+        """
+        return (
+            self.students
+            if self.by == GROUP or (len(self.students) == 1 and self.by < GROUP)
+            else ()
+        )
+
+
+class People:
+    """The students on a roster, by ids, names and groups."""
+
+    def __init__(self, students: Sequence[Student]) -> None:
+        self.students = students
+        self._known: tuple[dict[str, tuple[int, ...]], ...] = ({}, {}, {}, {})
+        self._groups: dict[str, list[int]] = defaultdict(list)
+        for index, one in enumerate(students):
+            own = (index,)  # kept once for all words that only this student has
+            ids = [one.key, one.login, one.sis, one.email, *one.aliases]
+            names = [
+                plain(one.name),
+                plain(one.email.partition("@")[0]),
+                _surname(one.name),
+                *_in_canvas(one.name),
+            ]
+            for words, table in zip(
+                (_lms_ids(one), ids, map(plain, ids), names), self._known, strict=True
+            ):
+                for word in {unicodedata.normalize("NFC", word) for word in words if word}:
+                    table[word] = table[word] + own if word in table else own
+            for word in {plain(one.group), letters(one.group)} - {""}:
+                self._groups[word].append(index)
+
+    def members(self, group: str) -> Sequence[int]:
+        """Return the students of a group."""
+        return self._groups.get(plain(group), ())
+
+    def knows(self, name: str, team: str = "") -> bool:
+        """Return whether a name is that of one student, in a team also the surname, or else of a
+        group.
+        """
+        return bool(self.match(Student(name, login=name, group=team)).owners)
+
+    def match(self, claim: Student) -> _Match:
+        """Return whose a submission is by what its name claims; with a `group`, only of a member of
+        that team.
+
+        What has the name of a group is the group's, unless an id in it is that of another student:
+        Canvas writes the id of a member, Moodle a number of the group's own. Of `aliases` it is not
+        clear which is the user's id.
+        """
+        if claim.aliases:
+            users = [f"canvas {user}" for user in claim.aliases]
+            return _Match(self._having(users, self._known[_LMS_ID]))
+        name = letters(claim.name) if claim.canvas else plain(claim.name or claim.login)
+        found, group = self._person(claim, name), [] if claim.group else self._groups.get(name, [])
+        is_own_name = found.by == _LMS_ID and found.students[0] in self._known[-1].get(name, ())
+        if is_own_name or not {*group}.difference(found.students):
+            return found
+        if found.by == _LMS_ID and claim.canvas:
+            return _Match(tuple(group), GROUP) if found.students[0] in group else found
+        if found.students or (claim.canvas and any(self.students[index].canvas for index in group)):
+            return _Match(tuple(sorted({*found.students, *group})))
+        return _Match(tuple(group), GROUP)
+
+    def _person(self, claim: Student, name: str) -> _Match:
+        """Return the students with the best words of a claim, without those whom the LMS knows by
+        another id.
+        """
+        login = plain(claim.login)
+        names = [name, login, _surname(login) if claim.group else ""]
+        ranked = (_lms_ids(claim), [unicodedata.normalize("NFC", claim.login)], [login], names)
+        for by, (words, table) in enumerate(zip(ranked, self._known, strict=True)):
+            found = self._having(words, table)
+            if claim.group:
+                found = tuple(index for index in found if index in self.members(claim.group))
+            if found:
+                fitting = tuple(
+                    at for at in found if not _has_other_lms_id(self.students[at], claim)
+                )
+                return _Match(fitting, min(by, _WORD))
+        return _Match()
+
+    def _having(
+        self, words: Iterable[str], table: Mapping[str, tuple[int, ...]]
+    ) -> tuple[int, ...]:
+        return tuple(sorted({index for word in words for index in table.get(word, ())}))
+
+
+def _has_other_lms_id(one: Student, claim: Student) -> bool:
+    """Return whether the LMS knows a student by another id than that in a claim."""
+    ids = ((one.canvas, claim.canvas), (one.moodle, claim.moodle))
+    return any(own and given and own != given for own, given in ids)
+
+
+def _lms_ids(one: Student) -> list[str]:
+    return [
+        f"{lms} {number}"
+        for lms, number in (("canvas", one.canvas), ("moodle", one.moodle))
+        if number
+    ]
+
+
+def _surname(name: str) -> str:
+    last, comma, _ = name.partition(",")
+    word = plain(last if comma else last.rpartition(" ")[2])
+    return f"surname\n{word}" if word else ""
+
+
+def letters(name: str) -> str:
+    """Return a name as Canvas writes it into names of files (canvas-lms, content_zipper.rb)."""
+    composed = re.sub(r"_(\d+)_", r"\1", unicodedata.normalize("NFC", name))
+    letters = re.sub(r"\W", "", composed).casefold()
+    return f"canvas\n{letters}" if letters else ""
+
+
+def _in_canvas(name: str) -> Iterable[str]:
+    """Return what Canvas may call a student in names of files: sorted by any word of the name, or
+    as the user set.
+    """
+    words = name.split()[:_MAX_WORDS]
+    orders = (
+        [name]
+        if "," in name
+        else [" ".join(words[index:] + words[:index]) for index in range(len(words))]
+    )
+    return map(letters, orders)

@@ -1,0 +1,147 @@
+"""What a grader types: a student, a criterion, points.
+
+The search never chooses between several students: a manual mark must not go to the wrong one.
+"""
+
+import re
+from collections.abc import Collection, Sequence
+from decimal import Context, Decimal
+from functools import lru_cache
+
+from grader.base.errors import InputError
+from grader.base.names import did_you_mean
+from grader.base.text import enumerated, format_points, printable, quoted
+from grader.classroom.roster.roster import Student, plain
+from grader.lab.rubric.criterion import Criterion
+from grader.lab.rubric.rubric import Rubric
+
+_FINEST = Decimal("0.0001")  # points, as in rubrics
+_MAX_LISTED = 10
+_NUMBER = re.compile(
+    r"\s*[+-]?(?=[.,]?[0-9])[0-9]{0,40}(?:[.,][0-9]{0,40})?(?:[eE][+-]?[0-9]{1,9})?\s*"
+)
+
+
+class NotCountedError(InputError):
+    """A mark for no student or criterion of the class, or above the maximum."""
+
+
+def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
+    """Return the only student whom a typed name may mean: an id, login, address or number, or some
+    words of the name.
+
+    Raises InputError: if several students match, it lists them; else similar names; else it ends
+    with `advice`.
+    """
+    word = plain(name)
+    found = [
+        one
+        for one, ids, words in _clues(tuple(students))
+        if word in ids or words.issuperset(word.split() or [""])
+    ]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        shown = [
+            f"{one.key!r} ({printable(one.name)})" if one.name else repr(one.key) for one in found
+        ]
+        raise InputError(
+            f"{name!r} is ambiguous: it may be {enumerated(shown, _MAX_LISTED, 'or')}; use "
+            "one of these ids"
+        )
+    changed = enumerated(
+        [*map(repr, as_number(name, tuple(one.key for one in students)))], _MAX_LISTED, "or"
+    )
+    digits = re.sub(r"\D", "", name)  # with another digit, it is the id of another student
+    words = (word for one in students for word in (one.key, one.login, one.name))
+    some = {word for word in words if re.sub(r"\D", "", word) == digits}
+    guess = f"; did you mean {changed}?" if changed else did_you_mean(name, some) or advice
+    raise InputError(f"there is no student {name!r} in the gradebook{guess}")
+
+
+@lru_cache(maxsize=1)  # a file of marks names many
+def _clues(students: tuple[Student, ...]) -> list[tuple[Student, set[str], set[str]]]:
+    """Return each student with the ids, and the words of the name."""
+    clues = []
+    for one in students:
+        ids = (
+            one.key,
+            one.login,
+            one.sis,
+            one.canvas,
+            one.moodle,
+            one.email,
+            one.email.partition("@")[0],
+        )
+        clues.append(
+            (
+                one,
+                {plain(word) for word in (*ids, *one.aliases)} - {""},
+                {*plain(one.name or one.key).split()},
+            )
+        )
+    return clues
+
+
+def known(noun: str, cell: str, names: Collection[str]) -> str:
+    """Return the student or criterion in a cell; raises NotCountedError, or InputError for a
+    changed cell.
+    """
+    if cell in names:
+        return cell
+    if not cell:
+        raise InputError(f"the row names no {noun}")
+    if changed := as_number(cell, tuple(names)):
+        meant = enumerated([*map(repr, changed)], _MAX_LISTED, "or")
+        raise InputError(f"{noun} {cell!r} may be {meant}, changed by a spreadsheet: correct it")
+    raise NotCountedError(f"there is no {noun} {quoted(cell)}")
+
+
+def as_number(cell: str, names: tuple[str, ...]) -> list[str]:
+    """Return the names that a spreadsheet may have changed into a number: 0012 into 12, 123456 into
+    1.2E+05.
+    """
+    if (number := number_in(cell)) is None:
+        return []
+    rounded = Context(prec=len(number.as_tuple().digits), traps=[])
+    return [
+        name for name, value in _numbers(names) if name != cell and rounded.plus(value) == number
+    ]
+
+
+@lru_cache(maxsize=2)
+def _numbers(names: tuple[str, ...]) -> list[tuple[str, Decimal]]:
+    return [(name, number) for name in names if (number := number_in(name)) is not None]
+
+
+def number_in(text: str) -> Decimal | None:
+    """Return the number in a text, with a decimal point or comma, or None."""
+    return Decimal(text.replace(",", ".")) if _NUMBER.fullmatch(text) else None
+
+
+def read_points(text: str, name: str, most: Decimal) -> Decimal:
+    """Return the points in a text, from 0 to `most`; raises InputError, which names what they are
+    for and the range.
+    """
+    points, text = number_in(text), text.strip()
+    if points is not None and not 0 <= points <= most:
+        kind = NotCountedError if points > most else InputError
+        raise kind(f"{name} is worth 0 to {format_points(most)} points, not {text}")
+    if points is None or points != points.quantize(_FINEST):
+        raise InputError(
+            f"points are a number from 0 to {format_points(most)}, with at most 4 decimals, "
+            f"not {text!r}"
+        )
+    return abs(points)  # -0 is 0
+
+
+def criterion_of(rubric: Rubric, name: str) -> Criterion:
+    """Return the criterion with this id; raises InputError."""
+    criteria = {criterion.id: criterion for criterion in rubric.criteria}
+    if name not in criteria:
+        guess = did_you_mean(name, criteria)
+        raise InputError(
+            f"the rubric {rubric.id} has no criterion {name!r}{guess} (`{rubric.shown_by}` "
+            "lists them)"
+        )
+    return criteria[name]

@@ -1,0 +1,1 @@
+"""Grade a class in worker processes, and keep the results."""

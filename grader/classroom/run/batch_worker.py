@@ -1,0 +1,176 @@
+"""The work of a worker process: grade submissions one by one. All data is plain and can be sent to
+any process.
+"""
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+from grader.base.errors import InputError, MachineError
+from grader.base.text import cut
+from grader.classroom.intake.class_files import digest_of_unread, open_class_submission
+from grader.classroom.results.equal_work import forms_of, hashes_of
+from grader.classroom.results.results import StoredCriterion, StoredResult, Verdict, digest_of
+from grader.files.limits import ARCHIVES
+from grader.files.reading import URDF_LIMIT
+from grader.lab.checks.outcome import Status, how_far_off
+from grader.lab.grading.criterion_pictures import content_of, is_empty
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import Report, Result
+from grader.lab.rubric.rubric import Rubric, read_rubric
+from grader.lab.submission.submission import Opening, Submission
+from grader.ros.package.robot_file import Absent, Unreadable
+from grader.workers.pool import NO_MEMORY
+
+_MAX_CAUSE = 200  # characters
+
+
+class ClassContext(NamedTuple):
+    """What all tasks of a run share."""
+
+    roots: tuple[str, ...]  # the class folders or zips
+    rubric: bytes  # the content of its file
+    rubric_path: str
+    max_size: int = URDF_LIMIT  # of a URDF, in bytes
+    parts: tuple[str, ...] = ()  # the ids of those to grade; without any all
+    arguments: Mapping[str, str] = {}  # of xacro
+
+
+class Task(NamedTuple):
+    """One submission to grade."""
+
+    key: str  # of the student
+    root: int  # the index of the class folder
+    paths: tuple[str, ...]  # below it
+    names: tuple[str, ...] = ()  # the student's own of several files
+    graded: str = ""  # the digest, if it has a result that is current
+    no_documents: str = ""  # why its documents are not read: its grading was lost with them
+
+
+def grade_all(context: ClassContext, tasks: Sequence[Task]) -> list[StoredResult]:
+    """Grade submissions one after the other, in isolation: an error affects only its own
+    submission.
+    """
+    return [_grade_one(context, task) for task in tasks]
+
+
+def _grade_one(context: ClassContext, task: Task) -> StoredResult:
+    rubric, root = _rubric_from(context.rubric, context.rubric_path), context.roots[task.root]
+    result = StoredResult(task.key, 0, "unchanged", no_documents=task.no_documents)
+    try:
+        opened = open_class_submission(root, task.paths, task.names, task.key, context.max_size)
+        result = result._replace(digest=digest_of(opened.digest))
+        if result.digest == task.graded:
+            return result
+        submission = opened.submission(
+            rubric, Opening(arguments=context.arguments, no_documents=task.no_documents)
+        )
+        report = grade(rubric, submission, context.parts, is_one_of_class=True, is_explained=False)
+    except InputError as error:
+        result = result._replace(
+            digest=result.digest or digest_of(str(error), digest_of_unread(root, task.paths))
+        )
+        if result.digest != task.graded:
+            result = undecided(context, result._replace(verdict="unreadable", reason=str(error)))
+        return result
+    except (Exception, SystemExit) as error:  # noqa: BLE001  a fault of the grader affects only this submission
+        if isinstance(error, MemoryError) and not task.no_documents:
+            return _grade_one(context, task._replace(no_documents=NO_MEMORY))
+        is_known = isinstance(error, MachineError)  # in the next run it may be over
+        reason = (
+            str(error) if is_known else f"the grader itself failed: {type(error).__name__}: {error}"
+        )
+        reason = NO_MEMORY if isinstance(error, MemoryError) else reason
+        return undecided(context, result._replace(verdict="errored", reason=reason))
+    entries = {one.criterion.id: _stored_criterion(one) for one in report.results}
+    result = result._replace(
+        parts=report.parts, results=entries, answers=_answers_of(report, result.digest)
+    )
+    if fault := report.fault:
+        return result._replace(verdict="errored", reason=fault)
+    is_handed_out = bool(report.another_robot)  # by the course, so that it is no equal work
+    unread = _why_unreadable(submission)
+    verdict: Verdict = "unreadable" if unread else "graded"
+    texts = submission.documents.converted
+    result = result._replace(verdict=verdict, reason=unread or submission.several, texts=texts)
+    return result if is_handed_out else result._replace(work=forms_of(submission))
+
+
+def _stored_criterion(result: Result) -> StoredCriterion:
+    """Return what a line keeps of a criterion."""
+    outcome = result.outcome
+    is_open = outcome.status in ("pending", "errored") and not result.is_adjusted
+    words = outcome.mistake or (outcome.message if outcome.status in ("failed", "errored") else "")
+    points = result.points
+    number = int(points) if points == int(points) else float(points)
+    stored = None if is_open else number, outcome.status, cut(words, _MAX_CAUSE), result.carried
+    off = how_far_off(outcome)
+    return stored if off is None else (*stored, off)
+
+
+def _answers_of(report: Report, digest: str) -> dict[str, str]:
+    """Return the key of the answer for each criterion that needs manual grading, empty if there is
+    nothing to read.
+
+    It is that of the words, or of the whole submission where more than words is to be looked at.
+    """
+    found = dict[str, str]()
+    for one in report.results:
+        if one.outcome.status != "pending":
+            continue
+        content = content_of(one, report)
+        if not content and not is_empty(one, report):
+            content = digest
+        found[one.criterion.id] = digest_of(content) if content else ""
+    return found
+
+
+def undecided(context: ClassContext, result: StoredResult) -> StoredResult:
+    """Return the result of a submission that could not be graded: every criterion is undecided."""
+    rubric = _rubric_from(context.rubric, context.rubric_path)
+    status: Status = "errored" if result.verdict == "errored" else "pending"
+    parts = tuple(part.id for part in rubric.parts if not context.parts or part.id in context.parts)
+    results = {row.id: (None, status, "", "") for row in rubric.criteria if row.part in parts}
+    return result._replace(parts=parts, results=results)
+
+
+def reference_hashes(data: bytes, path: str) -> tuple[str, ...]:
+    """Return the hashes of the work in a rubric's reference; raises InputError if nothing can be
+    graded without it.
+    """
+    rubric = _rubric_from(data, path)
+    if rubric.solution is not None and rubric.compares_with_reference:
+        _ = rubric.solution.robot  # raises InputError
+    with suppress(InputError):
+        if rubric.solution is not None:
+            return hashes_of(rubric.solution.submission)
+    return ()
+
+
+def _why_unreadable(submission: Submission) -> str:
+    """Return why nothing in a submission could be read, although its folder could; empty if
+    something was read.
+
+    A damaged or empty archive makes a submission unreadable if there is nothing else to grade.
+    """
+    if isinstance(submission.urdf, Unreadable):
+        return submission.urdf.reason
+    if not isinstance(submission.urdf, Absent) or submission.packages:
+        return ""
+    tree, closed = submission.tree, submission.tree.unopened
+    if closed:
+        because = str(closed[0])
+        more = f" (and {len(closed) - 1} more cannot be opened)" if len(closed) > 1 else ""
+        return f"nothing to grade was found: {because}{more}"
+    if not tree.generated and all(file.suffix in ARCHIVES for file in tree.files.values()):
+        because = str(tree.ignored[0]) if tree.ignored else f"{next(iter(tree.files))} is empty"
+        return f"nothing to grade was found: {because}"
+    return ""
+
+
+@lru_cache(maxsize=4)
+def _rubric_from(data: bytes, path: str) -> Rubric:
+    """Return the rubric in the content of a file, which need not exist; tasks of a run share it."""
+    return read_rubric(data, Path(path))

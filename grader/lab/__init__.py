@@ -1,0 +1,1 @@
+"""Grade one submission: what is graded, checks, the rubric, points, hints, new rubrics."""

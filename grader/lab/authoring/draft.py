@@ -1,0 +1,411 @@
+"""Write a rubric: try the facts of a reference on it, and write those that it passes in TOML, as a
+person would.
+
+Each criterion has the usual tolerances of its check; those about one link follow each other under
+its heading.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from itertools import chain, islice
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from grader.base.errors import InputError, MissingElement, NotDecided
+from grader.base.text import capitalised, printable
+from grader.lab.authoring.element_facts import element_facts
+from grader.lab.authoring.facts import Carried, Fact, Omission, Solution, robot_facts
+from grader.lab.authoring.package_facts import (
+    measure_facts,
+    name_facts,
+    package_facts,
+    value_facts,
+    words_of_launches,
+)
+from grader.lab.checks.outcome import Outcome
+from grader.lab.checks.registry import find_check
+from grader.lab.checks.toml_types import WrongValue
+from grader.lab.grading.subjects import without_selectors
+from grader.lab.rubric.rubric import Rubric, read_rubric
+from grader.lab.rubric.toml_file import assignment, read_toml, toml_literal
+from grader.lab.submission.submission import Submission
+from grader.ros.urdf.shapes import UnknownShape
+
+_WIDTH = 120  # columns
+
+
+# The arguments that all criteria of a check get, with their unit: room for rounding, but not for
+# mistakes.
+_METRES, _DEGREES = ({"tolerance": 0.002}, "metres"), ({"tolerance": 1.0}, "degrees")
+_USUAL: Mapping[str, tuple[Mapping[str, float], str]] = {
+    **dict.fromkeys(("shows_box", "shows_cylinder", "shows_sphere"), _METRES),
+    "shows_colour": ({"tolerance": 0.01}, "of a channel from 0 to 1"),
+    "frame_at": ({"tolerance": 0.002, "angle": 1.0}, "metres, degrees; rpy is in radians"),
+    "centre_at": _METRES,
+    **dict.fromkeys(("joint_limits", "joint_axis"), _DEGREES),
+    "mass_is": ({"tolerance": 0.001}, "kilograms"),
+    "inertia_plausible": ({"tolerance": 2.0}, "percent"),
+    "collision_matches_visual": _METRES,
+    "collides_as": ({"tolerance": 0.002}, "metres; rpy is in radians"),
+    "kinematics_match_reference": (
+        {"samples": 20},
+        "random positions, besides the ends of each range",
+    ),
+}
+_ROBOT, _PACKAGE = "robot", "package"
+_OF_ROBOT, _OF_PACKAGE = 70, 30  # points
+# Checks of what matters most, and of what matters less, or others are about as well.
+_HEAVY = ("frame_at", "joint_axis", "mimics", "names_agree", "node_runs", "parameter_is")
+_LIGHT = (
+    "shows_colour",
+    "kinematics_match_reference",
+    "package_found",
+    "package_type",
+    "rviz_display_on",
+)
+_MAX_COMMENT = 10_000  # columns
+_MAX_VALUES = 40  # of a node, that are written as comments
+_MAX_ID = 60
+
+
+_Subjects = Mapping[str, Any]  # what checks examine, by the names of their parameters
+
+_MAX_FACTS = 2000  # more than the largest robots have; criteria cost the square of their number
+
+
+class Head(NamedTuple):
+    """What a rubric says of the lab."""
+
+    id: str
+    title: str
+    reference: str  # the path of the solution, relative to the rubric
+    urdf: str  # its path in the package
+    packages: tuple[str, ...]  # their names
+    schema: str = ""  # the path of a JSON Schema for editors
+
+
+class _DraftCriterion(NamedTuple):
+    """A criterion of a new rubric: a fact that the reference passes, and what the check says of
+    it.
+    """
+
+    fact: Fact
+    title: str
+
+    @property
+    def is_of_package(self) -> bool:
+        """Whether the package is needed for it."""
+        return self.fact.package is not None
+
+
+class RubricDraft(NamedTuple):
+    """A rubric that its reference passes, as bytes and loaded, and what it omits."""
+
+    data: bytes
+    rubric: Rubric
+    omissions: tuple[Omission, ...]
+
+
+def draft(submission: Submission, solution: Solution | None, head: Head, path: Path) -> RubricDraft:
+    """Return a rubric for a file at `path` with a criterion for each fact that a check can test.
+
+    Other values of parameters are in it as comments. Without a robot it has no `solution`. Raises
+    InputError.
+    """
+    started = [*words_of_launches(submission)]
+    of_robot = (
+        chain(robot_facts(solution), element_facts(solution, started))
+        if solution is not None
+        else ()
+    )
+    measured = measure_facts(solution) if solution is not None else ()
+    of_packages = chain(package_facts(submission), name_facts(submission), measured)
+    found = list(islice(chain(of_robot, of_packages), _MAX_FACTS + 1))
+    if len(found) > _MAX_FACTS:
+        raise InputError(
+            f"the reference has more than {_MAX_FACTS} facts, which is too long for a "
+            "rubric: name a smaller one"
+        )
+    subjects: dict[str, Any] = {"submission": submission}
+    if solution is not None:
+        subjects |= {"urdf": solution.reading, "robot": solution.robot, "reference": solution.robot}
+    tried = [it if isinstance(it, Omission) else _tried(subjects, it) for it in found]
+    facts = ((it.fact, it) for it in tried if isinstance(it, _DraftCriterion))
+    rows = [
+        *{
+            (fact.check, fact.package, toml_literal([fact.args, fact.arguments])): row
+            for fact, row in facts
+        }.values()
+    ]
+    values = (
+        _values(subjects, submission, {row.fact.words for row in rows})
+        if submission.packages
+        else {}
+    )
+    data = _rubric_text(head, rows, values).encode()
+    return RubricDraft(
+        data, read_rubric(data, path), tuple(it for it in tried if isinstance(it, Omission))
+    )
+
+
+def _values(
+    subjects: _Subjects, submission: Submission, known: Collection[str]
+) -> Mapping[str, list[_DraftCriterion]]:
+    """Return the values of parameters that the reference certainly gets, by the names of the
+    nodes.
+    """
+    found: dict[str, list[_DraftCriterion]] = {}
+    facts = (it for it in value_facts(submission) if it.words not in known)
+    for row in (_tried(subjects, it) for it in islice(facts, _MAX_FACTS)):
+        if isinstance(row, _DraftCriterion):
+            found.setdefault(row.fact.about, []).append(row)
+    return found
+
+
+def _tried(subjects: _Subjects, fact: Fact) -> _DraftCriterion | Omission:
+    """Return the first of the facts that the reference passes; or what it does not pass, and
+    why.
+    """
+    reasons = []
+    for one in (fact, *fact.otherwise):
+        try:
+            outcome = _outcome(subjects, one)
+        except (MissingElement, NotDecided, UnknownShape) as error:
+            reasons.append(str(error))
+            continue
+        except WrongValue as error:
+            reasons.append(f"an argument must be {error}")
+            continue
+        if outcome.status == "passed":
+            carried = tuple(it for it in one.carried if _holds(subjects, one, it))
+            return _DraftCriterion(
+                one._replace(carried=carried), capitalised(one.title or outcome.message)
+            )
+        reasons.append(outcome.mistake if outcome.status == "pending" else outcome.message)
+    return Omission(fact.words, reasons[0])
+
+
+def _holds(subjects: _Subjects, fact: Fact, carried: Carried) -> bool:
+    """Return whether the reference passes what counts instead of a fact."""
+    try:
+        instead = fact._replace(check=carried.check, arguments=carried.arguments)
+        return _outcome(subjects, instead).status == "passed"
+    except (MissingElement, NotDecided, UnknownShape):
+        return False
+
+
+def _outcome(subjects: _Subjects, fact: Fact) -> Outcome:
+    """Return what a check says of the reference; raise WrongValue for an argument that it does
+    not take.
+    """
+    check = find_check(fact.check)
+    assert check is not None
+    _, read = read_toml(f"it = {toml_literal(fact.arguments)}".encode(), Path())
+    given = {name: check.parameters[name].type.parse(value) for name, value in read["it"].items()}
+    given = without_selectors(given, subjects["robot"]) if "robot" in subjects else given
+    usual, _ = _USUAL.get(fact.check, ({}, ""))
+    arguments = {
+        name: str(it).lower() if isinstance(it, bool) else it for name, it in fact.args.items()
+    }
+    submission = subjects["submission"].under(arguments) if arguments else subjects["submission"]
+    if fact.package:
+        submission = submission.with_package(fact.package)
+    known = {**subjects, "submission": submission, "package": submission.package}
+    return check.outcome((known[name] for name in check.examined), {**usual, **given})
+
+
+def _rubric_text(
+    head: Head, rows: Sequence[_DraftCriterion], values: Mapping[str, Sequence[_DraftCriterion]]
+) -> str:
+    """Return a rubric with a criterion for each row; those with one heading follow each other."""
+    of_robot = [row for row in rows if not row.is_of_package]
+    of_package = [row for row in rows if row.is_of_package]
+    points = _points(of_robot, of_package)
+    checks = {row.fact.check for row in rows} | {
+        it.check for row in rows for it in row.fact.carried
+    }
+    part, usual = (_ROBOT if of_robot else _PACKAGE), Counter(points).most_common(1)[0][0]
+    lines = [*_head_lines(head, sum(points)), *_default_lines(part, usual, checks)]
+    if of_robot:
+        lines += _part_lines(_ROBOT, "The robot", "urdf", sum(points[: len(of_robot)]))
+    if of_package:
+        title = "The package" if len(head.packages) == 1 else "The packages"
+        lines += _part_lines(_PACKAGE, title, "package", sum(points[len(of_robot) :]))
+    shown = {node: found[:_MAX_VALUES] for node, found in values.items()}
+    named = _with_ids([*of_robot, *of_package, *chain.from_iterable(shown.values())])
+    ids = {row.fact.words: name for name, row in named.items()}
+    layout, about = _Layout(part, usual, ids), ""
+    for (name, row), worth in zip(named.items(), points, strict=False):
+        if row.fact.about != about:
+            about = row.fact.about
+            lines += ["", f"# --- {printable(about)} ".ljust(_WIDTH, "-")]
+        lines += layout.criterion(name, row, worth)
+    if shown:
+        lines += _value_lines(layout, values)
+    return "\n".join(lines) + "\n"
+
+
+def _points(
+    of_robot: Sequence[_DraftCriterion], of_package: Sequence[_DraftCriterion]
+) -> list[int]:
+    """Return the points of criteria, whole numbers: those of the robot share 70 of 100, or of a
+    multiple of it.
+    """
+    if not (of_robot and of_package):
+        return [1] * (len(of_robot) + len(of_package))
+    multiple = max(-(-len(of_robot) // _OF_ROBOT), -(-len(of_package) // _OF_PACKAGE))
+    return [*_shared(_OF_ROBOT * multiple, of_robot), *_shared(_OF_PACKAGE * multiple, of_package)]
+
+
+def _shared(points: int, rows: Sequence[_DraftCriterion]) -> list[int]:
+    """Return points in equal shares; where these are no whole numbers, what matters most gets
+    more.
+    """
+    share, more = divmod(points, len(rows))
+    checks = [row.fact.check for row in rows]
+    order = sorted(
+        range(len(rows)), key=lambda it: (checks[it] not in _HEAVY, checks[it] in _LIGHT)
+    )
+    return [share + (index in order[:more]) for index in range(len(rows))]
+
+
+def _value_lines(
+    layout: "_Layout", values: Mapping[str, Sequence[_DraftCriterion]]
+) -> Iterator[str]:
+    """Yield comments with criteria for values of parameters, and how many more there are."""
+    yield from (
+        "",
+        "# --- Other values: remove the first # of all lines of one, and give it points ".ljust(
+            _WIDTH, "-"
+        ),
+    )
+    for node, rows in values.items():
+        for row in rows[:_MAX_VALUES]:
+            lines = layout.criterion(layout.ids[row.fact.words], row, 0, _MAX_COMMENT)
+            yield from (f"# {line}" if line else "" for line in lines)
+        if len(rows) > _MAX_VALUES:
+            yield from ("", f"# # {len(rows) - _MAX_VALUES} more of {printable(node)}")
+
+
+def _with_ids(rows: Sequence[_DraftCriterion]) -> dict[str, _DraftCriterion]:
+    """Return the rows by ids of what they are about and their checks, such as upper-arm-mass-is."""
+    found: dict[str, _DraftCriterion] = {}
+    numbers: dict[str, int] = {}  # the last that each name got
+    for row in rows:
+        name = words = (
+            re.sub(r"[\W_]+", "-", row.fact.words.lower()).strip("-")[:_MAX_ID].strip("-")
+        )
+        while name in found:
+            numbers[words] = numbers.get(words, 1) + 1
+            name = f"{words}-{numbers[words]}"
+        found[name] = row
+    return found
+
+
+def _head_lines(head: Head, points: int) -> Iterator[str]:
+    if head.schema:
+        yield f"#:schema {head.schema}"
+    yield assignment("id", head.id)
+    yield assignment("title", head.title)
+    yield f"{assignment('reference', head.reference)}  # the solution that must get full marks"
+    if head.urdf:
+        yield f"{assignment('urdf', head.urdf)}  # where a package keeps the file that is graded"
+    if len(head.packages) == 1:
+        yield f"{assignment('package', head.packages[0])}  # the name of the package that is graded"
+    elif head.packages:
+        yield (
+            f"{assignment('packages', list(head.packages))}  # the names of the packages that "
+            "are graded"
+        )
+    yield assignment("points", points)
+
+
+def _default_lines(part: str, points: int, checks: set[str]) -> Iterator[str]:
+    yield from ("", "[defaults]", assignment("part", part), assignment("points", points))
+    usual = {name: given for name, given in _USUAL.items() if name in checks}
+    if usual:
+        yield from ("", "[defaults.with]")
+    yield from (
+        f"{assignment(name, arguments)}  # {unit}" for name, (arguments, unit) in usual.items()
+    )
+
+
+def _part_lines(name: str, title: str, needs: str, points: int) -> Iterator[str]:
+    yield from ("", "[[part]]", assignment("id", name), assignment("title", title))
+    yield from (assignment("needs", needs), assignment("points", points))
+
+
+class _Layout(NamedTuple):
+    """How criteria are written: what they need not say, and the ids of others by their words."""
+
+    part: str
+    points: int
+    ids: Mapping[str, str]
+
+    def criterion(
+        self, name: str, row: _DraftCriterion, points: int, width: int = _WIDTH
+    ) -> Iterator[str]:
+        """Yield the lines of a criterion."""
+        fact = row.fact
+        yield from ("", "[[criterion]]", assignment("id", name))
+        if row.is_of_package and self.part == _ROBOT:
+            yield assignment("part", _PACKAGE)
+        if fact.package:
+            yield assignment("package", fact.package)
+        yield assignment("about", printable(fact.about))
+        if points != self.points:
+            yield assignment("points", points)
+        yield assignment("title", printable(row.title))
+        yield f"check = {toml_literal(fact.check)}"
+        if fact.args:
+            yield assignment("args", fact.args)
+        tables = [*self._carried(fact)]
+        is_line = len(tables) == 1 and len(assignment("carried", tables[0])) <= width
+        if is_line:
+            yield assignment("carried", tables[0])
+        yield from _with_lines("criterion", fact.arguments, width)
+        for table in () if is_line else tables:
+            yield from ("", "[[criterion.carried]]", *_toml_lines("from", table["from"]))
+            yield from (
+                assignment("check", table["check"]),
+                *_with_lines("criterion.carried", table["with"]),
+            )
+
+    def _carried(self, fact: Fact) -> Iterator[Mapping[str, Any]]:
+        """Yield what counts instead of a fact, and after which mistakes, if criteria are about
+        these.
+        """
+        for it in fact.carried:
+            causes = [self.ids[words] for words in dict.fromkeys(it.causes) if words in self.ids]
+            if causes:
+                yield {"from": causes, "check": it.check, "with": it.arguments}
+
+
+def _with_lines(table: str, arguments: Mapping[str, Any], width: int = _WIDTH) -> Iterator[str]:
+    """Yield the arguments of a check in one line, or in a table below the others."""
+    if len(assignment("with", arguments)) <= width:
+        if arguments:
+            yield assignment("with", arguments)
+        return
+    yield from ("", f"[{table}.with]")
+    for key, value in sorted(arguments.items(), key=lambda item: isinstance(item[1], Mapping)):
+        if not isinstance(value, Mapping) or len(assignment(key, value)) <= _WIDTH:
+            yield from _toml_lines(key, value)
+            continue
+        yield from ("", f"[{table}.with.{key}]")
+        for inner, item in value.items():
+            yield from _toml_lines(inner, item)
+
+
+def _toml_lines(key: str, value: Any) -> Iterator[str]:
+    """Yield a line that sets a key, or, of a list that is too long for one, a line for each
+    item.
+    """
+    line = assignment(key, value)
+    if len(line) <= _WIDTH or not isinstance(value, list):
+        yield line
+        return
+    yield f"{line.partition(' = ')[0]} = ["
+    yield from (f"    {toml_literal(item)}," for item in value)
+    yield "]"

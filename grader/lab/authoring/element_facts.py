@@ -1,0 +1,264 @@
+"""The facts of the elements for simulators and controllers, which ROS 2 itself does not read."""
+
+import re
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping
+from math import isfinite
+from typing import Any
+
+from grader.lab.authoring.facts import Carried, Fact, Facts, Omission, Solution, are_joints_free
+from grader.ros.build.places import is_of_one_machine
+from grader.ros.package.robot_file import Read, read_as_ros
+from grader.ros.package.trees import is_path
+from grader.ros.python.budget import Budget
+from grader.ros.urdf.link_tree import JOINT_OF
+from grader.ros.workspace.controllers import needed_interfaces
+from grader.ros.workspace.reading import read_agreement
+from grader.ros.xml.elements import attributes_of, foreign_elements, name_of, readable, text_in
+from grader.ros.xml.parsing import Element
+
+_MAX_VALUES = 500  # in one element of <robot>: a check compares each with each
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_CONDITION = re.compile(r"\[@[^=]+='([^']*)'\]")
+_REFERENCE = re.compile(r"\[@reference='([^']*)'\]")
+_JOINT_KEY = re.compile(r"(?:^|[/_])joints?$|joint_names?$|(?:^|/)joint/@name$")
+_TRUTH = {"true": True, "false": False}
+_INTERFACE = "command_interface/@name"
+_NAMED_BY = ("reference", "name", "filename", "type")
+_OF_ARGUMENTS = ("urdf_loads", "files names_agree", "arguments names_agree")
+_Values = dict[str, Any]
+
+
+def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
+    """Yield the values in each element for simulators and controllers; `causes` change the
+    arguments of xacro.
+
+    What a controller needs of a joint is left to the names of controllers.
+    """
+    covered = needed_interfaces(solution.submission.workspace)
+    robot = solution.robot.robot
+    joints, links = {joint.name for joint in robot.joints}, {link.name for link in robot.links}
+    free = robot.joints if are_joints_free(solution) else ()
+    selectors = {
+        it.name: f"{JOINT_OF}{it.child}"
+        for it in free
+        if it.name not in links and "'" not in it.child
+    }
+    joints.update(selectors.values())
+    are_compared = read_agreement(solution.submission.workspace).holds("topics")
+
+    def asked(it: Fact | Omission) -> Fact | Omission:
+        if isinstance(it, Omission):
+            return it
+        return _by_links(_without_topics(it) if are_compared else it, selectors)
+
+    without_launch = _root_without_launch_files(solution)
+    without = None if without_launch is None else [*map(asked, _entries(without_launch, covered))]
+    met: Counter[str] = Counter()
+    for it in map(asked, _entries(solution.root, covered)):
+        if isinstance(it, Omission):
+            yield it
+            continue
+        met[it.words] += 1
+        carried = [*_carried_from_names(it, joints, links)]
+        if without is not None:
+            others = [
+                one.arguments for one in without if isinstance(one, Fact) and one.words == it.words
+            ]
+            other = others[met[it.words] - 1] if len(others) >= met[it.words] else None
+            carried += _carried_from_launch(it, other, (*_OF_ARGUMENTS, *causes))
+        yield it._replace(carried=tuple(carried))
+
+
+def _without_topics(fact: Fact) -> Fact:
+    """Return a fact without the names of topics, which need only agree."""
+    values = {
+        path: value
+        for path, value in fact.arguments.get("values", {}).items()
+        if not path.endswith("topic")
+    }
+    return fact._replace(arguments=_entry(fact.arguments["at"], values))
+
+
+def _by_links(fact: Fact, selectors: Mapping[str, str]) -> Fact:
+    """Return a fact with joints named by the links that they hold; `selectors` has these by the
+    names of joints.
+    """
+    at, values = fact.arguments["at"], fact.arguments.get("values", {})
+    is_joint, is_of_system = at.endswith("/joint"), at.startswith("ros2_control")
+    at = _REFERENCE.sub(lambda found: f"[@reference='{selectors.get(found[1], found[1])}']", at)
+
+    def named(key: str, value: Any) -> Any:
+        if not (is_of_system or _JOINT_KEY.search(key) or (is_joint and key == "@name")):
+            return value
+        return (
+            [selectors.get(it, it) for it in value]
+            if isinstance(value, list)
+            else selectors.get(value, value)
+        )
+
+    return fact._replace(
+        arguments=_entry(at, {key: named(key, value) for key, value in values.items()})
+    )
+
+
+def _carried_from_names(
+    fact: Fact, joints: Collection[str], links: Collection[str]
+) -> Iterator[Carried]:
+    """Yield what counts instead of a fact if names of joints or links are wrong."""
+    without_links = _weakened(fact.arguments, links)
+    weaker = _weakened(without_links, joints)
+    if weaker != fact.arguments:
+        of_joints = ("joints_named", "controllers names_agree") if weaker != without_links else ()
+        yield Carried((*of_joints, "frames names_agree"), fact.check, weaker)
+
+
+def _root_without_launch_files(solution: Solution) -> Element | None:
+    """Return the <robot> if no launch file gives arguments to xacro; None where there is no
+    robot.
+    """
+    urdf, submission = solution.submission.urdf, solution.submission
+    if not isinstance(urdf, Read) or not urdf.is_expanded:
+        return None
+    around = submission.surroundings(Budget())._replace(graded=None)
+    reading = read_as_ros(urdf.data, urdf.path, around).reading
+    return None if reading.robot is None else reading.root
+
+
+def _carried_from_launch(
+    fact: Fact, other: Mapping[str, Any] | None, causes: tuple[str, ...]
+) -> list[Carried]:
+    """Return what counts instead of a fact if launch files give xacro no arguments: what stays true
+    without them.
+    """
+    if other == fact.arguments:
+        return []
+    if other is None:
+        return [Carried(causes, "urdf_loads")]
+    values, others = fact.arguments.get("values", {}), other.get("values", {})
+    same = {key: value for key, value in values.items() if others.get(key) == value}
+    return [Carried(causes, fact.check, _entry(fact.arguments["at"], same))]
+
+
+def _weakened(arguments: Mapping[str, Any], names: Collection[str]) -> Mapping[str, Any]:
+    """Return the arguments without conditions and values that are names of joints and links."""
+    at = _CONDITION.sub(lambda found: "" if found[1] in names else found[0], arguments["at"])
+    return _entry(
+        at,
+        {key: it for key, it in arguments.get("values", {}).items() if not _names_any(it, names)},
+    )
+
+
+def _names_any(value: Any, names: Collection[str]) -> bool:
+    """Return whether a value is a name, or a list with one."""
+    return any(
+        isinstance(it, str) and it in names
+        for it in (value if isinstance(value, list) else [value])
+    )
+
+
+def _entry(at: str, values: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the arguments of entry_is."""
+    return {"at": at, **({"values": values} if values else {})}
+
+
+def _entries(root: Element, covered: Collection[str]) -> Facts:
+    """Yield the values in each element, without the interfaces that are `covered`; or why it is
+    omitted.
+    """
+    for element in foreign_elements(root):
+        about = f"<{name_of(element)}>"
+        if sum(1 + len(inner.attrib) for inner in element.iter()) > _MAX_VALUES:
+            yield Omission(
+                _label(element), f"it has more than {_MAX_VALUES} elements and attributes"
+            )
+            continue
+        conditions = "".join(f"[@{key}='{value}']" for key, value in attributes_of(element))
+        for label, path, values in _element_values(element):
+            at = f"{name_of(element)}{conditions}{f'/{path}' if path else ''}"
+            if (name_of(element), path) == ("ros2_control", "joint"):
+                _drop_covered(values, covered)
+            if is_path(at):
+                yield Fact(about, "entry_is", _entry(at, values), label)
+            else:
+                yield Omission(label, "a path cannot name it")
+
+
+def _drop_covered(values: _Values, covered: Collection[str]) -> None:
+    """Remove the command interfaces of a joint if controllers need all of them."""
+    found = values.get(_INTERFACE, [])
+    interfaces = found if isinstance(found, list) else [found]
+    if interfaces and all(f"{values.get('@name')}/{it}" in covered for it in interfaces):
+        del values[_INTERFACE]
+
+
+def _element_values(element: Element) -> Iterator[tuple[str, str, _Values]]:
+    """Yield the plain values in an element, then those in each child that has elements or
+    attributes.
+
+    Each has a label, the path of the child, and values by their paths in it.
+    """
+    plain: _Values = {}
+    deep: list[Element] = []
+    for child in _children(element):
+        if _children(child) or child.attrib:
+            deep.append(child)
+        else:
+            _add(plain, name_of(child), _value(text_in(child)))
+    if plain or not deep:
+        yield _label(element), "", plain
+    for child in deep:
+        yield f"{_label(element)} {_label(child)}", name_of(child), _values_by_path(child)
+
+
+def _values_by_path(element: Element, path: str = "") -> _Values:
+    """Return all attributes and texts in an element by their paths; of repeated ones a list."""
+    found: _Values = {}
+    for key, text in element.attrib.items():
+        _add(found, f"{path}@{key!s}", _value(str(text)))
+    for child in _children(element):
+        inner = f"{path}{name_of(child)}"
+        if not _children(child) and (text_in(child) or not child.attrib):
+            _add(found, inner, _value(text_in(child)))
+        for key, value in _values_by_path(child, f"{inner}/").items():
+            _add(found, key, value)
+    return found
+
+
+def _add(found: _Values, key: str, value: Any) -> None:
+    """Add a value; of several values with one path, a list.
+
+    A path that exists on one machine only is none, nor is an empty text: what it becomes, an
+    argument may say.
+    """
+    if isinstance(value, str) and (not value or is_of_one_machine(value)):
+        return
+    if key not in found:
+        found[key] = value
+    else:
+        before = found[key] if isinstance(found[key], list) else [found[key]]
+        found[key] = before + (value if isinstance(value, list) else [value])
+
+
+def _value(text: str) -> str | bool | int | float:
+    """Return the text of an element or attribute as a rubric writes it: a number, true or false,
+    else a string.
+    """
+    word = readable(text.strip())
+    if word in _TRUTH:
+        return _TRUTH[word]
+    if _NUMBER.fullmatch(word) and isfinite(number := float(word)):
+        return int(word) if re.fullmatch(r"-?(?:0|[1-9]\d{0,14})", word) else number
+    return " ".join(word.split())
+
+
+def _children(element: Element) -> list[Element]:
+    return [child for child in element if isinstance(child.tag, str)]
+
+
+def _label(element: Element) -> str:
+    """Return the tag and the name of an element."""
+    return (
+        f"{name_of(element)} "
+        f"{next((str(element.get(key)) for key in _NAMED_BY if element.get(key)), '')}"
+    )

@@ -1,0 +1,344 @@
+"""The facts of a reference: what may be true of it, as arguments of checks that are to be tried on
+it.
+
+Here are those of the robot: its file, links, joints and tree.
+"""
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import permutations
+from math import degrees, isfinite
+from typing import Any, NamedTuple
+
+from grader.base.errors import MissingElement, NotDecided
+from grader.base.text import enumerated
+from grader.lab.checks.meshes import mesh_file
+from grader.lab.checks.outcome import point
+from grader.lab.checks.visuals import MAX_SHAPES
+from grader.lab.submission.submission import Submission
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Box, Collision, Cylinder, Joint, Limit, Link, Mesh, Sphere, Visual
+from grader.ros.urdf.reader import Reading
+from grader.ros.urdf.shapes import is_empty
+from grader.ros.urdf.transforms import rotation_from_rpy
+from grader.ros.workspace.reading import read_agreement
+from grader.ros.xml.elements import words_of_foreign
+from grader.ros.xml.parsing import Element
+
+_THE_FILE, _THE_ROBOT = "The file", "The robot"  # headings
+_WITH_AXIS = ("continuous", "revolute", "prismatic", "planar")
+_COUNTED = ("revolute", "continuous", "prismatic")
+_SLIDING_TOLERANCE = 0.002  # m: the tolerance of other limits is in degrees
+_MASS_TOLERANCE = 0.001  # kg; of a small mass, a share of it
+_MASS_SHARE = 0.01
+_LOOSE_INERTIA = 5.0  # percent, for a solution with rounded numbers
+_MAX_TIPS = 20
+
+
+class Solution(NamedTuple):
+    """A solution: its submission; its URDF as it was read, and the robot that ROS 2 loads, with the
+    joints at 0.
+    """
+
+    submission: Submission
+    reading: Reading
+    robot: Configuration
+
+    @property
+    def root(self) -> Element:
+        """The <robot> that it was read from."""
+        assert self.reading.root is not None  # ROS 2 loads it
+        return self.reading.root
+
+
+class Carried(NamedTuple):
+    """For mistakes of which other facts, by their words, a fact costs nothing if a check passes."""
+
+    causes: tuple[str, ...]
+    check: str
+    arguments: Mapping[str, Any] = {}
+
+
+class Fact(NamedTuple):
+    """A check with arguments that the reference may pass."""
+
+    about: str  # the heading
+    check: str
+    arguments: Mapping[str, Any]
+    words: str  # of the id
+    # what it is about: the name of a package, empty for the main one; None for the robot
+    package: str | None = None
+    carried: "tuple[Carried, ...]" = ()
+    otherwise: "Sequence[Fact]" = ()  # tried in its place if the reference does not pass it
+    title: str = ""  # default: what the check says
+    args: Mapping[str, str | bool] = {}  # launch arguments
+
+
+class Omission(NamedTuple):
+    """Something of the reference that no criterion is about, and why."""
+
+    what: str
+    why: str
+
+
+Facts = Iterator[Fact | Omission]
+
+
+def robot_facts(solution: Solution) -> Facts:
+    """Yield what may be true of the file, of each link with its parent joint, and of the robot."""
+    robot = solution.robot
+    yield Fact(_THE_FILE, "urdf_loads", {}, "urdf_loads")
+    for link in robot.robot.links:
+        yield from _visual_facts(link)
+        joint = robot.parent_joints.get(link.name)
+        if joint is not None:
+            try:
+                yield from _joint_facts(robot, joint)
+            except (MissingElement, NotDecided) as error:  # an axis of length zero
+                yield Omission(f"{link.name} joint_axis", str(error))
+        yield from _body_facts(link)
+    if robot.parent_joints:
+        yield from _tree_facts(solution)
+
+
+def are_joints_free(solution: Solution) -> bool:
+    """Return whether joints may have other names: those that files use are compared with those of
+    the robot.
+    """
+    found = read_agreement(solution.submission.workspace)
+    return found.holds("frames") and found.holds("controllers")
+
+
+def _link_fact(link: str, check: str, **arguments: Any) -> Fact:
+    return Fact(link, check, {"link": link, **arguments}, f"{link} {check}")
+
+
+def _robot_fact(check: str, **arguments: Any) -> Fact:
+    return Fact(_THE_ROBOT, check, arguments, check)
+
+
+def _rounded(vector: Sequence[float], digits: int = 6) -> list[float]:
+    """Return numbers without what rounding has added: 0.15 for 0.15000000000000002."""
+    return [round(value, digits) + 0.0 for value in vector]
+
+
+def _visual_facts(link: Link) -> Facts:
+    """Yield what a link shows; the place and colour of a shape only if no other shape of the link
+    is of its kind.
+    """
+    if len(link.visuals) > MAX_SHAPES:
+        yield Omission(f"{link.name} visuals", f"it has more than {MAX_SHAPES}")
+        return
+    shown = [visual for visual in link.visuals if not is_empty(visual.geometry)]
+    kinds = Counter(type(visual.geometry) for visual in shown)
+    for visual in shown:
+        yield _size(link.name, visual)
+        if kinds[type(visual.geometry)] == 1:
+            is_mesh = isinstance(visual.geometry, Mesh)
+            selected = (
+                {}
+                if len(kinds) == 1 or is_mesh
+                else {"shape": type(visual.geometry).__name__.lower()}
+            )
+            if visual.material is not None:
+                yield _link_fact(
+                    link.name, "shows_colour", **selected, colour=_rounded(visual.material.rgba, 4)
+                )
+            if not is_mesh:
+                xyz = _rounded(visual.origin.xyz)
+                yield _link_fact(
+                    link.name,
+                    "centre_at",
+                    **selected,
+                    relative_to=link.name,
+                    xyz=xyz,
+                    **_axis(visual),
+                )
+    for kind in (kind for kind, number in kinds.items() if number > 1):
+        reason = "a check examines one shape of a kind"
+        yield Omission(f"place and colour of each {kind.__name__.lower()} of {link.name}", reason)
+
+
+def _size(link: str, visual: Visual) -> Fact:
+    match visual.geometry:
+        case Box(size=size):  # along the axes of the link, whichever of its own they are
+            first, *others = [
+                _link_fact(link, "shows_box", size=_rounded(edges)) for edges in permutations(size)
+            ]
+            return first._replace(otherwise=others)
+        case Cylinder(radius=radius, length=length):
+            return _link_fact(
+                link, "shows_cylinder", radius=round(radius, 6), length=round(length, 6)
+            )
+        case Sphere(radius=radius):
+            return _link_fact(link, "shows_sphere", radius=round(radius, 6))
+        case mesh:
+            file = "/".join(mesh_file(mesh.filename, is_expanded=True).steps)
+            xyz, rpy = _rounded(visual.origin.xyz), _rounded(visual.origin.rpy)
+            return _link_fact(
+                link, "shows_mesh", file=file, scale=_rounded(mesh.scale), xyz=xyz, rpy=rpy
+            )
+
+
+def _axis(visual: Visual) -> dict[str, Any]:
+    """Return how the axis of a cylinder lies: 0 1 0 for what rpy="1.57 0 0" makes of it."""
+    if not isinstance(visual.geometry, Cylinder):
+        return {}
+    return {"axis": _rounded(rotation_from_rpy(visual.origin.rpy)[2::3], 2), "angle": 1.0}
+
+
+def _body_facts(link: Link) -> Facts:
+    """Yield the mass and inertia of a link, and its collision shapes, or that they are those that
+    it shows.
+    """
+    if link.inertial is not None:
+        least = abs(link.inertial.mass) * _MASS_SHARE
+        tolerance = {"tolerance": least} if least < _MASS_TOLERANCE else {}
+        yield _link_fact(link.name, "mass_is", mass=link.inertial.mass, **tolerance)
+        title = f"the inertia of {link.name!r} is that of a uniform solid of its shapes"
+        loose = _link_fact(link.name, "inertia_plausible", tolerance=_LOOSE_INERTIA)._replace(
+            title=title
+        )
+        yield _link_fact(link.name, "inertia_plausible")._replace(title=title, otherwise=[loose])
+    if len(link.collisions) > MAX_SHAPES:
+        yield Omission(f"{link.name} collisions", f"it has more than {MAX_SHAPES}")
+        return
+    only = {"only": True} if len(link.collisions) == 1 else {}
+    shapes = [_collision(link.name, collision, only) for collision in link.collisions]
+    if not any(not is_empty(visual.geometry) for visual in link.visuals):
+        yield from shapes
+    elif shapes:
+        known = [
+            Carried(_shown(link.name), it.check, it.arguments)
+            for it in shapes
+            if only and it.check == "collides_as"
+        ]
+        match = _link_fact(link.name, "collision_matches_visual")
+        yield match._replace(otherwise=shapes if only else (), carried=tuple(known))
+
+
+def _shown(link: str) -> tuple[str, ...]:
+    """Return the words of the facts about what a link shows."""
+    return tuple(
+        f"{link} {check}" for check in ("shows_box", "shows_cylinder", "shows_sphere", "centre_at")
+    )
+
+
+def _collision(link: str, collision: Collision, only: Mapping[str, bool]) -> Fact:
+    match collision.geometry:
+        case Box(size=size):
+            shape: dict[str, Any] = {"box": _rounded(size)}
+        case Cylinder(radius=radius, length=length):
+            shape = {"cylinder": _rounded((radius, length))}
+        case Sphere(radius=radius):
+            shape = {"sphere": round(radius, 6)}
+        case _:
+            return _link_fact(link, "collision_matches_visual")
+    xyz, rpy = _rounded(collision.origin.xyz), _rounded(collision.origin.rpy, 4)
+    return _link_fact(link, "collides_as", **shape, xyz=xyz, rpy=rpy, **only)
+
+
+def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
+    """Yield what may be true of the parent joint of a link; raise MissingElement for an axis of
+    length zero.
+    """
+    link, parent = joint.child, joint.parent
+    title = f"a {joint.type} joint connects {link!r} to {parent!r}"  # its name is free
+    yield _link_fact(link, "held_by", parent=parent, joint_type=joint.type)._replace(title=title)
+    pose = robot.pose(link, relative_to=parent)
+    xyz, rpy = _rounded(pose.translation), _rounded(pose.rpy, 4)
+    turned = (
+        f"with rpy = {point((*_rounded([*map(degrees, rpy)], 1),))} (degrees)"
+        if any(rpy)
+        else "not rotated"
+    )
+    title = f"the frame {link!r} is at {point((*xyz,))} m in {parent!r}, {turned}"
+    frame = _link_fact(
+        link, "frame_at", relative_to=parent, xyz=xyz, **({"rpy": rpy} if any(rpy) else {})
+    )
+    yield frame._replace(title=title)
+    of_type = Carried(
+        (f"{link} held_by",), "frame_at", frame.arguments
+    )  # a joint of another type has no such range
+    if joint.limit is not None and joint.type in ("revolute", "prismatic"):
+        yield _range_fact(joint, joint.limit)._replace(carried=(of_type,))
+    if joint.dynamics is not None and joint.type != "fixed":
+        friction, damping = joint.dynamics.friction, joint.dynamics.damping
+        title = f"the joint that moves {link!r} has friction {friction:g} and damping {damping:g}"
+        yield _link_fact(link, "joint_dynamics", friction=friction, damping=damping)._replace(
+            title=title
+        )
+    mimic = joint.mimic
+    if mimic is not None and joint.type != "fixed" and robot.robot.has_joint(mimic.joint):
+        leader = robot.joint(mimic.joint).child
+        yield _link_fact(
+            link, "mimics", leader=leader, multiplier=mimic.multiplier, offset=mimic.offset
+        )
+    if joint.type in _WITH_AXIS:
+        own = robot.axis(joint)
+        direction = _rounded(pose.rotate(own), 2)
+        title = (
+            f"the axis of the joint that moves {link!r} points along {point((*direction,))} in "
+            f"{parent!r}"
+        )
+        axis = _link_fact(link, "joint_axis", relative_to=parent, direction=direction)._replace(
+            title=title
+        )
+        in_own_frame = {"link": link, "relative_to": link, "direction": _rounded(own, 2)}
+        yield axis._replace(carried=(Carried((f"{link} frame_at",), "joint_axis", in_own_frame),))
+
+
+def _range_fact(joint: Joint, limit: Limit) -> Fact:
+    """Return the range of a joint that turns or slides, in degrees or metres."""
+    ends, turns = (limit.lower, limit.upper), joint.type == "revolute"
+    lower, upper = _rounded([degrees(end) for end in ends], 1) if turns else _rounded(ends)
+    given = {"effort": limit.effort, "velocity": limit.velocity}
+    others = {name: value for name, value in given.items() if isfinite(value)}
+    others |= {} if turns else {"tolerance": _SLIDING_TOLERANCE}
+    unit = "degrees" if turns else "m"
+    title = f"the range of the joint that moves {joint.child!r} is {lower:g} to {upper:g} {unit}"
+    return _link_fact(joint.child, "joint_limits", lower=lower, upper=upper, **others)._replace(
+        title=title
+    )
+
+
+def _tree_facts(solution: Solution) -> Iterator[Fact]:
+    """Yield the names of joints that other elements use, the root, the numbers of joints, and how
+    the tips move.
+    """
+    robot = solution.robot
+    joints, root = robot.parent_joints.values(), robot.main_tree[0]
+    words = words_of_foreign(solution.root)
+    used = {joint.name: joint.child for joint in joints if joint.name in words}
+    if used and not are_joints_free(solution):
+        yield _robot_fact("joints_named", parent=root, joints=used)
+    fixed = (joint.child for joint in joints if joint.parent == root and joint.type == "fixed")
+    rooted = _robot_fact("root_of_tree", link=root, holds=next(fixed, root))
+    yield rooted
+    held = tuple(f"{joint.child} {check}" for joint in joints for check in ("held_by", "mimics"))
+    of_types = Carried(held, rooted.check, rooted.arguments)
+    moving = [joint for joint in joints if joint.type != "fixed"]
+    kinds = Counter(joint.type for joint in moving)
+    numbers = {
+        "moving": sum(joint.mimic is None for joint in moving),
+        **{kind: kinds[kind] for kind in _COUNTED},
+    }
+    yield _robot_fact("counts", **numbers)._replace(carried=(of_types,))
+    inner = {joint.parent for joint in joints}
+    chains = {name: robot.chain(name) for name in robot.main_tree if name not in inner}
+    tips = [name for name, chain in chains.items() if any(joint.type != "fixed" for joint in chain)]
+    if tips:
+        names = [repr(tip) for tip in tips[:_MAX_TIPS]]
+        title = (
+            f"{enumerated(names)} {'moves' if len(names) == 1 else 'move'} as in the reference "
+            "solution"
+        )
+        known = [
+            f"{joint.child} {check}"
+            for joint in joints
+            for check in ("frame_at", "joint_axis", "mimics")
+        ]
+        motion = _robot_fact("kinematics_match_reference", links=tips[:_MAX_TIPS], match="order")
+        yield motion._replace(
+            title=title, carried=(Carried(tuple(known), "counts", numbers), of_types)
+        )

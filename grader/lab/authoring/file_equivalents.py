@@ -1,0 +1,60 @@
+"""Equivalents of the YAML files of packages: the same values in another text. Each must keep
+full marks.
+"""
+
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+
+from grader.lab.submission.submission import Submission
+from grader.ros.config.yaml_nodes import YamlNode, yaml_value
+from grader.ros.config.yaml_values import sections_in
+from grader.ros.workspace.workspace import Workspace
+
+EVERY_NODE, _FLOW_STYLE = "parameters of /**", "flow style of YAML"
+
+
+def file_equivalents(submission: Submission) -> Iterator[tuple[str, Mapping[str, str]]]:
+    """Yield each family with the new texts of all files that it changes, by their paths."""
+    workspace = submission.workspace
+    wide = {path: _for_every_node(workspace, path, tree) for path, tree in workspace.trees}
+    flow = {path: _in_flow_style(tree) for path, tree in workspace.trees}
+    for family, texts in ((EVERY_NODE, wide), (_FLOW_STYLE, flow)):
+        changed = {path: text for path, text in texts.items() if text is not None}
+        if changed:
+            yield family, changed
+
+
+def _for_every_node(workspace: Workspace, path: str, tree: YamlNode) -> str | None:
+    """Return a file that only one node gets, and that has only its parameters, with /** in place
+    of its name.
+    """
+    sections, nodes = (
+        [keys for keys, _ in sections_in(tree)],
+        workspace.parameter_files.get(path, []),
+    )
+    if len(nodes) != 1 or len(tree.value) != 1 or sections != [(workspace.name_of(nodes[0]),)]:
+        return None
+    before = tree.source.text
+    text = re.sub(rf"(?m)^([\"']?){re.escape(sections[0][0])}\1(?=\s*:)", "/**", before, count=1)
+    return text if text != before else None
+
+
+def _in_flow_style(tree: YamlNode) -> str | None:
+    """Return a file as one mapping in braces; None for texts that would mean something else
+    there.
+    """
+    text = _flow(tree)
+    with suppress(ValueError):
+        return text if yaml_value(text) == yaml_value(tree.source.text) else None
+    return None
+
+
+def _flow(node: YamlNode) -> str:
+    if isinstance(node.value, dict):
+        return f"{{{', '.join(f'{key}: {_flow(inner)}' for key, inner in node.value.items())}}}"
+    return (
+        f"[{', '.join(map(_flow, node.items))}]"
+        if node.text is None
+        else node.source.text[slice(*node.span)]
+    )

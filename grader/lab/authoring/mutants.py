@@ -1,0 +1,339 @@
+"""Mutants of a reference: one file with one mistake, for every single edit that a family of
+mistakes allows.
+
+Those of a URDF or xacro text come first; then those of a package: a file deleted or renamed, and
+mistakes in package.xml, setup.py, launch files and RViz files.
+"""
+
+import ast
+import re
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import chain
+from math import degrees
+from typing import NamedTuple
+
+from grader.base.markup import Attribute, attributes, element_end, head_end, name_end
+from grader.base.source import Source
+from grader.lab.hints.python_file import PythonFile, argument
+from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
+from grader.ros.package.package import MANIFEST, SETUP, Package
+from grader.ros.xml.parsing import Element, XmlFault, XmlFile, read_document
+from grader.ros.xml.urdf_format import JOINT_TYPES, PARTS
+
+_NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
+_NAMES = ("name", "link", "joint", "reference")
+_UNTOUCHED = ("version", "encoding", "params")
+_BOX = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
+
+
+class Mutant(NamedTuple):
+    """One file of a solution with one mistake."""
+
+    # stable: the family and the place by names, `number x10: joint base_lidar_joint/origin xyz.z`
+    id: str
+    family: str
+    path: str
+    line: int
+    start: int = 0  # from here to `end`, the text becomes `new`
+    end: int = 0
+    new: str = ""
+    is_deleted: bool = False  # whether the file is gone, or is at the path `renamed`
+    renamed: str = ""
+
+    def applied(self, text: str) -> str:
+        """Return the text of its file with the mistake."""
+        return text[: self.start] + self.new + text[self.end :]
+
+
+class MutantEdit(NamedTuple):
+    """A change of a text between two offsets: its family, and its place by names, with what
+    tells it from others.
+    """
+
+    family: str
+    label: str
+    start: int
+    end: int
+    new: str
+
+
+def mutants(text: str, path: str = "", hidden: Collection[str] = ()) -> Iterator[Mutant]:
+    """Yield every mutant of a URDF or xacro once; `hidden` are links that must show nothing,
+    which show a box.
+    """
+    return _as_mutants(text, path, _changes(text, {f"link {name}" for name in hidden}))
+
+
+def _as_mutants(text: str, path: str, changes: Iterable[MutantEdit]) -> Iterator[Mutant]:
+    """Yield the mutants that changes of a file make, each once and with an id of its own."""
+    seen: set[tuple[int, int, str]] = set()
+    ids: Counter[str] = Counter()
+    for family, label, start, end, new in changes:
+        if (start, end, new) in seen or text[start:end] == new:
+            continue
+        seen.add((start, end, new))
+        name = f"{family}: {label}"
+        ids[name] += 1
+        name += f" ({ids[name]})" if ids[name] > 1 else ""
+        yield Mutant(name, family, path, text.count("\n", 0, start) + 1, start, end, new)
+
+
+def _changes(text: str, hidden: Collection[str]) -> Iterator[MutantEdit]:
+    places = list(_places(text))
+    names = {
+        tag: [it.get("name", "") for it, *_ in places if it.tag == tag]
+        for tag in ("link", "joint", "material")
+    }
+    for element, label, start in places:
+        for attribute in attributes(text, start):
+            yield from _attribute_changes(text, element, label, attribute, names)
+        if element.getparent() is None:
+            continue
+        (head, is_empty), end = head_end(text, start), element_end(text, start)
+        if not len(element) and (element.text or "").strip():
+            yield from _value_changes(text, label, (head, text.rindex("</", head, end)), "")
+        yield MutantEdit("element deleted", label, start, end, "")
+        if label in hidden:
+            if is_empty:  # <link name="x"/>
+                yield MutantEdit("visual added", label, head - len("/>"), head, f">{_BOX}</link>")
+            else:
+                yield MutantEdit("visual added", label, head, head, _BOX)
+
+
+def _places(text: str) -> Iterator[tuple[Element, str, int]]:
+    """Yield each element with its offset, and its place by names, which does not change if lines
+    are added.
+    """
+    data, source = text.encode("utf-8", "surrogateescape"), Source("", text)
+    try:
+        root: Element | None = XmlFile(data, source).root
+    except XmlFault:
+        document = read_document(data, "")
+        root, source = document.root, document.source
+    labels: dict[Element | None, str] = {}
+    counts: Counter[str] = Counter()
+    for index, element in enumerate(root.iter("*") if root is not None else ()):
+        parent, (_, start) = element.getparent(), source.element(index)
+        is_named = parent is not None and (element.tag != "material" or parent.getparent() is None)
+        name = (element.get("name") or element.get("reference") or "") if is_named else ""
+        label = f"{text[start + 1 : name_end(text, start)]} {name}".strip()
+        label = f"{labels[parent]}/{label}" if labels.get(parent) else label
+        counts[label] += 1
+        label += f" {counts[label]}" if counts[label] > 1 else ""  # of equal siblings: visual 2
+        labels[element] = label if parent is not None else ""
+        yield element, label, start
+
+
+def _attribute_changes(
+    text: str,
+    element: Element,
+    label: str,
+    attribute: Attribute,
+    names: Mapping[str, Sequence[str]],
+) -> Iterator[MutantEdit]:
+    name, span = attribute.name, attribute.value
+    place = f"{label} {name}"
+    yield MutantEdit("attribute deleted", place, attribute.start - 1, attribute.end, "")
+    if name in _NAMES:
+        value = text[slice(*span)]
+        known = names.get(str(element.tag), names.get(name, names["link"]))
+        yield MutantEdit("name misspelt", place, *span, misspelt(value))
+        at = known.index(value) + 1 if value in known else 0
+        other = next((it for it in (*known[at:], *known[:at]) if it != value), "")
+        if other:
+            yield MutantEdit("name exchanged", f"{place} -> {other}", *span, other)
+    elif name == "type" and element.tag == "joint":
+        yield from (
+            MutantEdit("type", f"{place} -> {other}", *span, other) for other in JOINT_TYPES
+        )
+    elif name not in _UNTOUCHED and not name.startswith("xmlns"):
+        yield from _value_changes(text, label, span, name)
+
+
+def _value_changes(text: str, label: str, span: tuple[int, int], name: str) -> Iterator[MutantEdit]:
+    """Yield changes of a value: of each number in it, else of the text."""
+    start, end = span
+    label = f"{label} {name}".rstrip()
+    pieces = list(_NUMBER.finditer(text, start, end))
+    for part, found in zip(_parts(name, len(pieces)), pieces, strict=True):
+        for family, number in _alternatives(float(found[0])):
+            if number != float(found[0]):
+                yield MutantEdit(family, f"{label}{part}", *found.span(), f"{number:.6g}")
+    value = text[start:end].strip()
+    if not pieces and value:
+        start = text.index(value, start)
+        yield MutantEdit("text misspelt", label, start, start + len(value), misspelt(value))
+
+
+def _parts(name: str, count: int) -> list[str]:
+    """Return what tells the numbers of a value apart: .x, .y and .z of an xyz."""
+    if count == 1:
+        return [""]
+    known = PARTS.get(name, ())
+    return [f".{part}" for part in (known if len(known) == count else range(1, count + 1))]
+
+
+def _alternatives(value: float) -> Iterable[tuple[str, float]]:
+    return (
+        ("number negated", -value),
+        ("number x10", value * 10),
+        ("number +0.05", value + 0.05),
+        ("number -0.05", value - 0.05),
+        ("number zero", 0.0),
+        ("number in degrees", degrees(value)),
+    )
+
+
+def misspelt(name: str) -> str:
+    """Return a text without the letter in its middle."""
+    middle = len(name) // 2
+    return name[:middle] + name[middle + 1 :] if len(name) > 3 else f"{name}x"
+
+
+# Files for people: without them the package does the same.
+_UNUSED = re.compile(
+    r"(?i:\.(md|rst|(?<!CMakeLists\.)txt|pdf|docx|png|jpe?g|gif|svg|mp4))$"
+    r"|(^|/)(test|tests|doc|docs|\.[^/]*)/"  # test/test_pep257.py, .github/workflows/build.yml
+    r"|(^|/)(LICENSE|README|CHANGELOG|\.)[^/]*$"  # LICENSE, README.html, .gitignore
+)
+# Arguments of setup() that only people read.
+_FOR_PEOPLE = re.compile(
+    "(long_)?description|(author|maintainer)(_email)?|(install|tests)_requires?|classifiers|exclude|keywords|license|url"
+    "|version|zip_safe"
+)
+_XML_FAMILIES = ("element deleted", "text misspelt", "name misspelt")
+_READ_OF_MANIFEST = re.compile(r"(name|export/build_type)\b")
+_DISPLAY_TEXTS = (("Class",), ("Description Topic", "Value"), ("Topic", "Value"))
+MAX_LABEL = 70
+
+_Text = Callable[[str], str]  # returns the text of a file by its path in the submission
+_Changes = Callable[[Source, str], Iterable[MutantEdit]]  # of a file with a label
+
+
+def package_mutants(
+    package: Package,
+    links: Iterable[str],
+    text: _Text,
+    further: _Changes = lambda _, __: (),
+    *,
+    prefix: str = "",
+) -> Iterator[Mutant]:
+    """Yield the mutants of a package; `links` are those of its robot, `text` returns that of a
+    file.
+
+    `further` returns more changes of a file; `prefix` is what ids have before the paths in the
+    package.
+    """
+    for own in package.tree.files:
+        path, label = package.path(own), prefix + own
+        if not _UNUSED.search(own):
+            name = path.rpartition("/")[2]
+            renamed = f"{path.removesuffix(name)}{misspelt(name)}"
+            yield Mutant(f"file deleted: {label}", "file deleted", path, 1, is_deleted=True)
+            yield Mutant(
+                f"file renamed: {label}", "file renamed", path, 1, is_deleted=True, renamed=renamed
+            )
+        source = Source(path, text(path))
+        changes: Iterable[MutantEdit] = ()
+        if own in package.rviz_files:
+            changes = _rviz(source, label, links)
+        elif own in (MANIFEST, SETUP) or own in package.launch_files:
+            changes = _file_changes(source, label, own)
+        yield from _as_mutants(source.text, path, chain(changes, further(source, label)))
+
+
+def _file_changes(source: Source, label: str, own: str) -> Iterator[MutantEdit]:
+    """Yield the changes of a file that builds or starts something, by its format."""
+    if source.path.endswith(".py"):
+        yield from _python_changes(PythonFile(source), label, is_setup=own == SETUP)
+        return
+    for mutant in mutants(source.text):
+        place = mutant.id.partition(": ")[2]
+        if mutant.family in _XML_FAMILIES and (own != MANIFEST or _READ_OF_MANIFEST.match(place)):
+            yield MutantEdit(
+                mutant.family, f"{label} {place}", mutant.start, mutant.end, mutant.new
+            )
+
+
+def _rviz(source: Source, label: str, links: Iterable[str]) -> Iterator[MutantEdit]:
+    """Yield changes of the fixed frame, and of each display: disabled, its class or topic
+    misspelt.
+    """
+    try:
+        root = read_yaml(source.text.encode("utf-8", "surrogateescape"), source.path)
+    except YamlFault:
+        return
+    frame = root.get("Visualization Manager", "Global Options", "Fixed Frame") if root else None
+    if frame is not None and frame.text:
+        for other in (misspelt(frame.text), *links):
+            yield MutantEdit("fixed frame", f"{label} -> {other}", *frame.span, other)
+    displays = root.get("Visualization Manager", "Displays") if root else None
+    for display in displays.items if displays else ():
+        yield from _display_changes(display, label)
+
+
+def _display_changes(display: YamlNode, label: str) -> Iterator[MutantEdit]:
+    title, enabled = display.get("Name") or display.get("Class"), display.get("Enabled")
+    place = f"{label} {title.text if title else ''}".rstrip()
+    if enabled is not None and enabled.text == "true":
+        yield MutantEdit("display disabled", place, *enabled.span, "false")
+    for keys in _DISPLAY_TEXTS:
+        node = display.get(*keys)
+        if node is not None and node.text:
+            yield MutantEdit(
+                "text misspelt", f"{place} {'/'.join(keys)}", *node.span, misspelt(node.text)
+            )
+
+
+def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> Iterator[MutantEdit]:
+    """Yield the changes of a file: an entry of data_files, an action or an import deleted, a string
+    misspelt.
+    """
+    family = "data_files entry deleted" if is_setup else "action removed"
+    for item in _entries(file):
+        start, end = file.span(item)
+        comma = re.compile(r"\s*,").match(file.text, end)
+        yield MutantEdit(
+            family, f"{label} {_short(file, item)}", start, comma.end() if comma else end, ""
+        )
+    for call in file.calls("add_action"):
+        action = call.args[0] if call.args else call
+        yield MutantEdit(family, f"{label} {_short(file, action)}", *file.span(call), "None")
+    for node in file.imports if is_setup else ():
+        yield MutantEdit(
+            "import deleted", f"{label} {file.segment(node)}", *file.span(node), "pass"
+        )
+    ignored = [*_for_people(file)]
+    for text, start, end in file.literals:
+        if text.strip() and not any(first <= start < last for first, last in ignored):
+            yield MutantEdit(
+                "string misspelt", f"{label} {text[:MAX_LABEL]}", start, end, misspelt(text)
+            )
+
+
+def _entries(file: PythonFile) -> Iterator[ast.expr]:
+    """Yield the entries of data_files, and the actions of a launch file."""
+    given = [argument(call, "data_files") for call in file.calls("setup")]
+    lists = [found.value for found in given if found is not None]
+    lists += [call.args[0] for call in file.calls("LaunchDescription") if call.args]
+    for found in lists:
+        if isinstance(found, ast.List | ast.Tuple):
+            yield from found.elts
+
+
+def _short(file: PythonFile, node: ast.expr) -> str:
+    """Return what tells an item of a list from others: the executable of a node, else its text."""
+    executable = argument(node, "executable") if isinstance(node, ast.Call) else None
+    text = " ".join(file.segment(executable.value if executable is not None else node).split())
+    return text.strip("'\"") if len(text) <= MAX_LABEL else text[:MAX_LABEL]
+
+
+def _for_people(file: PythonFile) -> Iterator[tuple[int, int]]:
+    """Yield the offsets of docstrings and of arguments that only people read."""
+    for node in file.nodes:
+        match node:
+            case ast.Expr(value=ast.Constant()):
+                yield file.span(node)
+            case ast.keyword(arg=str(name)) if _FOR_PEOPLE.fullmatch(name):
+                yield file.span(node)

@@ -1,0 +1,109 @@
+"""Mutants of what the files of a workspace agree on: names, values in YAML, what CMake installs,
+and dependencies.
+"""
+
+import re
+from collections.abc import Iterable, Iterator
+
+from grader.base.source import Edit, Source
+from grader.lab.authoring.mutants import MAX_LABEL, MutantEdit, misspelt
+from grader.lab.hints.name_edits import correction_edits
+from grader.lab.submission.submission import Submission
+from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
+from grader.ros.package.package import CMAKE, MANIFEST
+from grader.ros.workspace.names import FAMILY_OF, Correction, Definition, Fact, Family, Use
+from grader.ros.workspace.reading import read_facts
+
+_YAML = (".yaml", ".yml")
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_INSTALL = re.compile(r"(?im)^[ \t]*install[ \t]*\([^()]*\)")
+_DEPENDENCY = re.compile(r"<((?:build_|build_export_|exec_)?depend)\b[^>]*>\s*([\w-]+)\s*</\1>")
+_REVERSED = {"true": "false", "false": "true", "True": "False", "False": "True"}
+
+
+def compared_names(
+    submission: Submission, families: Iterable[Family]
+) -> Iterator[tuple[Fact, Edit]]:
+    """Yield the names of these families that files use or define, each with the edit that misspells
+    it there.
+    """
+    known = frozenset(families)
+    for fact in read_facts(submission.workspace) if known else ():
+        if isinstance(fact, Use | Definition) and FAMILY_OF[fact.kind] in known:
+            for edit in correction_edits(
+                submission, Correction(fact.location, fact.name, misspelt(fact.name))
+            )[:1]:
+                yield fact, edit
+
+
+def name_changes(
+    source: Source, label: str, names: Iterable[tuple[Fact, Edit]], families: Iterable[Family]
+) -> Iterator[MutantEdit]:
+    """Yield the changes of a file of a package: those of its format, then the names in it that are
+    compared.
+    """
+    name = source.path.rpartition("/")[2]
+    if name == CMAKE:
+        for found in _INSTALL.finditer(source.text):
+            place = f"{label} {' '.join(found[0].split())[:MAX_LABEL]}"
+            yield MutantEdit("install removed", place, *found.span(), "")
+    elif name == MANIFEST and "dependencies" in families:
+        for found in _DEPENDENCY.finditer(source.text):
+            yield MutantEdit(
+                "dependency removed", f"{label} {found[1]} {found[2]}", *found.span(), ""
+            )
+    elif name.endswith(_YAML):
+        yield from _of_yaml(source, label)
+    for fact, edit in names:
+        if edit.path == source.path:
+            start = source.offset(edit.line, edit.column)
+            family = "name misspelt" if isinstance(fact, Use) else "definition renamed"
+            yield MutantEdit(family, f"{label} {edit.old}", start, start + len(edit.old), edit.new)
+
+
+def _of_yaml(source: Source, label: str) -> Iterator[MutantEdit]:
+    try:
+        root = read_yaml(source.text.encode("utf-8", "surrogateescape"), source.path)
+    except YamlFault:
+        return
+    yield from _of_node(source, f"{label} ", root, set())
+
+
+def _of_node(
+    source: Source, label: str, node: YamlNode, seen: set[YamlNode]
+) -> Iterator[MutantEdit]:
+    """Yield that each value is another one, and each key of a table misspelt; of an anchor once."""
+    if node in seen:
+        return
+    seen.add(node)
+    if node.text is not None:
+        yield from _of_scalar(source, label.removesuffix("."), node)
+    for number, item in enumerate(node.items, 1):
+        yield from _of_node(source, f"{label}{number}.", item, seen)
+    for key, inner in node.value.items() if isinstance(node.value, dict) else ():
+        at = node.key_location(key)
+        start = source.offset(at.line, at.column)
+        if isinstance(inner.value, dict) and source.text.startswith(key, start):
+            yield MutantEdit(
+                "name misspelt", f"{label}{key}", start, start + len(key), misspelt(key)
+            )
+        yield from _of_node(source, f"{label}{key}.", inner, seen)
+
+
+def _of_scalar(source: Source, label: str, node: YamlNode) -> Iterator[MutantEdit]:
+    """Yield the change of a text: a truth value is reversed, a number is ten times as large, a word
+    is misspelt.
+    """
+    (start, end), text = node.span, node.text or ""
+    if node.quoted:
+        yield MutantEdit(
+            "text misspelt", label, start + 1, end - 1, misspelt(source.text[start + 1 : end - 1])
+        )
+    elif text in _REVERSED:
+        yield MutantEdit("boolean reversed", label, start, end, _REVERSED[text])
+    elif _NUMBER.fullmatch(text):
+        larger = f"{float(text) * 10:.12g}"
+        is_short = not text.lstrip("+-").isdigit() and larger.lstrip("-").isdigit()
+        yield MutantEdit("number x10", label, start, end, f"{larger}.0" if is_short else larger)
+    elif text:
+        yield MutantEdit("text misspelt", label, start, end, misspelt(source.text[start:end]))

@@ -1,0 +1,354 @@
+"""The facts of the packages of a reference: files, builds, launch and RViz files, names and
+parameters.
+"""
+
+import posixpath
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import combinations
+from typing import Any
+
+from grader.base.errors import MissingElement, NotDecided
+from grader.base.text import counted, enumerated
+from grader.lab.authoring.facts import Carried, Fact, Facts, Omission, Solution
+from grader.lab.checks.parameters import measures
+from grader.lab.rubric.toml_file import toml_literal
+from grader.lab.submission.submission import Submission
+from grader.ros.build.places import PREFIX, is_of_one_machine
+from grader.ros.launch.launch_model import Launch
+from grader.ros.package.package import Package
+from grader.ros.python.values import Unknown
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.workspace.names import FAMILIES, Family, Mismatch, place_text
+from grader.ros.workspace.reading import read_agreement, wrong_names
+
+_THE_PACKAGE, _THE_NAMES, _THE_VALUES = "The package", "The names", "The values"  # headings
+_NAME_TITLES: Mapping[Family, str] = {
+    "files": "a build installs every file that is named",
+    "frames": "every frame, link and joint that is named exists",
+    "controllers": "all spawners, controllers and interfaces fit together",
+    "parameters": "every parameter file has parameters of the nodes that get it",
+    "arguments": "every launch and xacro argument that is passed is declared",
+    "programs": "every program, entry point and node that is named exists",
+    "topics": "topics have the same names, types and quality of service in all nodes",
+    "dependencies": "each package.xml declares the packages that the files use",
+}
+# What is odd in a reference, and so is no criterion: a text, and what is counted in it.
+_ODD: Mapping[Family, tuple[str, str]] = {
+    "files": ("{} where no build installs a file", "path"),
+    "frames": ("{} of frames, links and joints that do not exist", "use"),
+    "controllers": ("{} in spawners, controllers and interfaces", "fault"),
+    "parameters": ("{} in parameters and the nodes that get them", "fault"),
+    "arguments": ("{} of launch and xacro arguments that are not declared", "use"),
+    "programs": ("{} of programs, entry points and nodes that do not exist", "use"),
+    "topics": ("{} in the names, types and quality of service of topics", "fault"),
+    "dependencies": ("package.xml does not declare {} that the files use", "package"),
+}
+_WHEEL = re.compile("wheel|axle|tire|tyre")
+_DISTANCE = re.compile("separation|wheel_?base|wheel_?track|track_?width")
+_EXACT = 1e-6
+# What keeps launch files from starting, and nodes from their parameters.
+_STOPPING = ("files names_agree", "arguments names_agree", "programs names_agree")
+_OF_PARAMETERS = (*_STOPPING, "controllers names_agree", "parameters names_agree")
+_TURNED: Mapping[str, str | bool] = {"true": False, "false": True, "True": "False", "False": "True"}
+_OWN_KINDS = (".urdf", ".xacro", ".rviz", ".py", ".xml", ".msg", ".srv", ".action")
+_OF_BUILDS: tuple[Family, ...] = ("files", "programs")
+_MEASURING = ("shows_cylinder", "shows_sphere", "frame_at")
+_MOTION = "kinematics_match_reference"
+_MAX_TEXT = 80  # characters of a value
+
+
+def package_facts(submission: Submission) -> Facts:
+    """Yield what may be true of the packages that are graded, first of the main one."""
+    found = read_agreement(submission.workspace) if submission.lab_packages else None
+    named = found.files if found is not None and found.holds("files") else frozenset()
+    for package, prefix in _packages(submission):
+        facts = _facts_of(submission, package, named, prefix)
+        about = f"{_THE_PACKAGE} {package.name}" if prefix else _THE_PACKAGE
+        of = package.name if prefix else ""
+        yield from (
+            fact._replace(about=about, package=of, words=f"{prefix}{fact.words}") for fact in facts
+        )
+
+
+def _packages(submission: Submission) -> Iterator[tuple[Package, str]]:
+    """Yield the packages, each with what the words of its facts begin with: the main one, and the
+    others.
+    """
+    for package in sorted(
+        submission.lab_packages.values(), key=lambda it: it is not submission.package
+    ):
+        yield package, "" if package is submission.package else f"{package.name} "
+
+
+def words_of_launches(submission: Submission) -> Iterator[str]:
+    """Yield the words of what the launch files start and find."""
+    for package, prefix in _packages(submission):
+        names = [posixpath.basename(path) for path in package.launch_files]
+        yield from (
+            f"{prefix}{name} {check}"
+            for name in names
+            for check in ("node_runs", "launch_finds_files")
+        )
+
+
+def _builds(submission: Submission) -> tuple[str, ...]:
+    """Return the words of the builds of the packages."""
+    return tuple(f"{prefix}setup_imports" for _, prefix in _packages(submission))
+
+
+def _facts_of(
+    submission: Submission, package: Package, named: Collection[str], prefix: str
+) -> Iterator[Fact]:
+    """Yield what may be true of a package.
+
+    That the files are installed which are `named` somewhere is a fact about names.
+    """
+    path = submission.path or ""
+    yield _package_fact("package_found", name=package.name)
+    if package.manifest is not None and package.manifest.build_type:
+        yield _package_fact("package_type", build_type=package.manifest.build_type)
+    yield _package_fact("setup_imports")._replace(title="`colcon build` of the package succeeds")
+    yield from _installs(
+        package, path.removeprefix(package.path("")) if package.holds(path) else "", named
+    )
+    for launch in (it for it in package.launch_files if not it.startswith("test/")):
+        yield from _launch_facts(submission, package, launch, prefix)
+    yield from _rviz_facts(package)
+
+
+def measure_facts(solution: Solution) -> Iterator[Fact]:
+    """Yield the parameters of nodes that are a radius in the robot, or a distance between two
+    links.
+    """
+    links = [link.name for link in solution.robot.robot.links]
+    for node, name, value in _given(solution.submission):
+        words = {*name.split("_")}
+        alike = sorted(
+            links, key=lambda it: (not _WHEEL.search(it), -len(words & {*it.split("_")}))
+        )
+        sizes = _sizes_meant(name, alike)
+        if sizes is None or not isinstance(value, float):
+            continue
+        measure, candidates = sizes
+        fits = (it for it in candidates if _is_measured(solution.robot, measure, it, value))
+        if (fitting := next(fits, None)) is not None:
+            of = enumerated([repr(link) for link in fitting])
+            fact = _parameter_fact(node, name, measure=measure, links=[*fitting])
+            known = [f"{link} {check}" for link in fitting for check in _MEASURING]
+            same = Carried(
+                (*known, _MOTION), "parameter_is", {"node": node, "parameter": name, "value": value}
+            )
+            title = f"the parameter {name} of {node} is the {measure} of {of} in the robot"
+            yield fact._replace(title=title, carried=(*fact.carried, same))
+
+
+def value_facts(submission: Submission) -> Iterator[Fact]:
+    """Yield the values of parameters that nodes get, as files and launch files write them."""
+    for node, name, value in _given(submission):
+        texts = [
+            it for it in (value if isinstance(value, list) else [value]) if isinstance(it, str)
+        ]
+        if isinstance(value, Unknown) or any(
+            PREFIX in it or is_of_one_machine(it) or len(it) > _MAX_TEXT for it in texts
+        ):
+            continue
+        title = f"the parameter {name} of {node} is {toml_literal(value)}"
+        yield _parameter_fact(node, name, value=value)._replace(about=node, title=title)
+
+
+def _given(submission: Submission) -> Iterator[tuple[str, str, Any]]:
+    """Yield the parameters that nodes get, by the names of the nodes and their own, and their
+    values.
+    """
+    for node, given in submission.workspace.parameter_owners.items():
+        for name, found in {name: it for one in given for name, it in one.values.items()}.items():
+            yield node, name, found.value
+
+
+def _parameter_fact(node: str, name: str, **arguments: Any) -> Fact:
+    """Return a fact about a parameter, which costs nothing if a mistake of names keeps it from the
+    node.
+    """
+    where_given = {"node": node, "parameter": name, **arguments, "where_given": True}
+    carried = (Carried(_OF_PARAMETERS, "parameter_is", where_given),)
+    fact = _package_fact("parameter_is", f"{node} {name}", node=node, parameter=name, **arguments)
+    return fact._replace(about=_THE_NAMES, carried=carried)
+
+
+def _sizes_meant(name: str, links: Sequence[str]) -> tuple[str, Iterable[tuple[str, ...]]] | None:
+    """Return what a parameter measures by its name, and of which links it may be; None for any
+    other parameter.
+    """
+    if "radius" in name:
+        return "radius", ((link,) for link in links)
+    return ("distance", combinations(links, 2)) if _DISTANCE.search(name) else None
+
+
+def _is_measured(robot: Configuration, measure: str, links: tuple[str, ...], value: float) -> bool:
+    """Return whether a value is a measure of links."""
+    try:
+        found = measures(robot, [*links]).get(measure)
+        return found is not None and abs(found() - value) <= _EXACT
+    except (MissingElement, NotDecided):
+        return False
+
+
+def name_facts(submission: Submission) -> Facts:
+    """Yield that the names of each family that the packages use agree, or what is odd in them."""
+    if submission.package is None:
+        return
+    found = read_agreement(submission.workspace)
+    unbuilt = Carried(_builds(submission), "package_found", {"name": submission.package.name})
+    for family in (it for it in FAMILIES if it in found.families):
+        fact = _package_fact("names_agree", family, of=family)
+        carried = (unbuilt,) if family in _OF_BUILDS else ()
+        odd = _odd(wrong_names(submission.workspace, family, submission.lab_packages.values()))
+        yield odd or fact._replace(about=_THE_NAMES, title=_NAME_TITLES[family], carried=carried)
+
+
+def _odd(mismatches: Sequence[Mismatch]) -> Omission | None:
+    """Return what certainly does not agree in a family, in one line; None if nothing does not."""
+    wrong = {it.message: it for it in mismatches}
+    if not wrong:
+        return None
+    first = mismatches[0]
+    text, noun = _ODD[first.family]
+    more = (
+        f"{text.format(counted(len(wrong), noun))}: {place_text(first.location)}: {first.message}"
+    )
+    return Omission(f"{first.family} names_agree", more)
+
+
+def _package_fact(check: str, label: str = "", **arguments: Any) -> Fact:
+    return Fact(_THE_PACKAGE, check, arguments, f"{label} {check}".strip(), package="")
+
+
+def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[Fact]:
+    """Yield that a build installs the URDF, the launch and RViz files, and a file of each other
+    folder.
+    """
+    own = {
+        target: path
+        for target, path in package.installed.items()
+        if target.startswith(package.share)
+    }
+    elsewhere = {
+        path
+        for target, path in own.items()
+        if any(f"{target}/".startswith(f"{it}/") for it in named)
+    }
+    installed = [path for path in own.values() if path not in elsewhere]
+    launches = [
+        path for path in package.launch_files if path in installed or not path.startswith("test/")
+    ]
+    kinds = {"urdf": [urdf] if urdf else [], "launch": launches, "rviz": package.rviz_files}
+    kinds = {
+        kind: [path for path in paths if path not in elsewhere] for kind, paths in kinds.items()
+    }
+    for kind, paths in kinds.items():
+        for name in map(posixpath.basename, paths):
+            yield _package_fact("build_installs", name, kind=kind, name=name, despite_errors=True)
+    patterns = {
+        f"{folder}/*{posixpath.splitext(path)[1]}": None
+        for path in installed
+        if (folder := posixpath.dirname(path)) not in ("", "resource")
+        and path not in package.launch_files
+        and not path.endswith(_OWN_KINDS)
+    }
+    with_named = (Carried(("files names_agree",), "package_found", {"name": package.name}),)
+    for pattern in patterns:
+        fact = _package_fact("installs_files", pattern, files=[pattern], despite_errors=True)
+        yield fact._replace(carried=with_named)
+
+
+def _launch_facts(
+    submission: Submission, package: Package, path: str, prefix: str
+) -> Iterator[Fact]:
+    """Yield what may be true of a launch file, which costs nothing if it starts nothing by a
+    mistake of others.
+    """
+    name, launch = posixpath.basename(path), package.launch(path)
+    yield _package_fact("launch_found", name, name=name)
+    included = {posixpath.basename(it.path) for it in launch.passed}
+    others = tuple(
+        it for it in words_of_launches(submission) if it.split(" ")[-2] in included - {name}
+    )
+    found = Carried((*_builds(submission), *_STOPPING, *others), "launch_found", {"name": name})
+    after = found._replace(causes=(*found.causes, f"{prefix}{name} node_runs"))
+    if nodes := _nodes_that_start(launch):
+        yield _package_fact("node_runs", name, launch=name, nodes=nodes)._replace(carried=(found,))
+    yield from (it._replace(carried=(after,)) for it in _turned_facts(package, path))
+    if launch.named("urdf", "rviz", "include"):
+        unread = after._replace(causes=(*after.causes, "parameters names_agree"))
+        yield _package_fact("launch_finds_files", name, name=name)._replace(carried=(unread,))
+
+
+def _turned_facts(package: Package, path: str) -> Iterator[Fact]:
+    """Yield what a launch file starts in addition, and no more, if one of its boolean arguments is
+    turned round.
+    """
+    launch, name = package.launch(path), posixpath.basename(path)
+    before = _started(launch)
+    for argument, value in dict(launch.values).items():
+        turned = _TURNED.get(value)
+        if turned is None:
+            continue
+        text = str(turned).lower() if isinstance(turned, bool) else turned
+        after = _started(package.under({argument: text}).launch(path))
+        nodes, absent = (
+            [it for it in one if it not in other]
+            for one, other in ((after, before), (before, after))
+        )
+        given = {key: names for key, names in (("nodes", nodes), ("not", absent)) if names}
+        if given:
+            starts = (
+                f"starts {enumerated(nodes)}" if nodes else f"does not start {enumerated(absent)}"
+            )
+            fact = _package_fact("node_runs", f"{name} {argument}", launch=name, **given)
+            title = f"with {argument}:={text}, the launch file {starts}"
+            yield fact._replace(args={argument: turned}, title=title)
+
+
+def _started(launch: Launch) -> list[str]:
+    return list(dict.fromkeys(it.name for it in launch.nodes if it.when))
+
+
+def _nodes_that_start(launch: Launch) -> list[str]:
+    """Return the nodes that start, with what a condition replaces: joint_state_publisher for its
+    GUI, for example.
+    """
+    names = {
+        when: list(dict.fromkeys(it.name for it in launch.nodes if it.when is when))
+        for when in (True, False)
+    }
+    alike = {
+        name: [it for it in names[False] if name.startswith(it) or it.startswith(name)]
+        for name in names[True]
+    }
+    return [" or ".join(dict.fromkeys((name, *others))) for name, others in alike.items()]
+
+
+def _rviz_facts(package: Package) -> Iterator[Fact]:
+    """Yield what may be true of each RViz file, which is also found by the first launch file that
+    opens it.
+    """
+    opened: dict[str, str] = {}
+    for path in package.launch_files:
+        opened.setdefault(package.rviz_opened(package.launch(path)) or "", posixpath.basename(path))
+    for path in package.rviz_files:
+        rviz, name = package.rviz(path), posixpath.basename(path)
+        of = {"name": name, **({"launch": opened[path]} if path in opened else {})}
+        yield _package_fact("rviz_found", name, **of)
+        if rviz.fixed_frame:
+            yield _package_fact("rviz_fixed_frame", name, **of, frame=rviz.fixed_frame)
+        displays = dict.fromkeys(
+            (display.package, display.kind) for display in rviz.displays if display.enabled
+        )
+        for owner, kind in displays:
+            if kind == "RobotModel":
+                yield _package_fact("rviz_shows_robot", name, **of)
+            else:
+                yield _package_fact(
+                    "rviz_display_on", f"{name} {kind}", **of, kind=f"{owner}/{kind}"
+                )

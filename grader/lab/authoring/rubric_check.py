@@ -1,0 +1,281 @@
+"""What is wrong with a rubric that is valid: what its reference does not pass, and what an edit
+likely forgot.
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from math import degrees, inf, pi, radians
+from typing import Any, NamedTuple
+
+from grader.base.errors import MissingElement, NotDecided
+from grader.base.text import counted, enumerated
+from grader.lab.checks.outcome import Outcome, point
+from grader.lab.grading.deciding import decide
+from grader.lab.grading.grade import grade
+from grader.lab.grading.subjects import check_selectors, joints_at
+from grader.lab.rubric.criterion import Criterion
+from grader.lab.rubric.rubric import Rubric, load_rubric, shipped_rubrics
+from grader.lab.rubric.toml_file import TomlPath, one_line_each
+
+_SIZES = ("size", "box", "cylinder", "sphere", "radius", "length", "mass")
+_PLACES, _NEAR = (
+    ("xyz", "height"),
+    0.05,
+)  # metres: the origin can be meant, with any usual tolerance
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+# Of a sentence: with a decimal point, or before a unit. Others count something, or are names: ROS
+# 2.
+_MEASURE = re.compile(
+    r"(?<![\w.])(-?\d+(?:\.\d+)?)(?!\.?\d)(?: ?(degrees?|mm|cm|kg|percent|m|N)\b)?"
+)
+_ANGLES = (radians(1.0), degrees(1.0))
+_UNITS = {
+    "mm": (1000.0,),
+    "cm": (100.0,),
+    "degrees": _ANGLES,
+    "degree": _ANGLES,
+}  # of metres and radians in `with`
+_DERIVED = (1.0, 2.0, 0.5)  # feedback may explain a diameter, or half of a height
+_RIGHT_ANGLE, _LEAST_ANGLE = 90, 0.1  # degrees
+_ROUNDED = {
+    "m": 1e-4,
+    "degrees": 0.1,
+}  # how far positions may be beyond a limit: 90 degrees are above 1.57
+
+
+class _Failures(NamedTuple):
+    """What the reference does not pass: lines that say it, whether it fails one, and how many
+    are only undecided.
+    """
+
+    lines: tuple[str, ...]
+    is_failed: bool
+    undecided: int
+
+
+def reference_failures(rubric: Rubric) -> _Failures:
+    """Return what the reference does not pass of the automatic criteria, and of the checks in
+    `carried` tables.
+
+    Criteria with one message share a line.
+    """
+    assert rubric.solution is not None
+    failed: dict[Outcome, list[tuple[TomlPath, str]]] = {}
+    unearned = grade(rubric, rubric.solution.submission).unearned
+    own = [(_path_of(it.criterion), it.criterion.id, it.outcome) for it in unearned]
+    unresolved = {path[1]: (path, line) for path, line in _unresolved_selectors(rubric)}
+    for path, name, outcome in sorted([*own, *_carried_failures(rubric)], key=lambda it: it[0][1]):
+        if path[1] not in unresolved:
+            failed.setdefault(Outcome(outcome.status, outcome.message), []).append((path, name))
+    found = [*unresolved.values()]
+    for outcome, places in failed.items():
+        names, verb = (
+            enumerated([name for _, name in places]),
+            "fails" if len(places) == 1 else "fail",
+        )
+        found.append((places[0][0], f"{names} {verb} on the reference: {outcome.message}"))
+    undecided = sum(
+        len(places) for outcome, places in failed.items() if outcome.status == "pending"
+    )
+    is_failed = bool(unresolved) or undecided < sum(map(len, failed.values()))
+    return _Failures(_lines(rubric, found), is_failed, undecided)
+
+
+def _lines(rubric: Rubric, found: Iterable[tuple[TomlPath, str]]) -> tuple[str, ...]:
+    return tuple(one_line_each(rubric.path, [(rubric.line_of(path), what) for path, what in found]))
+
+
+def _path_of(criterion: Criterion) -> TomlPath:
+    return ("criterion", criterion.position, "with")
+
+
+def _carried_failures(rubric: Rubric) -> Iterator[tuple[TomlPath, str, Outcome]]:
+    """Yield what counts instead of a criterion where an error is carried forward, if the
+    reference does not pass it.
+    """
+    assert rubric.solution is not None
+    for criterion in (it for it in rubric.criteria if not (it.adjustment or it.bonus)):
+        for index, one in enumerate(criterion.carried):
+            row = criterion._replace(
+                check=one.check, arguments=one.arguments, carried=(), requires=()
+            )
+            alone = replace(rubric, criteria=(row,))
+            for found in decide(alone, rubric.solution.submission, {row.id}):
+                if found.outcome.status != "passed":
+                    # Of a single table the place has no index; `place_of` then finds the
+                    # criterion's.
+                    several = (index,) if len(criterion.carried) > 1 else ()
+                    path = ("criterion", criterion.position, "carried", *several, "with")
+                    yield path, f"carried of {criterion.id}", found.outcome
+
+
+def _unresolved_selectors(rubric: Rubric) -> Iterator[tuple[TomlPath, str]]:
+    """Yield the place of each criterion that names a link by a place that not exactly one has,
+    and why.
+    """
+    assert rubric.solution is not None
+    for criterion in rubric.criteria:
+        if "robot" in criterion.check.examined:
+            try:
+                check_selectors(rubric.solution.robot, criterion)
+            except (MissingElement, NotDecided) as error:
+                what = (
+                    f"{criterion.id} names a link by its place in the tree, and the reference "
+                    "has no such link"
+                )
+                yield _path_of(criterion), f"{what}: {error}"
+
+
+def likely_mistakes(rubric: Rubric) -> Sequence[str]:
+    """Return warnings: what is valid, and hardly meant."""
+    found: list[tuple[TomlPath, str]] = []
+    if _is_changed_copy(rubric):
+        found.append(
+            (("id",), "the id is still that of the grader's own rubric: give this one another")
+        )
+    everywhere = [number for criterion in rubric.criteria for number in _numbers_given(criterion)]
+    for criterion in rubric.criteria:
+        for key, message in _of_criterion(rubric, criterion, everywhere):
+            found.append((("criterion", criterion.position, key), message))
+    return _lines(rubric, found)
+
+
+def _is_changed_copy(rubric: Rubric) -> bool:
+    """Return whether a rubric has the id of one of the grader's and most of its criteria, but
+    not quite the same.
+    """
+    if rubric.id not in shipped_rubrics() or rubric.is_shipped:
+        return False
+    shipped = load_rubric(rubric.id).criteria
+    own, copied = ({it.id for it in criteria} for criteria in (rubric.criteria, shipped))
+    return rubric.criteria != shipped and 2 * len(own & copied) > len(own)
+
+
+def _of_criterion(
+    rubric: Rubric, criterion: Criterion, everywhere: list[float]
+) -> Iterator[tuple[str, str]]:
+    """Yield warnings about a criterion, each with the key that it is about."""
+    own = [*_numbers_given(criterion)]
+    if stale := _unknown_measures(criterion.title, own):
+        yield "title", f"the title says {enumerated(stale)}, which `with` does not"
+    known = [number * factor for number in (*everywhere, _RIGHT_ANGLE) for factor in _DERIVED]
+    if stale := _unknown_measures(criterion.feedback, known):
+        yield "feedback", f"the feedback says {enumerated(stale)}, which no criterion does"
+    arguments, tolerance = criterion.arguments, criterion.arguments.get("tolerance", 0)
+    if tolerance >= max(_measured_sizes(arguments), default=inf):
+        yield (
+            "with",
+            (
+                f"the tolerance {tolerance:g} is not below what {criterion.check.name} "
+                "measures: anything passes"
+            ),
+        )
+    for key, value in arguments.items():
+        unit = criterion.check.documentation.arguments.get(key, "")
+        if "metres" in unit and tolerance < _LEAST_ANGLE:  # the limits of a slider
+            continue
+        yield from (("with", message) for message in _other_angles(key, unit, [*_numbers(value)]))
+    if rubric.solution is not None and criterion.at and rubric.solution.reading.robot is not None:
+        yield from (("at", message) for message in _beyond_limits(rubric, criterion))
+
+
+def _measured_sizes(arguments: Mapping[str, Any]) -> Iterator[float]:
+    """Yield how large what a check measures is: lengths, a mass, a range, or the distance of a
+    place.
+    """
+    yield from (it for key in _SIZES for it in _numbers(arguments.get(key)) if it > 0)
+    ends = [*_numbers([arguments.get("lower"), arguments.get("upper")])]
+    if len({*ends}) > 1:
+        yield max(ends) - min(ends)
+    if "angle" not in arguments:  # else only the orientation may be meant
+        yield from (
+            max(_NEAR, *map(abs, _numbers(arguments[key]))) for key in _PLACES if key in arguments
+        )
+
+
+def _numbers_given(criterion: Criterion) -> Iterator[float]:
+    """Yield every number that a rubric gives for a criterion, except in its texts."""
+    carried = [one.arguments for one in criterion.carried]
+    yield from _numbers(
+        [criterion.arguments, criterion.at, criterion.args, carried, criterion.choices]
+    )
+
+
+def _numbers(value: Any) -> Iterator[float]:
+    match value:
+        case bool():
+            return
+        case str():
+            yield from map(float, _NUMBER.findall(value))
+        case Mapping():
+            yield from _numbers([*value, *value.values()])
+        case Iterable():
+            for item in value:
+                yield from _numbers(item)
+        case None:
+            return
+        case number:
+            yield float(number)
+
+
+def _unknown_measures(sentence: str, numbers: Sequence[float]) -> list[str]:
+    """Return the measures in a sentence that are none of these numbers, as exact as they are
+    written.
+    """
+    found = []
+    for text, unit in _MEASURE.findall(sentence):
+        digits, scales = len(text.partition(".")[2]), (1.0, *_UNITS.get(unit, _ANGLES))
+        fitting = {round(abs(number) * scale, digits) for number in numbers for scale in scales}
+        if (digits or unit) and abs(float(text)) not in fitting:
+            found.append(text)
+    return found
+
+
+def _other_angles(key: str, unit: str, values: list[float]) -> Iterator[str]:
+    """Yield that angles seem to be radians where degrees are asked, or degrees where radians
+    are.
+    """
+    for value in values:
+        if "in degrees" in unit and _is_like_radians(value):
+            yield (
+                f"{key} is in degrees, and {value:g} looks like radians: "
+                f"{counted(round(degrees(value)), 'degree')}?"
+            )
+        elif "in radians" in unit and abs(value) > 2 * pi + 1e-3:
+            yield f"{key} is in radians, and {value:g} looks like degrees: {radians(value):.4f}?"
+
+
+def _is_like_radians(value: float) -> bool:
+    """Return whether a number is a multiple of 45 degrees in radians; with more decimals of 15, of
+    1.
+    """
+    digits = len(f"{value:.10g}".partition(".")[2])
+    step = radians({2: 45, 3: 15}.get(digits, 1))
+    return (
+        digits >= 2
+        and 0 < abs(value) <= 2 * pi
+        and round(round(value / step) * step, digits) == value
+    )
+
+
+def _beyond_limits(rubric: Rubric, criterion: Criterion) -> Iterator[str]:
+    """Yield positions of joints that the reference's limits exclude, or that seem to be radians."""
+    assert rubric.solution is not None
+    try:
+        found = joints_at(rubric.solution.robot, criterion.at)
+    except (MissingElement, NotDecided):
+        return  # the criterion fails on the reference
+    for joint, value, unit in found:
+        if unit == "degrees":
+            yield from _other_angles(f"at of {joint.name}", "in degrees", [value])
+        if joint.limit is None or joint.type == "continuous":
+            continue
+        ends = (joint.limit.lower, joint.limit.upper)
+        lower, upper = ends if unit == "m" else map(degrees, ends)
+        if not lower - _ROUNDED[unit] <= value <= upper + _ROUNDED[unit]:
+            limits = f"{point((lower,))} to {point((upper,))} {unit}"
+            yield (
+                f"at puts {joint.name} at {value:g} {unit}, outside of its limits in the "
+                f"reference: {limits}"
+            )

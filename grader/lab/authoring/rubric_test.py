@@ -1,0 +1,484 @@
+"""Test a rubric: mutants of its reference must lose points, equivalents nothing, samples what they
+declare.
+
+`Trial` grades changed copies of the reference; `run_rubric_test` counts what becomes of them.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from decimal import Decimal
+from difflib import unified_diff
+from fnmatch import fnmatchcase
+from functools import cached_property, lru_cache
+from pathlib import Path
+from random import Random
+from typing import Any, NamedTuple
+
+from grader.base.errors import InputError
+from grader.base.source import Edit, Source
+from grader.files.reading import URDF_LIMIT
+from grader.lab.authoring.equivalents import Equivalent, RewritingRules, equivalents, is_same_robot
+from grader.lab.authoring.file_equivalents import EVERY_NODE, file_equivalents
+from grader.lab.authoring.mutants import Mutant, MutantEdit, mutants, package_mutants
+from grader.lab.authoring.name_mutants import compared_names, name_changes
+from grader.lab.authoring.samples import Loss, Sample, SampleResults, tested_samples
+from grader.lab.checks.manual import MANUAL_CHECKS
+from grader.lab.grading.deciding import decide
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import Report, Result
+from grader.lab.hints.edits import content, with_files, with_urdf
+from grader.lab.hints.search import is_worse
+from grader.lab.rubric.criterion import Criterion
+from grader.lab.rubric.rubric import Rubric, read_rubric
+from grader.lab.submission.opening import read_submission
+from grader.lab.submission.submission import Submission
+from grader.ros.package.package import MANIFEST
+from grader.ros.package.robot_file import Read
+from grader.ros.urdf.link_tree import JOINT_OF
+from grader.ros.workspace.names import Fact, Family
+
+_WORD = re.compile(r"[\w@:.-]+")
+_TEXTS = (
+    ".py",
+    ".xml",
+    ".yaml",
+    ".yml",
+    ".rviz",
+    ".launch",
+    ".cfg",
+    ".json",
+    ".txt",
+    ".world",
+    ".sdf",
+)
+_OF_ROBOT = (".urdf", ".xacro")
+_MESHES = (".stl", ".dae", ".obj")
+
+
+# Documents, pictures, and the tests of a package.
+_NO_PART_OF_LAB = re.compile(
+    r"(?i)(^|/)(tests?|docs?)/|(^|/)(license|readme|changelog|contributing)[^/]*$|\.(md|pdf|docx|png|jpe?g|gif|svg)$"
+)
+_MAX_EMPTIED = 100  # files
+_MAX_MUTANTS = 5000  # of larger robots a sample is graded
+_CONTEXT = 2  # lines around a change
+_Progress = Callable[[int, int], None]  # how many submissions of how many are graded
+
+
+class MutantOutcome(NamedTuple):
+    """What the criteria made of a mutant: those that fail, and the faulty ones."""
+
+    mutant: Mutant
+    fate: str  # caught, same, survived or faulty
+    failed: tuple[str, ...] = ()
+    faults: Mapping[str, str] = {}
+
+
+class Trial:
+    """The reference of a rubric, graded. Manual checks and adjusted criteria do not count."""
+
+    def __init__(self, rubric: Rubric) -> None:
+        if rubric.solution is None:
+            missing = 'has no reference: add reference = "FOLDER" with a correct solution'
+            raise InputError(f"the rubric {rubric.id} {missing}")
+        self.rubric, self.reference = rubric, rubric.solution.submission
+        self.report = grade(rubric, self.reference)
+        counting = (found for found in self.report.results if not found.is_adjusted)
+        own = (found for found in counting if found.criterion.check.function not in MANUAL_CHECKS)
+        self.expected: Mapping[str, Result] = {found.criterion.id: found for found in own}
+
+    @cached_property
+    def tested(self) -> list[Criterion]:
+        """The criteria that the reference passes."""
+        return [
+            found.criterion for found in self.expected.values() if found.outcome.status == "passed"
+        ]
+
+    @cached_property
+    def kept(self) -> set[str]:
+        """The names that the rubric and the text files around the URDF refer to."""
+        found = set(_names_in(self.rubric))
+        for path, file in self.reference.whole_tree.files.items():
+            if path.lower().endswith(_TEXTS) and file.size <= URDF_LIMIT:
+                found |= set(_WORD.findall(self.text(path)))
+        return found
+
+    @cached_property
+    def robot_files(self) -> tuple[str, ...]:
+        """The URDF and the xacro files that it includes."""
+        if not isinstance(self.reference.urdf, Read):
+            return ()
+        found = [self.reference.urdf.path]
+        others = [
+            path for path in self.reference.whole_tree.files if path.lower().endswith(_OF_ROBOT)
+        ]
+        for path in found:  # grows
+            text = self.text(path)
+            found += [
+                other for other in others if other not in found and other.rpartition("/")[2] in text
+            ]
+        return tuple(found)
+
+    def text(self, path: str) -> str:
+        """Return the text of a file of the reference."""
+        return (content(self.reference, path) or b"").decode("utf-8", "surrogateescape")
+
+    def unexamined(self) -> tuple[list[str], int]:
+        """Return the files that may be emptied without a difference for any criterion, and how many
+        were tried.
+        """
+        files = self.reference.whole_tree.files.items()
+        tried = [path for path, file in files if file.size and not _NO_PART_OF_LAB.search(path)][
+            :_MAX_EMPTIED
+        ]
+        return [path for path in tried if not self._is_examined(path)], len(tried)
+
+    def _is_examined(self, path: str) -> bool:
+        if any(edit.path == path for _, edit in self._names):
+            return True
+        try:
+            emptied = with_files(self.reference, {path: b""})
+        except InputError:
+            return True
+        results = decide(self.rubric, emptied, self.expected)
+        return any(
+            it.outcome.status != self.expected[it.criterion.id].outcome.status for it in results
+        )
+
+    def mutants(self) -> Iterator[Mutant]:
+        """Yield the mutants of the robot, and those of the package that a criterion may look at."""
+        hidden = [
+            one.arguments.get("link", "")
+            for one in self.tested
+            if one.check.name == "shows_nothing"
+        ]
+        for path in self.robot_files:
+            yield from mutants(self.text(path), path, hidden)
+        package, urdf = self.reference.package, self.reference.urdf
+        if package is not None:
+            robot = urdf.reading.robot if isinstance(urdf, Read) else None
+            links = [link.name for link in robot.links] if robot is not None else []
+            packages = [
+                it for it in self.reference.lab_packages.values() if it.folder != package.folder
+            ]
+            for one in (package, *packages):
+                prefix = "" if one is package else f"{one.name}/"
+                made = package_mutants(one, links, self.text, self._name_changes, prefix=prefix)
+                yield from filter(self._is_looked_at, made)
+
+    def _name_changes(self, source: Source, label: str) -> Iterable[MutantEdit]:
+        """Return the changes of names and values in a file, if a criterion compares them."""
+        is_compared = any(it.check.name in ("names_agree", "parameter_is") for it in self.tested)
+        return name_changes(source, label, self._names, self._families) if is_compared else ()
+
+    @cached_property
+    def _families(self) -> tuple[Family, ...]:
+        """The families of names that have to agree."""
+        return tuple(it.arguments["of"] for it in self.tested if it.check.name == "names_agree")
+
+    @cached_property
+    def _names(self) -> list[tuple[Fact, Edit]]:
+        return [*compared_names(self.reference, self._families)]
+
+    def _is_looked_at(self, mutant: Mutant) -> bool:
+        """Return whether a criterion may look at a mutant of a package: some look at its name or at
+        meshes only.
+        """
+        subjects = {criterion.check.subject for criterion in self.tested}
+        if "package" in subjects:
+            return True
+        if mutant.path.lower().endswith(_MESHES):
+            return any(criterion.check.name == "shows_mesh" for criterion in self.tested)
+        return "submission" in subjects and mutant.path.endswith(MANIFEST)
+
+    def submission(self, mutant: Mutant) -> Submission | None:
+        """Return the reference with a mistake; None where nothing of it can be read any more."""
+        data = mutant.applied(self.text(mutant.path)).encode("utf-8", "surrogateescape")
+        if self._is_of_robot(mutant):
+            return with_urdf(self.reference, {mutant.path: data})
+        renamed = {mutant.renamed: content(self.reference, mutant.path)} if mutant.renamed else {}
+        try:
+            return with_files(
+                self.reference, {mutant.path: None if mutant.is_deleted else data, **renamed}
+            )
+        except InputError:
+            return None
+
+    def results(self, mutant: Mutant, submission: Submission) -> list[Result]:
+        """Return the results of the criteria that a mutant can change: of the robot only the URDF
+        is read again.
+        """
+        is_of_robot = self._is_of_robot(mutant)
+        subjects = {name: found.criterion.check.subject for name, found in self.expected.items()}
+        names = [
+            name for name, subject in subjects.items() if not is_of_robot or subject != "package"
+        ]
+        return [*decide(self.rubric, submission, names)]
+
+    def _is_of_robot(self, mutant: Mutant) -> bool:
+        return mutant.path in self.robot_files and not mutant.is_deleted
+
+    def is_lost(self, result: Result) -> bool:
+        """Return whether a criterion has less than on the reference."""
+        return is_worse(self.expected[result.criterion.id], result)
+
+    def outcome(self, mutant: Mutant) -> MutantOutcome:
+        """Grade a mutant."""
+        submission = self.submission(mutant)
+        if submission is None:
+            return MutantOutcome(mutant, "caught")
+        results = self.results(mutant, submission)
+        faults = {
+            found.criterion.id: found.outcome.message
+            for found in results
+            if found.outcome.status == "errored"
+        }
+        is_of_robot = self._is_of_robot(mutant)
+        if faults:
+            fate = "faulty"
+        elif any(map(self.is_lost, results)):
+            fate = "caught"
+        elif is_of_robot and is_same_robot(self.reference.urdf, submission.urdf, self.kept):
+            fate = "same"
+        else:
+            fate = "survived"
+        failed = tuple(found.criterion.id for found in results if found.outcome.status == "failed")
+        return MutantOutcome(mutant, fate, failed, faults)
+
+    def equivalents(self) -> Iterator[Loss]:
+        """Yield what each rewriting of the reference loses: most lose nothing."""
+        urdf = self.reference.urdf
+        if (
+            isinstance(urdf, Read)
+            and urdf.loaded.verdict == "clean"
+            and urdf.reading.root is not None
+        ):
+            has_places = any(
+                name.startswith("@") and not name.startswith(JOINT_OF)
+                for name in _names_in(self.rubric)
+            )
+            for found in equivalents(urdf.reading.root, RewritingRules(self.kept, has_places)):
+                submission = _rewritten(self.reference, urdf, found)
+                lost = self._lost(submission, self._must_pass(submission, found.family))
+                diff = _text_diff(self.robot_files[0], found.before, found.text) if lost else ""
+                yield Loss(found.family, lost, diff)
+        for family, texts in file_equivalents(self.reference):
+            names = [
+                it.id for it in self.tested if family != EVERY_NODE or it.check.name != "entry_is"
+            ]
+            lost = self._lost(
+                with_files(self.reference, {path: it.encode() for path, it in texts.items()}), names
+            )
+            diffs = (_text_diff(path, self.text(path), text) for path, text in texts.items())
+            yield Loss(family, lost, "\n".join(diffs))
+
+    def _lost(self, submission: Submission, names: Collection[str]) -> Mapping[str, str]:
+        """Return the criteria that lose points, with their messages."""
+        results = decide(self.rubric, submission, names)
+        return {it.criterion.id: it.outcome.message for it in results if self.is_lost(it)}
+
+    def _must_pass(self, submission: Submission, family: str) -> Collection[str]:
+        """Return the criteria on the robot that must still pass; for a URDF on its own, those that
+        need no package.
+        """
+        others = ("package", "submission") if submission.is_single else ("package",)
+        asked = (it for it in self.tested if it.check.subject not in others)
+        return [it.id for it in asked if family not in it.check.about.breaks_under(it.arguments)]
+
+
+def _rewritten(reference: Submission, urdf: Read, equivalent: Equivalent) -> Submission:
+    """Return the reference with another text of its robot; a URDF that becomes xacro is graded on
+    its own.
+    """
+    data = equivalent.text.encode()
+    if not equivalent.is_xacro or (urdf.is_expanded and urdf.as_it_stands is None):
+        return with_urdf(reference, {urdf.path: data})
+    name = urdf.path.rpartition("/")[2]
+    return read_submission(data, identity=reference.id, path=f"{name.removesuffix('.xacro')}.xacro")
+
+
+def _names_in(rubric: Rubric) -> Iterator[str]:
+    """Yield every text in the arguments of a rubric's checks, also keys of tables, and the joints
+    that it poses.
+    """
+    for it in rubric.criteria:
+        yield from _texts_in((it.arguments, it.at, [one.arguments for one in it.carried]))
+
+
+def _texts_in(value: Any) -> Iterator[str]:
+    if isinstance(value, Mapping):
+        value = [*value, *value.values()]
+    if isinstance(value, str):
+        yield value
+        yield from re.findall(rf"{JOINT_OF}([^']+)", value)
+    elif isinstance(value, Iterable):
+        for item in value:
+            yield from _texts_in(item)
+
+
+_GradeAll = Callable[[Sequence[Mutant]], Iterable[MutantOutcome]]  # in any order
+
+
+class _Survivor(NamedTuple):
+    """A mutant that loses nothing: its diff, and why the rubric ignores it."""
+
+    mutant: Mutant
+    diff: str
+    reason: str = ""
+
+
+class RubricTest(NamedTuple):
+    """The result of testing a rubric."""
+
+    reference: Report
+    total: int  # mutants that exist
+    tried: int  # mutants that were graded
+    caught: int  # mutants that lose points
+    same: int  # mutants that are the same robot
+    survivors: tuple[_Survivor, ...]  # mutants that lose nothing
+    ignored: tuple[_Survivor, ...]  # mutants that lose nothing, and that the rubric ignores
+    unused: tuple[str, ...]  # patterns of [[test.ignore]] that match no mutant
+    idle: tuple[str, ...]  # criteria that no mutant fails
+    unexamined: tuple[str, ...]  # files that no criterion looks at
+    files: int  # how many were tried
+    faults: tuple[Loss, ...]  # mutants on which a check is faulty
+    equivalents: tuple[str, ...]  # the families that were tried
+    losses: tuple[Loss, ...]  # equivalents that lose points
+    samples: SampleResults | None = None  # None where no folder was given
+
+    @property
+    def score(self) -> Decimal:
+        """The mutation score: the share of the mutants that lose points, in percent, without those
+        that are ignored.
+        """
+        count = self.caught + len(self.survivors)
+        return Decimal(100 * self.caught) / count if count else Decimal(100)
+
+    @property
+    def lost(self) -> tuple[str, ...]:
+        """The criteria that the reference does not pass, without extra credit and those for manual
+        grading.
+        """
+        return tuple(found.criterion.id for found in self.reference.unearned)
+
+    @property
+    def is_faulty(self) -> bool:
+        """Return whether a check failed to give an outcome, on the reference or a mutant."""
+        return bool(self.faults) or self.reference.fault != ""
+
+    @property
+    def is_sound(self) -> bool:
+        """Return whether no correct robot loses anything, and each sample what it should."""
+        return not (
+            self.lost or self.losses or (self.samples is not None and self.samples.different)
+        )
+
+
+def run_rubric_test(
+    rubric: Rubric, samples: list[Sample] | None, progress: _Progress, grade_all: _GradeAll
+) -> RubricTest:
+    """Return the test of a rubric. Raises InputError without a readable reference, RubricError for
+    wrong samples.
+
+    `grade_all` grades mutants elsewhere, as `mutant_outcomes` does.
+    """
+    trial = Trial(rubric)
+    every = [*trial.mutants()]
+    chosen = every if len(every) <= _MAX_MUTANTS else Random(0).sample(every, _MAX_MUTANTS)
+    total = len(chosen) + len(samples or ())
+    of_samples = (
+        tested_samples(rubric, samples, lambda done: progress(done, total))
+        if samples is not None
+        else None
+    )
+    outcomes = []
+    for outcome in grade_all(chosen):
+        outcomes.append(outcome)
+        progress(len(samples or ()) + len(outcomes), total)
+    return _counted(trial, every, outcomes, of_samples)
+
+
+def mutant_outcomes(data: bytes, path: str, mutants: Sequence[Mutant]) -> list[MutantOutcome]:
+    """Grade mutants of the reference of the rubric in a file."""
+    return [*map(_trial_from(data, path).outcome, mutants)]
+
+
+@lru_cache(maxsize=1)
+def _trial_from(data: bytes, path: str) -> Trial:
+    return Trial(read_rubric(data, Path(path)))
+
+
+def _counted(
+    trial: Trial,
+    every: Sequence[Mutant],
+    outcomes: Iterable[MutantOutcome],
+    samples: SampleResults | None,
+) -> RubricTest:
+    """Return the result of a test: `outcomes` are those of the mutants that were graded, in any
+    order.
+    """
+    places = {mutant: place for place, mutant in enumerate(every)}
+    graded = sorted(outcomes, key=lambda outcome: places[outcome.mutant])
+    fates = Counter(outcome.fate for outcome in graded)
+    survivors = [
+        _survivor(trial, outcome.mutant) for outcome in graded if outcome.fate == "survived"
+    ]
+    failed = {name for outcome in graded for name in outcome.failed}
+    patterns = [pattern for row in trial.rubric.ignored for pattern in row.mutants]
+    tried, (unexamined, files) = [*trial.equivalents()], trial.unexamined()
+    return RubricTest(
+        reference=trial.report,
+        total=len(every),
+        tried=len(graded),
+        caught=fates["caught"],
+        same=fates["same"],
+        survivors=tuple(it for it in survivors if not it.reason),
+        ignored=tuple(it for it in survivors if it.reason),
+        unused=tuple(it for it in patterns if not any(_matches(mutant, it) for mutant in every)),
+        idle=tuple(one.id for one in trial.tested if one.id not in failed),
+        unexamined=tuple(unexamined),
+        files=files,
+        faults=tuple(
+            Loss(it.mutant.id, it.faults, _mutant_diff(trial, it.mutant))
+            for it in graded
+            if it.fate == "faulty"
+        ),
+        equivalents=tuple(it.name for it in tried),
+        losses=tuple(it for it in tried if it.criteria),
+        samples=samples,
+    )
+
+
+def _survivor(trial: Trial, mutant: Mutant) -> _Survivor:
+    """Return a mutant that loses nothing, with the reason for which the rubric ignores it."""
+    ignored = trial.rubric.ignored
+    reasons = (
+        row.reason for row in ignored if any(_matches(mutant, pattern) for pattern in row.mutants)
+    )
+    return _Survivor(mutant, _mutant_diff(trial, mutant), next(reasons, ""))
+
+
+def _mutant_diff(trial: Trial, mutant: Mutant) -> str:
+    if mutant.is_deleted:
+        return (
+            f"rename {mutant.path} to {mutant.renamed}"
+            if mutant.renamed
+            else f"delete {mutant.path}"
+        )
+    text = trial.text(mutant.path)
+    return _text_diff(mutant.path, text, mutant.applied(text))
+
+
+def _text_diff(path: str, before: str, after: str) -> str:
+    """Return the unified diff of two texts of a file, without a line break at its end."""
+    return "\n".join(
+        unified_diff(before.splitlines(), after.splitlines(), path, path, n=_CONTEXT, lineterm="")
+    )
+
+
+def _matches(mutant: Mutant, pattern: str) -> bool:
+    """Return whether a pattern is a mutant's id or matches it: brackets in an id are a set of
+    characters to fnmatch.
+    """
+    return mutant.id == pattern or fnmatchcase(mutant.id, pattern)

@@ -1,0 +1,263 @@
+"""Checks of the collision shapes of a link."""
+
+from collections.abc import Sequence
+from math import hypot, inf
+
+from grader.base.errors import MissingElement, NotDecided, RubricError
+from grader.base.pairing import most_pairs
+from grader.base.text import counted
+from grader.lab.checks.check import About
+from grader.lab.checks.outcome import (
+    SLACK,
+    Outcome,
+    failed,
+    in_degrees,
+    in_millimetres,
+    passed,
+    place,
+    point,
+)
+from grader.lab.checks.toml_types import NonNegative, RadiusAndLength, Size
+from grader.lab.checks.visuals import MAX_SHAPES, file_name, visuals
+from grader.ros.urdf.kinematics import Configuration, placed_by
+from grader.ros.urdf.model import Box, Collision, Cylinder, Geometry, Mesh, Origin, Sphere, Visual
+from grader.ros.urdf.shapes import Mismatch, Shape, is_empty, mismatch, turn_between
+from grader.ros.urdf.transforms import IDENTITY, Vector, minus
+
+ABOUT = {
+    "collision_matches_visual": About(("collision",)),
+    "collides_as": About(("collision",)),
+}
+
+_ZERO: Vector = (0.0, 0.0, 0.0)
+_MESH_ANGLE = 1.0  # degrees that a mesh may be turned, because its size is not known
+
+
+def collision_matches_visual(robot: Configuration, *, link: str, tolerance: NonNegative) -> Outcome:
+    """The collision shapes of a link are the shapes that it shows, each in its place.
+
+    They are compared as solids: turning a cylinder about its axis changes nothing. Shapes without a
+    size do not count. A negative size differs from a positive one, because simulators refuse it. A
+    mesh is the same if it is the same file at the same scale and pose; whether another file has the
+    same shape needs manual grading.
+
+    Args:
+        link: The link that is examined.
+        tolerance: How far a centre, a size or a point of the surface may be off, in metres.
+    """
+    shown = visuals(robot, link)
+    solid = _solid_collisions(robot, link, "the shapes that it shows")
+    if max(len(shown), len(solid)) > MAX_SHAPES:
+        raise NotDecided(
+            f"{link!r} has more than {MAX_SHAPES} shapes", "a link has very many shapes"
+        )
+    partners = most_pairs(
+        [
+            [
+                index
+                for index, other in enumerate(solid)
+                if _fits(_mismatch(visual, other, tolerance), tolerance)
+            ]
+            for visual in shown
+        ]
+    )
+    lonely = [visual for index, visual in enumerate(shown) if index not in partners.values()]
+    others = [collision for index, collision in enumerate(solid) if index not in partners]
+    if not lonely and not others:
+        return passed(f"{link!r} has {counted(len(solid), 'collision shape')}, as shown")
+    if not lonely:
+        message = (
+            f"{link!r} has a collision shape that it does not show: {_describe_shape(others[0])}"
+        )
+        return failed(message, others[0].location)
+    if not others:
+        return failed(
+            f"no collision shape of {link!r} is {_describe_shape(lonely[0])}, as shown",
+            lonely[0].location,
+        )
+    return _judge_unmatched(link, lonely, others, tolerance)
+
+
+def collides_as(
+    robot: Configuration,
+    *,
+    link: str,
+    tolerance: NonNegative,
+    box: Size | None = None,
+    cylinder: RadiusAndLength | None = None,
+    sphere: NonNegative | None = None,
+    xyz: Vector | None = None,
+    rpy: Vector | None = None,
+    relative_to: str = "",
+    only: bool = False,
+) -> Outcome:
+    """A link collides as a box, a cylinder or a sphere of the given size in the given place.
+
+    Exactly one of `box`, `cylinder` and `sphere` is given. They are compared as solids: turning a
+    cylinder about its axis changes nothing. Shapes without a size do not count.
+
+    Args:
+        link: The link that is examined.
+        tolerance: How far the centre, a size or a point of the surface may be off, in metres.
+        box: The lengths of the edges along the box's own x, y and z axes, in metres.
+        cylinder: The radius and the length, in metres.
+        sphere: The radius, in metres.
+        xyz: The centre, in metres.
+        rpy: The orientation: roll, pitch and yaw about fixed axes, in radians.
+        relative_to: The link in whose frame the place is given, by default the link itself.
+        only: Whether the link has no other collision shape.
+    """
+    shapes: list[Shape] = []
+    if box is not None:
+        shapes.append(Box(box))
+    if cylinder is not None:
+        shapes.append(Cylinder(*cylinder))
+    if sphere is not None:
+        shapes.append(Sphere(sphere))
+    if len(shapes) != 1:
+        raise RubricError(("collides_as takes exactly one of box, cylinder and sphere",))
+    [wanted] = shapes
+    what = _shape_text(wanted)
+    what += f" at {point(xyz)} m" if xyz else ""
+    what += f" with rpy = {point(rpy)} (radians)" if any(rpy or ()) else ""
+    what += f" in {relative_to!r}" if relative_to else ""
+    T_link_wanted = placed_by(
+        robot.pose(relative_to or link, relative_to=link), Origin(xyz or _ZERO, rpy or _ZERO)
+    )
+
+    def off(collision: Collision) -> Mismatch | None:
+        if isinstance(collision.geometry, Mesh):
+            return None
+        T_link_shape, is_turned = placed_by(IDENTITY, collision.origin), rpy is not None
+        found = mismatch(
+            wanted,
+            T_link_wanted,
+            collision.geometry,
+            T_link_shape,
+            tolerance + SLACK,
+            turned=is_turned,
+        )
+        return found if found is None or xyz is not None else found._replace(apart=0.0)
+
+    solid = _solid_collisions(robot, link, what)
+    fitting = next((one for one in solid if _fits(off(one), tolerance)), None)
+    if fitting is None:
+        nearest = min(solid, key=lambda one: _rank_mismatch(off(one)))
+        return _fail_with_nearest(
+            f"no collision shape of {link!r} is {what}", nearest, off(nearest), tolerance
+        )
+    other = next((one for one in solid if one is not fitting), None)
+    if only and other is not None:
+        message = (
+            f"{link!r} has another collision shape, {_describe_shape(other)}; it should have "
+            f"only {what}"
+        )
+        return failed(message, other.location)
+    return passed(f"{link!r} collides as {what}")
+
+
+def _solid_collisions(robot: Configuration, link: str, expected: str) -> tuple[Collision, ...]:
+    """Return the collision shapes of a link that have a size; raise MissingElement if there is
+    none.
+    """
+    solid = tuple(
+        collision for collision in robot.link(link).collisions if not is_empty(collision.geometry)
+    )
+    if not solid:
+        message = f"link {link!r} has no collision shape with a size; it should have {expected}"
+        raise MissingElement(
+            "collision", link, message=message, location=place(robot.link(link).location)
+        )
+    return solid
+
+
+def _fits(off: Mismatch | None, tolerance: float) -> bool:
+    return off is not None and off.largest <= tolerance + SLACK
+
+
+def _mismatch(visual: Visual, collision: Collision, tolerance: float) -> Mismatch | None:
+    """Return how far two shapes differ; None for shapes of different kinds, and for different
+    meshes.
+    """
+    a, b = visual.geometry, collision.geometry
+    T_link_a, T_link_b = placed_by(IDENTITY, visual.origin), placed_by(IDENTITY, collision.origin)
+    if not isinstance(a, Mesh) and not isinstance(b, Mesh):
+        return mismatch(a, T_link_a, b, T_link_b, tolerance + SLACK)
+    if a != b:
+        return None
+    angle = turn_between(T_link_a.rotation, T_link_b.rotation)
+    apart = hypot(*minus(T_link_a.translation, T_link_b.translation))
+    return Mismatch(apart, 0.0, 0.0 if angle <= _MESH_ANGLE else inf, angle)
+
+
+def _judge_unmatched(
+    link: str, lonely: Sequence[Visual], others: Sequence[Collision], tolerance: float
+) -> Outcome:
+    """Return the outcome for visuals without a collision shape, and collision shapes without a
+    visual.
+    """
+    files = {visual.geometry.filename for visual in lonely if isinstance(visual.geometry, Mesh)}
+    meshes = [collision.geometry for collision in others if isinstance(collision.geometry, Mesh)]
+    if len(meshes) == len(others) and all(isinstance(visual.geometry, Mesh) for visual in lonely):
+        unknown = next((mesh for mesh in meshes if mesh.filename not in files), None)
+        if unknown is not None:
+            cause = "mesh files are not opened"
+            what = (
+                f"whether the collision mesh {file_name(unknown.filename)} of {link!r} has the "
+                "shape that is shown"
+            )
+            raise NotDecided(f"{what} cannot be determined: {cause}", cause)
+    pairs = [
+        (_mismatch(visual, other, tolerance), visual, other)
+        for visual in lonely
+        for other in others
+    ]
+    off, visual, nearest = min(pairs, key=lambda pair: _rank_mismatch(pair[0]))
+    return _fail_with_nearest(
+        f"no collision shape of {link!r} is {_describe_shape(visual)}, as shown",
+        nearest,
+        off,
+        tolerance,
+    )
+
+
+def _rank_mismatch(off: Mismatch | None) -> tuple[bool, float]:
+    """Return the order of pairs: those of one kind first, then by the difference."""
+    return off is None, 0.0 if off is None else min(off.apart + off.size + min(off.turn, 1e9), inf)
+
+
+def _fail_with_nearest(
+    message: str, nearest: Collision, off: Mismatch | None, tolerance: float
+) -> Outcome:
+    """Return a failure that says how the nearest shape differs from the one that should be, at the
+    place to look at.
+    """
+    message += f"; the nearest is {_describe_shape(nearest)}"
+    if off is None:
+        return failed(message, nearest.geometry.location or nearest.location)
+    found = [
+        (f"{in_millimetres(off.apart)} away", off.apart, nearest.origin.location, "xyz"),
+        (f"of a size {in_millimetres(off.size)} off", off.size, nearest.geometry.location, None),
+        (f"rotated by {in_degrees(off.angle)}", off.turn, nearest.origin.location, "rpy"),
+    ]
+    wrong = [row for row in found if not row[1] <= tolerance + SLACK]
+    text = " and ".join(text for text, *_ in wrong)
+    return failed(f"{message} ({text})", place(wrong[0][2], wrong[0][3]) or nearest.location)
+
+
+def _describe_shape(element: Visual | Collision) -> str:
+    """Return a shape with its sizes, and its place in the link."""
+    return f"{_shape_text(element.geometry)} at {point(element.origin.xyz)} m"
+
+
+def _shape_text(geometry: Geometry) -> str:
+    match geometry:
+        case Box(size=size):
+            return f"a box {point(size)} m"
+        case Cylinder(radius=radius, length=length):
+            return f"a cylinder of radius {point((radius,))} m and length {point((length,))} m"
+        case Sphere(radius=radius):
+            return f"a sphere of radius {point((radius,))} m"
+        case mesh:
+            scaled = "" if mesh.scale == Mesh("").scale else f" scaled by {point(mesh.scale)}"
+            return f"the mesh {file_name(mesh.filename)}{scaled}"

@@ -1,0 +1,122 @@
+"""Checks of contact between two links: one rests on the other, or does not cut into it."""
+
+from itertools import product
+from operator import itemgetter
+
+from grader.base.errors import NotDecided
+from grader.lab.checks.check import About
+from grader.lab.checks.outcome import (
+    SLACK,
+    Outcome,
+    difference,
+    in_millimetres,
+    judged,
+    place,
+    point,
+    within,
+)
+from grader.lab.checks.toml_types import NonNegative
+from grader.lab.checks.visuals import ShapeName, main_visual, origin_place, visual_pose, visuals
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Box, Geometry, Mesh
+from grader.ros.urdf.overlap import penetration
+from grader.ros.urdf.shapes import UnknownShape, extent
+from grader.ros.urdf.transforms import X_AXIS, Z_AXIS, Transform, Vector
+
+ABOUT = dict.fromkeys(("stands_on", "clear_of"), About(picture="outline"))
+
+_LEFT: Vector = (0.0, 1.0, 0.0)
+_MAX_PAIRS = 2_000
+
+
+def stands_on(
+    robot: Configuration, *, link: str, on: str, tolerance: NonNegative, shape: ShapeName = "any"
+) -> Outcome:
+    """The visuals of a link stand on the top of another link's visual: no gap, no overlap, within
+    its outline.
+
+    Args:
+        link: The link that stands on the other.
+        on: The link that it stands on.
+        tolerance: How large a gap, an overlap and the part beyond the outline may each be, in
+            metres.
+        shape: Which of several visuals of the lower link counts: the largest of this shape or,
+            without one, of all.
+    """
+    support = main_visual(robot, on, shape)
+    T_on_support = visual_pose(robot, on, support, on)
+    placed = [
+        (visual.geometry, visual_pose(robot, link, visual, on)) for visual in visuals(robot, link)
+    ]
+    bottom = min(extent(geometry, pose, Z_AXIS)[0] for geometry, pose in placed)
+    _, top = extent(support.geometry, T_on_support, Z_AXIS)
+    beyond = _overhang(placed, support.geometry, T_on_support)
+    message = f"{link!r} stands on the top of {on!r}, at z = {point((top,))} m in {on!r}"
+    touches = within(bottom, top, tolerance)
+    fine = touches and beyond <= tolerance + SLACK
+    if not touches:
+        message = (
+            f"the bottom of {link!r} is at z = {point((bottom,))} m in {on!r}; it should be at "
+            f"the top of {on!r}"
+        )
+        message += f", {point((top,))} m ({difference(bottom - top, 'too high', 'too low')})"
+    elif not fine:
+        message = f"{link!r} reaches {in_millimetres(beyond)} beyond the edge of the top of {on!r}"
+    at = origin_place(robot, link) if touches else None  # either of the two may be wrong
+    return judged(fine, message, bottom, top, tolerance, "m", at=at)
+
+
+def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative) -> Outcome:
+    """No visual of a link cuts into a visual of another by more than the tolerance, in metres;
+    touching passes.
+
+    Args:
+        link: The link that is examined.
+        of: The other link.
+        tolerance: How deep the visuals may overlap, in metres.
+    """
+    own = [(visual, visual_pose(robot, link, visual, of)) for visual in visuals(robot, link)]
+    others = [
+        (visual.geometry, visual_pose(robot, of, visual, of)) for visual in visuals(robot, of)
+    ]
+    if len(own) * len(others) > _MAX_PAIRS:
+        raise NotDecided(f"{link!r} and {of!r} show too many shapes to compare", "too many shapes")
+    deepest, culprit = 0.0, own[0][0]
+    unknown: Mesh | None = None
+    for (visual, pose), (geometry, other) in product(own, others):
+        if isinstance(visual.geometry, Mesh):
+            unknown = visual.geometry
+        elif isinstance(geometry, Mesh):
+            unknown = geometry
+        else:
+            depth = penetration(visual.geometry, pose, geometry, other, allowed=tolerance)
+            deepest, culprit = max((deepest, culprit), (depth, visual), key=itemgetter(0))
+    fine = deepest <= tolerance
+    if fine and unknown is not None:
+        raise UnknownShape(unknown)
+    message = (
+        f"{link!r} does not overlap {of!r}"
+        if fine
+        else f"{link!r} overlaps {of!r} by {in_millimetres(deepest)}"
+    )
+    at = place(culprit.origin.location, "xyz") or place(culprit.location)
+    return judged(fine, message, round(deepest, 4), 0.0, tolerance, "m", at=at)
+
+
+def _overhang(
+    placed: list[tuple[Geometry, Transform]], support: Geometry, T_on_support: Transform
+) -> float:
+    """Return how far shapes reach beyond the outline of the one below, seen from above, in
+    metres.
+    """
+    directions = [X_AXIS, _LEFT]
+    if isinstance(support, Box):  # its own edges: it may be turned about the vertical
+        axes = [T_on_support.rotate(axis) for axis in (X_AXIS, _LEFT, Z_AXIS)]
+        directions = sorted(axes, key=lambda axis: abs(axis[2]))[:2]
+    beyond = 0.0
+    for direction in directions:
+        low, high = extent(support, T_on_support, direction)
+        for geometry, pose in placed:
+            lowest, highest = extent(geometry, pose, direction)
+            beyond = max(beyond, low - lowest, highest - high)
+    return beyond

@@ -1,0 +1,461 @@
+"""The check of the entries of a file: of the expanded robot, of YAML, SDF, SRDF and package.xml."""
+
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from copy import deepcopy
+from typing import Annotated, Any, NamedTuple
+
+from grader.base.errors import MissingElement, NotDecided
+from grader.base.names import did_you_mean
+from grader.base.pairing import most_pairs
+from grader.base.source import LazyLocation
+from grader.base.text import enumerated, first_lines, quoted
+from grader.lab.checks.check import About
+from grader.lab.checks.outcome import Outcome, failed, passed
+from grader.lab.checks.toml_types import Constraint, Content, NonNegative, Scalar
+from grader.lab.submission.submission import Submission
+from grader.ros.package.package import Package
+from grader.ros.package.trees import Entry, Search, Step, is_path, read_tree, steps_of, xml_entry
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.link_tree import selected_name
+from grader.ros.urdf.reader import Reading
+from grader.ros.xml.elements import matches_value, name_of, readable, xml_text
+from grader.ros.xml.parsing import Element
+from grader.ros.xml.urdf_format import numbers_in
+
+_ROBOT, _IN_ROBOT = "robot", "directly in <robot>"
+_READ_BY_ROS = ("link", "joint", "material")
+_PARTS = ("inertial", "visual", "collision")  # of a link
+_IDENTIFYING = ("@name", "@reference", "@filename", "@type")  # the first that a rubric gives
+_MAX_NAMED = 5  # entries and values in a message
+_SLACK = 1e-12  # a tolerance includes its end
+_Path = Annotated[str, Constraint("a path such as gazebo[@reference='lidar']/sensor", is_path)]
+
+
+def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
+    """The text of an element that ROS 2 reads is compared, not what it means."""
+    frames = ("fixed joints split", "frames moved")
+    steps = steps_of(arguments.get("at") or "", is_xml=True)
+    is_read = (
+        arguments.get("file", _ROBOT) == _ROBOT and bool(steps) and steps[0].name in _READ_BY_ROS
+    )
+    return (*frames, "links renamed", "joints renamed") if is_read else ()
+
+
+def entry_is(
+    robot: Configuration,
+    submission: Submission,
+    *,
+    file: str = _ROBOT,
+    at: _Path = "",
+    value: Content | None = None,
+    one_of: list[Scalar] | None = None,
+    has: list[Scalar] | None = None,
+    values: Mapping[str, Content] | None = None,
+    tolerance: NonNegative = 1e-6,
+) -> Outcome:
+    """The expanded robot, or a file of the package, has an entry at a path, with the given values.
+
+    The file is YAML, or XML such as SDF, SRDF and package.xml. Numbers, and lists of numbers in a
+    text of XML, are compared as numbers; in XML, true is equal to 1, and false to 0. In YAML, a
+    quoted text is neither a number nor a boolean. Comments do not count. If several entries are at
+    the path, one of them must be as expected.
+
+    Args:
+        file: The end of the path of a file in the package, such as "config/nav.yaml"; "robot" is
+            the expanded robot.
+        at: The path of the entry below the root: in XML "gazebo[@reference='lidar']/sensor/@type",
+            in YAML "ros__parameters.limits.max" or "[ros_topic_name=/scan].gz_type_name". A
+            condition in brackets is a value that the entry contains. A key of YAML may contain
+            dots, and lists are looked through.
+        value: The value of the entry; for a list, the items of a list in YAML, in order, or values
+            of several entries.
+        one_of: Values of which the entry has one.
+        has: Values that the items of a list, or several entries, have in any order.
+        values: What the entry contains: values by their paths in it, such as "camera/image/width"
+            or "plugin/@filename"; a list as for `value`.
+        tolerance: How far a number may be off, in the number's own unit.
+    """
+    assert file == _ROBOT  # else it is _entry_of_file that is called
+    reading = submission.needed_urdf()
+    root = reading.elements
+    if root is None:
+        raise MissingElement(
+            "robot", "", message="the file is not well-formed XML, so it has no elements"
+        )
+    steps = [_with_names(step, robot) for step in steps_of(at, is_xml=True)]
+    wanted = _Wanted(steps, value, one_of, has, values or {}, tolerance)
+    tree = _robot_entry(reading, root)
+    outcome = _judge(tree, wanted, _IN_ROBOT)
+    if outcome.status == "passed":
+        is_dropped = wanted.first.name == "link" and not wanted.found_in(
+            _robot_entry(reading, _kept(robot, root))
+        )
+        if is_dropped:
+            _check_known(reading, tree, wanted)
+            raise _dropped_part(tree, wanted)
+        return outcome
+    _check_known(reading, tree, wanted)
+    return outcome
+
+
+def _entry_of_file(
+    package: Package,
+    *,
+    file: str = _ROBOT,
+    at: str = "",
+    value: Content | None = None,
+    one_of: list[Scalar] | None = None,
+    has: list[Scalar] | None = None,
+    values: Mapping[str, Content] | None = None,
+    tolerance: NonNegative = 1e-6,
+) -> Outcome:
+    """Return whether a file of a package has an entry; the arguments are those of entry_is."""
+    tree = read_tree(package, file)
+    wanted = _Wanted(steps_of(at, is_xml=tree.is_xml), value, one_of, has, values or {}, tolerance)
+    return _judge(tree, wanted, f"directly in <{tree.name}>" if tree.is_xml else f"in {file}")
+
+
+def _function_for(arguments: Mapping[str, Any]) -> Callable[..., Outcome]:
+    """Return what examines the robot, or another file."""
+    return entry_is if arguments.get("file", _ROBOT) == _ROBOT else _entry_of_file
+
+
+ABOUT = {
+    "entry_is": About(
+        ("gazebo", "ros2_control", "transmission", "sensor", "safety_controller", "calibration"),
+        breaks_under=_breaks_under,
+        function_for=_function_for,
+    )
+}
+
+
+class _Wanted(NamedTuple):
+    """What a rubric looks for."""
+
+    steps: list[Step]
+    value: Content | None
+    one_of: list[Scalar] | None
+    has: list[Scalar] | None
+    values: Mapping[str, Content]
+    tolerance: float
+
+    @property
+    def first(self) -> Step:
+        """The first step of the path; an empty one for the root."""
+        return self.steps[0] if self.steps else Step("")
+
+    @property
+    def is_valued(self) -> bool:
+        """Whether more is wanted than that the entry is there."""
+        return bool(self.values) or (self.value, self.one_of, self.has) != (None, None, None)
+
+    @property
+    def identity(self) -> str:
+        """The key of the attribute that identifies one of several elements; empty if the values
+        have none.
+        """
+        return next((key for key in _IDENTIFYING if isinstance(self.values.get(key), str)), "")
+
+    def found_in(self, tree: Entry) -> bool:
+        """Return whether a tree has the entry with its values."""
+        search = Search()
+        found = search.find(tree, self.steps)
+        return (
+            bool(found) and self.has_own(found) and not all(self.wrong(search, it) for it in found)
+        )
+
+    def has_own(self, found: Sequence[Entry]) -> bool:
+        """Return whether the entries at the path have the value themselves, or several of them
+        the values.
+        """
+        items = [item for it in found for item in (it.children if it.is_list else [it])]
+        return (
+            (self.value is None or self._have(found, self.value))
+            and (
+                self.one_of is None
+                or any(self.equals(it, one) for it in found for one in self.one_of)
+            )
+            and (self.has is None or self._are_among(items, self.has))
+        )
+
+    def wrong(self, search: Search, entry: Entry) -> list[str]:
+        """Return the keys of the values that an entry does not contain."""
+        return [
+            key
+            for key, value in self.values.items()
+            if not self._have(_inside(search, entry, key), value)
+        ]
+
+    def nearest(self, search: Search, entries: Sequence[Entry]) -> Entry:
+        """Return the entry with the identifying attribute and the most of the other values."""
+        wrong = {entry: self.wrong(search, entry) for entry in entries}
+        return min(entries, key=lambda entry: (self.identity in wrong[entry], len(wrong[entry])))
+
+    def equals(self, entry: Entry, expected: Scalar) -> bool:
+        """Return whether a text is an expected value; in YAML, one in quotes is no number and no
+        boolean.
+        """
+        if entry.text is None:
+            return False
+        if entry.is_xml or isinstance(expected, str):
+            return matches_value(readable(entry.text), expected, self.tolerance)
+        if entry.is_quoted:
+            return False
+        if isinstance(expected, bool):
+            return entry.text.lower() in (
+                ("true", "yes", "on", "y") if expected else ("false", "no", "off", "n")
+            )
+        numbers = numbers_in(entry.text) or ()
+        return len(numbers) == 1 and abs(numbers[0] - expected) <= self.tolerance + _SLACK
+
+    def _have(self, found: Sequence[Entry], expected: Content) -> bool:
+        """Return whether an entry is a value; for a list, whether one is the list, or several
+        have its items.
+        """
+        if not isinstance(expected, list):
+            return any(self.equals(it, expected) for it in found)
+        lists = [it.children for it in found if it.is_list]
+        is_list = any(
+            len(it) == len(expected) and all(map(self.equals, it, expected)) for it in lists
+        )
+        return is_list or self._are_among(found, expected)
+
+    def _are_among(self, found: Sequence[Entry], expected: Sequence[Scalar]) -> bool:
+        """Return whether each expected value is that of a different entry, in any order."""
+        fitting = [
+            [index for index, it in enumerate(found) if self.equals(it, value)]
+            for value in expected
+        ]
+        return len(most_pairs(fitting)) == len(expected)
+
+
+def _inside(search: Search, entry: Entry, key: str) -> list[Entry]:
+    return search.find(entry, steps_of(key, is_xml=entry.is_xml))
+
+
+def _judge(tree: Entry, wanted: _Wanted, where: str) -> Outcome:
+    search = Search()
+    found = search.find(tree, wanted.steps)
+    if not found:
+        return _no_entry(tree, search, wanted, where)
+    shown = _shown(wanted.steps, tree)
+    if not wanted.has_own(found):
+        return failed(f"{shown} is {_texts(found)}; {_should(wanted)}", found[0].place)
+    best = wanted.nearest(search, found)
+    wrong = wanted.wrong(search, best)
+    if not wrong:
+        return passed(f"there is {shown}{' with the expected values' if wanted.is_valued else ''}")
+    if wanted.identity in wrong and (len(found) > 1 or wanted.identity == "@name"):
+        return _no_identity(tree, search, found, wanted)
+    faults = [_fault_text(key, _inside(search, best, key), wanted.values[key]) for key in wrong]
+    at = next(
+        (
+            it
+            for it in _inside(search, best, wrong[0])
+            if not _is_one(wanted, it, wanted.values[wrong[0]])
+        ),
+        best,
+    )
+    return failed(f"{shown}: {'; '.join(first_lines(faults, _MAX_NAMED))}", at.place)
+
+
+def _is_one(wanted: _Wanted, entry: Entry, value: Content) -> bool:
+    return any(wanted.equals(entry, one) for one in (value if isinstance(value, list) else [value]))
+
+
+def _no_entry(tree: Entry, search: Search, wanted: _Wanted, where: str) -> Outcome:
+    """Return the failure of a path that leads to nothing: at its first step that has no entry,
+    or none that fits.
+    """
+    steps = wanted.steps
+    depth = max(count for count in range(len(steps)) if search.find(tree, steps[:count]))
+    above, step = search.find(tree, steps[:depth])[0], steps[depth]
+    named = search.find(tree, [*steps[:depth], Step(step.name)])
+    shown = _shown(steps[: depth + 1], tree)
+    if step.conditions and named:
+        return _none_fits(search, named, step, shown)
+    if depth or where != _IN_ROBOT:
+        place = f" {where}" if not depth or not tree.is_xml else ""
+        detail = did_you_mean(step.name, filter(None, (it.name for it in above.children)))
+        return failed(f"there is no {shown}{place}", above.place, detail=detail)
+    message = f"there is no <{step.name}> {where}"
+    for above, inside in _nested(tree):
+        if inside.name == step.name:
+            return failed(message, inside.place, detail=f"; there is one in <{above.name}>")
+    meant = did_you_mean(step.name, {it.name for it in tree.children})
+    return failed(message, detail=meant)._replace(absent=() if meant else (shown,))
+
+
+def _nested(entry: Entry) -> Iterator[tuple[Entry, Entry]]:
+    """Yield everything in an entry, each after what it is in."""
+    for child in entry.children:
+        yield entry, child
+        yield from _nested(child)
+
+
+def _none_fits(search: Search, named: Sequence[Entry], step: Step, shown: str) -> Outcome:
+    """Return the failure of entries of which none has the values of the conditions."""
+    rows = [row for it in named for row in (it.children if it.is_list else [it])] or list(named)
+    given = [{key: _inside(search, row, key) for key, _ in step.conditions} for row in rows]
+    texts = [
+        [(key, readable(found[0].text or "")) for key, found in one.items() if found]
+        for one in given
+    ]
+    known = dict.fromkeys(_shown([Step(step.name, tuple(one))], rows[0]) for one in texts)
+    detail = f"; the file has {enumerated([*known], _MAX_NAMED)}"
+    for key, value in step.conditions:
+        detail += did_you_mean(
+            value, [text for one in texts for name, text in one if name == key and text]
+        )
+    return failed(f"there is no {shown}", rows[0].place, detail=detail)
+
+
+def _no_identity(tree: Entry, search: Search, found: Sequence[Entry], wanted: _Wanted) -> Outcome:
+    """Return the failure of elements of which none has the identifying attribute."""
+    names = [it.text or "" for entry in found for it in _inside(search, entry, wanted.identity)]
+    detail = f"; the file has {enumerated([*map(quoted, names)], _MAX_NAMED)}" if names else ""
+    identity = quoted(str(wanted.values[wanted.identity]))
+    message = f"no {_shown(wanted.steps, tree)} has the {wanted.identity!r} {identity}"
+    return failed(message, search.find(tree, wanted.steps[:1])[0].place, detail=detail)
+
+
+def _shown(steps: Sequence[Step], tree: Entry) -> str:
+    """Return a path in words: <sensor> in <gazebo reference="lidar">; 'limits.max'."""
+    if not tree.is_xml:
+        texts = (
+            step.name + "".join(f"[{key}={value}]" for key, value in step.conditions)
+            for step in steps
+        )
+        return repr(".".join(texts)) if steps else "the file"
+    tags = [_tag(step) for step in steps if not step.name.startswith("@")]
+    shown = (
+        f"{''.join(tags[1:])} in {tags[0]}" if len(tags) > 1 else (tags or [f"<{tree.name}>"])[0]
+    )
+    return f"{steps[-1].name} of {shown}" if steps and steps[-1].name.startswith("@") else shown
+
+
+def _tag(step: Step) -> str:
+    attributes = (f' {key[1:]}="{value}"' for key, value in step.conditions if key.startswith("@"))
+    others = (f"[{key}={value}]" for key, value in step.conditions if not key.startswith("@"))
+    return f"<{step.name}{''.join(attributes)}>{''.join(others)}"
+
+
+def _fault_text(key: str, found: Sequence[Entry], expected: Content) -> str:
+    """Return what is wrong with the texts at a path: 'update_rate' is 10; it should be 30."""
+    wanted = expected if isinstance(expected, list) else [expected]
+    should = f"it should be {enumerated([*map(_value_text, wanted)])}"
+    return f"{key!r} is {_texts(found)}; {should}" if found else f"{key!r} is missing; {should}"
+
+
+def _texts(found: Sequence[Entry]) -> str:
+    """Return the texts of entries, or of the items of lists."""
+    items = [item for it in found for item in (it.children if it.is_list else [it])]
+    return enumerated([*map(_text_of, items)], _MAX_NAMED) or "empty"
+
+
+def _text_of(entry: Entry) -> str:
+    if entry.text is None:
+        return "a table"
+    return f'"{entry.text}"' if entry.is_quoted else _value_text(readable(entry.text))
+
+
+def _should(wanted: _Wanted) -> str:
+    """Return what an entry should be."""
+    if wanted.has is not None:
+        return f"it should have {enumerated([*map(_value_text, wanted.has)])}"
+    if wanted.one_of is not None:
+        return f"it should be {enumerated([*map(_value_text, wanted.one_of)], word='or')}"
+    expected = wanted.value if isinstance(wanted.value, list) else [wanted.value or ""]
+    return f"it should be {enumerated([*map(_value_text, expected)])}"
+
+
+def _value_text(value: Scalar) -> str:
+    text = xml_text(value)
+    return text if not isinstance(value, str) or numbers_in(text) else quoted(text)
+
+
+# --- The robot
+# ----------------------------------------------------------------------
+
+
+def _robot_entry(reading: Reading, root: Element) -> Entry:
+    """Return the entry of a robot, whose elements are those of a reading or of a copy."""
+
+    def locate(element: Element, attribute: str | None) -> LazyLocation:
+        tag = next((index for index, other in enumerate(root.iter()) if other is element), 0)
+        return LazyLocation(reading.source, tag, attribute)
+
+    return xml_entry(root, locate)
+
+
+def _with_names(step: Step, robot: Configuration) -> Step:
+    """Return a step whose conditions have names, not selectors."""
+    found = (
+        (key, selected_name(robot.known, robot.known_parents, value))
+        for key, value in step.conditions
+    )
+    return step._replace(conditions=tuple(found))
+
+
+def _kept(robot: Configuration, root: Element) -> Element:
+    """Return a copy of a robot without the inertials, visuals and collisions of links that ROS 2
+    drops.
+    """
+    parts = (
+        part
+        for link in robot.known.links
+        for part in (link.inertial, *link.visuals, *link.collisions)
+    )
+    tags = {part.location.tag for part in parts if part is not None and part.location is not None}
+    copy = deepcopy(root)
+    for tag, element in enumerate([*copy.iter()]):
+        above = element.getparent()
+        if (
+            above is not None
+            and name_of(above) == "link"
+            and name_of(element) in _PARTS
+            and tag not in tags
+        ):
+            above.remove(element)
+    return copy
+
+
+def _dropped_part(tree: Entry, wanted: _Wanted) -> MissingElement:
+    """Return the error for a part of a link that ROS 2 drops."""
+    search = Search()
+    links = search.find(tree, wanted.steps[:1])
+    link = next(it for it in links if wanted._replace(steps=[*wanted.steps[1:]]).found_in(it))
+    names = [step.name for key in (*wanted.values,) for step in steps_of(key, is_xml=True)]
+    part = next(name for name in (*(step.name for step in wanted.steps), *names) if name in _PARTS)
+    name = next((it.text for it in link.children if it.name == "@name"), "")
+    message = f"ROS 2 drops {_shown(wanted.steps, tree)}"
+    return MissingElement(part, name or "", message=message, location=link.place)
+
+
+def _check_known(reading: Reading, tree: Entry, wanted: _Wanted) -> None:
+    """Raise NotDecided if xacro leaves open whether the element is there, or what it contains."""
+    named = (it for it in tree.children if it.name == wanted.first.name or not wanted.steps)
+    fitting = [
+        [*it.element.iter()]
+        for it in named
+        if it.element is not None and _may_fit(it, wanted.first, reading)
+    ]
+    assert tree.element is not None  # it is that of <robot>
+    elements = [tree.element, *(inner for it in fitting for inner in it)]
+    for found in (reading.unresolved[it] for it in elements if it in reading.unresolved):
+        for reason in filter(None, (*found.attributes.values(), found.content)):
+            raise NotDecided(reason)
+
+
+def _may_fit(entry: Entry, step: Step, reading: Reading) -> bool:
+    """Return whether an element, of which not all may be known, can have the attributes of a
+    step.
+    """
+    left = [(key, value) for key, value in step.conditions if key.startswith("@")]
+    unresolved = reading.unresolved.get(entry.element) if entry.element is not None else None
+    if unresolved is not None:
+        left = [it for it in left if it[0].removeprefix("@") not in unresolved.attributes]
+    if unresolved is not None and unresolved.content is not None:
+        known = {it.name for it in entry.children}
+        left = [it for it in left if it[0] in known]
+    return Search().fits(entry, Step(step.name, tuple(left)))

@@ -1,0 +1,224 @@
+"""Checks of the mass of a link, and of its inertia against that of a uniform solid of its
+shapes.
+"""
+
+from collections.abc import Sequence
+from itertools import combinations, combinations_with_replacement
+from math import hypot, isfinite, nan
+
+from grader.base.errors import MissingElement, NotDecided
+from grader.lab.checks.check import About
+from grader.lab.checks.outcome import Outcome, failed, in_millimetres, judged, place, point, within
+from grader.lab.checks.toml_types import NonNegative
+from grader.lab.checks.visuals import MAX_SHAPES
+from grader.ros.urdf.kinematics import Configuration, placed_by
+from grader.ros.urdf.mass_properties import (
+    MassProperties,
+    largest_difference,
+    principal_moments,
+    turned,
+    uniform_solid,
+    with_volume,
+)
+from grader.ros.urdf.model import INERTIA, Geometry, Inertial, Mesh
+from grader.ros.urdf.overlap import penetration
+from grader.ros.urdf.shapes import Shape, UnknownShape, bounding_radius
+from grader.ros.urdf.transforms import IDENTITY, Transform, minus
+
+ABOUT = {
+    "mass_is": About(("mass", "inertial")),
+    "inertia_plausible": About(("inertial",)),
+}
+
+_SINGULAR = 1e-12  # of the largest principal moment: a smaller one is 0 but for rounding
+# Of the largest principal moment: what rounding may add to it in a thin plate, where it is the sum
+# of the others.
+_ROUNDING = 0.01
+_CENTRE = 0.002  # metres that a centre of mass may be off
+_CENTRE_SHARE = 0.02  # of the size that a centre of mass may be off
+_OVERLAP = 0.001  # metres; shapes that overlap by less are side by side
+
+
+def mass_is(
+    robot: Configuration, *, link: str, mass: NonNegative, tolerance: NonNegative
+) -> Outcome:
+    """The mass of a link is the given one in kilograms.
+
+    Args:
+        link: The link that is examined.
+        mass: The mass in kilograms.
+        tolerance: How far the mass may be off, in kilograms.
+    """
+    inertial = _needed_inertial(robot, link)
+    actual = inertial.mass
+    fine = within(actual, mass, tolerance)
+    message = f"the mass of {link!r} is {actual:.6g} kg"
+    if not fine:
+        unit = ": is it in grams?" if 0.99 * mass < actual / 1000.0 < 1.01 * mass else ""
+        side = "large" if actual > mass else "small"
+        message += f"; it should be {mass:.6g} kg ({abs(actual - mass):.6g} kg too {side}){unit}"
+    return judged(
+        fine, message, actual, mass, tolerance, "kg", at=place(inertial.location, "value", "mass")
+    )
+
+
+def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative) -> Outcome:
+    """The inertia and the centre of mass of a link are those of a uniform solid of its shapes with
+    its mass.
+
+    The shapes are the collision shapes, or the visuals of a link without any; a mesh needs manual
+    grading. The mass must be positive, the inertia positive definite, and no principal moment
+    larger than the sum of the other two. The centre of mass may be 2 mm or 2 % of the size off,
+    whichever is more; the size is the largest distance of two points. If shapes overlap by more
+    than 1 mm, their solid is not known, and what is off needs manual grading.
+
+    Args:
+        link: The link that is examined.
+        tolerance: How far the inertia about any axis may be off, in percent of the largest
+            principal moment of the solid.
+    """
+    inertial = _needed_inertial(robot, link)
+    impossible = _refuse_impossible(link, inertial)
+    if impossible is not None:
+        return impossible
+    what, shapes = _solid_shapes(robot, link)
+    T_link_inertial = placed_by(IDENTITY, inertial.origin)
+    given = MassProperties(
+        inertial.mass,
+        T_link_inertial.translation,
+        turned(inertial.inertia, T_link_inertial.rotation),
+    )
+    try:
+        solid = uniform_solid(shapes, inertial.mass)
+    except ValueError:
+        message = (
+            f"the inertia of {link!r} cannot be compared: the volume of its {what} is too large"
+        )
+        return failed(message, robot.link(link).location)
+    largest = principal_moments(solid.inertia)[2]
+    off = (
+        100.0 * largest_difference(given.inertia, solid.inertia) / largest if largest > 0.0 else nan
+    )
+    distance = hypot(*minus(given.centre, solid.centre))
+    at = place(inertial.location, None, "inertia")
+    if not isfinite(off + distance):
+        return failed(
+            f"the inertia of {link!r} cannot be compared: its numbers are too large or too small",
+            at,
+        )
+    wrong = []
+    if not within(off, 0.0, tolerance):
+        reason = _components_off(inertial, solid, T_link_inertial, tolerance)
+        solid_text = f"a uniform solid of its {what} with a mass of {inertial.mass:.6g} kg"
+        wrong.append(
+            f"the inertia of {link!r} is {_round_percentage(off)} % off that of "
+            f"{solid_text}: {reason}"
+        )
+    if not within(distance, 0.0, max(_CENTRE, _CENTRE_SHARE * _size_bound(shapes))):
+        at = at if wrong else place(inertial.origin.location, "xyz") or place(inertial.location)
+        centres = f"at {point(given.centre)} m; it should be at {point(solid.centre)} m"
+        wrong.append(
+            f"the centre of mass of {link!r} is {centres} in {link!r} "
+            f"({in_millimetres(distance)} off)"
+        )
+    if wrong and any(
+        penetration(*one, *other, _OVERLAP) > 0.0 for one, other in combinations(shapes, 2)
+    ):
+        reason = f"the {what} of a link overlap, so their solid is not known"
+        raise NotDecided(f"{'; '.join(wrong)}, but the {what} overlap", reason)
+    message = "; ".join(wrong) or (
+        f"the inertia of {link!r} is that of a uniform solid of its {what} "
+        f"({round(off, 2):g} % off)"
+    )
+    return judged(not wrong, message, off, 0.0, tolerance, "%", at=at)
+
+
+def _needed_inertial(robot: Configuration, link: str) -> Inertial:
+    """Return the <inertial> of a link; raise MissingElement if ROS 2 reads none."""
+    found = robot.link(link)
+    if found.inertial is None:
+        message = f"link {link!r} has no valid <inertial>"
+        raise MissingElement("inertial", link, message=message, location=place(found.location))
+    return found.inertial
+
+
+def _refuse_impossible(link: str, inertial: Inertial) -> Outcome | None:
+    """Return the failure of a mass or inertia that is physically impossible."""
+    if not inertial.mass > 0.0:
+        message = f"the mass of {link!r} is {inertial.mass:.6g} kg; it should be positive"
+        return failed(message, place(inertial.location, "value", "mass"))
+    at = place(inertial.location, None, "inertia")
+    smallest, middle, largest = principal_moments(inertial.inertia)
+    moments = f"its principal moments are {smallest:.3g}, {middle:.3g} and {largest:.3g} kg m^2"
+    if not smallest > _SINGULAR * largest:
+        return failed(
+            f"the inertia of {link!r} is not positive definite: {moments}; each should be positive",
+            at,
+        )
+    if not smallest + middle >= (1.0 - _ROUNDING) * largest:
+        rule = "none should be larger than the sum of the other two"
+        return failed(f"the inertia of {link!r} is physically impossible: {moments}; {rule}", at)
+    return None
+
+
+def _solid_shapes(robot: Configuration, link: str) -> tuple[str, list[tuple[Shape, Transform]]]:
+    """Return what shapes of a link count, in words, and each that has a volume with its pose in the
+    link.
+
+    Raises UnknownShape for a mesh, MissingElement for a link without a shape.
+    """
+    found = robot.link(link)
+    for word in ("collision shape", "visual"):
+        placed = with_volume(found.visuals if word == "visual" else found.collisions)
+        if len(placed) > MAX_SHAPES:
+            raise NotDecided(
+                f"{link!r} has more than {MAX_SHAPES} shapes", "a link has very many shapes"
+            )
+        shapes = [
+            (_measurable(geometry), placed_by(IDENTITY, origin)) for geometry, origin in placed
+        ]
+        if shapes:
+            return word if len(shapes) == 1 else f"{word}s", shapes
+    message = f"link {link!r} has no visual or collision shape with a volume"
+    raise MissingElement("visual", link, message=message, location=place(found.location))
+
+
+def _measurable(geometry: Geometry) -> Shape:
+    if isinstance(geometry, Mesh):
+        raise UnknownShape(geometry)
+    return geometry
+
+
+def _components_off(
+    inertial: Inertial, solid: MassProperties, T_link_inertial: Transform, tolerance: float
+) -> str:
+    """Return which numbers of an <inertia> are off, along the axes in which it is given."""
+    expected = turned(solid.inertia, T_link_inertial.inverse().rotation)
+    # Of a symmetric matrix that is more off, one number is.
+    allowed = tolerance / 100.0 * principal_moments(expected)[2] / 3.0
+    pairs = zip(INERTIA, inertial.inertia, expected, strict=True)
+    off = [
+        (name, actual, wanted)
+        for name, actual, wanted in pairs
+        if not abs(actual - wanted) <= allowed
+    ]
+    return ", ".join(
+        f"{name} is {actual:.3g}, not {wanted + 0.0:.3g}" for name, actual, wanted in off
+    )
+
+
+def _size_bound(shapes: Sequence[tuple[Shape, Transform]]) -> float:
+    """Return an upper bound on the distance of two points of shapes, in metres: of a single shape,
+    that distance.
+    """
+    pairs = combinations_with_replacement(
+        [(pose.translation, bounding_radius(shape)) for shape, pose in shapes], 2
+    )
+    return max(
+        hypot(*minus(one, other)) + radius + reach for (one, radius), (other, reach) in pairs
+    )
+
+
+def _round_percentage(percentage: float) -> str:
+    """Return a percentage rounded for reading: 61.2, 1,000."""
+    return f"{percentage:.3g}" if not 1e3 <= percentage < 1e10 else f"{percentage:,.0f}"

@@ -1,0 +1,330 @@
+"""Checks of the joint that moves a link, the last one above it that is not fixed: limits, axis,
+mimic, dynamics.
+
+The numbers of an element of a joint are compared with the expected ones together, in one outcome.
+"""
+
+from collections.abc import Mapping, Sequence
+from math import degrees, hypot, isfinite
+from typing import NamedTuple
+
+from grader.base.errors import MissingElement
+from grader.base.names import did_you_mean
+from grader.base.source import LazyLocation
+from grader.lab.checks.check import About
+from grader.lab.checks.outcome import (
+    SLACK,
+    Outcome,
+    failed,
+    in_degrees,
+    in_millimetres,
+    judged,
+    number_text,
+    place,
+    point,
+    within,
+)
+from grader.lab.checks.toml_types import Direction, NonNegative
+from grader.lab.checks.visuals import axis_place
+from grader.ros.urdf.diagnostics import FULL_TURN
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Dynamics, Joint
+from grader.ros.urdf.transforms import Vector, cross, degrees_between, minus, unit
+
+ABOUT = {
+    "joint_limits": About(("limit",)),
+    "joint_axis": About(("axis",)),
+    "mimics": About(("mimic",)),
+    "joint_dynamics": About(("dynamics",)),
+}
+_EXACT = 1e-6  # for numbers that a URDF states as they are expected
+
+
+def joint_limits(
+    robot: Configuration,
+    *,
+    link: str,
+    lower: float,
+    upper: float,
+    tolerance: NonNegative,
+    effort: float | None = None,
+    velocity: float | None = None,
+) -> Outcome:
+    """The joint that moves a link has the given limits.
+
+    A continuous, planar or floating joint has no limits. Effort and velocity may be off by 1e-6. If
+    the limits are the expected ones, but in metres instead of degrees or the other way round, the
+    joint has the wrong type.
+
+    Args:
+        link: The link that the joint moves.
+        lower: The lower limit, in degrees for a revolute joint, in metres for a prismatic joint.
+        upper: The upper limit, in degrees or metres.
+        tolerance: How far each of the two limits may be off, in degrees or metres.
+        effort: The maximum effort, in N m for a revolute joint, in N for a prismatic joint.
+        velocity: The maximum velocity, in rad/s or m/s.
+    """
+    joint = robot.moving_joint(link)
+    if joint.type not in ("revolute", "prismatic"):
+        message = f"the joint that moves {link!r} is {joint.type}, so it has no limits"
+        message += f"; they should be {_range_text(lower, upper)}"
+        return failed(message, place(joint.location, "type"), detail=_joint_detail(joint))
+    limit, units = joint.limit, "degrees" if joint.type == "revolute" else "m"
+    fault = f"it should be {_range_text(lower, upper)} {units}"
+    if limit is None:
+        return failed(
+            f"the joint that moves {link!r} has no limits; {fault}",
+            joint.location,
+            detail=_joint_detail(joint),
+        )
+    given = (limit.lower, limit.upper)
+    ends = {"prismatic": given, "revolute": (degrees(limit.lower), degrees(limit.upper))}
+    low, high = ends.pop(joint.type)
+    [(other, as_other)] = ends.items()
+    numbers = [
+        _Number("lower", low, lower, tolerance, fault),
+        _Number("upper", high, upper, tolerance, fault),
+        *_expected_numbers(
+            {"effort": (limit.effort, effort), "velocity": (limit.velocity, velocity)}, _EXACT
+        ),
+    ]
+    is_meant = all(map(within, as_other, (lower, upper), (tolerance, tolerance)))
+    if (
+        is_meant
+        and (numbers[0].is_wrong or numbers[1].is_wrong)
+        and max(map(abs, given)) <= FULL_TURN
+    ):  # else in degrees
+        range_of_other = f"{_range_text(lower, upper)} {'m' if other == 'prismatic' else 'degrees'}"
+        message = (
+            f"the joint that moves {link!r} is {joint.type}; it should be {other}, with a range "
+            f"of {range_of_other}"
+        )
+        return failed(message, place(joint.location, "type"), detail=_joint_detail(joint))
+    message = f"the range of the joint that moves {link!r} is {_range_text(low, high)} {units}"
+    return _compare_numbers(
+        message, numbers, joint, limit.location, "deg" if joint.type == "revolute" else "m"
+    )
+
+
+def joint_axis(
+    robot: Configuration,
+    *,
+    link: str,
+    relative_to: str,
+    direction: Direction,
+    tolerance: NonNegative,
+    either_way: bool = False,
+    through: Vector | None = None,
+    distance: NonNegative = 0.002,
+) -> Outcome:
+    """The axis of the joint that moves a link has the given direction in another link's frame.
+
+    The length of `<axis>` does not matter, nor where on the axis the frame of the joint is.
+
+    Args:
+        link: The link that the joint moves.
+        relative_to: The link in whose frame the direction and the point are given.
+        direction: The direction along which the axis should point.
+        tolerance: How far the direction may be off, in degrees.
+        either_way: Whether the opposite direction is correct, too.
+        through: A point through which the axis should pass, in metres.
+        distance: How far the axis may be from that point, in metres.
+    """
+    robot.between(relative_to, link)  # raises where no joints connect the two
+    joint = robot.moving_joint(link)
+    if joint.type == "floating":
+        message = f"the joint that moves {link!r} is floating, so it has no axis"
+        return failed(message, place(joint.location, "type"), detail=_joint_detail(joint))
+    own, T_relative_joint = robot.axis(joint), robot.pose(joint.child, relative_to=relative_to)
+    actual, expected = T_relative_joint.rotate(own), unit(direction) or direction
+    off = degrees_between(actual, expected)
+    off = min(off, 180.0 - off) if either_way else off
+    axis = f"the axis of the joint that moves {link!r}"
+    message = f"{axis} points along {point(actual)} in {relative_to!r}"
+    if not off <= tolerance + SLACK:
+        message += f"; it should point along {point(expected)} ({in_degrees(off)} off)"
+        at = axis_place(joint)
+        return judged(
+            False, message, actual, expected, tolerance, "deg", at=at, detail=_joint_detail(joint)
+        )
+    if through is None:
+        return judged(True, message, actual, expected, tolerance, "deg")
+    away = hypot(*cross(minus(through, T_relative_joint.translation), actual))
+    fine = away <= distance + SLACK
+    message += f" and passes {in_millimetres(away)} from {point(through)} m"
+    message += "" if fine else "; it should pass through that point"
+    at = place(joint.origin.location if joint.origin else None, "xyz") or joint.location
+    found = away if isfinite(away) else None
+    return judged(
+        fine, message, found, 0.0, distance, "m", at=at, detail="" if fine else _joint_detail(joint)
+    )
+
+
+def mimics(
+    robot: Configuration,
+    *,
+    link: str,
+    leader: str,
+    multiplier: float | None = None,
+    offset: float | None = None,
+    tolerance: NonNegative = _EXACT,
+) -> Outcome:
+    """The joint that moves a link mimics the joint that moves another link.
+
+    It may do so through other mimic joints: then the multipliers and offsets are composed.
+
+    Args:
+        link: The link whose joint follows.
+        leader: The link whose joint is followed.
+        multiplier: The ratio of the position of the following joint to that of the other.
+        offset: The position of the following joint where the other is at 0, in radians or metres.
+        tolerance: How far multiplier and offset may be off, in their units.
+    """
+    joint, leading = robot.moving_joint(link), robot.moving_joint(leader)
+    followed = _mimic_chain(robot, joint, link)
+    at = place(joint.mimic.location, "joint") if joint.mimic else joint.location
+    if leading.name not in followed:
+        message = f"the joint that moves {link!r} does not mimic the joint that moves {leader!r}"
+        last = next(reversed(followed), joint.name)
+        detail = f" (joint {joint.name!r})"
+        if joint.mimic is not None:
+            detail = f" (joint {joint.name!r} mimics {joint.mimic.joint!r}, not {leading.name!r})"
+        is_missing = not robot.robot.has_joint(last)
+        if is_missing:
+            message = f"the joint that moves {link!r} mimics a joint that does not exist"
+            detail += did_you_mean(last, (other.name for other in robot.robot.joints))
+        return failed(message, at, detail=detail)
+    ratio, shift = followed[leading.name]
+    message = f"the joint that moves {link!r} mimics the joint that moves {leader!r}"
+    numbers = _expected_numbers(
+        {"multiplier": (ratio, multiplier), "offset": (shift, offset)}, tolerance
+    )
+    return _compare_numbers(message, numbers, joint, joint.mimic.location if joint.mimic else None)
+
+
+def joint_dynamics(
+    robot: Configuration,
+    *,
+    link: str,
+    friction: float | None = None,
+    damping: float | None = None,
+    tolerance: NonNegative = _EXACT,
+) -> Outcome:
+    """The joint that moves a link has the given friction and damping.
+
+    Omitted values are 0, as in ROS 2. With neither argument, the joint must have `<dynamics>`.
+
+    Args:
+        link: The link that the joint moves.
+        friction: The static friction, in N m for a joint that turns, in N for one that slides.
+        damping: The damping, in N m s/rad or N s/m.
+        tolerance: How far both may be off, in their units.
+    """
+    joint = robot.moving_joint(link)
+    given = joint.dynamics
+    found = given or Dynamics()
+    numbers = _expected_numbers(
+        {"friction": (found.friction, friction), "damping": (found.damping, damping)}, tolerance
+    )
+    message = f"the joint that moves {link!r} has {'<dynamics>' if given else 'no <dynamics>'}"
+    if given is None and not numbers:
+        return failed(f"{message}; it should have one", joint.location, detail=_joint_detail(joint))
+    return _compare_numbers(message, numbers, joint, given.location if given else joint.location)
+
+
+def _mimic_chain(robot: Configuration, joint: Joint, link: str) -> dict[str, tuple[float, float]]:
+    """Return the joints that a joint mimics, directly and through others, each with the multiplier
+    and offset to it.
+
+    The last may not exist. Raises MissingElement for a loop.
+    """
+    found: dict[str, tuple[float, float]] = {}
+    first, ratio, shift = joint, 1.0, 0.0
+    while True:
+        if joint.mimic is None:
+            return found
+        name = joint.mimic.joint
+        ratio, shift = ratio * joint.mimic.multiplier, ratio * joint.mimic.offset + shift
+        if name == first.name or name in found:
+            message = f"the joint that moves {link!r} mimics itself, directly or through others"
+            at = place(joint.mimic.location, "joint")
+            raise MissingElement(
+                "mimicked joint", link, message=message, detail=_joint_detail(first), location=at
+            )
+        found[name] = ratio, shift
+        if not robot.robot.has_joint(name):
+            return found
+        joint = robot.joint(name)
+
+
+def _range_text(lower: float, upper: float) -> str:
+    return f"{number_text(lower, 5)} to {number_text(upper, 5)}"
+
+
+class _Number(NamedTuple):
+    """A number that is compared: its attribute, and what is said where it is wrong."""
+
+    attribute: str
+    actual: float
+    expected: float
+    tolerance: float
+    fault: str
+
+    @property
+    def is_wrong(self) -> bool:
+        """Whether it is outside of its tolerance, or NaN."""
+        return not within(self.actual, self.expected, self.tolerance)
+
+
+def _expected_numbers(
+    values: Mapping[str, tuple[float, float | None]], tolerance: float
+) -> list[_Number]:
+    """Return the numbers that are compared, by attribute: those with an expected value."""
+    return [
+        _Number(
+            name,
+            actual,
+            expected,
+            tolerance,
+            f"its {name} is {number_text(actual)}; it should be {number_text(expected)}",
+        )
+        for name, (actual, expected) in values.items()
+        if expected is not None
+    ]
+
+
+def _compare_numbers(
+    message: str,
+    numbers: Sequence[_Number],
+    joint: Joint,
+    element: LazyLocation | None,
+    of: str | None = None,
+) -> Outcome:
+    """Compare numbers of an element, which are in the unit `of` if they have one tolerance; NaN
+    fails.
+    """
+    faults = {number.fault: number.attribute for number in reversed(numbers) if number.is_wrong}
+    message = "; ".join((message, *reversed(faults)))
+    values = [(number.actual, number.expected) for number in numbers]
+    actual, expected = (
+        zip(*values, strict=True) if values and isfinite(sum(map(sum, values))) else (None, None)
+    )
+    tolerances = {number.tolerance for number in numbers}
+    tolerance = tolerances.pop() if len(tolerances) == 1 else None
+    at = place(element, next(reversed(faults.values()), None))
+    detail = _joint_detail(joint) if faults else ""
+    return judged(
+        not faults,
+        message,
+        actual,
+        expected,
+        tolerance,
+        of if tolerance is not None else None,
+        at=at,
+        detail=detail,
+    )
+
+
+def _joint_detail(joint: Joint) -> str:
+    """Return the end of a message that names a joint."""
+    return f" (joint {joint.name!r})"

@@ -1,0 +1,74 @@
+"""The check of whether ROS 2 loads the URDF."""
+
+from grader.base.problems import Problem, kinds_in
+from grader.base.text import counted, enumerated
+from grader.lab.checks.check import About
+from grader.lab.checks.outcome import Outcome, failed, passed, pending
+from grader.ros.urdf.reader import Reading
+from grader.ros.urdf.urdf_problems import RAW_XACRO
+from grader.ros.xml import xml_problems
+
+ABOUT = {"urdf_loads": About(("joint", "link"))}
+
+_MAX_ASSUMED = 3  # that a message names
+_OF_XML = kinds_in(vars(xml_problems).values())
+
+
+def urdf_loads(urdf: Reading) -> Outcome:
+    """ROS 2 loads the URDF, and all links form one tree."""
+    problems = [
+        problem
+        for problem in urdf.problems
+        if problem.kind.effect == "rejects" or problem.kind.detaches_links
+    ]
+    raw = next((problem for problem in urdf.problems if problem.kind is RAW_XACRO), None)
+    if raw is not None and urdf.verdict != "clean":
+        return _raw_xacro_failure(urdf, raw)
+    if not problems and urdf.verdict != "rejected":
+        return passed("ROS 2 loads the file, and all links form one tree")
+    undetermined = [problem for problem in urdf.problems if problem.kind.effect == "undetermined"]
+    if undetermined and not problems:
+        return pending(
+            f"{undetermined[0].message}; needs manual grading",
+            undetermined[0].message,
+            undetermined[0].location,
+        )
+    problems.sort(key=lambda problem: (not problem.kind.is_before_ros, problem.kind not in _OF_XML))
+    causes = [problem for problem in problems if not problem.kind.is_consequence]
+    first = (causes or problems or list(urdf.problems))[0]
+    others = (
+        f" (and {counted(len(problems) - 1, 'more such problem')})" if len(problems) > 1 else ""
+    )
+    message = f"{first.message}{others}"
+    if assumed := _list_assumed(urdf):
+        what = "The rest is graded with this correction" if urdf.is_meant else "Assumed"
+        message += f"{'' if message.endswith('?') else '.'} {what}: {assumed}"
+    outcome = failed(message, first.location, problem=first.message)
+    return outcome._replace(mistake=f"{first.code}: {first.kind.title}")
+
+
+def _list_assumed(urdf: Reading) -> str:
+    """Return what is assumed about a file that ROS 2 rejects, each with its lines; empty if nothing
+    is.
+    """
+    lines: dict[str, list[str]] = {}
+    for problem in urdf.problems:
+        if problem.kind is xml_problems.RECOVERED and not problem.subject:
+            lines.setdefault(problem.message, []).append(str(problem.location.line))
+    texts = []
+    for message, found in lines.items():
+        at = [*dict.fromkeys(found)]
+        texts.append(
+            f"{message} ({'line' if len(at) == 1 else 'lines'} {enumerated(at, _MAX_ASSUMED)})"
+        )
+    return enumerated(texts, _MAX_ASSUMED)
+
+
+def _raw_xacro_failure(urdf: Reading, raw: Problem) -> Outcome:
+    """Return the failure of xacro that is loaded without xacro, with what ROS 2 does about it."""
+    lost = (
+        problem.message for problem in urdf.problems if problem.kind.effect in ("rejects", "drops")
+    )
+    effect = next(lost, "ROS 2 ignores its tags, and the robot lacks what they stand for")
+    outcome = failed(f"{raw.message}: {effect}", raw.location, problem=raw.message)
+    return outcome._replace(mistake=f"{raw.code}: {raw.kind.title}")

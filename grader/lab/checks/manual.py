@@ -1,0 +1,158 @@
+"""Checks that need manual grading: the grader finds answers and pictures, and a person marks
+them.
+"""
+
+import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from grader.base.text import capitalised, enumerated
+from grader.lab.checks.outcome import Outcome, pending
+from grader.lab.submission.submission import Submission
+
+if TYPE_CHECKING:
+    from grader.lab.documents.evidence import EvidenceFile
+
+_DOCUMENTS = (
+    "*.md",
+    "*.txt",
+    "*.docx",
+    "*.pdf",
+    "*.rst",
+    "*.doc",
+    "*.odt",
+    "*.rtf",
+    "*.pages",
+    "*.ipynb",
+)
+_MAY_HOLD_PICTURES = frozenset(
+    {".docx", ".doc", ".odt", ".pages", ".ipynb", ".pptx", ".odp", ".rtf", ".rar", ".7z"}
+)
+_MAX_LISTED = 6  # files in one message
+_NOT_FOUND, _ONLY_QUESTION = "not found", "only the question is there"
+NO_ANSWER = (
+    _NOT_FOUND,
+    _ONLY_QUESTION,
+)  # the problems of questions without an answer, if every document was read
+
+
+def answered(
+    submission: Submission,
+    *,
+    question: str,
+    places: list[str],
+    files: tuple[str, ...] = _DOCUMENTS,
+    answer: str = "",
+) -> Outcome:
+    """A question is answered in writing; needs manual grading.
+
+    Args:
+        question: The question, as the report repeats it.
+        places: Labels of the passage with the answer, such as "task 1 step 15" or "question 15";
+            they are tried in this order.
+        files: Patterns for the names of documents.
+        answer: The model answer, which `grader review` and `--answers` show. It can also be in a
+            separate file.
+    """
+    del answer  # students read outcomes, so they do not contain it
+    from grader.lab.documents.answers import find_answer  # a URDF on its own has no answers
+
+    if submission.opening.no_documents:
+        message = (
+            f"{question} The documents cannot be read: {submission.opening.no_documents}; needs "
+            "manual grading"
+        )
+        return pending(
+            message, problem=f"the documents cannot be read: {submission.opening.no_documents}"
+        )
+    found = find_answer(submission.documents, files, places, question)
+    unread = f" (not read: {'; '.join(found.unread[:4])})" if found.unread else ""
+    doubts = ["not every document was read"] if found.unread else []
+    passage = found.passage
+    if passage is None:
+        searched = f" in {enumerated(found.read, _MAX_LISTED)}" if found.read else ""
+        labels = enumerated([repr(label) for label in places[:3]], word="or")
+        message = (
+            f"{question} No answer was found under {labels}{searched}; needs manual grading{unread}"
+        )
+        outcome = pending(message, problem=", but ".join([_NOT_FOUND, *doubts]))
+        heading = f"a heading `{_as_title(places[0])}` in {enumerated(files[:3], word='or')}"
+        return outcome if doubts else outcome._replace(expected=heading)
+    how = f" ({passage.how})" if passage.how else ""
+    problem = ""
+    if passage.is_empty:
+        problem = _ONLY_QUESTION
+        message = f"No answer was found {passage.where}: {problem}{how}; needs manual grading"
+    elif passage.is_certain:
+        message = f"The answer {passage.where}{how}, needs manual grading"
+    else:
+        problem = "perhaps"
+        message = f"Perhaps the answer {passage.where}{how}; needs manual grading"
+    text = passage.text
+    for other in found.others:
+        text += f"\n\n[Also {other.where}]\n{other.text}"
+    if found.others:
+        message += (
+            f"; {enumerated([f'another passage is {other.where}' for other in found.others])}"
+        )
+    outcome = Outcome("pending", f"{question} {message}{unread}", text, location=passage.location)
+    return outcome._replace(problem=", but ".join([problem, *doubts] if problem else doubts))
+
+
+def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
+    """A picture or document shows what the lab asks for; needs manual grading.
+
+    Without a file of such a name, the headings of Word and PDF files are searched.
+
+    Args:
+        names: Labels in the name of the file, in any spelling: "task 3 step 3", or words such as
+            "webcam".
+    """
+    from grader.lab.documents.evidence import find_evidence
+
+    found = find_evidence(submission.labelled_files, names, submission.readable_documents)
+    if found.files:
+        return _pending_pictures("needs manual grading: ", found.files)
+    labels = enumerated([repr(name) for name in names[:3]], word="or")
+    if found.possible:
+        start = f"no picture or document is certain to be {labels}; needs manual grading, perhaps: "
+        return _pending_pictures(start, found.possible)._replace(problem="perhaps")
+    paths = [labelled.file.path for labelled in submission.labelled_files]
+    others = enumerated(paths, _MAX_LISTED) or "no pictures"
+    message = (
+        f"no picture or PDF is named {labels}; the submission has {others}; needs manual grading"
+    )
+    has_documents = any(
+        file.suffix in _MAY_HOLD_PICTURES for file in submission.tree.files.values()
+    )
+    outcome = pending(
+        message, problem=f"{_NOT_FOUND}, but there are documents" if has_documents else _NOT_FOUND
+    )
+    return outcome if has_documents else outcome._replace(expected=picture_named(names))
+
+
+def picture_named(names: Sequence[str]) -> str:
+    """Return words for the picture that the first of these labels names: a picture named
+    `Task3_Step3.png`.
+    """
+    return f"a picture named `{picture_name(names)}`"
+
+
+def picture_name(names: Sequence[str]) -> str:
+    """Return a name for a picture that the first of these labels finds: Task3_Step3.png."""
+    return re.sub(r" (?=\d)", "", _as_title(names[0])).replace(" ", "_") + ".png"
+
+
+def _as_title(label: str) -> str:
+    """Return a label with capitals: Task 1 Step 15."""
+    return " ".join(map(capitalised, label.split()))
+
+
+def _pending_pictures(start: str, found_files: "tuple[EvidenceFile, ...]") -> Outcome:
+    listed = enumerated([file.words for file in found_files], _MAX_LISTED)
+    return Outcome(
+        "pending", start + listed, tuple(dict.fromkeys(file.path for file in found_files))
+    )
+
+
+MANUAL_CHECKS = (answered, evidence_shown)

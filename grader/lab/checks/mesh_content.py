@@ -1,0 +1,58 @@
+"""Whether the content of a mesh file is of the format of its ending. No mesh is loaded."""
+
+import posixpath
+import struct
+
+from grader.base.errors import InputError, NotDecided
+from grader.files.tree import File
+
+_LFS_POINTER = b"version https://git-lfs.github.com/spec/"
+_START = 64 * 1024  # bytes that are read
+_HEAD, _TRIANGLE = (
+    84,
+    50,
+)  # bytes of a binary STL: its head, which ends in the number of triangles, and each of them
+_BEGINS_WITH = {".glb": b"glTF", ".ply": b"ply"}
+
+
+def content_fault(file: File, path: str) -> str:
+    """Return what is wrong with the content of a mesh file; empty if it may be of the format that
+    its path says.
+
+    The path is that at which a build installs it, perhaps with another ending.
+
+    Raises NotDecided if the file cannot be read, or is a pointer to one.
+    """
+    if not file.size:
+        return "is empty"
+    try:
+        start = file.read(_START, first=True)
+    except InputError as error:
+        raise NotDecided(str(error), "a mesh cannot be read") from None
+    if start.startswith(_LFS_POINTER):
+        raise NotDecided(
+            "this download holds only the pointer of Git LFS, not the mesh",
+            "a mesh is a Git LFS pointer",
+        )
+    suffix = posixpath.splitext(path)[1].lower()
+    return (
+        ""
+        if _is_of_format(file, start, suffix)
+        else f"is no {suffix.removeprefix('.').upper()} file"
+    )
+
+
+def _is_of_format(file: File, start: bytes, suffix: str) -> bool:
+    match suffix:
+        case ".stl":  # as Assimp, which RViz uses, tells the two kinds apart
+            is_binary = (
+                file.size >= _HEAD
+                and file.size == _HEAD + _TRIANGLE * struct.unpack_from("<I", start, 80)[0]
+            )
+            return is_binary or start.lstrip().lower().startswith(b"solid")
+        case ".dae":
+            return b"<COLLADA" in start
+        case ".obj":
+            return b"\0" not in start
+        case _:
+            return start.startswith(_BEGINS_WITH.get(suffix, b""))

@@ -1,0 +1,50 @@
+"""The check of names: those that files of the packages use are defined in one of them."""
+
+from grader.base.errors import NotDecided
+from grader.base.text import enumerated, first_lines
+from grader.lab.checks.outcome import Outcome, failed, passed
+from grader.lab.submission.submission import Submission
+from grader.ros.workspace.names import Family, place_text
+
+_MAX_NAMED = 3  # mistakes in a message
+
+
+def names_agree(submission: Submission, *, of: Family) -> Outcome:
+    """The names that files of the packages use are defined: files, frames, parameters, programs and
+    so on.
+
+    A name fails only if everything that could define it was read: one that a package outside of the
+    submission may define does not fail. Names that other packages of the submission use do not
+    count.
+
+    Args:
+        of: What is named: files, frames, controllers, parameters, arguments, programs, topics or
+            dependencies.
+    """
+    from grader.ros.workspace.reading import (  # late: few rubrics ask for it
+        read_agreement,
+        wrong_names,
+    )
+
+    submission.needed_package()
+    workspace = submission.workspace
+    wrong = wrong_names(workspace, of, submission.lab_packages.values())
+    undecided = read_agreement(workspace).undecided
+    if wrong:
+        places: dict[str, dict[str, None]] = {}
+        for it in wrong:
+            places.setdefault(it.message, {})[place_text(it.location)] = None
+        (first, (_, *also)), *others = places.items()
+        texts = [f"{at}: {message}{_also(more)}" for message, (at, *more) in others]
+        message = "; ".join([f"{first}{_also(also)}", *first_lines(texts, _MAX_NAMED - 1)])
+        return failed(message, wrong[0].location, mistake=first)
+    if of in undecided:
+        reason = undecided[of]
+        cause = f"cannot determine statically whether the names of {of} agree"
+        raise NotDecided(f"{cause}: {reason}", cause)
+    return passed(f"the names of {of} agree")
+
+
+def _also(places: list[str]) -> str:
+    """Return the further places of one mistake, in parentheses; empty without one."""
+    return f" (also {enumerated(places, _MAX_NAMED)})" if places else ""

@@ -1,0 +1,338 @@
+"""Checks of a package: its manifest, whether a build of it succeeds, and what that installs.
+Nothing is run.
+"""
+
+import posixpath
+from collections.abc import Sequence
+from fnmatch import fnmatch
+from typing import TYPE_CHECKING, Literal
+
+from grader.base.errors import MissingElement, NotDecided
+from grader.base.names import closest
+from grader.base.text import enumerated, first_lines
+from grader.lab.checks.check import About
+from grader.lab.checks.outcome import Outcome, failed, judged, passed
+from grader.lab.submission.submission import Submission
+from grader.ros.package.package import MANIFEST, RESOURCE_INDEX, SETUP, Package
+
+if TYPE_CHECKING:
+    from grader.ros.build.file_search import EmptyGlob
+    from grader.ros.build.installation import Installation
+    from grader.ros.build.manifest import Manifest
+
+
+_FileKind = Literal["urdf", "launch", "rviz"]
+ABOUT = {
+    "package_found": About((MANIFEST, SETUP)),
+    "package_type": About((MANIFEST,)),
+    "build_installs": About((SETUP, "file")),
+    "setup_imports": About((SETUP,)),
+    "installs_files": About((SETUP, "file")),
+}
+_ENDINGS: dict[_FileKind, tuple[str, ...]] = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
+
+
+def package_found(submission: Submission, *, name: str) -> Outcome:
+    """The submission has a ROS 2 package of this name.
+
+    Args:
+        name: The name that package.xml should give it.
+    """
+    package = submission.needed_package()
+    manifest = _readable_manifest(package)
+    fine = manifest.name == name
+    if manifest.refusals and (fine or manifest.name is None):
+        problem, count = manifest.refusals[0], len(manifest.refusals)
+        more = f" (and {count - 1} more)" if count > 1 else ""
+        return failed(problem.message + more, problem.location, problem=problem.message)
+    message = (
+        f"the package is named {manifest.name!r}{'' if fine else f'; it should be named {name!r}'}"
+    )
+    setup, registered = package.installation, package.registered
+    if fine and setup is not None and registered and name not in registered:
+        # ament_index finds a package by its marker. colcon adds one for the name in package.xml,
+        # but no file goes below that name.
+        others = enumerated([repr(other) for other in registered])
+        message = f"package.xml names the package {name!r}, but setup.py registers it as {others}"
+        at = next(copy.at for copy in setup.copies if copy.target.startswith(RESOURCE_INDEX))
+        return failed(message, setup.location(at))
+    return judged(fine, message, manifest.name, name, at=manifest.name_location)
+
+
+def package_type(package: Package, *, build_type: str) -> Outcome:
+    """The package is of a build type, such as ament_python.
+
+    Args:
+        build_type: The build type, such as ament_python.
+    """
+    manifest = _readable_manifest(package)
+    actual = manifest.build_type
+    fine = actual == build_type
+    message = f"the build type is {actual!r}" if actual else "<build_type> in package.xml is empty"
+    if not fine:
+        # REP 149: a package.xml without build_type means catkin.
+        message += " (ROS 1; also the default without <build_type>)" if actual == "catkin" else ""
+        message += f"; it should be {build_type!r}"
+    return judged(fine, message, actual, build_type, at=manifest.type_location)
+
+
+def build_installs(
+    package: Package,
+    submission: Submission,
+    *,
+    kind: _FileKind,
+    name: str,
+    despite_errors: bool = False,
+) -> Outcome:
+    """A build of the package installs its URDF, launch file or RViz file, below share/<package>.
+
+    setup.py or CMakeLists.txt is evaluated statically; what cannot be determined needs manual
+    grading.
+
+    Args:
+        kind: The kind of the file.
+        name: The file's name, which decides if the package has several files of the kind.
+        despite_errors: Whether an error that stops the build is ignored, which `setup_imports`
+            reports.
+    """
+    files = _files_of(package, kind, name)
+    graded = submission.path
+    if kind == "urdf" and graded is not None and package.holds(graded):  # whatever its name ends in
+        files = [graded.removeprefix(package.path("")), *files]
+    if not files:
+        raise package.missing(kind)
+    return _require_installed(package, files, kind, despite_errors=despite_errors)
+
+
+def installs_files(package: Package, *, files: list[str], despite_errors: bool = False) -> Outcome:
+    """A build of the package installs at least one file that matches these patterns, below
+    share/<package>.
+
+    Args:
+        files: Patterns for paths in the package, such as "meshes/*.stl"; one installed file is
+            enough.
+        despite_errors: Whether an error that stops the build is ignored, which `setup_imports`
+            reports.
+    """
+    found = [
+        path for path in package.tree.files if any(fnmatch(path, pattern) for pattern in files)
+    ]
+    if not found:
+        patterns = enumerated([repr(pattern) for pattern in files], word="or")
+        raise MissingElement(
+            "file", files[0], message=f"the package has no file that matches {patterns}"
+        )
+    return _require_installed(package, found, None, despite_errors=despite_errors)
+
+
+def setup_imports(package: Package) -> Outcome:
+    """A build of the package succeeds: Python runs `setup.py`, or CMake `CMakeLists.txt`,
+    without an error.
+    """
+    setup = _readable_setup(package)
+    return _build_error(package, setup) or passed(f"{setup.file} builds")
+
+
+def _readable_manifest(package: Package) -> "Manifest":
+    """Return the package's package.xml, also of one that is broken if its build type can be
+    read.
+    """
+    manifest = package.manifest
+    if manifest is not None and manifest.unread:
+        raise NotDecided(manifest.unread, "package.xml cannot be read")
+    if manifest is None:
+        where = f"the folder {package.folder!r}" if package.folder else "the submission"
+        message = f"{where} has a setup.py, but no package.xml, so it is not a ROS 2 package"
+        raise MissingElement(MANIFEST, package.folder, message=message, absent=MANIFEST)
+    if not manifest.build_type and manifest.refusals:
+        problem = manifest.refusals[0]
+        raise MissingElement(
+            MANIFEST, package.folder, message=problem.message, location=problem.location
+        )
+    return manifest
+
+
+def _build_error(package: Package, setup: "Installation") -> Outcome | None:
+    """Return why a build of the package fails; None if it succeeds. Raises NotDecided."""
+    if package.ignored_by:
+        message = f"colcon does not build the package, because there is a file {package.ignored_by}"
+        return failed(message, problem=message)
+    stops = [stop for stop in setup.stops if stop.path != MANIFEST or package.manifest is not None]
+    errors = [(fault.message, "", fault.at) for fault in setup.faults]
+    errors += [(stop.message, stop.hint, stop.at) for stop in stops]
+    if errors:
+        messages = list(dict.fromkeys(message for message, _, _ in errors))
+        _, hint, at = errors[0]
+        message, problem = "; ".join(first_lines(messages, 3)), messages[0] + hint
+        return failed(
+            message, setup.location(at), detail=hint if len(messages) == 1 else "", problem=problem
+        )
+    if not setup.is_called:
+        message = "setup.py does not call setup()"
+        return failed(message, setup.location(setup.called_at), problem=message)
+    if setup.doubt is not None:
+        reason = f"{setup.doubt.reason} (line {setup.doubt.at.line} of {setup.file})"
+        cause = f"cannot determine statically whether {setup.file} builds"
+        raise NotDecided(f"{cause}: {reason}", cause)
+    return None
+
+
+def _files_of(package: Package, kind: _FileKind, name: str) -> Sequence[str]:
+    """Return the file of a package that has this name, else all of the kind that are no part of
+    another one.
+    """
+    if kind == "launch":
+        chosen = package.launch_file(name)
+        return [chosen] if chosen is not None else []
+    endings = _ENDINGS[kind]
+    paths = [path for path in package.tree.files if path.lower().endswith(endings)]
+    named = [path for path in paths if posixpath.basename(path) == name]
+    if named or kind != "urdf":
+        return named or paths
+    from grader.ros.package.robots import (  # late: the URDF usually has the lab's name
+        find_robots,
+        parts_of,
+    )
+
+    parts = parts_of(find_robots(package.tree))
+    return [path for path in paths if path not in parts] or paths
+
+
+def _readable_setup(package: Package) -> "Installation":
+    """Return what the package's setup.py or CMakeLists.txt installs.
+
+    Raises MissingElement if there is none, or if it cannot be parsed; NotDecided if it needs manual
+    grading.
+    """
+    setup = package.installation
+    if setup is None:
+        message = f"the package has no {package.missing_build_file}, so a build installs nothing"
+        raise MissingElement(
+            SETUP, package.folder, message=message, absent=package.missing_build_file
+        )
+    if setup.fault is not None and setup.fault.sure:
+        raise MissingElement(
+            SETUP, package.folder, message=setup.fault_text, location=setup.fault.location
+        )
+    if setup.unread:
+        raise NotDecided(setup.unread, f"{setup.file} cannot be read")
+    return setup
+
+
+def _require_installed(
+    package: Package, files: Sequence[str], kind: _FileKind | None, *, despite_errors: bool
+) -> Outcome:
+    setup = _readable_setup(package)
+    error = _build_error(package, setup)
+    if error is not None and not despite_errors:
+        return error._replace(message=f"a build fails: {error.message}")
+    if error is not None and _stops_at(package, setup, files, kind):
+        return passed(f"{setup.file} has an entry for {files[0]}")
+    copies = [copy for copy in setup.copies if copy.source in files]
+    inside = [copy for copy in copies if copy.target.startswith(package.share)]
+    twice = sorted(
+        {
+            copy.target
+            for copy in inside
+            if posixpath.basename(copy.target) == posixpath.basename(files[0])
+        }
+    )
+    if kind == "launch" and len(twice) > 1:
+        message = (
+            f"a build installs {files[0]} as {' and as '.join(twice)}; ros2 launch needs "
+            "exactly one"
+        )
+        return failed(
+            message, setup.location(inside[-1].at), mistake="a build installs the launch file twice"
+        )
+    if inside and setup.misspelt is not None:
+        raise package.without_data_files(setup.misspelt.message)
+    if inside:
+        return passed(f"a build installs {inside[0].source} as {inside[0].target}")
+    if setup.unknown:
+        reason = f"{setup.unknown[0].reason} (line {setup.unknown[0].at.line} of {setup.file})"
+        message = f"cannot determine statically whether a build installs {files[0]}: {reason}"
+        raise NotDecided(message, f"cannot determine statically what {setup.file} installs")
+    if copies:
+        message = f"a build installs {copies[0].source} as {copies[0].target}"
+        message += f"; ROS 2 looks for the package's files below {package.share}"
+        mistake = f"a build installs the file outside of {package.share}"
+        return failed(message, setup.location(copies[0].at), mistake=mistake)
+    raise _why_not_installed(package, setup, files, kind)
+
+
+def _stops_at(
+    package: Package, setup: "Installation", files: Sequence[str], kind: _FileKind | None
+) -> bool:
+    """Return whether a build stops at the entry for these files, so that it is there."""
+    folders = {posixpath.dirname(path) for path in files}
+    paths = [stop.path for stop in setup.stops if stop.path]
+    if setup.is_cmake and any(
+        closest(path, folders) for path in paths
+    ):  # install(DIRECTORY lunch ...)
+        return True
+    owners = ((_kind_of_file(path, package), posixpath.dirname(path)) for path in paths)
+    return any(owner == kind or folder in folders for owner, folder in owners)
+
+
+def _why_not_installed(
+    package: Package, setup: "Installation", files: Sequence[str], kind: _FileKind | None
+) -> MissingElement:
+    """Return why a build does not install files: no entry, or a pattern without a match."""
+    what, message = f"installed {kind or files[0]}", f"a build does not install {files[0]}"
+    empty = _pattern_for(setup.empty, files, kind)
+    if empty is None:
+        message += f": {'no' if setup.is_cmake else 'no entry of'} {setup.entries} names it"
+        return MissingElement(
+            what, package.folder, message=message, location=setup.location(setup.called_at)
+        )
+    problem = f"the pattern {empty.pattern!r} in {setup.file} matches no file"
+    # Late: a URDF on its own needs none of what reads a package.
+    from grader.ros.package.found_problems import why_no_match
+
+    detail, at = why_no_match(package, empty.pattern), setup.location(empty.at)
+    message += f": {problem}"
+    return MissingElement(
+        what, package.folder, message=message, detail=detail, location=at, problem=problem + detail
+    )
+
+
+def _pattern_for(
+    empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: _FileKind | None
+) -> "EmptyGlob | None":
+    """Return the pattern without a match that is meant for one of these files, by its folder,
+    ending or kind.
+    """
+    folders = {posixpath.dirname(path) for path in files}
+    endings = tuple({posixpath.splitext(path)[1] for path in files} - {""})
+    for glob in empty:
+        folder = posixpath.dirname(glob.pattern)
+        if (
+            folder in folders
+            or (folder and closest(folder, folders))
+            or (endings and glob.pattern.endswith(endings))
+        ):
+            return glob
+    return next((glob for glob in empty if kind is not None and kind in glob.pattern.lower()), None)
+
+
+def _kind_of_file(path: str, package: Package) -> _FileKind | None:
+    """Return the kind of file that an entry is about, by its ending or by the other files of its
+    folder.
+    """
+    if ".launch." in path or path.endswith("_launch.py"):
+        return "launch"
+    for kind, endings in _ENDINGS.items():
+        if path.lower().endswith(endings):
+            return kind
+    folder = posixpath.dirname(path)
+    beside = (
+        [path for path in package.tree.files if posixpath.dirname(path) == folder] if folder else []
+    )
+    endings = (*_ENDINGS["urdf"], *_ENDINGS["rviz"])
+    kinds = {
+        _kind_of_file(path, package)
+        for path in beside
+        if path.endswith(endings) or ".launch." in path
+    }
+    return next(iter(kinds)) if len(kinds) == 1 else None

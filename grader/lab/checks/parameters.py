@@ -1,0 +1,255 @@
+"""The check of parameters: the values that nodes get, wherever they are written, also measured on
+the robot.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from math import dist
+from typing import Any, Literal
+
+from grader.base.errors import MissingElement, NotDecided, RubricError
+from grader.base.names import did_you_mean
+from grader.base.text import enumerated, quoted
+from grader.lab.checks.outcome import Outcome, failed, passed
+from grader.lab.checks.toml_types import Content, NonNegative, Scalar
+from grader.lab.checks.visuals import main_visual, visual_pose
+from grader.lab.submission.submission import Submission
+from grader.ros.launch.launch_model import ParameterValue
+from grader.ros.launch.node_parameters import value_in_file
+from grader.ros.package.package import Package
+from grader.ros.python.values import Unknown
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Cylinder, Joint, Sphere
+from grader.ros.urdf.transforms import Vector
+
+_Measure = Literal["radius", "length", "distance", "lower", "upper", "velocity", "effort"]
+_EXACT = 1e-6
+_DIGITS = 6  # after the point, as a measure has rounding errors
+
+
+def parameter_is(
+    submission: Submission,
+    package: Package,
+    *,
+    node: str,
+    parameter: str,
+    value: Content | None = None,
+    one_of: list[Scalar] | None = None,
+    has: list[Scalar] | None = None,
+    measure: _Measure | None = None,
+    links: list[str] | None = None,
+    tolerance: NonNegative = _EXACT,
+    where_given: bool = False,
+) -> Outcome:
+    """A node gets this value of a parameter, wherever it is written, under the criterion's `args`
+    if it has some.
+
+    Parameter files, values in launch files and arguments of the node count as in ROS 2. Controllers
+    get those of the controller manager's files, and those that their spawner is given.
+
+    Args:
+        node: The name of the node, or of the controller, without its namespace.
+        parameter: The name of the parameter, with dots for those in tables.
+        value: The value that it should have; for a list all items, in order.
+        one_of: Values of which it should have one.
+        has: Values that a list should have among its items.
+        measure: The measure of the robot that the value should equal: the radius or length of the
+            shape of the first link, the distance between two links, or a limit of the joint that
+            moves the first one. Of a wheel, the centre of its shape counts; of any other link, its
+            frame.
+        links: The links that are measured.
+        tolerance: How far a number may be off, in the number's own unit.
+        where_given: Whether a node that does not get the parameter passes, for `carried`, if no
+            parameter file has another value.
+    """
+    del package  # without one, there are no parameters
+    said = f"{node} gets"
+    try:
+        found = value_of(submission, node, parameter)
+    except MissingElement:
+        if not where_given:
+            raise
+        meant = _measured_if_there(submission, measure, links) if measure is not None else value
+        other = _written_otherwise(submission, parameter, meant, tolerance)
+        if other is None:
+            return passed(f"nothing gives {parameter} to {node}")
+        found, said = other, "a parameter file has"
+    if isinstance(found.value, Unknown):
+        cause = f"the parameter {parameter} of {node} cannot be determined statically"
+        raise NotDecided(f"{cause}: {found.value.reason}", cause)
+    if measure is not None:
+        value = measured(submission, measure, links or [])
+    actual, wanted, fits = found.value, "", True
+    if value is not None:
+        shown = round(value, _DIGITS) if isinstance(value, float) else value
+        wanted, fits = f"should be {_text(shown)}", _equal(actual, value, tolerance)
+    if one_of is not None:
+        wanted, fits = (
+            f"should be {enumerated([*map(_text, one_of)], word='or')}",
+            _is_one(actual, one_of, tolerance),
+        )
+    if has is not None:
+        items = actual if isinstance(actual, list) else [actual]
+        wanted = f"should have {enumerated([*map(_text, has)])}"
+        fits = all(any(_equal(item, one, tolerance) for item in items) for one in has)
+    message = f"{said} {parameter} = {_text(actual)}"
+    if measure is not None:
+        wanted += f", the {measure} of {enumerated([*map(quoted, links or [])])} in the robot"
+    return passed(message) if fits else failed(f"{message}; it {wanted}", found.location)
+
+
+def _measured_if_there(
+    submission: Submission, measure: _Measure, links: list[str] | None
+) -> float | None:
+    try:
+        return measured(submission, measure, links or [])
+    except MissingElement:
+        return None
+
+
+def _written_otherwise(
+    submission: Submission, parameter: str, value: Any, tolerance: float
+) -> ParameterValue | None:
+    """Return what parameter files have for a parameter, of whatever node, if none of them has a
+    certain value.
+    """
+    from grader.ros.config.yaml_values import sections_in
+
+    sections = (
+        section for _, tree in submission.workspace.trees for _, section in sections_in(tree)
+    )
+    nodes = (section.get(*parameter.split(".")) for section in sections)
+    written = [value_in_file(node) for node in nodes if node is not None]
+    known = [it for it in written if not isinstance(it.value, Unknown)]
+    has_it = value is None or any(_equal(it.value, value, tolerance) for it in known)
+    return None if has_it else next(iter(known), None)
+
+
+def value_of(submission: Submission, node: str, parameter: str) -> ParameterValue:
+    """Return the value that a node gets. Raises MissingElement if it gets none, NotDecided where
+    that is not known.
+    """
+    workspace = submission.workspace
+    given = workspace.parameter_owners.get(node, [])
+    values = [found.values[parameter] for found in given if parameter in found.values]
+    if len({repr(it.value) for it in values}) == 1 and len(values) == len(given):
+        return values[0]
+    unknown = (
+        next((found.unknown for found in given if found.unknown), "") or workspace.unknown_nodes
+    )
+    if values and not unknown:
+        places = enumerated([f"{it.location.path}:{it.location.line}" for it in values])
+        raise NotDecided(
+            f"{node} gets different values of {parameter}: {places}",
+            "a parameter has several values",
+        )
+    if unknown:
+        raise NotDecided(
+            f"the parameters of {node} are not known: {unknown}",
+            "parameters of a node are not known",
+        )
+    if not given:
+        guess = did_you_mean(node, workspace.parameter_owners)
+        message = f"nothing gives parameters to a node {quoted(node)}{guess}"
+        raise MissingElement("parameters of the node", node, message=message)
+    names = [name for found in given for name in found.values]
+    message = (
+        f"{node} does not get the parameter {quoted(parameter)}{did_you_mean(parameter, names)}"
+    )
+    at = next((it.location for found in given for it in found.values.values()), None)
+    raise MissingElement("parameter", f"{node} {parameter}", message=message, location=at)
+
+
+def _equal(actual: Any, wanted: Any, tolerance: float) -> bool:
+    """Return whether a value is a wanted one: numbers within a tolerance, lists item by item."""
+    match actual, wanted:
+        case (list(), list()):
+            return len(actual) == len(wanted) and all(
+                map(_equal, actual, wanted, [tolerance] * len(actual))
+            )
+        case (bool() | str(), bool() | str()):
+            return (type(actual), actual) == (type(wanted), wanted)
+        case (int() | float(), int() | float()) if not isinstance(actual, bool) and not isinstance(
+            wanted, bool
+        ):
+            return abs(actual - wanted) <= tolerance
+    return False
+
+
+def _is_one(actual: Any, choices: list[Scalar], tolerance: float) -> bool:
+    return any(_equal(actual, one, tolerance) for one in choices)
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, list):
+        return f"[{', '.join(map(_text, value))}]"
+    if isinstance(value, bool):
+        return str(value).lower()
+    return quoted(value) if isinstance(value, str) else f"{value:.12g}"
+
+
+def measured(submission: Submission, measure: _Measure, links: list[str]) -> float:
+    """Return a measure of the robot, in metres or radians. Raises MissingElement for a link that is
+    not there.
+    """
+    robot = submission.needed_urdf().robot
+    if robot is None:
+        raise MissingElement(
+            "robot", "", message="ROS 2 cannot read the file, so there is no robot"
+        )
+    if len(links) != 1 + (measure == "distance"):
+        raise RubricError(
+            (
+                (
+                    f"parameter_is measures a {measure}: give "
+                    f"{'two links' if measure == 'distance' else 'a link'}"
+                ),
+            )
+        )
+    found = measures(Configuration(robot), links).get(measure)
+    if found is None:
+        raise MissingElement("measure", links[0], message=f"{quoted(links[0])} has no {measure}")
+    return found()
+
+
+def measures(robot: Configuration, links: list[str]) -> Mapping[str, Callable[[], float]]:
+    """Return what can be measured of one link, or of two: a radius, a distance, the limits of a
+    joint.
+
+    Args:
+        robot: The robot.
+        links: The names of one or two links.
+    """
+    return dict(_measures(robot, links))
+
+
+def _place(robot: Configuration, link: str, relative_to: str) -> Vector:
+    """Return the centre of a cylinder or sphere that a joint turns without end, or where the link's
+    frame is.
+    """
+    joint = robot.parent_joints.get(link)
+    if joint is not None and joint.type == "continuous" and robot.robot.link(link).visuals:
+        visual = main_visual(robot, link)
+        if isinstance(visual.geometry, Cylinder | Sphere):
+            return visual_pose(robot, link, visual, relative_to).translation
+    return robot.pose(link, relative_to=relative_to).translation
+
+
+def _measures(robot: Configuration, links: list[str]) -> Iterator[tuple[str, Callable[[], float]]]:
+    first = robot.robot.link(links[0])
+    if len(links) > 1:
+        yield "distance", lambda: dist(*(_place(robot, link, links[0]) for link in links))
+        return
+    for visual in first.visuals:
+        match visual.geometry:
+            case Cylinder(radius=radius, length=length):
+                yield "radius", lambda: radius
+                yield "length", lambda: length
+            case Sphere(radius=radius):
+                yield "radius", lambda: radius
+    joint: Joint | None = next(
+        (it for it in reversed(robot.chain(links[0])) if it.type != "fixed"), None
+    )
+    if joint is not None and joint.limit is not None:
+        limit = joint.limit
+        yield from (("lower", lambda: limit.lower), ("upper", lambda: limit.upper))
+        yield from (("velocity", lambda: limit.velocity), ("effort", lambda: limit.effort))

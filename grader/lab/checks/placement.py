@@ -1,0 +1,165 @@
+"""Checks of positions, measured by forward kinematics with every joint at 0."""
+
+from math import acos, degrees
+
+from grader.base.source import LazyLocation
+from grader.lab.checks.check import About
+from grader.lab.checks.outcome import (
+    SLACK,
+    Outcome,
+    failed,
+    in_degrees,
+    location_of,
+    measured_point,
+    place,
+    point,
+)
+from grader.lab.checks.toml_types import Direction, NonNegative
+from grader.lab.checks.visuals import ShapeName, main_visual, origin_place, visual_pose
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Mesh, Visual
+from grader.ros.urdf.shapes import UnknownShape, turn_between
+from grader.ros.urdf.transforms import Z_AXIS, Vector, dot, minus, rotation_from_rpy, unit
+
+ABOUT = {
+    "frame_at": About(("joint/origin",), picture="frame"),
+    "centre_at": About(("visual/origin",), picture="outline"),
+}
+
+_ALONG = 0.9  # the least cosine of the angle between two vectors that count as one direction
+_NOT_TURNED: Vector = (0.0, 0.0, 0.0)
+_ANY_ANGLE = 180.0  # degrees: no two orientations are farther apart
+_ANY_AXIS = 90.0  # degrees: no two lines are farther apart
+
+
+def frame_at(
+    robot: Configuration,
+    *,
+    link: str,
+    relative_to: str,
+    xyz: Vector,
+    tolerance: NonNegative,
+    rpy: Vector = _NOT_TURNED,
+    angle: NonNegative = _ANY_ANGLE,
+) -> Outcome:
+    """The origin of a link's frame is at a point in another link's frame, in metres.
+
+    Args:
+        link: The link that is examined.
+        relative_to: The link in whose frame the point is given.
+        xyz: The point: x, y and z, in metres.
+        tolerance: How far each coordinate may be off, in metres.
+        rpy: The orientation: roll, pitch and yaw about fixed axes, in radians. It counts if `angle`
+            is given.
+        angle: How far the orientation may be off, in degrees; with 180, it is not checked.
+    """
+    pose, at = robot.pose(link, relative_to=relative_to), origin_place(robot, link)
+    placed = measured_point(
+        f"the frame {link!r}", pose.translation, xyz, tolerance, relative_to, at=at
+    )
+    return (
+        _with_orientation(
+            placed,
+            turn_between(pose.rotation, rotation_from_rpy(rpy)),
+            angle,
+            f"rpy = {point(rpy)} (radians)",
+            at,
+        )
+        if angle < _ANY_ANGLE
+        else placed
+    )
+
+
+def centre_at(
+    robot: Configuration,
+    *,
+    link: str,
+    relative_to: str,
+    xyz: Vector,
+    tolerance: NonNegative,
+    rigid: bool = False,
+    shape: ShapeName = "any",
+    axis: Direction = Z_AXIS,
+    angle: NonNegative = _ANY_AXIS,
+) -> Outcome:
+    """The centre of a link's visual is at a point in another link's frame (m); if rigid, only fixed
+    joints are between.
+
+    Args:
+        link: The link that is examined.
+        relative_to: The link in whose frame the point is given.
+        xyz: The point: x, y and z, in metres.
+        tolerance: How far each coordinate may be off, in metres.
+        rigid: Whether only fixed joints may lie between the two links.
+        shape: Which of several visuals counts: the largest of this shape or, without one, the
+            largest of all.
+        axis: The direction of the visual's z axis in the other frame, either way. It counts if
+            `angle` is given.
+        angle: How far the z axis may be off, in degrees; with 90, it is not checked.
+    """
+    visual = main_visual(robot, link, shape)
+    if isinstance(visual.geometry, Mesh):
+        raise UnknownShape(visual.geometry)
+    pose = visual_pose(robot, link, visual, relative_to)
+    actual = pose.translation
+    loose = _loose_joint(robot, link, relative_to) if rigid else None
+    if loose is not None:
+        return loose
+    at = _origin_by(robot, link, visual, relative_to, minus(actual, xyz)) or place(visual.location)
+    placed = measured_point(
+        f"the centre of the visual of {link!r}", actual, xyz, tolerance, relative_to, at=at
+    )
+    if angle >= _ANY_AXIS:
+        return placed
+    cosine = abs(dot(pose.rotate(Z_AXIS), unit(axis) or axis))
+    return _with_orientation(
+        placed, degrees(acos(min(1.0, cosine))), angle, f"the axis {point(axis)}", at
+    )
+
+
+def _with_orientation(
+    placed: Outcome, turned: float, angle: float, wanted: str, at: LazyLocation | None
+) -> Outcome:
+    """Return the outcome of a position, or its failure where the orientation is more than `angle`
+    degrees off.
+    """
+    if turned <= angle + SLACK:
+        return placed
+    message = f"{placed.message}; its orientation is {in_degrees(turned)} off {wanted}"
+    if placed.status == "passed" and at is not None and at.attribute == "xyz":
+        at = at._replace(attribute="rpy")
+    return placed._replace(status="failed", message=message, location=location_of(at))
+
+
+def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome | None:
+    """Return the failure of a link that moves in another link's frame; None where only fixed joints
+    lie between.
+    """
+    path = robot.between(relative_to, link)
+    loose = next((joint for joint in path if joint.type != "fixed"), None)
+    if loose is None:
+        return None
+    own, detail = robot.parent_joints.get(link), f" (joint {loose.name!r})"
+    if own is not None and own in path and loose is not own:
+        reason = f"which moves: a joint above it is {loose.type}; it should be fixed"
+        at = place(own.location, "link", "parent")
+        return failed(f"{link!r} is a child of {own.parent!r}, {reason}", at, detail=detail)
+    message = f"a joint between {relative_to!r} and {link!r} is {loose.type}; it should be fixed"
+    return failed(message, place(loose.location, "type"), detail=detail)
+
+
+def _origin_by(
+    robot: Configuration, link: str, visual: Visual, relative_to: str, off: Vector
+) -> LazyLocation | None:
+    """Return the origin that puts a visual off: its own if it moves the visual along that line,
+    else the joint's.
+
+    In the frame of its own link, nothing but the visual's own origin moves it.
+    """
+    if relative_to == link:
+        return place(visual.origin.location, "xyz") or place(visual.location)
+    T_relative_link = robot.pose(link, relative_to=relative_to)
+    moved, error = unit(T_relative_link.rotate(visual.origin.xyz)), unit(off)
+    if moved is not None and error is not None and abs(dot(moved, error)) > _ALONG:
+        return place(visual.origin.location, "xyz")
+    return origin_place(robot, link) or place(visual.location)

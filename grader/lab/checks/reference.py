@@ -1,0 +1,386 @@
+"""Checks that compare a robot with the rubric's reference solution: how its links move, and
+because of which joint.
+"""
+
+from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
+from math import asin, degrees, dist, inf, isfinite, pi, sqrt
+from typing import Annotated, Any, Literal, NamedTuple
+from weakref import WeakKeyDictionary
+
+from grader.base.errors import MissingElement, NotDecided, RubricError
+from grader.base.names import did_you_mean
+from grader.base.text import counted, enumerated, quoted
+from grader.lab.checks.check import About
+from grader.lab.checks.outcome import (
+    SLACK,
+    Outcome,
+    failed,
+    in_degrees,
+    in_millimetres,
+    passed,
+    place,
+    point,
+)
+from grader.lab.checks.toml_types import Constraint, NonNegative
+from grader.ros.urdf.kinematics import SINGLE, Configuration
+from grader.ros.urdf.link_tree import selected_name
+from grader.ros.urdf.model import Joint, Robot
+from grader.ros.urdf.transforms import Transform
+
+
+def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
+    """The joints are paired by name, or by their order along the chains to the links."""
+    return () if arguments.get("match") == "order" else ("joints renamed",)
+
+
+ABOUT = {
+    "kinematics_match_reference": About(
+        ("joint/origin",),
+        breaks_under=_breaks_under,
+    )
+}
+
+_MatchBy = Literal["name", "order"]
+_Samples = Annotated[
+    int,
+    Constraint(
+        "from 1 to 10000", lambda value: 1 <= value <= 10_000, {"minimum": 1, "maximum": 10_000}
+    ),
+]
+_MAX_NAMED = 8  # joints in a message
+_MAX_CHAIN = 500  # joints that lead to a link
+_LEAST = 1e-9  # of a tolerance: below it, only rounding differs
+# The poses of links of references, by what they are relative to, their names, and the joints with
+# their positions.
+_EXPECTED: WeakKeyDictionary[Configuration, dict[Hashable, tuple[Transform, ...]]] = (
+    WeakKeyDictionary()
+)
+_SEED = 20_260_115
+_BETWEEN = 0.3  # of a range: a position that is neither an end nor the middle
+
+
+def kinematics_match_reference(
+    robot: Configuration,
+    reference: Configuration,
+    *,
+    links: list[str],
+    samples: _Samples = 100,
+    tolerance: NonNegative = 0.002,
+    angle: NonNegative = 1.0,
+    match: _MatchBy = "name",
+    relative_to: str = "",
+) -> Outcome:
+    """The links move as in the reference solution when the joints move within its limits.
+
+    Poses are compared with all joints at 0, with one joint at an end of its range or between, and
+    at random positions, which are always the same. Mimic joints follow. An additional joint that
+    moves a link makes the check fail.
+
+    Args:
+        links: The links whose motion is compared.
+        samples: The number of random positions of all joints.
+        tolerance: How far the origin of a link may be off, in metres.
+        angle: How far the orientation of a link may be off, in degrees.
+        match: How joints are paired: by their names, or in their order along the chains to the
+            links.
+        relative_to: The link in whose frame poses are compared; by default the root of the
+            reference, or that of the robot if it has no link of this name.
+    """
+    bases = _find_bases(robot, reference, links, relative_to)
+    pairs = [(_link_name(robot, link), _of_reference(reference, link)) for link in links]
+    joints = _pair_joints(robot, reference, bases, pairs, match)
+    if isinstance(joints, Outcome):
+        return joints
+    return _MotionComparison((robot, reference), bases, pairs, joints, tolerance, angle).outcome(
+        samples
+    )
+
+
+def _link_name(robot: Configuration, link: str) -> str:
+    name = selected_name(robot.known, robot.known_parents, link)
+    robot.link(name)
+    return name
+
+
+def _of_reference(reference: Configuration, link: str) -> str:
+    """Return the name of a link of the reference. Raises RubricError, because no student can do
+    anything about it.
+    """
+    try:
+        return _link_name(reference, link)
+    except (MissingElement, NotDecided) as error:
+        raise RubricError((f"the reference solution cannot be compared with: {error}",)) from None
+
+
+def _find_bases(
+    robot: Configuration, reference: Configuration, links: Sequence[str], relative_to: str
+) -> tuple[str, str]:
+    """Return the links in whose frames the poses of the robot and of the reference are compared."""
+    if relative_to:
+        return _link_name(robot, relative_to), _of_reference(reference, relative_to)
+    root = reference.root_of(_of_reference(reference, links[0]))
+    return root if robot.robot.has_link(root) else _link_name(robot, "@root"), root
+
+
+def _pair_joints(
+    robot: Configuration,
+    reference: Configuration,
+    bases: tuple[str, str],
+    pairs: Sequence[tuple[str, str]],
+    match: _MatchBy,
+) -> list[tuple[Joint, Joint]] | Outcome:
+    """Return the joints of the robot that move links, each with that of the reference, or the
+    failure to pair them.
+    """
+    own = _find_movers(robot, bases[0], [link for link, _ in pairs])
+    others = _find_movers(reference, bases[1], [link for _, link in pairs])
+    shown = enumerated([quoted(link) for link, _ in pairs], _MAX_NAMED)
+    if match == "order":
+        if len(own) != len(others):
+            message = (
+                f"{counted(len(own), 'joint')} on the chains to {shown}; there should be "
+                f"{len(others)}"
+            )
+            return failed(message, detail=f" (joints {_list_names(own) or 'none'})")
+        joints = [*zip(own.values(), others.values(), strict=True)]
+    else:
+        _check_names(robot, [*others])
+        joints = [(robot.joint(name), joint) for name, joint in others.items()]
+        extra = [name for name in own if name not in others]
+        if extra:
+            message = f"a joint on the chains to {shown} has no counterpart in the reference"
+            return failed(message, own[extra[0]].location, detail=f" (joint {quoted(extra[0])})")
+    return next(filter(None, (_wrong_type(*found) for found in joints)), joints)
+
+
+def _list_names(names: Sequence[str] | dict[str, Joint]) -> str:
+    return enumerated([*map(quoted, names)], _MAX_NAMED)
+
+
+def _check_names(robot: Configuration, names: Sequence[str]) -> None:
+    """Raise MissingElement for joints that are not there."""
+    missing = [name for name in names if not robot.robot.has_joint(name)]
+    if not missing:
+        return
+    known = tuple(joint.name for joint in robot.robot.joints)
+    message = f"there is no joint {enumerated([*map(quoted, missing)], _MAX_NAMED, 'and no joint')}"
+    guess = did_you_mean(missing[0], known) or f"; the file has: {_list_names(known) or 'none'}"
+    raise MissingElement("joint", missing[0], known, message=message, detail=guess)
+
+
+def _wrong_type(joint: Joint, other: Joint) -> Outcome | None:
+    """Return the failure of a joint that cannot move as its counterpart does, such as a
+    prismatic one for a wheel.
+    """
+    if (
+        joint.type == other.type
+        or {joint.type, other.type} <= {"revolute", "continuous"}
+        or other.type not in SINGLE
+    ):
+        return None
+    message = f"the joint is {joint.type or 'of no type'}; it should be {other.type}"
+    return failed(message, place(joint.location, "type"), detail=f" (joint {quoted(joint.name)})")
+
+
+class _Offset(NamedTuple):
+    """How far a link is from its place, in metres and degrees, with the joints at these
+    positions.
+    """
+
+    link: str
+    distance: float
+    angle: float
+    positions: tuple[float, ...]
+
+    @property
+    def text(self) -> str:
+        """The distance and the angle in words."""
+        return f"{in_millimetres(self.distance)} and {in_degrees(self.angle)}"
+
+
+class _MotionComparison(NamedTuple):
+    """A robot and the reference: their paired joints and links, and the links in whose frames poses
+    are compared.
+
+    Offsets are compared by how many times they are larger than the tolerances: metres of a
+    distance, degrees of an angle.
+    """
+
+    robots: tuple[Configuration, Configuration]
+    bases: tuple[str, str]
+    links: Sequence[tuple[str, str]]
+    joints: Sequence[tuple[Joint, Joint]]
+    tolerance: float
+    angle: float
+
+    def outcome(self, samples: int) -> Outcome:
+        """Return whether the offsets are within the tolerances, with all joints at 0, one joint
+        moved, or all of them.
+
+        If they are not, it is the largest offset, and when the robots differ.
+        """
+        joints = [joint for _, joint in self.joints]
+        zero = self._offset((0.0,) * len(joints))
+        alone = [(index, self._offset(positions)) for index, positions in _single_positions(joints)]
+        sampled = map(self._offset, _random_positions(joints, samples) if joints else ())
+        offsets = [zero, *(offset for _, offset in alone), *sampled]
+        worst = max(offsets, key=self._times)  # of equal ones, that of the simplest position
+        if self._is_within(worst):
+            counts = f"{counted(len(offsets), 'position')} of {counted(len(joints), 'joint')}"
+            return passed(
+                f"{self._links_text()} as in the reference at {counts}: at most {worst.text} off"
+            )
+        wrong = dict.fromkeys(index for index, offset in alone if not self._is_within(offset))
+        cause, at = "", self.robots[0].link(worst.link).location
+        if not self._is_within(zero):
+            cause = (
+                f"; it is already {zero.text} off with all joints at 0" if zero is not worst else ""
+            )
+        elif wrong:
+            differing = [self.joints[index][0] for index in wrong]
+            at = differing[0].axis_location or differing[0].location
+            names = enumerated([quoted(joint.name) for joint in differing], _MAX_NAMED, "or")
+            cause = f"; it differs as soon as {names} moves"
+        message = f"{worst.link!r} does not move as in the reference: it is {worst.text} off"
+        outcome = failed(message, at, detail=f" with {self._positions_text(worst)}{cause}")
+        if worst.distance <= self.tolerance + SLACK:
+            return outcome._replace(
+                measured=worst.angle, expected=0.0, tolerance=self.angle, unit="deg"
+            )
+        return outcome._replace(
+            measured=worst.distance, expected=0.0, tolerance=self.tolerance, unit="m"
+        )
+
+    def _offset(self, positions: tuple[float, ...]) -> _Offset:
+        """Return the largest offset at these positions of the joints."""
+        pairs = zip(self.joints, positions, strict=True)
+        own = {
+            joint.name: position for (joint, _), position in pairs if joint.mimic is None
+        }  # a mimic joint follows
+        posed = self.robots[0].at(own)
+        found = []
+        for (name, _), wanted in zip(self.links, self._reference_poses(positions), strict=True):
+            pose = posed.pose(name, relative_to=self.bases[0])
+            distance = dist(pose.translation, wanted.translation)
+            found.append(_Offset(name, distance, _angle_between(pose, wanted), positions))
+        return max(found, key=lambda offset: (self._times(offset), offset.distance))
+
+    def _reference_poses(self, positions: tuple[float, ...]) -> tuple[Transform, ...]:
+        """Return the poses of the reference's links, computed once for all robots that are compared
+        with it.
+        """
+        known = _EXPECTED.setdefault(self.robots[1], {})
+        names, links = (
+            tuple(joint.name for _, joint in self.joints),
+            tuple(link for _, link in self.links),
+        )
+        key = (self.bases[1], links, names, positions)
+        if key not in known:
+            posed = self.robots[1].at(dict(zip(names, positions, strict=True)))
+            known[key] = tuple(posed.pose(link, relative_to=self.bases[1]) for link in links)
+        return known[key]
+
+    def _times(self, offset: _Offset) -> float:
+        """Return how far an offset exceeds the tolerances, rounded, so that equal ones are equal;
+        infinite for NaN.
+        """
+        shares = (
+            offset.distance / max(self.tolerance, _LEAST),
+            offset.angle / max(self.angle, _LEAST),
+        )
+        return max(round(share, 6) if share >= 0 else inf for share in shares)
+
+    def _is_within(self, offset: _Offset) -> bool:
+        return offset.distance <= self.tolerance + SLACK and offset.angle <= self.angle + SLACK
+
+    def _links_text(self) -> str:
+        names = [quoted(link) for link, _ in self.links]
+        return f"{enumerated(names, _MAX_NAMED)} {'moves' if len(names) == 1 else 'move'}"
+
+    def _positions_text(self, offset: _Offset) -> str:
+        if not any(offset.positions):
+            return "all joints at 0"
+        moved = [
+            f"{quoted(joint.name)} at {point((position,))} m"
+            if joint.type == "prismatic"
+            else f"{quoted(joint.name)} at {point((degrees(position),))} degrees"
+            for (joint, _), position in zip(self.joints, offset.positions, strict=True)
+            if position
+        ]
+        return enumerated(moved, _MAX_NAMED)
+
+
+def _angle_between(one: Transform, other: Transform) -> float:
+    """Return the angle between two orientations in degrees: exact near 0, where the trace of the
+    rotation is not.
+    """
+    return degrees(2.0 * asin(min(dist(one.rotation, other.rotation) / (2.0 * sqrt(2.0)), 1.0)))
+
+
+def _find_movers(robot: Configuration, base: str, links: Iterable[str]) -> dict[str, Joint]:
+    """Return the joints that move links relative to a base by their names, along the chain to each
+    link.
+
+    Instead of a mimic joint it is the joint that leads it. Raises MissingElement, and NotDecided
+    where a mimic is not known.
+    """
+    found: dict[str, Joint] = {}
+    for link in links:
+        chain = robot.between(base, link)
+        if len(chain) > _MAX_CHAIN:
+            raise NotDecided(
+                f"more than {_MAX_CHAIN} joints lead to {quoted(link)}",
+                "a chain has too many joints",
+            )
+        for joint in chain:
+            leader = _find_leader(robot.known, joint.known)
+            if leader is not None and leader.type != "fixed":
+                found.setdefault(leader.name, leader)
+    return found
+
+
+def _find_leader(robot: Robot, joint: Joint) -> Joint | None:
+    """Return the joint that leads a mimic joint, perhaps over others; None where there is none."""
+    passed: set[str] = set()
+    while True:
+        if "mimic" in joint.unresolved:
+            joint.unresolved["mimic"].check()
+        if joint.mimic is None:
+            return joint
+        passed.add(joint.name)
+        if joint.mimic.joint in passed or not robot.has_joint(joint.mimic.joint):
+            return None
+        joint = robot.joint(joint.mimic.joint)
+
+
+def _single_positions(joints: Sequence[Joint]) -> Iterator[tuple[int, tuple[float, ...]]]:
+    """Yield positions with one joint at an end of its range, or between, and the others at 0; each
+    with its index.
+    """
+    for index, joint in enumerate(joints):
+        low, high = _joint_range(joint)
+        for position in (low, high, low + _BETWEEN * (high - low)):
+            yield index, tuple(position if other == index else 0.0 for other in range(len(joints)))
+
+
+def _random_positions(joints: Sequence[Joint], count: int) -> list[tuple[float, ...]]:
+    """Return random positions within the ranges of joints, always the same ones."""
+    from random import Random  # late: few rubrics need it, and it takes long to import
+
+    random = Random(_SEED)  # noqa: S311  not for secrets
+    ranges = [_joint_range(joint) for joint in joints]
+    return [
+        tuple(low + (high - low) * random.random() for low, high in ranges) for _ in range(count)
+    ]
+
+
+def _joint_range(joint: Joint) -> tuple[float, float]:
+    """Return the range of a joint in radians or metres; a joint without limits that does not turn
+    freely stays at 0.
+    """
+    if joint.type == "continuous":
+        return -pi, pi
+    limit = joint.limit
+    if joint.type not in SINGLE or limit is None or not isfinite(limit.upper - limit.lower):
+        return 0.0, 0.0
+    return limit.lower, limit.upper

@@ -1,0 +1,357 @@
+"""Checks of an RViz file: that it is there, its fixed frame, and that it shows the robot."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+from grader.base.errors import MissingElement, NotDecided
+from grader.base.names import did_you_mean
+from grader.base.text import enumerated
+from grader.lab.checks.check import About
+from grader.lab.checks.outcome import Outcome, Status, failed, judged, passed
+from grader.lab.submission.submission import Submission
+from grader.ros.package.package import Package
+from grader.ros.package.robot_file import Read
+
+if TYPE_CHECKING:
+    from grader.ros.config.rviz import Display, RvizFile
+    from grader.ros.launch.launch_model import Launch, StartedNode
+
+# What the edits for hints may change.
+ABOUT = {
+    "rviz_found": About(("rviz",)),
+    "rviz_fixed_frame": About(("rviz",)),
+    "rviz_shows_robot": About(("rviz",)),
+    "rviz_display_on": About(("rviz",)),
+}
+
+_PLUGINS = "rviz_default_plugins"
+_UNKNOWN_PREFIX = "the frame_prefix of robot_state_publisher is known only at run time"
+
+
+def rviz_found(package: Package, *, name: str, launch: str = "") -> Outcome:
+    """The package has the RViz file: that of this name, or the one that the launch file opens.
+
+    Args:
+        name: The name of the RViz file, such as view.rviz.
+        launch: The name of a launch file whose RViz file also passes, under any name; by default,
+            none.
+    """
+    opened = _read_launch(package, launch)
+    path = _rviz_path(package, name, opened)
+    if path.rpartition("/")[2] == name or (
+        opened is not None and path == package.rviz_opened(opened)
+    ):
+        return passed(f"the RViz file is {path}")
+    if opened is not None and (
+        opened.syntax or opened.unknown or not all(file.sure for file in opened.named("rviz"))
+    ):
+        message = f"cannot determine statically whether the launch file opens {path}"
+        raise NotDecided(message, "cannot determine statically which files the launch file names")
+    return failed(
+        f"there is no RViz file {name!r}",
+        detail=f"; the package has {path}{package.built('rviz', name)}",
+    )
+
+
+def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: str = "") -> Outcome:
+    """The RViz file's Fixed Frame is this link, after the launch file's `frame_prefix` for
+    robot_state_publisher.
+
+    Args:
+        name: The name of the RViz file, such as view.rviz.
+        frame: The link in whose frame RViz should draw.
+        launch: The name of a launch file whose RViz file is examined, under any name; by default,
+            only `name` decides.
+    """
+    package = submission.needed_package()
+    rviz = _read_rviz(package, name, launch)
+    if rviz.conflict is not None:
+        return failed(rviz.conflict.message, rviz.conflict.location)
+    opened = _read_launch(package, launch)
+    frames = _frames_of_link(opened, frame)
+    actual, expected = rviz.fixed_frame, next(filter(None, frames), frame)
+    if not actual:
+        return failed(
+            f"the RViz file sets no Fixed Frame; it should be {expected!r}", rviz.frame_location
+        )
+    if None in frames and actual.endswith(frame):
+        raise NotDecided(_UNKNOWN_PREFIX)
+    robot = submission.urdf.reading.robot if isinstance(submission.urdf, Read) else None
+    links = (
+        [it for link in robot.links for it in _frames_of_link(opened, link.name) if it]
+        if robot is not None
+        else []
+    )
+    message, detail = f"the Fixed Frame is {actual!r}", ""
+    if actual not in frames:
+        message += f"; it should be {expected!r}{_prefix_reason(expected, frame)}"
+        if links and actual not in links and actual != frame:
+            detail = f"; the robot has no link {actual!r}{did_you_mean(actual, links)}"
+    elif links and actual not in links:
+        message += ", which the robot does not have"
+    return judged(
+        actual in frames, message, actual, expected, at=rviz.frame_location, detail=detail
+    )
+
+
+def rviz_shows_robot(
+    package: Package, *, name: str, topic: str = "/robot_description", launch: str = ""
+) -> Outcome:
+    """A RobotModel display of the RViz file is on, reads the robot from this topic, and has the
+    prefix of its frames.
+
+    With a launch file, the topic is that of its robot_state_publisher, which its joint state
+    publisher has to reach.
+
+    Args:
+        name: The name of the RViz file, such as view.rviz.
+        topic: The topic from which the display should read the robot.
+        launch: The name of a launch file whose RViz file is examined, under any name; by default,
+            only `name` decides.
+    """
+    rviz = _read_rviz(package, name, launch)
+    models = [display for display in rviz.displays if display.kind == "RobotModel"]
+    if not models:
+        return _no_display(rviz, "RobotModel")
+    opened = _read_launch(package, launch)
+    verdicts = [(_judge_model(model, topic, opened), model) for model in models]
+    fine = [model for (status, _), model in verdicts if status == "passed"]
+    if fine:
+        return passed(f"the display {fine[0].name or 'RobotModel'!r} shows the robot")
+    (status, reason), model = next(
+        (verdict for verdict in verdicts if verdict[0][0] == "pending"), verdicts[0]
+    )
+    return Outcome(status, reason, location=model.location)
+
+
+def rviz_display_on(package: Package, *, name: str, kind: str, launch: str = "") -> Outcome:
+    """The RViz file has a display of a class, such as TF or LaserScan, and it is on.
+
+    Args:
+        name: The name of the RViz file, such as view.rviz.
+        kind: The class of the display, such as LaserScan; with a package, such as
+            rviz_default_plugins/LaserScan, that package is required.
+        launch: The name of a launch file whose RViz file is examined, under any name; by default,
+            only `name` decides.
+    """
+    rviz = _read_rviz(package, name, launch)
+    found = [display for display in rviz.displays if display.kind == kind.rpartition("/")[2]]
+    owner = kind.rpartition("/")[0]
+    faults = [
+        _class_of_ros1(display) or _why_other_class(display, owner) or _why_off(display)
+        for display in found
+    ]
+    if "" in faults:
+        return passed(f"a {kind} display is on")
+    return failed(faults[0], found[0].location) if found else _no_display(rviz, kind)
+
+
+def _no_display(rviz: "RvizFile", kind: str) -> Outcome:
+    kinds = list(dict.fromkeys(display.kind for display in rviz.displays if display.kind))
+    return failed(
+        f"there is no {kind} display", detail=f"; the displays are: {enumerated(kinds) or 'none'}"
+    )
+
+
+def _class_of_ros1(display: "Display") -> str:
+    """Return what is wrong with a display's class: RViz of ROS 2 has no class rviz/..., and none
+    without a package.
+    """
+    right = f"in ROS 2 it is {_PLUGINS}/{display.kind}"
+    if not display.package:
+        return f"the class {display.kind!r} names no package; {right}"
+    return f"rviz/{display.kind} is a class of ROS 1; {right}" if display.package == "rviz" else ""
+
+
+def _why_other_class(display: "Display", package: str) -> str:
+    if package in ("", display.package):
+        return ""
+    own, wanted = f"{display.package}/{display.kind}", f"{package}/{display.kind}"
+    return f"the class of the {display.kind} display is {own}; it should be {wanted}"
+
+
+def _why_off(display: "Display") -> str:
+    if display.enabled:
+        return ""
+    return f"the {display.kind} display is off{': its group is off' if display.is_enabled else ''}"
+
+
+def _frames_of_link(opened: "Launch | None", link: str) -> tuple[str | None, ...]:
+    return opened.frames_of(link) if opened is not None else (link,)
+
+
+def _prefix_reason(frame: str, link: str) -> str:
+    """Return why a frame is not called like its link."""
+    prefix = frame.removesuffix(link)
+    return f", because the frame_prefix of robot_state_publisher is {prefix!r}" if prefix else ""
+
+
+def _judge_model(model: "Display", topic: str, opened: "Launch | None") -> tuple[Status, str]:
+    """Return whether a RobotModel display shows the robot, and if not, why."""
+    fault = _class_of_ros1(model) or _why_off(model)
+    if not fault and model.package != _PLUGINS:
+        return (
+            "pending",
+            f"{model.package}/RobotModel is not a class of RViz itself; needs manual grading",
+        )
+    hidden = "its Visual Enabled is off" if not model.is_on("Visual Enabled") else model.hides_links
+    if not fault and hidden:
+        fault = f"the RobotModel display is on, but {hidden}, so RViz draws nothing"
+    if fault:
+        return "failed", fault
+    source = model.node.get("Description Source")
+    if source is not None and source.text == "File":
+        return (
+            "pending",
+            "the RobotModel display reads a local file instead of a topic; needs manual grading",
+        )
+    value = model.node.get("Description Topic", "Value") or model.node.get("Description Topic")
+    verdict = _judge_topic(
+        (value.text or "" if value is not None else "").strip(), topic, _Names.of(opened)
+    )
+    return verdict if verdict[0] != "passed" else _judge_prefix(model, opened)
+
+
+def _judge_topic(actual: str, topic: str, names: "_Names") -> tuple[Status, str]:
+    """Return whether a RobotModel display reads the robot, by the nodes that are started or else by
+    the topic.
+    """
+    described, shown = names.described, names.shown(actual)
+    if described is None or (described and None in shown):
+        return "pending", "the topics of the nodes are known only at run time; needs manual grading"
+    unheard = names.unheard
+    if actual and described and (described != {topic} or shown != {actual}):
+        if not described & shown:
+            unheard = (
+                f"RViz reads the robot from {_listed(shown)}, but it is on {_listed(described)}"
+            )
+    elif actual.strip("/") != topic.strip("/"):
+        fault = (
+            f"reads the topic {actual!r}; it should read"
+            if actual
+            else "has no Description Topic; it should be"
+        )
+        unheard = f"the RobotModel display {fault} {topic!r}"
+    return ("failed", unheard) if unheard else ("passed", "")
+
+
+class _Names(NamedTuple):
+    """The nodes that a launch file certainly starts: who publishes the robot and its joints, and
+    who shows it.
+    """
+
+    publishers: "Sequence[StartedNode]" = ()
+    joints: "Sequence[StartedNode]" = ()
+    viewers: "Sequence[StartedNode]" = ()
+
+    @classmethod
+    def of(cls, opened: "Launch | None") -> "_Names":
+        """Return the nodes of a launch file; none if other ones may be started as well."""
+        if (
+            opened is None
+            or opened.faults
+            or opened.unknown
+            or any(node.when is None for node in opened.nodes)
+        ):
+            return cls()
+        programs = (
+            ("robot_state_publisher",),
+            ("joint_state_publisher", "joint_state_publisher_gui"),
+            ("rviz2",),
+        )
+        started = [node for node in opened.nodes if node.when]
+        return cls(*([node for node in started if node.executable in names] for names in programs))
+
+    @property
+    def described(self) -> set[str] | None:
+        """The topics that the robot is on; None where one is known only at run time."""
+        topics = {node.topic("robot_description") for node in self.publishers}
+        return None if None in topics else {topic for topic in topics if topic is not None}
+
+    def shown(self, topic: str) -> set[str | None]:
+        """Return the topics that RViz reads for the one in its file."""
+        return {node.topic(topic) for node in self.viewers} or {topic}
+
+    @property
+    def unheard(self) -> str:
+        """Why transforms do not get from the joints to RViz; empty if they do, or if this is not
+        known.
+        """
+        for name, sources, readers in (
+            ("joint_states", self.joints, self.publishers),
+            (
+                "robot_description",
+                self.publishers,
+                [node for node in self.joints if not node.has_description],
+            ),
+            ("/tf", self.publishers, self.viewers),
+        ):
+            sent, read = ({node.topic(name) for node in nodes} for nodes in (sources, readers))
+            if sent and read and None not in sent | read and not sent & read:
+                who, reader = sources[0].executable, readers[0].executable
+                return f"{who} publishes on {_listed(sent)}, but {reader} reads {_listed(read)}"
+        return ""
+
+
+def _listed(topics: set[str] | set[str | None]) -> str:
+    return enumerated(sorted(topic for topic in topics if topic))
+
+
+def _judge_prefix(model: "Display", opened: "Launch | None") -> tuple[Status, str]:
+    """Return whether a RobotModel display finds the links' frames: it puts its TF Prefix and a
+    slash before them.
+    """
+    node = model.node.get("TF Prefix")
+    own = node.text or "" if node is not None else ""
+    # TFLinkUpdater::getLinkTransforms of rviz_default_plugins always adds the slash,
+    # robot_state_publisher none.
+    found, prefixes = f"{own}/" if own else "", _frames_of_link(opened, "")
+    if found in prefixes:
+        return "passed", ""
+    if None in prefixes:
+        return "pending", f"{_UNKNOWN_PREFIX}; needs manual grading"
+    expected = prefixes[0] or ""
+    message = (
+        f"the TF Prefix of the RobotModel display is {own!r}, so it looks for frames like "
+        f"'{found}LINK'; "
+    )
+    return "failed", f"{message}robot_state_publisher publishes '{expected}LINK'"
+
+
+def _read_launch(package: Package, launch: str) -> "Launch | None":
+    path = package.launch_file(launch) if launch else None
+    return package.launch(path) if path is not None else None
+
+
+def _rviz_path(package: Package, name: str, opened: "Launch | None") -> str:
+    path = package.rviz_file(name, opened)
+    if path is None:
+        raise package.missing("rviz")
+    return path
+
+
+def _read_rviz(package: Package, name: str, launch: str) -> "RvizFile":
+    opened = _read_launch(package, launch)
+    package = _owner_of_opened(package, opened) if opened is not None else package
+    path = _rviz_path(package, name, opened)
+    rviz = package.rviz(path)
+    if rviz.unread:
+        raise NotDecided(rviz.unread, "the RViz file cannot be read")
+    if rviz.fault is not None:
+        raise MissingElement(
+            "RViz file", path, message=rviz.fault.message, location=rviz.fault.location
+        )
+    return rviz
+
+
+def _owner_of_opened(package: Package, opened: "Launch") -> Package:
+    """Return the package of the submission whose RViz file a launch file opens; without one, the
+    package itself.
+    """
+    from grader.ros.package.installed_files import share_parts  # late: few rubrics ask for it
+
+    others = (
+        package.find(share_parts(it.path)[0]) for it in opened.named("rviz") if it.path is not None
+    )
+    owners = [it for it in (package, *others) if it is not None]
+    return next((it for it in owners if it.rviz_opened(opened) is not None), package)

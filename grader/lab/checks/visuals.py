@@ -1,0 +1,121 @@
+"""The visuals of a link for the checks that measure them, and the places of origins and axes."""
+
+from collections.abc import Sequence
+from itertools import repeat
+from math import inf
+from typing import Literal
+
+from grader.base.errors import MissingElement
+from grader.base.source import LazyLocation
+from grader.lab.checks.outcome import place, within
+from grader.ros.urdf.kinematics import Configuration, placed_by
+from grader.ros.urdf.model import Box, Cylinder, Geometry, Joint, Mesh, Sphere, Visual
+from grader.ros.urdf.shapes import extent, is_empty, volume
+from grader.ros.urdf.transforms import Transform, Vector, unit
+
+_MAX_FILE_NAME = 100  # characters that a message shows
+MAX_SHAPES = 50  # of one link that are compared with each other
+VISIBLE = 0.01  # the smallest alpha of a colour that shows
+ShapeName = Literal["any", "box", "cylinder", "sphere"]
+_SHAPES: dict[str, type[Box] | type[Cylinder] | type[Sphere]] = {
+    "box": Box,
+    "cylinder": Cylinder,
+    "sphere": Sphere,
+}
+
+
+def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
+    """Return the visuals of a link that have a size; raise MissingElement if there is none."""
+    found = robot.link(link)
+    shown = tuple(visual for visual in found.visuals if not is_empty(visual.geometry))
+    if not shown:
+        message = f"link {link!r} has no visual with a size"
+        raise MissingElement("visual", link, message=message, location=place(found.location))
+    return shown
+
+
+def visible(robot: Configuration, link: str) -> list[Visual]:
+    """Return the visuals of a link that have a size and are not transparent; raise MissingElement
+    without the link.
+    """
+    shown = (visual for visual in robot.link(link).visuals if not is_empty(visual.geometry))
+    return [
+        visual for visual in shown if visual.material is None or visual.material.rgba[3] >= VISIBLE
+    ]
+
+
+def main_visual(robot: Configuration, link: str, shape: ShapeName = "any") -> Visual:
+    """Return the visual that counts for a link: its only one, else the first mesh, of unknown size,
+    else the largest.
+
+    If the link has visuals of the named shape, only these count.
+    """
+    shown = visuals(robot, link)
+    if len(shown) == 1:
+        return shown[0]
+    if shape != "any":
+        shown = (
+            tuple(visual for visual in shown if isinstance(visual.geometry, _SHAPES[shape]))
+            or shown
+        )
+    return max(
+        shown,
+        key=lambda visual: inf if isinstance(visual.geometry, Mesh) else volume(visual.geometry),
+    )
+
+
+def visual_pose(robot: Configuration, link: str, visual: Visual, relative_to: str) -> Transform:
+    """Return T_relative_visual; raise MissingElement where it is not defined."""
+    return placed_by(robot.pose(link, relative_to=relative_to), visual.origin)
+
+
+def span(
+    robot: Configuration, link: str, relative_to: str, direction: Vector
+) -> tuple[float, float]:
+    """Return the lowest and highest coordinate of a link's visuals along a unit direction, in
+    metres, in a frame.
+    """
+    pose = robot.pose(link, relative_to=relative_to)
+    spans = [
+        extent(visual.geometry, placed_by(pose, visual.origin), direction)
+        for visual in visuals(robot, link)
+    ]
+    lows, highs = zip(*spans, strict=True)
+    return min(lows), max(highs)
+
+
+def shape_name(geometry: Geometry) -> str:
+    """Return the name of a shape: a box, a cylinder, a sphere, a mesh."""
+    return f"a {type(geometry).__name__.lower()}"
+
+
+def file_name(name: str) -> str:
+    """Return the file name of a mesh between quotes; only the end of one that is very long."""
+    return repr(name if len(name) <= _MAX_FILE_NAME else f"...{name[3 - _MAX_FILE_NAME :]}")
+
+
+def origin_place(robot: Configuration, link: str) -> LazyLocation | None:
+    """Return the place of the origin that puts a link into its parent's frame."""
+    joint = robot.parent_joints.get(link)
+    if joint is None:
+        return place(robot.link(link).location)
+    return place(joint.origin.location if joint.origin else None, "xyz") or place(joint.location)
+
+
+def axis_place(joint: Joint) -> LazyLocation | None:
+    """Return the place that gives an axis its direction: the joint's rpy if the axis is z of a
+    rotated frame.
+    """
+    is_z = (
+        joint.axis_location is not None
+        and joint.axis is not None
+        and unit(joint.axis) == (0.0, 0.0, 1.0)
+    )
+    if is_z and joint.origin is not None and any(joint.origin.rpy):
+        return place(joint.origin.location, "rpy")
+    return place(joint.axis_location, "xyz") or joint.location
+
+
+def all_within(actual: Sequence[float], expected: Sequence[float], tolerance: float) -> bool:
+    """Return whether each of several numbers is within a tolerance."""
+    return all(map(within, actual, expected, repeat(tolerance)))

@@ -1,0 +1,260 @@
+"""The check of the xacro that a robot is written in: its properties, its macros, the files that
+it includes.
+"""
+
+from collections.abc import Collection, Iterator, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+from grader.base.errors import InputError, MissingElement, NotDecided
+from grader.base.names import did_you_mean
+from grader.base.source import LazyLocation, Location, Source
+from grader.base.text import counted, enumerated, quoted
+from grader.files.reading import URDF_LIMIT
+from grader.lab.checks.check import About, everything
+from grader.lab.checks.outcome import Outcome, failed, passed
+from grader.lab.checks.toml_types import Count
+from grader.lab.submission.submission import Submission
+from grader.ros.package.robot_file import Read
+from grader.ros.python.budget import OutOfBudget
+from grader.ros.urdf.reader import find_xacro
+from grader.ros.urdf.urdf_problems import RAW_XACRO
+
+if TYPE_CHECKING:
+    from grader.ros.xacro.expansion import ExpandedSource
+    from grader.ros.xacro.inventory import Definitions, Inventory
+
+ABOUT = {
+    "xacro_uses": About(("xacro:property", "xacro:macro", "xacro:include"), breaks_under=everything)
+}
+
+_MAX_NAMED = 5  # names in a message
+
+
+class _Lack(NamedTuple):
+    """What is missing, where, and what differs between students."""
+
+    message: str
+    location: Location | None = None
+    detail: str = ""
+
+
+def xacro_uses(
+    submission: Submission,
+    *,
+    file: str = "",
+    properties: Count | list[str] = 0,
+    macros: Count | list[str] = 0,
+    includes: Count | list[str] = 0,
+) -> Outcome:
+    """The robot is written in xacro, which defines and uses properties and macros, and includes
+    files.
+
+    The graded URDF and the files that it includes are examined as they are written. A property is
+    used if an expression names it, also in the body of a macro; a macro is used if it is called.
+    Without any argument, xacro must be expanded before ROS 2 reads it.
+
+    Args:
+        file: The end of the path of the one file whose definitions and includes count, such as
+            "urdf/wheel.xacro"; by default, all files. They may be used in any file.
+        properties: How many properties must at least be defined and used, or their names.
+        macros: How many macros must at least be defined and called, or their names.
+        includes: How many files must at least be included, or the ends of their paths.
+    """
+    source = _find_source(submission, file)
+    if isinstance(source, Outcome):
+        return source
+    if not (file or properties or macros or includes):
+        return _judge_expansion(submission)
+    paths = [path for path in source.documents if submission.is_single or _ends_with(path, file)]
+    found = _take_inventory(source, submission)
+    included = [path for (by, _), every in source.includes.items() if by in paths for path in every]
+    lacks = [
+        *_missing_uses("property", "properties", properties, found.properties, found.used, paths),
+        *_missing_uses("macro", "macros", macros, found.macros, found.called, paths),
+        *_missing_includes(includes, [*dict.fromkeys(included)]),
+    ]
+    if not lacks:
+        names = [path.rpartition("/")[2] for path in paths]
+        return passed(
+            f"{enumerated(names, _MAX_NAMED)}: xacro with the expected properties, macros "
+            "and includes"
+        )
+    _refuse_unknown(source, found)
+    at = next(
+        (lack.location for lack in lacks if lack.location is not None), LazyLocation(source, 0)
+    )
+    return failed(
+        "; ".join(lack.message for lack in lacks), at, detail="".join(lack.detail for lack in lacks)
+    )
+
+
+def _take_inventory(source: "ExpandedSource", submission: Submission) -> "Inventory":
+    from grader.ros.xacro.inventory import take_inventory  # late: few rubrics need it
+
+    try:
+        return take_inventory(source.documents.values(), submission.budget)
+    except OutOfBudget as error:
+        raise NotDecided(str(error)) from None
+
+
+def _refuse_unknown(source: "ExpandedSource", found: "Inventory") -> None:
+    """Raise NotDecided if what seems to be missing may be in a part that is not known."""
+    followed = source.includes.keys()
+    is_open = any((place.source.path, place.tag) not in followed for place in found.includes)
+    if source.open_reason and is_open:
+        raise NotDecided(source.open_reason)
+    if found.dynamic:
+        place = found.dynamic[0].at()
+        reason = "xacro evaluates the name of a property or macro"
+        raise NotDecided(f"{reason} ({place.path}, line {place.line})", reason)
+
+
+def _find_source(submission: Submission, file: str) -> "ExpandedSource | Outcome":
+    """Return the xacro that is examined, or the failure of a robot that is not written in xacro."""
+    from grader.ros.xacro.expansion import ExpandedSource
+
+    reading, urdf = submission.needed_urdf(), submission.urdf
+    assert isinstance(urdf, Read)  # else there is none that is needed
+    source = reading.source
+    if not isinstance(source, ExpandedSource) and find_xacro(source.text) is not None:
+        source = _expand_file(submission, urdf.path, urdf.data)
+    if isinstance(source, ExpandedSource):
+        if (
+            not file
+            or submission.is_single
+            or any(_ends_with(path, file) for path in source.documents)
+        ):
+            return source
+    elif not file or submission.is_single:
+        others = [
+            path
+            for path in submission.tree.files
+            if path.lower().endswith(".xacro") and path != urdf.path
+        ]
+        if others:
+            listed = enumerated(others, _MAX_NAMED)
+            message = f"the graded URDF is {urdf.path}, which is no xacro, but there is {listed}"
+            raise NotDecided(message, "the graded URDF is no xacro, but the submission has xacro")
+        if reading.root is None:
+            raise MissingElement(
+                "robot", "", message="ROS 2 cannot read the file, so there is no robot"
+            )
+        return failed(
+            "the URDF is not written in xacro: it has no expression and no tag of xacro",
+            LazyLocation(source, 0),
+        )
+    return _other_file(submission, file)
+
+
+def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome":
+    """Return the xacro in a file of the submission that the graded URDF does not include."""
+    from grader.ros.xacro.expansion import ExpandedSource
+
+    found = [path for path in submission.tree.files if _ends_with(path, file)]
+    if len(found) > 1:
+        raise NotDecided(
+            f"several files are called {file}: {enumerated(found, _MAX_NAMED)}",
+            "several files have the name",
+        )
+    if not found:
+        raise MissingElement("file", file, message=f"the submission has no file {quoted(file)}")
+    try:
+        source = _expand_file(
+            submission, found[0], submission.tree.files[found[0]].read(URDF_LIMIT)
+        )
+    except InputError as error:
+        raise NotDecided(str(error), "a file cannot be read") from None
+    if isinstance(source, ExpandedSource) and find_xacro(source.text) is not None:
+        return source
+    return failed(f"{found[0]} has no expression and no tag of xacro", Location(found[0], 1, 1))
+
+
+def _expand_file(submission: Submission, path: str, data: bytes) -> "ExpandedSource | Source":
+    """Return a file as xacro; raise NotDecided or MissingElement where it cannot be expanded at
+    all.
+    """
+    from grader.ros.xacro.expansion import ExpandedSource, expand
+
+    expansion = expand(
+        data, path, submission.surroundings(submission.budget), submission.opening.arguments
+    )
+    if isinstance(expansion.source, ExpandedSource):
+        return expansion.source
+    for found in expansion.undetermined:
+        raise NotDecided(found.reason)
+    first = expansion.problems[0]
+    raise MissingElement(
+        "xacro", path, message=first.message, location=first.location, problem=first.message
+    )
+
+
+def _judge_expansion(submission: Submission) -> Outcome:
+    """Return whether xacro is expanded before ROS 2 reads the robot."""
+    urdf = submission.urdf
+    assert isinstance(urdf, Read)
+    raw = next((problem for problem in urdf.loaded.problems if problem.kind is RAW_XACRO), None)
+    if raw is not None:
+        return failed(raw.message, raw.location, problem=raw.message)
+    return passed(f"{urdf.path} is written in xacro, and is expanded before ROS 2 reads it")
+
+
+def _missing_uses(
+    kind: str,
+    plural: str,
+    wanted: int | list[str],
+    defined: "Definitions",
+    used: Collection[str],
+    paths: Sequence[str],
+) -> Iterator[_Lack]:
+    """Yield what is missing of definitions that are used: some of the named ones, or of a
+    number.
+    """
+    places = {
+        name: next((place for place in found if place.source.path in paths), None)
+        for name, found in defined.items()
+    }
+    own = {name: place.at("name") for name, place in places.items() if place is not None}
+    if isinstance(wanted, int):
+        unused = [name for name in own if name not in used]
+        if len(own) - len(unused) < wanted:
+            message = (
+                f"{counted(len(own) - len(unused), kind, plural)} defined and used; there "
+                f"should be {wanted}"
+            )
+            detail = (
+                f"; not used: {enumerated([*map(quoted, unused)], _MAX_NAMED)}" if unused else ""
+            )
+            yield _Lack(message, own[unused[0]] if unused else None, detail)
+        return
+    for name in wanted:
+        if name not in own:
+            yield _Lack(f"the {kind} {quoted(name)} is not defined", None, did_you_mean(name, own))
+        elif name not in used:
+            yield _Lack(
+                (
+                    f"the {kind} {quoted(name)} is defined, but never "
+                    f"{'called' if kind == 'macro' else 'used'}"
+                ),
+                own[name],
+            )
+
+
+def _missing_includes(wanted: int | list[str], included: Sequence[str]) -> Iterator[_Lack]:
+    if isinstance(wanted, int):
+        if len(included) < wanted:
+            yield _Lack(f"{counted(len(included), 'file')} included; there should be {wanted}")
+        return
+    missing = [end for end in wanted if not any(_ends_with(path, end) for path in included)]
+    if missing:
+        names = [path.rpartition("/")[2] for path in included]
+        detail = f"; included: {enumerated(names, _MAX_NAMED) or 'none'}"
+        yield _Lack(
+            f"no file {enumerated([*map(quoted, missing)], _MAX_NAMED, 'and no file')} is included",
+            None,
+            detail,
+        )
+
+
+def _ends_with(path: str, end: str) -> bool:
+    """Return whether a path ends with whole names; everything ends with nothing."""
+    return not end or f"/{path}".endswith(f"/{end.strip('/')}")

@@ -1,0 +1,389 @@
+"""Written answers: the passage of a document about a question. A person grades it.
+
+Several questions may share a heading, such as "REQUIRED Question:": which of them belongs to which
+is matched.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+from grader.base.source import Location
+from grader.lab.documents.collection import DocumentCollection, Passage, TextDocument
+from grader.lab.documents.converter import PICTURE
+from grader.lab.documents.headings import (
+    KEYWORDS,
+    WORDS,
+    Heading,
+    Label,
+    Pattern,
+    has_words,
+    is_about,
+    matches,
+    question_of,
+    read_label,
+    stem,
+)
+
+_ORDINAL = re.compile(r"\s*(\S.*?)\s+(\d{1,3})\s+of\s+(\d{1,3})\s*")
+_MAX_TEXT = 32_000  # characters, which no written answer has
+_MAX_QUESTION = 4000  # characters of a question
+_MAX_HEADING_WORDS = 6  # a passage of so few words is a heading without a text
+_MAX_MATCHES = 50  # headings of one document that are compared
+_MAX_OTHERS = 3  # passages besides the best one
+_COPIED = frozenset(
+    {"required", "optional", "question", "answer", "task", "step"}
+)  # words of a question, besides its own
+
+
+class _FoundAnswer(NamedTuple):
+    """The result of a search for an answer: the passage, the documents that were read, and why
+    others were not.
+    """
+
+    passage: Passage | None
+    others: tuple[Passage, ...]  # further passages for the same place
+    read: tuple[str, ...]
+    unread: tuple[str, ...]
+
+
+def find_answer(
+    documents: DocumentCollection, files: Sequence[str], places: Sequence[str], question: str = ""
+) -> _FoundAnswer:
+    """Search for the passage about one of `places`, such as `task 1 step 15`, in the documents with
+    names like `files`.
+
+    A passage with a text wins over a heading without one, a certain one over another, and then an
+    earlier place over a later one.
+    """
+    read, unread = documents.named(files)
+    search = _AnswerSearch(
+        documents, read, [_read_ordinal(place) or read_label(place) for place in places], question
+    )
+    found = sorted(
+        filter(None, search.passages()), key=lambda it: (it[0].is_empty, not it[0].is_certain)
+    )
+    first, *others = found[0] if found else [None]
+    return _FoundAnswer(
+        first,
+        tuple(it for it in others if it is not None)[:_MAX_OTHERS],
+        tuple(document.file.path for document in read),
+        tuple(map(str, unread)),
+    )
+
+
+class _Ordinal(NamedTuple):
+    """A question by its place among all: "required question 1 of 2"."""
+
+    pattern: Pattern
+    number: int
+    total: int
+
+
+class _AnswerMatch(NamedTuple):
+    """The answers that belong to a question, by their index: exactly one, unless it is not
+    certain. `how` says why.
+    """
+
+    indices: tuple[int, ...]
+    is_certain: bool
+    how: str
+
+
+def _read_ordinal(place: str) -> _Ordinal | None:
+    """Return the place among all questions that "required question 1 of 2" names; None for other
+    texts.
+    """
+    found = _ORDINAL.fullmatch(place.lower())
+    return _Ordinal(tuple(WORDS.findall(found[1])), int(found[2]), int(found[3])) if found else None
+
+
+def _match_answer(
+    wanted: _Ordinal, task: int | None, answers: Sequence[Passage]
+) -> _AnswerMatch | None:
+    """Return which of the answers in one document belongs to a question of a task; None if there is
+    none for it.
+
+    In this order: the only one below the heading of the task; the one with its number; the one at
+    its place, if there are as many as questions. Anything else is not certain.
+    """
+    if not answers:
+        return None
+    below = [index for index, answer in enumerate(answers) if answer.head.section == task]
+    if (
+        task is not None
+        and len(below) == 1
+        and all(answer.head.section is not None for answer in answers)
+    ):
+        return _AnswerMatch(
+            tuple(below),
+            True,
+            f"the only {_answer_text(answers, below)} below the heading of task {task}",
+        )
+    written = [index for index, answer in enumerate(answers) if not answer.is_empty]
+    numbers = [answer.head.number for answer in answers if answer.head.number is not None]
+    if len(numbers) == len(answers) and max(numbers) <= wanted.total:
+        return _answer_by_number(wanted, task, answers, written)
+    for indices in (list(range(len(answers))), written, _answers_after_list(answers, wanted.total)):
+        in_order = all(
+            answers[index].head.number in (None, place)
+            for place, index in enumerate(indices, start=1)
+        )
+        if len(indices) == wanted.total and in_order:
+            index = indices[wanted.number - 1]
+            how = (
+                f"in order: heading {wanted.number} of {wanted.total} like "
+                f"{_answer_text(answers, [index])}"
+            )
+            return _AnswerMatch((index,), True, how)
+    indices = written or list(range(len(answers)))
+    count = (
+        f"{len(indices)} heading{'' if len(indices) == 1 else 's'} like "
+        f"{_answer_text(answers, indices)}"
+    )
+    return _AnswerMatch(
+        tuple(indices),
+        False,
+        f"{count} for {wanted.total} questions: it may answer another question",
+    )
+
+
+def _answer_by_number(
+    wanted: _Ordinal, task: int | None, answers: Sequence[Passage], written: Sequence[int]
+) -> _AnswerMatch | None:
+    """Return the answer below the question's number; of several, as with a list of the
+    questions, that with text.
+    """
+    hits = [index for index, answer in enumerate(answers) if answer.head.number == wanted.number]
+    if len(hits) > 1:
+        hits = [index for index in hits if index in written] or hits
+    if not hits:
+        return None
+    if len(hits) > 1:
+        return _AnswerMatch(
+            tuple(hits), False, f"{len(hits)} headings like {_answer_text(answers, hits)}"
+        )
+    section = answers[hits[0]].head.section
+    is_other = len(wanted.pattern) == 1 and None not in (section, task) and section != task
+    where = f", but below the heading of task {section}" if is_other else ""
+    return _AnswerMatch(
+        tuple(hits), not is_other, f"by the number in {_answer_text(answers, hits)}{where}"
+    )
+
+
+def _answers_after_list(answers: Sequence[Passage], total: int) -> list[int]:
+    """Return the answers that follow a list of all questions; none without such a list."""
+    is_list = len(answers) == 2 * total and all(map(_is_line, answers[:total]))
+    return (
+        list(range(total, 2 * total)) if is_list and not any(map(_is_line, answers[total:])) else []
+    )
+
+
+def _answer_text(answers: Sequence[Passage], indices: Sequence[int]) -> str:
+    return f'"{answers[indices[0]].head.shown}"'
+
+
+def _is_line(answer: Passage) -> bool:
+    """Return whether an answer ends with the line of its heading."""
+    return "\n" not in answer.text
+
+
+class _AnswerSearch:
+    """The search for one answer in some documents."""
+
+    def __init__(
+        self,
+        documents: DocumentCollection,
+        read: list[TextDocument],
+        wanted: list[Label | _Ordinal],
+        question: str,
+    ) -> None:
+        self._documents, self._read, self._wanted = documents, read, wanted
+        self._copied = _COPIED | set(WORDS.findall(question.lower()))
+        self._task = next(
+            (label.task for label in wanted if isinstance(label, Label) and label.task is not None),
+            None,
+        )
+        plain = [
+            label
+            for label in wanted
+            if isinstance(label, Label) and not label.steps and label.task is None
+        ]
+        ordinals = [place for place in wanted if isinstance(place, _Ordinal)]
+        self._patterns = {place.pattern for place in ordinals} | {
+            label.words for label in plain if label.words
+        }
+
+    def passages(self) -> Iterator[list[Passage]]:
+        """Yield the passages for each place: the best one, then others that certainly answer the
+        question as well.
+        """
+        for wanted in self._wanted:
+            found = (
+                self._in_order(wanted)
+                if isinstance(wanted, _Ordinal)
+                else self._passages_below(wanted)
+            )
+            first = [it.text for it in found[:1]]
+            others = (
+                it for it in found[1:] if it.is_certain and not it.is_empty and it.text not in first
+            )
+            yield [*found[:1], *others]
+
+    def _headings(self, document: TextDocument) -> tuple[Heading, ...]:
+        return self._documents.headings(document, self._patterns)
+
+    def _passages_below(self, wanted: Label) -> list[Passage]:
+        """Return the passages whose heading, or whose file, is labelled so; items of lists and
+        mentions only first.
+        """
+        found: list[tuple[tuple[bool, ...], Passage]] = []
+        for document in self._read:
+            if matches(
+                wanted, read_label(stem(document.file.name))
+            ):  # the file is named for the place
+                spans = [Heading(0, len(document.lines), "", wanted)]
+            else:
+                spans = [head for head in self._headings(document) if is_about(wanted, head)][
+                    :_MAX_MATCHES
+                ]
+            for head in spans:
+                passage = self._passage_of(document, head)
+                if passage is None:
+                    continue
+                is_short = (
+                    len(passage.text.split(maxsplit=_MAX_HEADING_WORDS)) <= _MAX_HEADING_WORDS
+                )
+                rank = (passage.is_empty, is_short, head.is_item, head.is_mention)
+                found.append((rank, self._explained_passage(passage, document, head, wanted)))
+        found.sort(key=lambda it: it[0])
+        passages = [passage for _, passage in found]
+        return passages[:1] + [
+            it for it in passages[1:] if not (it.head.is_item or it.head.is_mention)
+        ]
+
+    def _explained_passage(
+        self, passage: Passage, document: TextDocument, head: Heading, wanted: Label
+    ) -> Passage:
+        """Return a passage with what makes its heading less than certain."""
+        if head.is_item:
+            items = [
+                item
+                for item in self._headings(document)
+                if item.is_item and item.section == head.section
+            ]
+            if (
+                len(items) > 1 and min(min(item.label.steps) for item in items) == 1
+            ):  # perhaps the points of one answer
+                whole = self._passage_of(document, items[0]._replace(end=items[-1].end)) or passage
+                how = (
+                    f"a numbered list below the heading of task {head.task}, whose items may be "
+                    "steps or not"
+                )
+                return whole._replace(how=how, is_certain=False)
+            return passage._replace(
+                how=f"item {min(wanted.steps)} below the heading of task {head.task}"
+            )
+        is_other = None not in (self._task, head.task) and head.task != self._task
+        how = f"below a heading of task {head.task}: it may answer another question"
+        return passage._replace(how=how, is_certain=False) if is_other else passage
+
+    def _in_order(self, wanted: _Ordinal) -> list[Passage]:
+        """Return the passages below headings that questions share, or in files of that name, if
+        this is clear.
+        """
+        found: list[Passage] = []
+        headings = [
+            [(document, head) for head in self._headings(document)] for document in self._read
+        ]
+        for group in (
+            *headings,
+            [(document, _heading_of_file(document, wanted.pattern)) for document in self._read],
+        ):
+            heads = [
+                (document, head) for document, head in group if _is_shared(wanted.pattern, head)
+            ]
+            cut = (self._passage_of(document, head) for document, head in heads[:_MAX_MATCHES])
+            answers = [passage for passage in cut if passage is not None]
+            match = _match_answer(wanted, self._task, answers)
+            if match is not None:
+                found.append(_joined_passage(match, [answers[index] for index in match.indices]))
+        return sorted(found, key=lambda passage: (passage.is_empty, not passage.is_certain))
+
+    def _passage_of(self, document: TextDocument, head: Heading) -> Passage | None:
+        lines, start, end = document.lines, head.start, head.end
+        while start < end and not has_words(lines[start]):
+            start += 1
+        kept = ["[picture]" if line == PICTURE else line.rstrip() for line in lines[start:end]]
+        while kept and not kept[-1]:
+            kept.pop()
+        text = "\n".join(kept)
+        if not text.strip():
+            return None
+        text = text[:_MAX_TEXT] + (" [...]" if len(text) > _MAX_TEXT else "")
+        at = Location(document.file.path, start + 1, 1)
+        return Passage(
+            text, at, _place_of(document, head, at), head, is_empty=self._is_question_only(text)
+        )
+
+    def _is_question_only(self, text: str) -> bool:
+        """Return whether a passage holds only the question's words; one that ends in "?" may be
+        worded differently.
+        """
+        if "[picture]" in text or len(text) > _MAX_QUESTION:
+            return False
+        asked, mark, rest = text.lower().rpartition("?")
+        others = [word not in self._copied for word in _own_words(asked)]
+        is_asked = mark != "" and 2 * sum(others) <= len(others)
+        return self._copied.issuperset(_own_words(rest if is_asked else text.lower()))
+
+
+def _own_words(text: str) -> list[str]:
+    """Return the words of a text without those of labels."""
+    words = WORDS.findall(text)
+    pairs = pairwise([*words, ""])
+    return [
+        word
+        for word, after in pairs
+        if not word.isdecimal() and not (word in KEYWORDS and after.isdecimal())
+    ]
+
+
+def _heading_of_file(document: TextDocument, pattern: Pattern) -> Heading:
+    """Return a heading for a whole document: its name may be that of a question."""
+    name = stem(document.file.name)
+    task = read_label(stem(document.file.path)).task
+    found, number = question_of(name.replace("_", " "), (pattern,))
+    return Heading(
+        0, len(document.lines), name, read_label(name), section=task, pattern=found, number=number
+    )
+
+
+def _is_shared(pattern: Pattern, head: Heading) -> bool:
+    """Return whether a heading has this pattern; "question" means also those that say which:
+    "REQUIRED Question".
+    """
+    return "question" in head.pattern if pattern == ("question",) else head.pattern == pattern
+
+
+def _joined_passage(match: _AnswerMatch, passages: list[Passage]) -> Passage:
+    text = "\n\n".join(passage.text for passage in passages)[:_MAX_TEXT]
+    return passages[0]._replace(
+        text=text,
+        how=match.how,
+        is_certain=match.is_certain,
+        is_empty=all(passage.is_empty for passage in passages),
+    )
+
+
+def _place_of(document: TextDocument, head: Heading, at: Location) -> str:
+    """Return where a passage is: its page, or its heading, or its line where editors count
+    lines.
+    """
+    page = document.page(head.start)
+    if page is not None:
+        return f"on page {page} of {at.path}"
+    if document.file.suffix == ".docx":
+        return f'in {at.path}, below "{head.shown}"' if head.text else f"in {at.path}"
+    return f"in {at.path}, from line {at.line}"

@@ -1,0 +1,150 @@
+"""Explain a failure by the problem of the file that causes it."""
+
+from collections.abc import Collection, Iterator, Sequence
+
+from grader.base import markup
+from grader.base.problems import Problem
+from grader.base.source import Location, Source
+from grader.lab.checks.outcome import Outcome
+from grader.ros.urdf import urdf_problems
+
+# Problems that explain a measurement at the same place, and those with which ROS 2 drops a part of
+# a link.
+_EXPLAINING = (
+    urdf_problems.BAD_COLOUR,
+    urdf_problems.COLOUR_COUNT,
+    urdf_problems.DEGREES,
+    urdf_problems.UNDEFINED_MATERIAL,
+    urdf_problems.BAD_LIMIT,
+    urdf_problems.BAD_DYNAMICS,
+    urdf_problems.EMPTY_RANGE,
+    urdf_problems.LIMIT_IN_DEGREES,
+)
+# Problems that explain a measurement of the element around them, and how that begins.
+_INSIDE = {
+    urdf_problems.MISSPELT: "<",
+    urdf_problems.DEGREES: "<origin",
+    urdf_problems.BAD_COLOUR: "<material",
+    urdf_problems.COLOUR_COUNT: "<material",
+}
+_DROPPING = {
+    "inertial": (urdf_problems.BAD_INERTIAL,),
+    "visual": (urdf_problems.BAD_VISUAL, urdf_problems.BAD_INERTIAL),
+    "collision": (
+        urdf_problems.BAD_COLLISION,
+        urdf_problems.BAD_VISUAL,
+        urdf_problems.BAD_INERTIAL,
+    ),
+}
+
+
+# What is missing of these is nothing that could be inside of the element at the place.
+_OUTSIDE = ("link", "connection", "robot of the lab")
+_LOOKS = ("material", "color", "texture")
+
+
+def explain(
+    outcome: Outcome,
+    problems: Sequence[Problem],
+    source: Source | None,
+    looks_at: Collection[str] = (),
+    part: str = "",
+    link: str = "",
+) -> Outcome:
+    """Return a failure with the problem that explains it: why ROS 2 drops a part of a link, or a
+    mistake at its place.
+
+    `source` is the file in which that place may be an element: a mistake inside it explains the
+    failure, too, if it is about what the check `looks_at`. A `part` of a `link` may be missing.
+    """
+    if outcome.problem:  # the check has said it
+        return outcome
+    mistake, dropping = outcome.mistake or outcome.message, _DROPPING.get(part, ())
+    dropped = next((it for it in problems if it.kind in dropping and it.subject == link), None)
+    if dropped is not None:
+        inner = next(_inside(dropped.location, problems, source), dropped)  # because of this
+        message = f"{outcome.message}: {inner.message}"
+        return outcome._replace(
+            message=message, location=dropped.location, mistake=mistake, problem=dropped.message
+        )
+    place = outcome.location
+    at_place = [
+        it
+        for it in problems
+        if it.location == place and _explains(it, outcome, is_part=part in _DROPPING)
+    ]
+    about = [
+        it
+        for it in problems
+        if it.kind is not urdf_problems.MISSPELT or _is_about(it.subject, looks_at)
+    ]
+    inside = (
+        [*_inside(place, about, source, is_of_link="material" in looks_at)]
+        if part not in _OUTSIDE
+        else []
+    )
+    for problem in problems:
+        if problem in at_place or problem in inside:
+            message = f"{outcome.message} ({problem.code}: {problem.message})"
+            return outcome._replace(
+                message=message, location=problem.location, mistake=mistake, problem=problem.message
+            )
+    return outcome
+
+
+def _is_about(tag: str, looks_at: Collection[str]) -> bool:
+    """Return whether a mistake in an element may explain what a check finds: a colour explains no
+    shape.
+    """
+    return tag not in _LOOKS or "material" in looks_at
+
+
+def _explains(problem: Problem, outcome: Outcome, *, is_part: bool) -> bool:
+    """Return whether a problem at the place of a failure explains it; of a missing part, only what
+    precedes ROS 2.
+    """
+    if problem.kind.is_before_ros:
+        return True
+    is_of_axis = problem.kind is urdf_problems.DEFAULT_AXIS and outcome.unit == "deg"
+    return not is_part and (problem.kind in _EXPLAINING or is_of_axis)
+
+
+def _inside(
+    place: Location | None,
+    problems: Sequence[Problem],
+    source: Source | None,
+    *,
+    is_of_link: bool = False,
+) -> Iterator[Problem]:
+    """Yield the problems in the element at a place, or in the link that it is of, that explain what
+    is around them.
+    """
+    candidates = [it for it in problems if it.kind in _INSIDE and it.location != place]
+    if place is None or source is None or not candidates:
+        return
+    offsets = _element_offsets(place, source, is_of_link=is_of_link)
+    for problem in candidates:
+        where = problem.location
+        if (
+            (where.path, where.calls) == (place.path, place.calls)
+            and source.text.startswith(_INSIDE[problem.kind], offsets.start)
+            and source.offset(where.line, where.column) in offsets
+        ):
+            yield problem
+
+
+def _element_offsets(place: Location, source: Source, *, is_of_link: bool = False) -> range:
+    """Return the offsets of the element at a place, or of its link; only of the tag if an attribute
+    is there.
+    """
+    if place.path != source.path:
+        return range(0)
+    text, at = source.text, source.offset(place.line, place.column)
+    start = text.rfind("<", 0, at + 1)
+    if is_of_link and text.startswith("<visual", start):
+        start = at = text.rfind("<link", 0, start)
+    if text.startswith("<robot", start):  # everything is inside
+        return range(0)
+    return range(
+        start, markup.element_end(text, start) if start == at else markup.head_end(text, start)[0]
+    )

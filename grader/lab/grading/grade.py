@@ -1,0 +1,243 @@
+"""Grade a submission: the parts that are graded, the decided criteria, the evidence, and the notes
+of the report.
+"""
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import replace
+from decimal import Decimal
+from itertools import chain
+from typing import TYPE_CHECKING
+
+from grader.base.errors import InputError
+from grader.base.problems import Problem, in_order
+from grader.base.text import counted_points, enumerated
+from grader.lab.checks.manual import MANUAL_CHECKS, evidence_shown
+from grader.lab.checks.meshes import mesh_problems
+from grader.lab.grading.deciding import another_robot, decide
+from grader.lab.grading.report import EvidenceResult, Report, Result, without_gifts
+from grader.lab.rubric.criterion import Evidence
+from grader.lab.rubric.rubric import Rubric
+from grader.lab.submission.submission import Submission
+from grader.ros.package.robot_file import Read
+from grader.ros.urdf.kinematics import Configuration
+
+if TYPE_CHECKING:
+    from grader.lab.documents.evidence import EvidenceFile
+    from grader.ros.urdf.conventions import Convention
+
+_EXPANDED = "the URDF is xacro: it was expanded, as xacro does before ROS 2 reads it"
+_NOT_EXPANDED = (
+    "the URDF is xacro, but is loaded without xacro; everything but its loading is graded on "
+    "its expansion"
+)
+_MAX_PICTURES = 50
+_MAX_UNREAD = 4
+_MIN_OF_CONVENTION = 2  # criteria that a convention decides
+_NO_HINTS = "no hints were searched, because reading this robot takes too much work"
+_ELSEWHERE = "the graded URDF is outside the graded package"
+
+
+def grade(
+    rubric: Rubric,
+    submission: Submission,
+    parts: Sequence[str] = (),
+    *,
+    is_one_of_class: bool = False,
+    is_explained: bool = True,
+) -> Report:
+    """Return the report on a submission for all parts of the rubric, or the named ones; raises
+    InputError for others.
+
+    A single URDF is graded only on parts that need no more, unless it `is_one_of_class`: a class is
+    graded on the same parts. Unless it `is_explained`, no note says what its failures have in
+    common.
+    """
+    is_whole = is_one_of_class or not submission.is_single
+    chosen, notes = _choose_parts(rubric, submission, parts, is_whole=is_whole)
+    another = another_robot(rubric, submission.robot)
+    wanted = {criterion.id for criterion in rubric.criteria if criterion.part in chosen}
+    results = without_gifts(decide(rubric, submission, wanted), submission)
+    problems: tuple[Problem, ...] = ()
+    if isinstance(submission.urdf, Read):
+        problems = in_order(
+            (*submission.urdf.problems, *mesh_problems(submission, submission.urdf))
+        )
+    if submission.package is not None and any(
+        rubric.part(part).needs == "package" for part in chosen
+    ):
+        # Late: a URDF on its own needs none of what reads a package.
+        from grader.ros.package.found_problems import package_problems
+
+        problems += package_problems(submission.package)
+    evidence, other_pictures = _find_evidence(rubric, submission, chosen if is_whole else ())
+    notes.append(_note_on_unread(submission, evidence))
+    by_convention: frozenset[str] = frozenset()
+    if is_explained:
+        note, by_convention = _explain_by_convention(rubric, submission, results)
+        notes.append(note)
+    if (
+        submission.is_costly
+        and rubric.hints != "none"
+        and any(result.is_lost for result in results)
+    ):
+        notes.append(_NO_HINTS)
+    return Report(
+        submission=submission,
+        rubric=rubric,
+        parts=chosen,
+        results=results,
+        problems=problems,
+        evidence=evidence,
+        other_pictures=other_pictures,
+        notes=tuple(filter(None, notes)),
+        another_robot=another.mistake if another is not None else "",
+        by_convention=by_convention,
+    )
+
+
+def _choose_parts(
+    rubric: Rubric, submission: Submission, named: Sequence[str], *, is_whole: bool
+) -> tuple[tuple[str, ...], list[str]]:
+    """Return the graded parts, and notes for the report: what is not whole is graded only on parts
+    that need a URDF.
+    """
+    for name in named:
+        if rubric.part(name).needs != "urdf" and not is_whole:
+            raise InputError(
+                f"{name} needs more than a URDF: give the folder or archive that was submitted"
+            )
+    parts = [part for part in rubric.parts if not named or part.id in named]
+    chosen = tuple(part.id for part in parts if part.needs == "urdf" or is_whole)
+    notes = [*submission.notes, *_notes_on_xacro(submission)]
+    package, path = submission.package, submission.path
+    if (
+        package is not None
+        and path is not None
+        and not path.startswith(f"{package.folder}/" if package.folder else "")
+    ):
+        notes.append(_ELSEWHERE)
+    skipped = [part.id for part in parts if part.id not in chosen]
+    if skipped:
+        only, verb = enumerated(chosen) or "nothing", "need" if len(skipped) > 1 else "needs"
+        notes.append(f"only {only} is graded: {enumerated(skipped)} {verb} the whole folder")
+    return chosen, notes
+
+
+def _find_evidence(
+    rubric: Rubric, submission: Submission, chosen: Sequence[str]
+) -> "tuple[tuple[EvidenceResult, ...], tuple[EvidenceFile, ...]]":
+    """Return the evidence that the lab asks for, and the other pictures, which neither it nor a
+    criterion names.
+    """
+    wanted = [evidence for evidence in rubric.evidence if evidence.part in chosen]
+    manual = [
+        row for row in rubric.criteria if row.part in chosen and row.check.function in MANUAL_CHECKS
+    ]
+    if not (wanted or manual):
+        return (), ()
+    from grader.lab.documents.evidence import as_evidence, find_evidence
+
+    names = [
+        tuple(dict.fromkeys((*evidence.names, *_names_in_criteria(evidence, rubric))))
+        for evidence in wanted
+    ]
+    known = {name for one in names for name in one}
+    shown = [row.arguments["names"] for row in manual if row.check.function is evidence_shown]
+    names += [own for own in shown if known.isdisjoint(own)]
+    found = [
+        find_evidence(submission.labelled_files, one, submission.readable_documents)
+        for one in names
+    ]
+    found_files = tuple(
+        EvidenceResult(evidence, *one) for evidence, one in zip(wanted, found, strict=False)
+    )
+    listed = {file.path for one in found for file in (*one.files, *one.possible)}
+    others = [
+        labelled for labelled in submission.labelled_files if labelled.file.path not in listed
+    ]
+    return found_files, as_evidence(others[:_MAX_PICTURES])
+
+
+def _names_in_criteria(evidence: Evidence, rubric: Rubric) -> tuple[str, ...]:
+    """Return the names of the criteria about a piece of evidence: a file that counts for a
+    criterion is not missing.
+    """
+    shown = (
+        row.arguments["names"] for row in rubric.criteria if row.check.function is evidence_shown
+    )
+    return tuple(chain.from_iterable(names for names in shown if set(names) & set(evidence.names)))
+
+
+def _note_on_unread(submission: Submission, evidence: Sequence[EvidenceResult]) -> str:
+    """Return a note on the documents that may have evidence, but were not read; empty if there are
+    none.
+    """
+    if (
+        all(found.files for found in evidence)
+        or (documents := submission.readable_documents) is None
+    ):
+        return ""
+    from grader.lab.documents.evidence import DOCUMENTS
+
+    unread = documents.named(DOCUMENTS)[1]
+    return (
+        f"not searched for evidence: {enumerated(list(map(str, unread)), _MAX_UNREAD)}"
+        if unread
+        else ""
+    )
+
+
+def _explain_by_convention(
+    rubric: Rubric, submission: Submission, results: Sequence[Result]
+) -> tuple[str, frozenset[str]]:
+    """Return a note on frames of the whole robot that are rotated or moved alike, and the criteria
+    that it explains.
+
+    Both are empty if there is nothing to explain. The points stay: the lab says where its frames
+    are. The note says that they are lost by one decision, not by many mistakes.
+    """
+    lost = {
+        result.criterion.id
+        for result in results
+        if result.is_lost and result.criterion.check.subject == "robot"
+    }
+    found = _find_convention(rubric, submission) if len(lost) >= _MIN_OF_CONVENTION else None
+    if found is None or not isinstance(submission.urdf, Read):
+        return "", frozenset()
+    reading = submission.urdf.reading._replace(robot=found.robot)
+    other = replace(submission, urdf=submission.urdf._replace(reading=reading))
+    decided = [result for result in results if result.criterion.check.subject in ("urdf", "robot")]
+    after = {
+        result.criterion.id: result
+        for result in decide(rubric, other, {it.criterion.id for it in decided})
+    }
+    before = {result.criterion.id for result in decided if result.outcome.status == "passed"}
+    gained = frozenset(name for name in lost if after[name].outcome.status == "passed")
+    if len(gained) < _MIN_OF_CONVENTION or any(
+        after[name].outcome.status != "passed" for name in before
+    ):
+        return "", frozenset()
+    points = counted_points(sum((after[name].criterion.points for name in gained), Decimal(0)))
+    return (
+        f"everything is {found.description} relative to the handout: one decision, {points}",
+        gained,
+    )
+
+
+def _find_convention(rubric: Rubric, submission: Submission) -> "Convention | None":
+    """Return how all frames of a robot are turned or moved, compared with the reference."""
+    robot = submission.robot
+    if robot is None or rubric.solution is None:
+        return None
+    from grader.ros.urdf.conventions import convention_of  # late: most robots lose few points
+
+    with suppress(InputError):
+        return convention_of(Configuration(robot), rubric.solution.robot, rubric.base)
+    return None
+
+
+def _notes_on_xacro(submission: Submission) -> list[str]:
+    if not isinstance(submission.urdf, Read) or not submission.urdf.is_expanded:
+        return []
+    return [_EXPANDED if submission.urdf.as_it_stands is None else _NOT_EXPANDED]

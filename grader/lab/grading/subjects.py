@@ -1,0 +1,222 @@
+"""The objects that checks examine: the URDF of a submission, its robot in a pose, its package,
+the reference.
+"""
+
+from collections.abc import Mapping
+from math import radians
+from typing import Any
+
+from grader.base.errors import MissingElement
+from grader.base.problems import Problem
+from grader.base.source import Source
+from grader.base.text import enumerated, quoted
+from grader.lab.checks.check import Check, Subject
+from grader.lab.checks.outcome import point
+from grader.lab.rubric.criterion import Criterion
+from grader.lab.rubric.rubric import ReferenceSolution, Rubric
+from grader.lab.submission.submission import Submission
+from grader.ros.package.robot_file import Read
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.link_tree import JOINT_OF, selected_name
+from grader.ros.urdf.model import Joint
+
+_SLIDING, _TURNING = ("prismatic",), ("revolute", "continuous")
+
+
+class Subjects:
+    """What of a submission is examined. Raises InputError if a check needs a reference solution
+    that cannot be read.
+    """
+
+    def __init__(
+        self, rubric: Rubric, submission: Submission, arguments: Mapping[str, str] | None = None
+    ) -> None:
+        """`arguments` are those of launch files, under which the submission and the reference
+        are examined.
+        """
+        self._rubric = rubric
+        self._under: dict[tuple[tuple[str, str], ...], Subjects] = {}
+        self.submission = submission = submission.under(arguments) if arguments else submission
+        self.problems: tuple[Problem, ...] = ()
+        self.robot: Configuration | None = None
+        self.source: Source | None = None
+        self._known: dict[Subject, object] = {"submission": submission}
+        self._posed: dict[tuple[tuple[str, float], ...], Configuration] = {}
+        if rubric.solution is not None and rubric.compares_with_reference:
+            solution = rubric.solution.under(arguments) if arguments else rubric.solution
+            self._known["reference"] = self._with_transforms(solution.robot, solution)
+        if isinstance(submission.urdf, Read):
+            urdf = submission.urdf.reading
+            self.source = urdf.source
+            self.problems = tuple(
+                it for it in urdf.problems if not (urdf.is_meant and it.kind.effect == "rejects")
+            )
+            self.robot = (
+                Configuration(urdf.robot, is_guarded=bool(urdf.unresolved))
+                if urdf.robot is not None
+                else None
+            )
+            examined = urdf._replace(robot=self.robot.robot) if self.robot is not None else urdf
+            self._known["urdf"] = submission.urdf.as_it_stands or examined
+        if self.robot is not None:
+            self._known["robot"] = self.robot = self._with_transforms(self.robot, submission)
+
+    def _with_transforms(
+        self, robot: Configuration, owner: Submission | ReferenceSolution
+    ) -> Configuration:
+        paths = self._rubric.transforms
+        if not paths:
+            return robot
+        submission = owner if isinstance(owner, Submission) else owner.submission
+        package = submission.package
+        if package is None:
+            return robot
+        from grader.ros.package.static_transforms import (
+            with_transforms,  # late: few rubrics ask for them
+        )
+
+        known = with_transforms(robot.known, package, paths, submission.source)
+        return Configuration(known, is_guarded=True)
+
+    def under(self, arguments: Mapping[str, str]) -> "Subjects":
+        """Return what is examined under launch arguments, which is read once."""
+        if not arguments:
+            return self
+        key = tuple(sorted(arguments.items()))
+        if key not in self._under:
+            self._under[key] = Subjects(self._rubric, self.submission, arguments)
+        return self._under[key]
+
+    def of(self, check: Check, criterion: Criterion) -> list[object]:
+        """Return what a check examines for a criterion: its package, and the robot with the joints
+        at its positions.
+
+        Raises MissingElement or NotDecided for what the submission does not have.
+        """
+        known, at = self._known, criterion.at
+        if criterion.package:
+            known = {**known, "submission": self.submission.with_package(criterion.package)}
+        found = [
+            known[name] if name in known else self._needed_subject(name, known)
+            for name in check.examined
+        ]
+        return [
+            self._pose_robot(it, at)
+            if at and isinstance(it, Configuration) and it is self.robot
+            else it
+            for it in found
+        ]
+
+    def pose_text(self, at: Mapping[str, float]) -> str:
+        """Return the positions of joints that are there: 'joint_2' at 40 degrees and 'slide' at
+        0.1 m.
+        """
+        assert self.robot is not None
+        found = joints_at(self.robot, at)
+        return enumerated(
+            [f"{quoted(joint.name)} at {point((value,))} {unit}" for joint, value, unit in found]
+        )
+
+    def named(self, check: Check, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return the arguments of a check, which have selectors, with the names of the links that
+        they mean.
+
+        A check that compares two robots looks for the links in each of them.
+
+        Raises MissingElement or NotDecided for a selector that names no link, or several.
+        """
+        if self.robot is None or "reference" in check.examined:
+            return arguments
+        return {key: without_selectors(value, self.robot) for key, value in arguments.items()}
+
+    def _pose_robot(self, robot: Configuration, at: Mapping[str, float]) -> Configuration:
+        key = tuple(at.items())
+        if key not in self._posed:
+            found = [(_find_joint(robot, name), value) for name, value in key]
+            positions = {
+                joint.name: radians(value) if joint.type in _TURNING else value
+                for joint, value in found
+            }
+            for name in positions:
+                _check_name(robot, name)
+            self._posed[key] = robot.at(positions)
+        return self._posed[key]
+
+    def _needed_subject(self, name: Subject, known: Mapping[Subject, Any]) -> object:
+        """Return the package; raise MissingElement or NotDecided for any other subject that a
+        submission lacks.
+        """
+        if name == "package":
+            return known["submission"].needed_package()
+        self.submission.needed_urdf()
+        raise MissingElement(
+            "robot", "", message="ROS 2 cannot read the file, so there is no robot"
+        )
+
+
+def check_selectors(robot: Configuration, criterion: Criterion) -> None:
+    """Raise MissingElement or NotDecided if a criterion names a link by a place that no link
+    has, or several have.
+    """
+    carried = [dict(one.arguments) for one in criterion.carried]
+    without_selectors([dict(criterion.arguments), *carried, [*criterion.at]], robot)
+
+
+def joints_at(robot: Configuration, at: Mapping[str, float]) -> list[tuple[Joint, float, str]]:
+    """Return the joints that a criterion puts at positions, each with the position and its unit, m
+    or degrees.
+
+    Raises MissingElement or NotDecided for one that is not there.
+    """
+    joints = [(_find_joint(robot, name), value) for name, value in at.items()]
+    return [(joint, value, "m" if joint.type in _SLIDING else "degrees") for joint, value in joints]
+
+
+def _find_joint(robot: Configuration, name: str) -> Joint:
+    """Return a joint that turns or slides, by its name or by a selector of the link that it
+    moves.
+    """
+    named = (
+        name
+        if robot.robot.has_joint(name)
+        else selected_name(robot.known, robot.known_parents, name)
+    )
+    if named != name and not name.startswith(JOINT_OF):
+        found = robot.parent_joints.get(named)
+        if found is None:
+            raise MissingElement("joint", name, message=f"no joint moves {name}")
+        return found
+    joint = robot.joint(named)
+    if joint.type not in (*_TURNING, *_SLIDING):
+        at = joint.location and joint.location._replace(attribute="type")
+        message = (
+            f"the joint {quoted(named)} is {joint.type or 'of no type'}; it should turn or slide"
+        )
+        raise MissingElement("moving joint", name, message=message, location=at)
+    return joint
+
+
+def without_selectors(value: Any, robot: Configuration) -> Any:
+    """Return a value with names in place of selectors; raises MissingElement and NotDecided."""
+    match value:
+        case str():
+            return selected_name(robot.known, robot.known_parents, value)
+        case list() | tuple():
+            return type(value)(without_selectors(item, robot) for item in value)
+        case Mapping():
+            return {key: without_selectors(item, robot) for key, item in value.items()}
+    return value
+
+
+def _check_name(robot: Configuration, name: str) -> None:
+    """Raise MissingElement if several joints with this name turn or slide: positions are given by
+    the joint's name.
+    """
+    found = [
+        joint
+        for joint in robot.known.joints
+        if joint.name == name and joint.type in (*_TURNING, *_SLIDING)
+    ]
+    if len(found) > 1:
+        message = f"{len(found)} joints are called {quoted(name)}; each needs a name of its own"
+        raise MissingElement("own name", name, message=message, location=found[1].location)

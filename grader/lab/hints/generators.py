@@ -1,0 +1,371 @@
+"""The generators of hints: what may undo a mistake of a robot or a package, in the order in which
+it is tried.
+
+`STAGES` is the list. A stage gets the situation and the criteria that still lose points, and yields
+generators of proposals, each of one kind. The search grades all proposals of a stage before it
+takes the best, so that a later stage is asked only for what the earlier ones left. Missing links
+and joints get hints in words: no edit writes them.
+"""
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from decimal import Decimal
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from grader.base.source import Edit, Edits
+from grader.base.text import enumerated
+from grader.lab.hints.edits import FoundHint, Proposal
+from grader.lab.hints.robot_difference import MissingPart, Piece, RobotDifference
+from grader.lab.hints.robot_draft import Draft, Set
+from grader.lab.hints.robot_variants import (
+    exchanges,
+    in_another_unit,
+    of_own,
+    of_siblings,
+    reversed_joints,
+    whole_elements,
+    whole_links,
+)
+from grader.lab.rubric.criterion import Criterion
+from grader.lab.submission.submission import Submission
+from grader.ros.package.robot_file import Read, is_foreign_robot
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.link_tree import selected_or_name, texts_in
+from grader.ros.urdf.meant import Word
+from grader.ros.urdf.reader import Reading
+from grader.ros.xml.urdf_format import JOINT_TYPES
+
+if TYPE_CHECKING:
+    from grader.ros.package.package import Package
+
+_RAW_XACRO = "the URDF contains xacro, but is loaded without xacro"
+_MAX_LINKS = 40
+_MAX_SIMILAR, _MAX_NAMED = 2, 4
+
+
+class Situation:
+    """A submission beside the reference solution; `draft` is its robot, and `difference` that to
+    the reference's.
+    """
+
+    def __init__(
+        self,
+        submission: Submission,
+        wanted: Collection[str],
+        reference: Draft | None,
+        package: "Callable[[str], Package | None]",
+    ) -> None:
+        """`wanted` are the links that the rubric names, `reference` and `package` give the robot
+        and packages of it.
+        """
+        self.submission, self.reference_package = submission, package
+        self.reading: Reading | None = None
+        self.draft: Draft | None = None
+        self.difference: RobotDifference | None = None
+        if isinstance(submission.urdf, Read):
+            self.reading = submission.urdf.loaded
+            self.draft = Draft.of(submission.urdf.reading)
+        if self.draft is not None and not is_foreign_robot(self.draft.robot, wanted):
+            self.difference = RobotDifference(self.draft, reference or self.draft)
+
+    @cached_property
+    def exchanges(self) -> list[Piece]:
+        """The pieces that exchange ends of joints."""
+        return exchanges(self.difference) if self.difference is not None else []
+
+    @cached_property
+    def has_reversed(self) -> bool:
+        """Whether the parent and the child of a joint are exchanged: the poses around it are no
+        ones to correct.
+        """
+        return self.difference is not None and bool(reversed_joints(self.difference))
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the robot is read from well-formed XML, of which xacro refuses nothing."""
+        is_read = self.reading is not None and self.reading.root is not None
+        return is_read and self.draft is not None and not self.draft.is_refused
+
+    def is_known(self, link: str) -> bool:
+        """Return whether the reference has a link: another one may be any of them."""
+        return self.difference is not None and self.difference.reference.robot.has_link(link)
+
+    def own_chain(self, link: object) -> Iterator[str]:
+        """Yield a link, and those above it that only the student's robot has."""
+        if self.draft is None:
+            return
+        parents = {joint.child: joint.parent for joint in self.draft.robot.joints}
+        while isinstance(link, str):
+            yield link
+            above = parents.pop(link, "")
+            link = above if above and not self.is_known(above) else None
+
+
+_Lost = Sequence[Criterion]
+Stage = Callable[[Situation, _Lost], Iterator[Iterable[Proposal]]]
+
+
+def _of_reference(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
+    """What undoes a slip, then what differs from the other side of the robot, and from the
+    reference.
+    """
+    draft, difference = situation.draft, situation.difference
+    subjects = {criterion.check.subject for criterion in lost}
+    if situation.reading is not None and draft is not None and "urdf" in subjects:
+        yield _repairs(situation.reading)
+        yield _with_xacro(situation.submission)
+    if draft is not None and difference is not None and subjects & {"urdf", "robot"}:
+        links = _links_of(lost, difference)
+        yield draft.corrections([*difference.names, *JOINT_TYPES])
+        yield _proposals(situation, situation.exchanges)
+        yield _proposals(situation, in_another_unit(difference))
+        yield _proposals(situation, of_siblings(difference, links or ()))
+        pieces = difference.pieces
+        if (
+            links is not None
+        ):  # those of the links that criteria name come first: there may be more than can be tried
+            pieces = sorted(
+                pieces, key=lambda it: links.index(it.link) if it.link in links else len(links)
+            )
+        yield _proposals(situation, pieces, links)
+
+
+def _of_package(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
+    """The edits of the files of a package, by the kinds of files that checks look at."""
+    own = [criterion for criterion in lost if criterion.check.subject not in ("urdf", "robot")]
+    for name in dict.fromkeys(criterion.package for criterion in own):
+        submission = situation.submission.with_package(name) if name else situation.submission
+        if submission.package is not None:
+            from grader.lab.hints.package_edits import (
+                package_proposals,  # late: a robot on its own needs none
+            )
+
+            wanted = [(it.check.about.looks_at, it.arguments) for it in own if it.package == name]
+            yield from package_proposals(
+                submission.package, situation.reference_package(name), wanted
+            )
+        yield from _of_names(situation, [it for it in own if it.package == name])
+
+
+def _of_names(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
+    for criterion in [it for it in lost if it.check.name in ("names_agree", "parameter_is")]:
+        from grader.lab.hints.name_edits import (  # late: few rubrics ask for names
+            name_proposals,
+            value_proposals,
+        )
+
+        if criterion.check.name == "names_agree":
+            reference = situation.reference_package(criterion.package)
+            yield name_proposals(situation.submission, criterion.arguments["of"], reference)
+        else:
+            yield value_proposals(situation.submission, criterion.arguments)
+
+
+def _of_own_numbers(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
+    """The student's own numbers with another sign, order or unit."""
+    if situation.difference is not None:
+        links = _links_of([it for it in lost if it.check.subject == "robot"], situation.difference)
+        yield _proposals(situation, of_own(situation.difference, links or ()))
+
+
+def _of_links(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
+    """All values of the reference of a link and its joint, or of one element."""
+    if situation.difference is not None and any(
+        criterion.check.subject == "robot" for criterion in lost
+    ):
+        links = _links_of(lost, situation.difference)
+        yield _proposals(situation, whole_links(situation.difference), links)
+        yield _proposals(situation, whole_elements(situation.difference), links)
+
+
+# What is tried, in this order; the reference and the package again, after the edits that were
+# found.
+STAGES: tuple[Stage, ...] = (
+    _of_reference,
+    _of_package,
+    _of_own_numbers,
+    _of_links,
+    _of_reference,
+    _of_package,
+)
+
+
+def _proposals(
+    situation: Situation, pieces: Iterable[Piece], links: Collection[str] | None = None
+) -> Iterator[Proposal]:
+    """Yield the edits of the text that pieces of these links stand for."""
+    assert situation.draft is not None
+    for piece in pieces:
+        if situation.has_reversed and piece.is_pose:
+            continue
+        if links is None or piece.link in links or not situation.is_known(piece.link):
+            shared = situation.draft.shared(piece.sets)
+            for way, edits in enumerate(situation.draft.ways(piece.sets)):
+                if edits or piece.edits:
+                    yield Proposal(
+                        (*edits, *piece.edits), piece.cause, piece.link, piece.rank, way, shared
+                    )
+
+
+def _links_of(criteria: Iterable[Criterion], difference: RobotDifference) -> list[str] | None:
+    """Return the links whose joints and shapes decide criteria, with all above them; None if all
+    may.
+    """
+    found: dict[str, None] = {}
+    robot, reference = difference.draft.robot, difference.reference.robot
+    posed = Configuration(robot)
+    for criterion in (it for it in criteria if it.check.subject in ("urdf", "robot")):
+        given = (
+            selected_or_name(posed.robot, posed.parent_joints, name)
+            for name in texts_in(criterion.arguments)
+        )
+        named = [name for name in given if reference.has_link(name) or robot.has_link(name)]
+        if not named:
+            return None
+        for name in named:
+            link: str | None = name
+            while link is not None and link not in found:
+                found[link] = None
+                joint = posed.parent_joints.get(link)
+                link = joint.parent if joint is not None else None
+    return [*found][:_MAX_LINKS]
+
+
+def _repairs(reading: Reading) -> Iterator[Proposal]:
+    """Yield the edits of the tags and of the words for which ROS 2 or xacro rejects a file."""
+    if reading.verdict == "rejected" and not reading.undone:
+        from grader.ros.xml.repair import repair  # late: its patterns take long
+
+        repaired = repair(reading.source.text)
+        if not repaired.is_lossy:
+            edits = tuple(reading.source.edit(*change) for change in repaired.changes)
+            yield Proposal(edits, "the syntax of tags")
+    draft = Draft.of(reading)
+    if draft is not None and reading.undone:
+        edits = tuple(edit for word in reading.undone for edit in _of_word(draft, word))
+        yield Proposal(
+            edits, "the spelling of a word" if len(reading.undone) == 1 else "the spelling of words"
+        )
+
+
+def _of_word(draft: Draft, word: Word) -> Edits:
+    """Return the edits of a word: of a tag, of an attribute's name, or of its value."""
+    element, attribute = word.element, word.attribute
+    if attribute is None:
+        return draft.rename_tag(element, word.tag)
+    if attribute in word.attributes:
+        return next(iter(draft.ways([Set(element, "", attribute, word.attributes[attribute])])), ())
+    new = next(name for name in word.attributes if name not in element.attrib)
+    return draft.rename_attribute(element, attribute, new)
+
+
+def _with_xacro(submission: Submission) -> Iterator[Proposal]:
+    """Yield edits that let xacro expand the URDF, where it is xacro that is loaded without it."""
+    urdf = submission.urdf
+    if not isinstance(urdf, Read) or urdf.as_it_stands is None:
+        return
+    from grader.lab.hints.python_file import with_xacro  # late: most URDFs are no such file
+
+    package = submission.package
+    sources = (
+        [submission.source(package.path(path)) for path in package.launch_files]
+        if package is not None
+        else []
+    )
+    for source in sources:
+        if source is not None:
+            yield from (Proposal(edits, _RAW_XACRO) for edits in with_xacro(source))
+    if not urdf.path.endswith(".xacro"):
+        renamed = f"{urdf.path.removesuffix('.urdf')}.urdf.xacro"
+        yield Proposal((Edit(urdf.path, 1, 1, "", "", renamed),), _RAW_XACRO)
+
+
+def leaves_others(
+    shared: Collection[str], passing: Iterable[Criterion], lost: Collection[Criterion]
+) -> bool:
+    """Return whether a criterion that passes for one call of a macro still fails for another
+    one.
+    """
+    functions = {criterion.check.function for criterion in passing} if shared else set()
+    return any(it.check.function in functions and it.arguments.get("link") in shared for it in lost)
+
+
+def missing_hints(
+    difference: RobotDifference | None,
+    written: Draft | None,
+    criteria: Mapping[str, Criterion],
+    lost: Mapping[str, Decimal],
+) -> dict[str, FoundHint]:
+    """Return a hint in words for each missing link with its joint, by the costliest criterion that
+    it costs.
+
+    `difference` is that of the robot after all edits, `written` is the robot before them.
+    """
+    if difference is None or written is None or difference.draft is difference.reference:
+        return {}
+    found: dict[str, FoundHint] = {}
+    left = sorted(
+        difference.missing, key=lambda part: part.tag, reverse=True
+    )  # links first, each with its joints
+    while left:
+        link, is_link = left[0].link, left[0].tag == "link"
+        parts = [part for part in left if part.link == link or (is_link and part.parent == link)]
+        left = [part for part in left if part not in parts]
+        robots = [
+            name for name in lost if name not in found and criteria[name].check.subject == "robot"
+        ]
+        own = [name for name in robots if criteria[name].arguments.get("link") == link]
+        names = own or [name for name in robots if link in texts_in(criteria[name].arguments)]
+        if names:
+            found[max(names, key=lambda name: lost[name])] = _hint_of_parts(written, parts)
+    has_link = difference.draft.robot.has_link
+    joints = [part for part in difference.missing if has_link(part.link) and has_link(part.parent)]
+    loading = [name for name in lost if criteria[name].check.subject == "urdf"]
+    if not loading or not joints:
+        return found
+    if len(joints) == 1:
+        found = {name: hint for name, hint in found.items() if hint.proposal.link != joints[0].link}
+        found[loading[0]] = _hint_of_parts(written, joints)
+    else:
+        lacking = enumerated([repr(part.link) for part in joints], _MAX_NAMED)
+        cause = f"the joints of {lacking} are missing"
+        found[loading[0]] = FoundHint(Proposal((), cause), {}, words=f"add the joints of {lacking}")
+    return found
+
+
+def _hint_of_parts(written: Draft, parts: list[MissingPart]) -> FoundHint:
+    first = parts[0].link if parts[0].tag == "link" else ""
+    causes = enumerated([_cause_of_part(part, first) for part in parts])
+    words = (
+        "add "
+        f"{enumerated([_part_in_words(part) for part in parts])}{_lines_of_similar(written, parts)}"
+    )
+    verb = "is" if len(parts) == 1 else "are"
+    return FoundHint(Proposal((), f"{causes} {verb} missing", parts[0].link), {}, words=words)
+
+
+def _cause_of_part(part: MissingPart, first: str) -> str:
+    """Return words for a part; the joint of the first link is its joint."""
+    if part.tag == "link":
+        return f"the link {part.link!r}"
+    return "its joint" if part.link == first else f"the joint of {part.link!r}"
+
+
+def _part_in_words(part: MissingPart) -> str:
+    if part.tag == "link":
+        return f"a link {part.link!r}"
+    return f"a {part.joint_type} joint from {part.parent!r} to {part.link!r}"
+
+
+def _lines_of_similar(draft: Draft, parts: list[MissingPart]) -> str:
+    """Return where the first elements like the missing ones are."""
+    lines: set[int] = set()
+    for part in parts:
+        joints = (joint for joint in draft.joints() if joint.get("type") == part.joint_type)
+        like = next(draft.links() if part.tag == "link" else joints, None)
+        if like is not None:
+            lines.add(draft.line(like))
+    if not lines:
+        return ""
+    numbers = [str(line) for line in sorted(lines)[:_MAX_SIMILAR]]
+    return f", as in line{'s' if len(numbers) > 1 else ''} {enumerated(numbers)}"

@@ -1,0 +1,421 @@
+"""Reports with hints, in the words of each level, and submissions with the edits of all hints."""
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from decimal import Decimal
+from functools import partial
+from itertools import takewhile
+from typing import TYPE_CHECKING, NamedTuple, cast
+
+from grader.base.errors import InputError
+from grader.base.source import Edit, Edits, Location, Source
+from grader.base.text import counted, enumerated
+from grader.files.limits import ROBOT_ENDINGS
+from grader.lab.grading.grade import grade
+from grader.lab.grading.report import Hint, Report, Result
+from grader.lab.hints.edits import FoundHint, content, edited_files, with_files
+from grader.lab.hints.robot_draft import Draft
+from grader.lab.hints.search import HintSearch, Trials, costs_of
+from grader.lab.rubric.hint_levels import HintLevel
+from grader.lab.rubric.rubric import ReferenceSolution
+from grader.lab.submission.submission import Submission
+from grader.ros.package.robot_file import Read
+
+if TYPE_CHECKING:
+    from grader.ros.package.package import Package
+    from grader.ros.xacro.expansion import ExpandedSource
+
+
+_MAX_NAMED = 4  # criteria and edits that are named
+_MAX_LINES = 6
+_MAX_TEXT = 240  # characters of a changed text
+
+
+class _HintedReport(NamedTuple):
+    """A report with hints, the edits of all that fit together, and the types of exceptions that
+    cost other hints.
+    """
+
+    report: Report
+    edits: Edits
+    faults: list[str]
+
+
+class Fix(NamedTuple):
+    """The files of a submission that all proven edits change, None for one that is gone, and the
+    report on the result.
+
+    `why_nothing` says why there are none.
+    """
+
+    files: Mapping[str, bytes | None]
+    report: Report
+    why_nothing: str = ""
+
+
+def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedReport:
+    """Return a report with proven hints for criteria that failed; without any where the search
+    would take long.
+    """
+    if submission.is_costly:
+        return _HintedReport(report, (), [])
+    results = {result.criterion.id: result for result in report.results}
+    solution = report.rubric.solution
+    trials = Trials(report.rubric, submission, results)
+    search = HintSearch(
+        trials, _draft(solution), partial(_package, solution), report.by_convention
+    ).run()
+    costs = costs_of(results)
+    shown = {name: found for found in reversed(search.found) for name in found.gains}
+    entries = {found.edits: _entry(found, shown, results, costs) for found in search.found}
+    hints: dict[str, Hint] = {}
+    for name, one in {**search.missing, **shown}.items():
+        with trials.isolated():
+            entry = entries.get(one.edits, name)
+            before = search.found[: search.found.index(one)] if one.is_late else []
+            found = _first_at(one, results[entry].outcome.location)
+            earlier = tuple(dict.fromkeys(entries[it.edits] for it in before))
+            shown_before = tuple(it for it in earlier if results[it].outcome.status == "failed")
+            text = message(found, level, submission, shown_before)
+            in_words = level == "edit" and any(map(_loses_expression, found.edits))
+            told = found._replace(gains={}) if in_words else found
+            hint = _hint(
+                told, text, entry, results[name], keeps_edits=level == "edit" and not in_words
+            )
+            hints[name] = hint._replace(after=earlier)
+    if level == "edit":
+        others = enumerated(list(dict.fromkeys(entries.values())), _MAX_NAMED)
+        for name in costs:
+            if name not in hints and name in search.results and not search.results[name].is_lost:
+                at = results[name].outcome.location or Location("", 1, 1)
+                hints[name] = Hint(f"Make the edits for {others}.", at, {})
+    with_hints = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
+    report = report._replace(results=tuple(with_hints), hints_complete=search.is_complete)
+    return _HintedReport(
+        report, tuple(edit for one in _written(search.found) for edit in one.edits), trials.faults
+    )
+
+
+def _written(found: Sequence[FoundHint]) -> list[FoundHint]:
+    """Return the hints whose edits may be written: none that is left to words, and none after it
+    that may need it.
+    """
+    kept: list[FoundHint] = []
+    is_cut = False
+    for one in found:
+        if any(map(_loses_expression, one.edits)) or (one.is_late and is_cut):
+            is_cut = True
+        else:
+            kept.append(one)
+    return kept
+
+
+def _loses_expression(edit: Edit) -> bool:
+    """Return whether an edit writes a value in place of an expression of xacro: which one is
+    better, a person knows.
+    """
+    return (
+        edit.path.endswith(ROBOT_ENDINGS)
+        and edit.old.count("$") > edit.new.count("$")
+        and bool(edit.new)
+    )
+
+
+def fixed(found: _HintedReport, submission: Submission) -> Fix:
+    """Return the files with all proven edits that fit together, graded again."""
+    report, why_nothing = found.report, "no edit that was tried gains points"
+    if not report.hints_complete:
+        why_nothing = "the search for edits ended at its limit before it found one"
+    if found.faults:
+        why_nothing = "the search for edits failed"
+    if submission.is_costly:
+        why_nothing = "the submission is too large to search for edits"
+    files = edited_files(submission, found.edits) or {}
+    after = with_files(submission, files)
+    return Fix(
+        files,
+        grade(report.rubric, after, report.parts, is_one_of_class=not submission.is_single),
+        why_nothing,
+    )
+
+
+def _entry(
+    found: FoundHint,
+    shown: Mapping[str, FoundHint],
+    results: Mapping[str, Result],
+    costs: Mapping[str, Decimal],
+) -> str:
+    """Return the criterion that shows a hint in a report: the one at the line that is edited,
+    else the costliest.
+    """
+
+    def rank(name: str) -> tuple[bool, bool, bool, Decimal]:
+        where, at = results[name].outcome.location, found.edits[0]
+        is_there = where is not None and (where.path, where.line) == (at.path, at.line)
+        cost = costs.get(name, found.gains[name])
+        return (
+            name not in costs,
+            not is_there,
+            results[name].criterion.check.subject != "urdf",
+            -cost,
+        )
+
+    return min([name for name in found.gains if shown.get(name) is found] or found.gains, key=rank)
+
+
+def _first_at(found: FoundHint, where: Location | None) -> FoundHint:
+    """Return a hint with the edits in the line of the failure first."""
+    place = (where.path, where.line) if where is not None else None
+    edits = sorted(
+        found.proposal.edits,
+        key=lambda it: ((it.path, it.line) != place, it.path, it.line, it.column),
+    )
+    return found._replace(proposal=found.proposal._replace(edits=tuple(edits)))
+
+
+def _hint(found: FoundHint, text: str, shown_by: str, result: Result, *, keeps_edits: bool) -> Hint:
+    places = [
+        Location(edit.path, edit.line, edit.column) for edit in found.edits
+    ]  # of two alternatives, none
+    at = next(iter(places), result.outcome.location or Location("", 1, 1))
+    shown = (found.edits, found.proposal.cause) if keeps_edits else ((), "")
+    return Hint(text, at, found.gains, *shown, shown_by, found.certainty)
+
+
+def _draft(reference: ReferenceSolution | None) -> Draft | None:
+    """Return the robot of the reference solution."""
+    with suppress(InputError):
+        return Draft.of(reference.reading) if reference is not None else None
+    return None
+
+
+def _package(reference: ReferenceSolution | None, name: str) -> "Package | None":
+    """Return the package of the reference solution, or that of this name if the rubric has
+    several.
+    """
+    with suppress(InputError):
+        submission = reference.submission if reference is not None else None
+        if submission is not None:
+            return submission.with_package(name).package if name else submission.package
+    return None
+
+
+def message(
+    found: FoundHint, level: HintLevel, submission: Submission, earlier: Sequence[str]
+) -> str:
+    """Return the hint in a sentence, which need not name the URDF. `earlier` are criteria whose
+    hints come first.
+    """
+    if found.words:
+        text = _of_missing(found, level)
+    elif found.alternative is not None:
+        each = [
+            found._replace(proposal=it, alternative=None)
+            for it in (found.proposal, found.alternative)
+        ]
+        one, other = (message(it, level, submission, ()).removesuffix(".") for it in each)
+        both = f"{one}, or {other[0].lower()}{other[1:]}: both work, so look which one is meant"
+        text = both if one != other else one
+    elif level == "edit":
+        text = _changes(found.edits, submission)
+    elif level == "cause":
+        text = f"check {_places(found.edits, submission)}: {found.proposal.cause}"
+    else:
+        text = f"check {_texts_to_check(found.edits, submission)}"
+    if earlier:
+        return (
+            f"After the edit{'s' if len(earlier) > 1 else ''} for "
+            f"{enumerated(earlier, _MAX_NAMED)}, {text}."
+        )
+    return f"{text[0].upper()}{text[1:]}."
+
+
+def _of_missing(found: FoundHint, level: HintLevel) -> str:
+    match level:
+        case "edit":
+            return found.words
+        case "cause":
+            return found.proposal.cause
+    return "a part is missing"
+
+
+def _changes(edits: Sequence[Edit], submission: Submission) -> str:
+    """Return the edits in words, and where a macro is called that one of them changes."""
+    changes = _moves(edits, submission) or _indents(edits, submission)
+    if not changes:
+        changes = [_change(edit, submission) for edit in edits[:_MAX_NAMED]]
+    if len(edits) > len(changes) == _MAX_NAMED:
+        changes.append(counted(len(edits) - _MAX_NAMED, "more edit"))
+    text = enumerated(changes, _MAX_NAMED + 1)
+    source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
+    if source is not None and source.is_expanded:
+        text += _calls(edits, cast("ExpandedSource", source), submission.path)
+    return text
+
+
+def _texts_to_check(edits: Sequence[Edit], submission: Submission) -> str:
+    """Return the texts to look at, each with its line."""
+    texts = [f"{_quote(edit.old)} ({_where(edit, submission)})" for edit in edits if edit.old]
+    return enumerated(texts, _MAX_NAMED) if texts else _places(edits, submission)
+
+
+def _places(edits: Sequence[Edit], submission: Submission) -> str:
+    """Return the lines to look at: lines 65 and 73; of another file with its name."""
+    files: dict[str, list[int]] = {}
+    for edit in edits:
+        files.setdefault(edit.path, []).append(edit.line)
+    texts = []
+    for path, lines in files.items():
+        numbers = sorted(set(lines))
+        named = (
+            f"line{'s' if len(numbers) > 1 else ''} "
+            f"{enumerated([str(line) for line in numbers], _MAX_LINES)}"
+        )
+        texts.append(named if path == submission.path else f"{path}, {named}")
+    return "; ".join(texts)
+
+
+def _calls(edits: Sequence[Edit], source: "ExpandedSource", main: str | None) -> str:
+    """Return where the macros of xacro that edits are in are called, if that is more than once."""
+    from grader.lab.hints.xacro_edits import ExpandedEdits  # late: most robots are not xacro
+
+    every = ExpandedEdits(source)
+    macros = {
+        name: calls for edit in edits for name, calls in every.calls(edit).items() if len(calls) > 1
+    }
+    texts = (
+        (
+            f"the macro {name} is called in "
+            f"{enumerated([_at(call, main) for call in calls], _MAX_NAMED)}"
+        )
+        for name, calls in macros.items()
+    )
+    return f" ({'; '.join(texts)})" if macros else ""
+
+
+def _at(place: Location | Edit, main: str | None) -> str:
+    return f"line {place.line}" if place.path == main else f"line {place.line} of {place.path}"
+
+
+def _moves(edits: Sequence[Edit], submission: Submission) -> list[str]:
+    """Return two changes in words if they exchange texts, or if a text is removed at one place and
+    added at another.
+    """
+    if len(edits) != 2:
+        return []
+    first, second = edits
+    if first.old and (first.old, first.new) == (second.new, second.old):
+        places = (f"{_quote(edit.old)} ({_where(edit, submission)})" for edit in edits)
+        return [f"exchange {' and '.join(places)}"]
+    texts = {" ".join((edit.old + edit.new).split()) for edit in edits}
+    if len(texts) > 1 or {bool(edit.old) for edit in edits} != {True, False}:
+        return []
+    old, new = sorted(edits, key=lambda edit: not edit.old)
+    return [f"move {_quote(old.old)} ({_where(old, submission)}) to {_insertion(new, submission)}"]
+
+
+def _indents(edits: Sequence[Edit], submission: Submission) -> list[str]:
+    """Return what becomes of the indentation of lines, if nothing else changes."""
+    if any(
+        (edit.old + edit.new).strip(" \t") or edit.column > 1 or edit.old == edit.new
+        for edit in edits
+    ):
+        return []
+    tabs, spaces = edits[0].new.count("\t"), edits[0].new.count(" ")
+    width = (
+        " and ".join(counted(*it) for it in ((tabs, "tab"), (spaces, "space")) if it[0])
+        or "nothing"
+    )
+    lines = (
+        f"line{'s' if len(edits) > 1 else ''} "
+        f"{enumerated([str(edit.line) for edit in edits], _MAX_LINES)}"
+    )
+    path = edits[0].path
+    return [f"indent {lines if path == submission.path else f'{lines} of {path}'} with {width}"]
+
+
+def _change(edit: Edit, submission: Submission) -> str:
+    if edit.renamed:
+        return f"rename `{edit.path}` to `{edit.renamed}`"
+    if not edit.path.endswith(ROBOT_ENDINGS):
+        edit = _whole_lines(edit, submission)
+    old, new = _quote(edit.old), _quote(edit.new)
+    if not edit.old:
+        return f"add {new} {_insertion(edit, submission)}"
+    where = _where(edit, submission)
+    if _loses_expression(edit):
+        return f"correct the expression in {old} ({where}) so that it gives {new}"
+    added = edit.new.removeprefix(edit.old).strip()
+    if edit.old.startswith("<") and edit.new.startswith(edit.old) and "<" not in added:
+        return f"add {_quote(added)} to `{edit.old}>` ({where})"
+    return f"change {old} to {new} ({where})" if edit.new else f"remove {old} ({where})"
+
+
+def _whole_lines(edit: Edit, submission: Submission) -> Edit:
+    """Return an edit of a part of an expression as one of the lines that it changes."""
+    if all(map(_is_whole, (edit.old, edit.new))):
+        return edit
+    text = (content(submission, edit.path) or b"").decode("utf-8", "surrogateescape")
+    source = Source(edit.path, text)
+    start, end = source.offset(edit.line, 1), source.offset(edit.line + edit.old.count("\n") + 1, 1)
+    at = source.offset(edit.line, edit.column)
+    old = text[start:end].splitlines(keepends=True)
+    new = f"{text[start:at]}{edit.new}{text[at + len(edit.old) : end]}".splitlines(keepends=True)
+    first = _common_start(old, new)
+    last = _common_start(old[first:][::-1], new[first:][::-1])
+    before, after = ("".join(lines[first : len(lines) - last]) for lines in (old, new))
+    return Edit(edit.path, edit.line + first, 1, before, after)
+
+
+def _common_start(one: Sequence[str], other: Sequence[str]) -> int:
+    """Return how many lines both begin with."""
+    return len([*takewhile(lambda pair: pair[0] == pair[1], zip(one, other, strict=False))])
+
+
+def _is_whole(text: str) -> bool:
+    """Return whether a text has no line break, both brackets and both quotes of each pair, and no
+    comma before it.
+    """
+    is_balanced = all(text.count(one) == text.count(other) for one, other in ("()", "[]", "{}"))
+    is_quoted = text.count("'") % 2 == text.count('"') % 2 == 0
+    is_end = text.lstrip().startswith((",", ")", "]", "}")) and text != ","
+    return is_balanced and is_quoted and "\n" not in text and not is_end
+
+
+def _insertion(edit: Edit, submission: Submission) -> str:
+    """Return the line before, after or in which a text is added, or at the end of which."""
+    line, at = _line(edit, submission), _at(edit, submission.path)
+    before = edit._replace(line=edit.line - 1)
+    if (
+        edit.new.endswith("\n")
+        and not edit.path.endswith(ROBOT_ENDINGS)
+        and _line(before, submission).strip()
+    ):
+        return f"after {_at(before, submission.path)}"
+    if edit.new.endswith("\n") or not line[: edit.column - 1].strip():
+        return f"before {at}"
+    end = "after" if "\n" in edit.new else "at the end of"
+    return f"{'in' if line[edit.column - 1 :].strip() else end} {at}"
+
+
+def _where(edit: Edit, submission: Submission) -> str:
+    """Return the line of an edit, and which of the texts in it is meant if it is there several
+    times.
+    """
+    line = _line(edit, submission)
+    number = line.count(edit.old) if edit.old else 0
+    nth = line.count(edit.old, 0, edit.column - 1) + 1
+    return f"{_at(edit, submission.path)}{f', number {nth} of {number}' if number > 1 else ''}"
+
+
+def _line(edit: Edit, submission: Submission) -> str:
+    lines = (content(submission, edit.path) or b"").decode("utf-8", "surrogateescape").split("\n")
+    return lines[edit.line - 1].removeprefix("\ufeff") if 0 < edit.line <= len(lines) else ""
+
+
+def _quote(text: str) -> str:
+    """Return a text of the file between backticks, in one line."""
+    line = " ".join(text.split()).replace("> <", "><")
+    if not line:
+        return "a space" if text else ""
+    return f"`{line}`" if len(line) <= _MAX_TEXT else f"`{line[: _MAX_TEXT - 3]}...`"

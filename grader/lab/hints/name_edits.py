@@ -1,0 +1,195 @@
+"""Edits of names that do not agree, where they are used or where they are defined, and of values of
+parameters.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain, combinations
+from operator import attrgetter
+from os.path import commonprefix
+from typing import Any, NamedTuple
+
+from grader.base.errors import MissingElement, NotDecided
+from grader.base.source import Edits, Source
+from grader.lab.checks.parameters import measured, value_of
+from grader.lab.hints.edits import Proposal
+from grader.lab.submission.submission import Submission
+from grader.ros.package.package import CMAKE, MANIFEST, Package
+from grader.ros.workspace.names import Correction, Family
+from grader.ros.workspace.reading import wrong_names
+
+_MAX_WRONG = 4  # names of which all combinations are tried
+_TEXTS = (".py", ".xml", ".yaml", ".yml", ".xacro", ".urdf", ".sdf", ".txt", ".cfg")
+_MAX_KEY = 400  # characters from a key to its value
+_SEPARATED = re.compile(r".*[./:]")
+_MAX_REMAPPINGS = 8  # of a file
+_REMAPPINGS = re.compile(r"\bremappings\s*=\s*\[[^][]*\]")
+_PAIR = re.compile(r"""\(\s*(["'][^"'\n]+["'])\s*,\s*(["'][^"'\n]+["'])\s*,?\s*\)""")
+_FROM_TO = re.compile(
+    r"""\bfrom\s*[=:]\s*(["']?[\w~/]+["']?)\s*,?\s*\bto\s*[=:]\s*(["']?[\w~/]+["']?)(?![^\s},>/])"""
+)
+_WITH_ALL = (
+    f"/{CMAKE}",
+    f"/{MANIFEST}",
+)  # files in which a name stands several times for one thing
+
+
+def name_proposals(
+    submission: Submission, family: Family, reference: Package | None
+) -> Iterator[Proposal]:
+    """Yield the edits with which the names of a family agree: one for all of them, else one for
+    each.
+
+    Of two names the one is kept that more places write, in the submission or else in the reference;
+    if as many do, both ways are proposed. A name that a file puts together from pieces has none.
+    """
+    workspace, others = (
+        submission.workspace,
+        reference.packages.values() if reference is not None else (),
+    )
+    robot = workspace.robot
+    frames = [*map(attrgetter("name"), (*robot.links, *robot.joints))] if robot is not None else []
+    own, known = (
+        [source for it in each for source in workspace.sources_of(it, _TEXTS)]
+        for each in (workspace.packages, others)
+    )
+    # A part of a path is a name of its own, a part of a topic is none.
+    pattern = (
+        r"(?<![\w-]){}(?![\w-])" if family in ("files", "programs") else r"(?<![\w/.-]){}(?![\w/-])"
+    )
+    texts = ("\n".join([*(it.text for it in own), *frames]), "\n".join(it.text for it in known))
+    spelling = _Spelling(own, texts, pattern)
+    ways = [
+        [*_ways(submission, it.corrections, spelling)]
+        for it in wrong_names(submission.workspace, family, submission.lab_packages.values())
+    ]
+    yield from chain.from_iterable(ways)
+    if family == "topics":
+        yield from chain.from_iterable(map(_exchanged_remappings, own))
+    best = [it for one in ways for it in one if it.rank == 0]
+    for count in range(2, len(ways) + 1) if len(ways) <= _MAX_WRONG else [len(ways)]:
+        for chosen in combinations(best, count):
+            edits = tuple(dict.fromkeys(edit for it in chosen for edit in it.edits))
+            yield Proposal(edits, "names that do not agree", rank=count)
+
+
+class _Spelling(NamedTuple):
+    """The files of a submission, and the texts of it and of the reference in which names are
+    counted.
+    """
+
+    sources: Sequence[Source]
+    texts: tuple[str, str]
+    pattern: str  # {} stands for the name
+
+    def preference(self, new: str, old: str) -> int:
+        """Return by how much more often one name is written than the other; 0 if neither text
+        tells.
+        """
+        patterns = [re.compile(self.pattern.format(re.escape(it))) for it in (new, old)]
+        own, reference = ([len(it.findall(text)) for it in patterns] for text in self.texts)
+        return (own[0] - own[1] if own[0] else 0) or reference[0] - reference[1]
+
+    def only_edit(self, correction: Correction) -> Edits:
+        """Return the edit of a name in the one place where the submission writes it; none where it
+        is in several.
+        """
+        old, new = correction.old.strip("/"), correction.new.strip("/")
+        places = [(source, span) for source in self.sources for span in _spans(source, old)]
+        return tuple(source.edit(*span, new) for source, span in places) if len(places) == 1 else ()
+
+
+def _ways(
+    submission: Submission, either: Sequence[Correction], spelling: _Spelling
+) -> Iterator[Proposal]:
+    """Yield the edits that make a correction, or the reverse one; none into the name that fewer
+    places write.
+    """
+    made = [correction_edits(submission, it) or spelling.only_edit(it) for it in either]
+    for edits in filter(None, made):
+        preference = spelling.preference(edits[0].new, edits[0].old)
+        is_only = len(made) == 1
+        if is_only or preference > 0 or (preference == 0 and all(made)):
+            yield Proposal(
+                edits, f"the name `{edits[0].old}`", rank=int(preference == 0 and not is_only)
+            )
+
+
+def _exchanged_remappings(source: Source) -> Iterator[Proposal]:
+    """Yield the edits that exchange both names of a remapping in a launch file: it may be written
+    backward.
+    """
+    lists = [it.span() for it in _REMAPPINGS.finditer(source.text)]
+    pairs = [it for span in lists for it in _PAIR.finditer(source.text, *span)]
+    for found in [*pairs, *_FROM_TO.finditer(source.text)][:_MAX_REMAPPINGS]:
+        edits = source.edit(*found.span(1), found[2]), source.edit(*found.span(2), found[1])
+        yield Proposal(edits, "the order of names in a remapping")
+
+
+def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Iterator[Proposal]:
+    """Yield the edit that gives a parameter the value that `parameter_is` asks for, where one is
+    written plainly.
+    """
+    name, meant = wanted["parameter"], wanted.get("value")
+    try:
+        value, at = value_of(submission, wanted["node"], name)
+        if "measure" in wanted:
+            meant = round(measured(submission, wanted["measure"], wanted.get("links", [])), 6)
+    except (MissingElement, NotDecided):
+        return
+    source, key = submission.source(at.path), re.escape(name.rpartition(".")[2])
+    if source is None:
+        return
+    plain = re.compile(
+        rf"(?<![\w-]){key}[\"']?\s*:\s*[\"']?({re.escape(str(value))})(?!\w)", re.IGNORECASE
+    )
+    offset = source.offset(at.line, at.column)
+    found = next((it for it in plain.finditer(source.text) if it.end() > offset), None)
+    if found is not None and isinstance(meant, str | int | float):
+        new = str(float(meant)) if isinstance(value, float) and type(meant) is int else str(meant)
+        yield Proposal((source.edit(*found.span(1), new),), f"the value of `{name}`")
+
+
+def correction_edits(submission: Submission, correction: Correction) -> Edits:
+    """Return the edits that make a correction in the text; none where the name is not written there
+    as a whole.
+    """
+    at, source = correction.location, submission.source(correction.location.path)
+    if source is None:
+        return ()
+    for old, new in _as_written(correction.old, correction.new):
+        spans = _spans(source, old)
+        if not f"/{at.path}".endswith(_WITH_ALL):
+            spans = _meant(source.text, old, spans, source.offset(at.line, at.column))
+        if spans:
+            return tuple(source.edit(*span, new) for span in spans)
+    return ()
+
+
+def _spans(source: Source, name: str) -> list[tuple[int, int]]:
+    return [
+        it.span() for it in re.finditer(rf"(?<![\w-]){re.escape(name)}(?![\w-]|\.\w)", source.text)
+    ]
+
+
+def _as_written(old: str, new: str) -> Iterator[tuple[str, str]]:
+    """Yield two names without the slash that begins them, and without the folders or tables that
+    both are in.
+    """
+    yield old.strip("/"), new.strip("/")
+    shared = _SEPARATED.match(commonprefix((old, new)))  # noqa: RUF071  of names, not of paths
+    if shared is not None and len(shared[0]) < min(len(old), len(new)):
+        yield old[shared.end() :], new[shared.end() :]
+
+
+def _meant(
+    text: str, name: str, spans: Sequence[tuple[int, int]], at: int
+) -> list[tuple[int, int]]:
+    """Return the occurrence of a name that a place is about: its key, else the first behind it, or
+    the last before.
+    """
+    key = re.compile(rf"{re.escape(name)}[\"']?\s*:\s*(?:\{{?\s*(?:ros__parameters|type)\s*:\s*)?")
+    before, after = [it for it in spans if it[0] < at], [it for it in spans if it[0] >= at]
+    if before and at - before[-1][0] < _MAX_KEY and key.fullmatch(text, before[-1][0], at):
+        return before[-1:]
+    return after[:1] or before[-1:]

@@ -1,0 +1,171 @@
+"""A package whose edits are searched, beside the package of the rubric's reference solution."""
+
+import posixpath
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+from grader.base.names import closest
+from grader.base.source import Edit, Source
+from grader.lab.hints.edits import Proposal
+from grader.ros.build.places import ENDINGS, is_in_launch_folder, is_launch_named
+from grader.ros.launch.launch_model import Launch
+from grader.ros.package.package import MANIFEST, SETUP, Package
+from grader.ros.python.budget import PYTHON_LIMIT
+
+_RVIZ_LIMIT = 512 * 1024
+WHAT = {"launch": "the launch file", "rviz": "the RViz file", "urdf": "the URDF"}
+_MAX_NAMES = 2  # of files that may be the one that is meant
+_MAX_LAUNCH_FILES = 3
+
+
+@dataclass(frozen=True)
+class PackageTask:
+    """A package, the one of the reference solution, if there is one, and the texts that are
+    given to checks.
+    """
+
+    package: Package
+    reference: Package | None = None
+    given: frozenset[str] = field(default=frozenset())
+
+    def source(self, path: str | None) -> Source | None:
+        """Return the text of a file of the package as it is; None where there is none that can
+        be read.
+        """
+        text = _text(self.package, path) if path is not None else None
+        return Source(self.package.path(path or ""), text) if text is not None else None
+
+    def file(self, package: Package | None, kind: str) -> str | None:
+        """Return the path of the file of a kind in a package: the one that a check names, else
+        another one.
+        """
+        if package is None or kind not in ("launch", "rviz"):
+            return kind
+        name = min((name for name in self.given if _kind_of(name) == kind), default="")
+        launch = next((package.launch(path) for path in package.launch_files[:1]), None)
+        return package.launch_file(name) if kind == "launch" else package.rviz_file(name, launch)
+
+    def launch(self, path: str, source: Source) -> Launch:
+        """Return a launch file of the package with another text, evaluated."""
+        return self.package.launch(path, source.text.encode("utf-8", "surrogateescape"))
+
+    def wanted(self, path: str | None) -> str | None:
+        """Return the text of a file of the reference, with the student's name of the package."""
+        text = (
+            _text(self.reference, path) if self.reference is not None and path is not None else None
+        )
+        return self.named(text) if text is not None else None
+
+    def named(self, text: str) -> str:
+        """Return a text of the reference, or a path in it, with the student's name of the
+        package.
+        """
+        if self.reference is None or self.reference.name == self.package.name:
+            return text
+        return re.sub(
+            rf"(?<![\w.]){re.escape(self.reference.name)}(?![\w.])",
+            lambda _: self.package.name,
+            text,
+        )
+
+    def renamed(self, path: str, new: str) -> Edit:
+        """Return the edit that gives a file another path."""
+        return Edit(self.package.path(path), 1, 1, "", "", renamed=self.package.path(new))
+
+    @property
+    def files(self) -> Iterable[str]:
+        """The paths of the package's files."""
+        return self.package.tree.files
+
+
+def _kind_of(path: str) -> str:
+    """Return the kind of a file: launch, rviz, urdf, setup.py with the files that it needs, or
+    another file itself.
+    """
+    if path.endswith((".rviz", ".urdf", ".xacro")):
+        return "rviz" if path.endswith(".rviz") else "urdf"
+    if path.endswith(ENDINGS) or is_in_launch_folder(path):
+        return "launch"
+    return SETUP if path.startswith("resource/") or path == "setup.cfg" else path
+
+
+def _text(package: Package, path: str) -> str | None:
+    data = package.tree.read(path, _RVIZ_LIMIT if path.endswith(".rviz") else PYTHON_LIMIT)
+    return data.decode("utf-8", "surrogateescape") if data is not None else None
+
+
+def change(edits: Iterable[Edit], cause: str, what: str = "") -> Proposal:
+    """Return a proposal; `what` is the file in which something is wrong, if the cause does not name
+    it.
+    """
+    return Proposal(tuple(dict.fromkeys(edits)), f"{cause} in {what}" if what else cause)
+
+
+def file_proposals(task: PackageTask, kind: str) -> Iterator[Proposal]:
+    """Yield edits that give a file the name that it has in the reference."""
+    wanted = (
+        [task.named(path) for path in task.reference.tree.files]
+        if task.reference is not None
+        else []
+    )
+    names = {posixpath.basename(path) for path in wanted} | task.given
+    for path in dict.fromkeys(wanted):
+        folder, name = posixpath.split(path)
+        if _kind_of(path) != kind or any(_is_named(it, name, kind) for it in task.files):
+            continue
+        own = [
+            it
+            for it in task.files
+            if kind in (_kind_of(it), posixpath.dirname(it)) or it.startswith(f"{folder}/")
+        ]
+        yield from _rename(
+            task, kind, name, [it for it in own if posixpath.basename(it) not in names]
+        )
+
+
+def _is_named(path: str, name: str, kind: str) -> bool:
+    return posixpath.basename(path) == name or (kind == "launch" and is_launch_named(path, name))
+
+
+def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> Iterator[Proposal]:
+    """Yield edits that give one of these files a name: the one with the most similar name first;
+    xacro stays xacro.
+    """
+    spare = {
+        posixpath.basename(it): it
+        for it in files
+        if it.endswith(".xacro") <= name.endswith(".xacro")
+    }
+    others = [*spare][:_MAX_NAMES]
+    nearest = closest(name, spare)
+    if nearest is not None:
+        others.insert(0, nearest)
+    for other in dict.fromkeys(others):
+        new = posixpath.join(posixpath.dirname(spare[other]), name)
+        yield change([task.renamed(spare[other], new)], f"the name of {WHAT.get(kind, 'a file')}")
+
+
+def package_names(task: PackageTask, new: str) -> Iterator[Proposal]:
+    """Yield edits that give the package one name in all its files, for a package that has another
+    or several.
+    """
+    manifest, setup = task.package.manifest, task.package.installation
+    if manifest is None or manifest.name is None:
+        return
+    shares = [path.split("/")[1] for path in task.package.installed if path.startswith("share/")]
+    own = [manifest.name, setup.name if setup is not None else None]
+    similar = [name for name in shares if closest(name, [new])]
+    names = [name for name in dict.fromkeys([*own, *similar]) if name and name != new]
+    if not names:
+        return
+    word = re.compile(rf"(?<![\w.])({'|'.join(map(re.escape, names))})(?![\w.])")
+    edits: list[Edit] = []
+    for path in (MANIFEST, SETUP, "setup.cfg", *task.package.launch_files[:_MAX_LAUNCH_FILES]):
+        source = task.source(path)
+        if source is not None:
+            edits += [source.edit(*it.span(), new) for it in word.finditer(source.text)]
+    if f"resource/{new}" not in task.files:
+        moved = [name for name in names if f"resource/{name}" in task.files]
+        edits += [task.renamed(f"resource/{name}", f"resource/{new}") for name in moved]
+    yield change(edits, "the name of the package")

@@ -1,0 +1,230 @@
+"""The text of a Python file with its syntax tree and strings, for edits that change nothing
+else.
+"""
+
+import ast
+import re
+from collections.abc import Container, Iterable, Iterator
+from functools import cached_property
+from typing import NamedTuple
+
+from grader.base.source import Edit, Edits, Source
+from grader.ros.python.library import USUAL_NAMES
+from grader.ros.python.parse import Code, SyntaxFault, parse
+
+_STRING = re.compile(
+    r"""
+      \#[^\n]*
+    | (?P<string>[rRbBfFuU]{0,2}(?:
+          "{3}(?:\\.|[^\\])*?"{3} | '{3}(?:\\.|[^\\])*?'{3}    # over several lines
+        | "(?:\\.|[^"\\\n])*" | '(?:\\.|[^'\\\n])*'            # "launch", r'\d', f'{name}.urdf'
+      ))
+    | \w+
+    """,
+    re.DOTALL | re.VERBOSE,
+)
+_QUOTES = re.compile("[rRbBfFuU]*(\"\"\"|'''|\"|')")
+_MAX_DEPTH = 4  # of names that are replaced by their values
+_MAX_CODE = 2000  # characters
+_USE = re.compile(r"\bglob\.glob\b")
+_CAT = re.compile(r"\bcat(?=\s)")
+
+
+class _Literal(NamedTuple):
+    """The text between the quotes of a string, and its offsets."""
+
+    text: str
+    start: int
+    end: int
+
+
+class PythonFile:
+    """A Python file; offsets are in the text as the file has it, which may have other line breaks
+    than Python sees.
+    """
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+        self.text = source.text
+        self.newline = "\r\n" if "\r\n" in source.text else "\n"
+        self._plain: dict[ast.expr, str] = {}
+
+    @cached_property
+    def parsed(self) -> Code | SyntaxFault:
+        """The syntax tree, or why there is none."""
+        return parse(self.text.encode("utf-8", "surrogateescape"), self.source.path)
+
+    @cached_property
+    def nodes(self) -> list[ast.AST]:
+        """All nodes of the syntax tree; nothing where Python cannot read the file."""
+        return list(ast.walk(self.parsed.tree)) if isinstance(self.parsed, Code) else []
+
+    @cached_property
+    def literals(self) -> list[_Literal]:
+        """The texts in its strings."""
+        found = (
+            (it.start("string"), it["string"]) for it in _STRING.finditer(self.text) if it["string"]
+        )
+        quoted = ((start, text, _QUOTES.match(text)) for start, text in found)
+        spans = [
+            (at + it.end(), at + len(text) - len(it[1]))
+            for at, text, it in quoted
+            if it is not None
+        ]
+        return [_Literal(self.text[start:end], start, end) for start, end in spans]
+
+    def offset(self, line: int, byte: int) -> int:
+        """Return the offset of a place that Python gives: it counts the bytes of a line from 0."""
+        start = self.source.offset(line, 1)
+        text = self.text[start : start + byte].encode("utf-8", "surrogateescape")[:byte]
+        return start + len(text.decode("utf-8", "surrogateescape"))
+
+    def span(self, node: ast.expr | ast.stmt | ast.keyword) -> tuple[int, int]:
+        """Return the offsets of the start and the end of a node."""
+        assert node.end_lineno is not None
+        assert node.end_col_offset is not None
+        return self.offset(node.lineno, node.col_offset), self.offset(
+            node.end_lineno, node.end_col_offset
+        )
+
+    def segment(self, node: ast.expr | ast.stmt | ast.keyword) -> str:
+        """Return the text of a node."""
+        start, end = self.span(node)
+        return self.text[start:end]
+
+    def replaced(self, node: ast.expr | ast.stmt | ast.keyword, new: str) -> Edit:
+        """Return the edit that replaces a node."""
+        return self.source.edit(*self.span(node), new)
+
+    @cached_property
+    def values(self) -> dict[str, ast.expr]:
+        """The expressions that are bound to names."""
+        found: dict[str, ast.expr] = {}
+        for node in self.nodes:
+            match node:
+                case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                    found[name] = value
+                case ast.withitem(context_expr=value, optional_vars=ast.Name(id=name)):
+                    found[name] = value
+        return found
+
+    def meant(self, node: ast.expr) -> ast.expr:
+        """Return the expression that a name is bound to; any other expression itself."""
+        for _ in range(_MAX_DEPTH):
+            if not isinstance(node, ast.Name) or node.id not in self.values:
+                break
+            node = self.values[node.id]
+        return node
+
+    def written(self, node: ast.expr, bound: Container[str] = (), depth: int = _MAX_DEPTH) -> str:
+        """Return an expression in which the names that are not `bound` have their values."""
+        start, _ = self.span(node)
+        text = self.segment(node)
+        names = [inner for inner in ast.walk(node) if isinstance(inner, ast.Name)]
+        if not depth:
+            return text
+        for name in sorted(names, key=lambda inner: self.span(inner)[0], reverse=True):
+            if name.id not in bound and name.id in self.values and len(text) <= _MAX_CODE:
+                at, end = (offset - start for offset in self.span(name))
+                text = text[:at] + self.written(self.values[name.id], bound, depth - 1) + text[end:]
+        return text
+
+    def plain(self, node: ast.expr) -> str:
+        """Return the code of an expression without names for its parts and in one style, to compare
+        it.
+        """
+        if node not in self._plain:
+            code = self.written(node)
+            tree = _expression(code)
+            self._plain[node] = ast.unparse(tree) if tree is not None else code
+        return self._plain[node]
+
+    def names_in(self, code: str) -> set[str]:
+        """Return the names in an expression."""
+        tree = _expression(code)
+        return {it.id for it in ast.walk(tree) if isinstance(it, ast.Name)} if tree else set()
+
+    @cached_property
+    def bound(self) -> frozenset[str]:
+        """The names that the file binds anywhere."""
+        found: set[str] = set()
+        for node in self.nodes:
+            match node:
+                case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
+                    found.add(name)
+                case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
+                    found.add(name)
+                case ast.alias(name=name, asname=other):
+                    found.add(other or name.split(".")[0])
+        return frozenset(found)
+
+    @cached_property
+    def used(self) -> frozenset[str]:
+        """The names that the file reads anywhere."""
+        return frozenset(
+            it.id for it in self.nodes if isinstance(it, ast.Name) and isinstance(it.ctx, ast.Load)
+        )
+
+    @cached_property
+    def imports(self) -> list[ast.Import | ast.ImportFrom]:
+        """Its import statements."""
+        return [node for node in self.nodes if isinstance(node, ast.Import | ast.ImportFrom)]
+
+    def calls(self, name: str) -> list[ast.Call]:
+        """Return the calls of a function or class of this name, in order."""
+        found = (node for node in self.nodes if isinstance(node, ast.Call) and called(node) == name)
+        return sorted(found, key=lambda node: (node.lineno, node.col_offset))
+
+    def with_imports(self, names: Iterable[str]) -> list[Edit]:
+        """Return the edit that imports those of these names that have a usual meaning and are not
+        bound.
+        """
+        wanted = [
+            name for name in dict.fromkeys(names) if name in USUAL_NAMES and name not in self.bound
+        ]
+        body = self.parsed.tree.body if isinstance(self.parsed, Code) else []
+        start = next((self.span(node)[0] for node in (*self.imports, *body)), len(self.text))
+        text = "".join(sorted(map(self._import, wanted), key=lambda line: line.startswith("from")))
+        return [self.source.edit(start, start, text)] if wanted else []
+
+    def _import(self, name: str) -> str:
+        module, _, own = USUAL_NAMES[name].rpartition(".")
+        if own == "?glob":
+            module, own = ("", "glob") if _USE.search(self.text) else ("glob", "glob")
+        return (
+            f"from {module} import {own}{self.newline}" if module else f"import {own}{self.newline}"
+        )
+
+
+def _expression(code: str) -> ast.Expression | None:
+    try:
+        return ast.parse(code.strip(), mode="eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+
+
+def called(call: ast.Call) -> str:
+    """Return the last part of the name of the function that is called."""
+    return call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
+
+
+def argument(call: ast.Call, name: str) -> ast.keyword | None:
+    """Return a keyword argument of a call."""
+    return next((keyword for keyword in call.keywords if keyword.arg == name), None)
+
+
+def with_xacro(source: Source) -> Iterator[Edits]:
+    """Yield the edits of a launch file that read the robot with xacro instead of open or cat."""
+    for found in _CAT.finditer(source.text):
+        yield (source.edit(found.start(), found.end(), "xacro"),)
+    if not source.path.endswith(".py"):
+        return
+    file = PythonFile(source)
+    for call in [*file.calls("read"), *file.calls("read_text")]:
+        owner = file.meant(call.func.value) if isinstance(call.func, ast.Attribute) else call
+        owner = file.values.get(owner.id, owner) if isinstance(owner, ast.Name) else owner
+        is_open = isinstance(owner, ast.Call) and called(owner) == "open" and owner.args
+        if is_open or called(call) == "read_text":
+            path = owner.args[0] if isinstance(owner, ast.Call) and is_open else owner
+            new = f"xacro.process_file({file.segment(path)}).toxml()"
+            yield (*file.with_imports(["xacro"]), file.replaced(call, new))

@@ -1,0 +1,487 @@
+"""The difference between a robot and the reference's, cut into pieces: each is an edit that may
+undo a mistake.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+from grader.base.names import near
+from grader.base.source import Edits
+from grader.lab.hints.robot_draft import Draft, Set, child_of, end_of, escaped
+from grader.lab.hints.robot_numbers import Values, mistake_in, values_of
+from grader.lab.hints.tree_difference import Node, Step, paired, steps
+from grader.ros.xml.parsing import Element
+from grader.ros.xml.urdf_format import CHILDREN, TAGS
+
+_ENDS = ("parent", "child")
+_MOVING = ("revolute", "continuous", "prismatic", "planar")  # the types of joints whose axis counts
+# The attributes that name a joint or a material, which a student may call otherwise.
+_NAMES = {("mimic", "joint"): "joint", ("joint", "name"): "joint", ("material", "name"): "material"}
+_MAX_LINKS = 400  # of a robot: more are not compared
+
+# The ranks of pieces: values of a sibling of the student's own design; the reference's; the
+# student's own, corrected; several at once, or another structure.
+SIBLING, REFERENCE, OWN, STRUCTURE = range(4)
+
+
+class Piece(NamedTuple):
+    """An edit that may undo a mistake: values to set, edits of the text, or both; what is wrong,
+    and the link.
+
+    The `rank` orders pieces that gain as much. `around` is the element that changes.
+    """
+
+    cause: str
+    link: str
+    sets: tuple[Set, ...] = ()
+    edits: Edits = ()
+    rank: int = REFERENCE
+    around: Element | None = None
+
+    @property
+    def is_pose(self) -> bool:
+        """Whether it changes where something is, and not what it is held by."""
+        tags = {tag for one in self.sets for tag in (one.tag, str(one.owner.tag))}
+        return not tags.isdisjoint(("origin", "axis")) and tags.isdisjoint(_ENDS)
+
+
+class MissingPart(NamedTuple):
+    """A link or joint of the reference that a robot does not have: nothing writes it."""
+
+    tag: str
+    link: str  # that it is, or that the joint moves
+    joint_type: str = ""
+    parent: str = ""
+
+
+class RobotDifference:
+    """A robot beside the reference's: the pieces that lead from one to the other, and what is
+    missing.
+
+    Only `known` names are shown, because the reference has them.
+    """
+
+    def __init__(self, draft: Draft, reference: Draft) -> None:
+        self.draft, self.reference = draft, reference
+        links = [link.name for link in reference.robot.links]
+        self.known = {*links, *(material.name for material in reference.robot.materials)}
+        self._names = _translation(draft, reference)
+
+    @property
+    def names(self) -> list[str]:
+        """The links of the reference."""
+        return [link.name for link in self.reference.robot.links]
+
+    @cached_property
+    def pieces(self) -> list[Piece]:
+        """The pieces, each once: values first, then what moves, is added and is removed."""
+        return _unique([*self._pieces(self._steps), *self._materials(), *self._joint_names()])
+
+    @cached_property
+    def missing(self) -> list[MissingPart]:
+        """The links and joints of the reference that the robot does not have."""
+        found: list[MissingPart] = []
+        for step in self._steps:
+            if step.verb == "add" and step.own.tag == "robot" and step.like is not None:
+                like: Element = step.like.of
+                if like.tag == "link":
+                    found.append(MissingPart("link", like.get("name") or ""))
+                elif like.tag == "joint":
+                    ends = (end_of(like, "child"), like.get("type") or "", end_of(like, "parent"))
+                    found.append(MissingPart("joint", *ends))
+        return found
+
+    @cached_property
+    def _steps(self) -> list[Step]:
+        return steps(self._tree(self.draft, {}), self._tree(self.reference, self._names))
+
+    def piece(
+        self,
+        element: Element,
+        cause: str,
+        edits: Edits = (),
+        *,
+        sets: tuple[Set, ...] = (),
+        rank: int = REFERENCE,
+        link: str = "",
+        tag: str = "",
+    ) -> Piece:
+        """Return a piece that changes an element, or its child with a tag; {} in the cause stands
+        for its name.
+        """
+        cause = cause.replace("{}", self.draft.describe(element, tag, self.known))
+        around = element if element.getparent() is self.draft.root else element.getparent()
+        return Piece(cause, link or self.draft.link_of(element), sets, edits, rank, around)
+
+    def of_sets(self, sets: Sequence[Set], rank: int = REFERENCE) -> Piece:
+        """Return the piece that sets values of one element, named by what is wrong with them."""
+        first = sets[0]
+        return self.piece(first.owner, _cause(sets), sets=tuple(sets), rank=rank, tag=first.tag)
+
+    def each(self, sets: Sequence[Set]) -> Iterator[Piece]:
+        """Yield the pieces that set each value alone, and all together."""
+        yield from (self.of_sets([one]) for one in sets)
+        if len(sets) > 1:
+            yield self.of_sets(sets)
+
+    def moved(self, element: Element, parent: Element) -> Piece:
+        """Return the piece that moves an element into another one."""
+        text = self.draft.text(element)
+        was = element.getparent()
+        cause = (
+            f"<{element.tag}> is inside <{was.tag if was is not None else ''}>; it belongs in "
+            f"<{parent.tag}>"
+        )
+        edits = (*self.draft.remove(element), *self.draft.insert(parent, text))
+        return self.piece(element, cause, edits)._replace(around=parent)
+
+    def _materials(self) -> Iterator[Piece]:
+        """Name a material as links use it, or give what a link shows the reference's colour if no
+        material has it.
+        """
+        own = {it.get("name") or "": it for it in self.draft.root.iterchildren("material")}
+        uses = Counter(it.get("name") or "" for it in self.draft.root.iterfind("link//material"))
+        for name in sorted(own.keys() - uses.keys()):
+            meant = near(
+                name,
+                [it for it, number in uses.items() if number > 1 and it not in own],
+                "material",
+            )
+            if meant is not None:
+                yield self.piece(
+                    own[name], "the name of {}", sets=(Set(own[name], "", "name", meant),)
+                )
+        for used in self.draft.root.iter("material"):
+            link = self.reference.link(self.draft.link_of(used))
+            names = (
+                [it.get("name") or "" for it in link.iter("material")] if link is not None else []
+            )
+            like = self.reference.material(names[0]) if names else None
+            colour = child_of(like, "color") if like is not None else None
+            if like is None or colour is None:
+                continue
+            if (used.get("name") or "") not in own:
+                yield self.of_sets([Set(used, "color", "rgba", colour.get("rgba") or "")])
+            elif all(
+                self.draft.material(it) is None
+                for it in (names[0], self._names["material"].get(names[0], ""))
+            ):
+                yield self.piece(
+                    used, "the material of {}", self.draft.replace(used, self.reference.text(like))
+                )
+
+    def _joint_names(self) -> Iterator[Piece]:
+        """Rename joints as in the reference, also where they are mimicked."""
+        every: list[Set] = []
+        for new, old in self._names["joint"].items():
+            joint = next(it for it in self.draft.joints() if it.get("name") == old)
+            mimics = (it for it in self.draft.root.iter("mimic") if it.get("joint") == old)
+            sets = (Set(joint, "", "name", new), *(Set(it, "", "joint", new) for it in mimics))
+            every += sets
+            yield self.piece(joint, "the name of a joint", sets=sets, rank=STRUCTURE)
+        if len(every) > 1:
+            yield Piece("the names of joints", "", tuple(every), (), STRUCTURE)
+
+    def _tree(self, draft: Draft, names: Mapping[str, Mapping[str, str]]) -> Node:
+        children = [child for child in draft.root if isinstance(child.tag, str)]
+        nodes = [_node_of(child, names) for child in children[: 3 * _MAX_LINKS]]
+        values: dict[str, str] = {}
+        if draft is self.reference and self.draft.root.get("name") is None:
+            values["name"] = draft.root.get("name") or ""
+        version = draft.root.get("version")
+        if version is not None and version != "1.0":
+            values["version"] = version
+        return Node("robot", (), values, nodes, draft.root)
+
+    def _pieces(self, found: Sequence[Step]) -> Iterator[Piece]:
+        for values in _values_of_one(found):
+            yield from self._of_values(values)
+        for step in found:
+            own, like = step.own, step.like
+            match step.verb:
+                case "rename" | "unset" if new := step.other or _meant_attribute(
+                    own.tag, step.name
+                ):
+                    edits = (
+                        self.draft.rename_attribute(own.of, step.name, new)
+                        if new not in own.values
+                        else ()
+                    )
+                    yield self.piece(
+                        own.of, f"the name of the attribute {new} of {{}}", edits, rank=SIBLING
+                    )
+                case "retag" if like is not None:
+                    edits = self.draft.rename_tag(own.of, like.tag)
+                    yield self.piece(own.of, f"the name of the tag <{like.tag}>", edits)
+                case "move" if step.parent is not None and like is not None:
+                    yield self.moved(own.of, step.parent.of)
+                case "add" if like is not None and own.tag != "robot":
+                    yield from self._inner(own.of, like.of)
+                case "remove":
+                    yield from self._remove(own)
+
+    def _of_values(self, found: Sequence[Step]) -> Iterator[Piece]:
+        """Yield the values of one element: each alone, and all together."""
+        element: Element = found[0].own.of
+        wanted = {step.name: _wanted_value(step) for step in found}
+        values = {name: value for name, value in wanted.items() if value is not None}
+        if element.tag in ("link", "joint", "material", "visual", "collision") and "name" in values:
+            yield from self._rename(element, values.pop("name"))
+        if "" in values:
+            text = values.pop("")
+            yield self.piece(element, "the text of {}", self.draft.write_text(element, text))
+        if not self._is_loose(element):
+            yield from self.each([Set(element, "", name, value) for name, value in values.items()])
+
+    def _is_loose(self, element: Element) -> bool:
+        """Return whether an element names a parent of the student's own that no joint holds yet:
+        that is what lacks.
+        """
+        name = element.get("link") or ""
+        is_own = (
+            element.tag == "parent" and self.draft.link(name) is not None and name not in self.known
+        )
+        return is_own and self.draft.joint_of(name) is None
+
+    def _rename(self, element: Element, name: str) -> Iterator[Piece]:
+        """Rename a link with all that names it, or alone; a joint; a material where it is used or
+        defined.
+        """
+        tag, old = str(element.tag), element.get("name") or ""
+        is_begun = 2 * sum(map(self.draft.robot.has_link, self.names)) >= len(self.names)
+        if tag == "link" and not is_begun and old and near(old, [name], "link") is None:
+            return  # nothing shows that it is this one
+        own = (Set(element, "", "name", name),)
+        everywhere = _rename_link(self.draft, old, name) if tag == "link" else own
+        for sets in dict.fromkeys((everywhere, own)):
+            if sets:
+                yield self.piece(
+                    element, f"the name of a {tag}", sets=sets, link=name if tag == "link" else ""
+                )
+
+    def _remove(self, node: Node) -> Iterator[Piece]:
+        """Remove what the reference does not have; an origin or axis gets its default."""
+        element, tag = node.of, node.tag
+        if tag in ("origin", "axis"):
+            defaults = dict.fromkeys(node.values, "1 0 0" if tag == "axis" else "0 0 0")
+            yield from self.each(
+                [Set(element, "", name, value) for name, value in defaults.items()]
+            )
+        elif element.getparent() is self.draft.root and not self._is_twice(element):
+            return
+        elif (
+            element.getparent() is not None and element.getparent().tag != "geometry"
+        ):  # there the shape is replaced
+            cause = f"an extra <{tag}>: {{}}" if tag not in ("link", "joint") else f"an extra {tag}"
+            yield self.piece(element, cause, self.draft.remove(element), rank=STRUCTURE)
+
+    def _is_twice(self, element: Element) -> bool:
+        """Return whether another element has the same name, or another joint the same child."""
+        return any(self._uses[key] > 1 for key in _identities(element))
+
+    @cached_property
+    def _uses(self) -> Counter[tuple[str, str, str]]:
+        """How many children of the robot have a name, or move a link, by their tag."""
+        return Counter(
+            key for child in self.draft.root.iterchildren("*") for key in _identities(child)
+        )
+
+    def _inner(self, parent: Element, element: Element) -> Iterator[Piece]:
+        """Add an element to another one: values of an origin or axis, another shape, or the element
+        as it is.
+        """
+        tag, own = str(element.tag), child_of(parent, str(element.tag))
+        if tag in ("origin", "axis"):  # one with default values only does not count
+            values = {
+                str(key): normal(tag, str(key), str(value)) for key, value in element.attrib.items()
+            }
+            mine = {name: own.get(name) if own is not None else None for name in values}
+            off = [name for name, value in values.items() if normal(tag, name, mine[name]) != value]
+            yield from self.each([Set(parent, tag, name, values[name]) for name in off])
+            return
+        shape = next(
+            (it for it in parent if parent.tag == "geometry" and it.tag in CHILDREN["geometry"]),
+            None,
+        )
+        if shape is None:
+            yield self.piece(
+                parent,
+                f"the <{tag}> of {{}} is missing",
+                self.draft.insert(parent, self._text(element)),
+            )
+        else:
+            yield self.piece(
+                parent, "the shape of {}", self.draft.replace(shape, self._text(element))
+            )
+
+    def _text(self, element: Element) -> str:
+        """Return an element of the reference with the robot's names, an undefined material with its
+        colour.
+        """
+        name = element.get("name") or ""
+        own = self._names["material" if element.tag == "material" else "joint"]
+        text = self.reference.text(element)
+        if element.tag in ("material", "mimic"):
+            for old, new in own.items():
+                text = text.replace(f'"{old}"', f'"{escaped(new)}"')
+        defined = self.reference.material(name)
+        if (
+            element.tag == "material"
+            and defined is not None
+            and self.draft.material(own.get(name, name)) is None
+        ):
+            return self.reference.text(defined)
+        return text
+
+
+def _identities(element: Element) -> list[tuple[str, str, str]]:
+    """Return what no other child of the robot with this tag may have: its name, and the link that
+    it moves.
+    """
+    texts = (("name", element.get("name") or ""), ("child", end_of(element, "child")))
+    return [(str(element.tag), what, text) for what, text in texts if text]
+
+
+def _cause(sets: Sequence[Set]) -> str:
+    """Return what is wrong with the values of one element."""
+    tag = sets[0].tag or str(sets[0].owner.tag)
+    names = " and ".join(one.attribute for one in sets)
+    what = "{}" if tag in _ENDS else f"the {names} of {{}}"
+    if sets[0].element is None:
+        return "{} is missing"
+    if all(one.attribute not in one.element.attrib for one in sets if one.element is not None):
+        return f"{what} is missing"
+    parts: list[str] = []
+    old: Values = ()
+    new: Values = ()
+    for one in sets:
+        known = TAGS[tag].attributes.get(one.attribute) if tag in TAGS else None
+        text = one.element.get(one.attribute) if one.element is not None else None
+        if known is None or not known.parts:
+            return what
+        parts += [part or one.attribute for part in known.parts]
+        old, new = (
+            (*old, *values_of(known.default if text is None else text)),
+            (*new, *values_of(one.value)),
+        )
+    return mistake_in(parts, TAGS[tag].attributes[sets[-1].attribute].unit, old, new)
+
+
+def _unique(pieces: Iterable[Piece]) -> list[Piece]:
+    """Return the pieces that change something, each once."""
+    found: dict[object, Piece] = {}
+    for piece in pieces:
+        found.setdefault((piece.sets, piece.edits), piece)
+    return [piece for piece in found.values() if piece.sets or piece.edits]
+
+
+def normal(tag: str, attribute: str, text: str | None) -> str:
+    """Return a value as it is compared: numbers without needless digits, the default where there is
+    none.
+    """
+    known = TAGS[tag].attributes.get(attribute) if tag in TAGS else None
+    if text is None:
+        text = known.default or "" if known is not None else ""
+    is_read = known is not None and known.parts and (len(known.parts) > 1 or text == text.rstrip())
+    values = values_of(text) if is_read else ()
+    return " ".join(f"{value + 0.0:.6g}" for value in values) if values else text
+
+
+def _wanted_value(step: Step) -> str | None:
+    """Return the value that a step sets: that of the reference, else the default; None if there is
+    none.
+    """
+    if step.verb == "set" and step.like is not None:
+        return step.like.values[step.name]
+    known = TAGS[step.own.tag].attributes.get(step.name) if step.own.tag in TAGS else None
+    return known.default or None if known is not None else None
+
+
+def _node_of(element: Element, names: Mapping[str, Mapping[str, str]] | None = None) -> Node:
+    """Return the node of an element, without values and elements that are the default."""
+    tag = str(element.tag)
+    values = {}
+    for name, value in element.attrib.items():
+        text = normal(tag, str(name), str(value))
+        if (
+            tag in TAGS
+            and str(name) in TAGS[tag].attributes
+            and text == normal(tag, str(name), None)
+        ):
+            continue
+        values[str(name)] = (names or {}).get(_NAMES.get((tag, str(name)), ""), {}).get(text, text)
+    if tag not in TAGS and not len(element) and (element.text or "").strip():
+        values[""] = (element.text or "").strip()
+    children = [_node_of(child, names) for child in element if isinstance(child.tag, str)]
+    is_moving = tag != "joint" or element.get("type") in _MOVING
+    children = [child for child in children if not _is_default(child, is_moving=is_moving)]
+    return Node(tag, _keys(element, values), values, children, element)
+
+
+def _keys(element: Element, values: Mapping[str, str]) -> tuple[str, ...]:
+    name = values.get("name", "") or values.get("reference", "")
+    if (
+        element.tag == "joint"
+        and element.getparent() is not None
+        and child_of(element, "child") is not None
+    ):
+        return end_of(element, "child"), name
+    return (name,) if name and element.tag not in ("visual", "collision") else ()
+
+
+def _is_default(node: Node, *, is_moving: bool) -> bool:
+    if node.tag == "axis":
+        return not is_moving or node.values.get("xyz", "1 0 0") == "1 0 0"
+    return node.tag == "origin" and not node.values
+
+
+def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
+    """Return what the joints and materials of the reference are called in the robot."""
+    names: dict[str, dict[str, str]] = {"joint": {}, "material": {}}
+    known = {joint.name for joint in reference.robot.joints}
+    for joint in reference.joints():
+        own = draft.joint_of(end_of(joint, "child"))
+        is_there = any(it.get("name") == joint.get("name") for it in draft.joints())
+        if own is not None and own.get("name") and own.get("name") not in known and not is_there:
+            names["joint"][joint.get("name") or ""] = own.get("name") or ""
+    mine = [_node_of(found) for found in draft.root.iterchildren("material")]
+    pairs = paired(mine, [_node_of(found) for found in reference.root.iterchildren("material")])
+    called = {
+        like.values.get("name", ""): own_node.values.get("name") for own_node, like in pairs.both
+    }
+    names["material"] = {name: own_name for name, own_name in called.items() if own_name}
+    return names
+
+
+def _values_of_one(found: Iterable[Step]) -> Iterator[list[Step]]:
+    """Yield the steps that set values, those of one node that follow each other together."""
+    together: list[Step] = []
+    for step in found:
+        is_value = step.verb in ("set", "unset")
+        if together and not (is_value and together[0].own is step.own):
+            yield together
+            together = []
+        if is_value:
+            together.append(step)
+    if together:
+        yield together
+
+
+def _meant_attribute(tag: str, name: str) -> str:
+    """Return the attribute that a wrong name of one often means; empty if none is known."""
+    return TAGS[tag].aliases.get(name, "") if tag in TAGS else ""
+
+
+def _rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
+    """Return what gives a link another name, also where joints name it; nothing where several have
+    the old one.
+    """
+    own = [link for link in draft.links() if link.get("name") == old]
+    if len(own) != 1:
+        return ()
+    ends = [
+        (joint, role) for joint in draft.joints() for role in _ENDS if end_of(joint, role) == old
+    ]
+    return (Set(own[0], "", "name", new), *(Set(joint, role, "link", new) for joint, role in ends))

@@ -1,0 +1,408 @@
+"""The edits of the elements of a robot in the text that they are written in."""
+
+import re
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple, cast
+
+from grader.base import markup
+from grader.base.source import Edits, Source
+from grader.lab.hints.edits import (
+    Proposal,
+    element_text,
+    merged,
+    with_attribute,
+    with_child,
+    with_element,
+    without_element,
+)
+from grader.lab.hints.robot_numbers import values_of
+from grader.ros.urdf.link_tree import parent_joints
+from grader.ros.urdf.model import Joint, Robot
+from grader.ros.urdf.reader import Reading
+from grader.ros.xml.parsing import Element
+from grader.ros.xml.urdf_format import PARTS
+
+if TYPE_CHECKING:
+    from grader.lab.hints.xacro_edits import ExpandedEdits
+    from grader.ros.xacro.expansion import ExpandedSource
+
+
+_ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
+_MAX_WAYS = 4
+_COMMENT = re.compile(r"[ \t]*<!--.*?-->", re.DOTALL)
+
+
+class Set(NamedTuple):
+    """A new value of an attribute: of an element, or, with a tag, of its child of this tag,
+    which may be missing.
+    """
+
+    owner: Element
+    tag: str
+    attribute: str
+    value: str
+
+    @property
+    def element(self) -> Element | None:
+        """The element whose attribute it is; None where it is missing."""
+        return child_of(self.owner, self.tag) if self.tag else self.owner
+
+
+class Draft:
+    """A robot that is being edited: its elements, what they are called, and the edits of their
+    text.
+    """
+
+    def __init__(self, root: Element, robot: Robot, source: Source) -> None:
+        self.root = root
+        self.robot = robot
+        self.source = source
+        self.is_broken = False  # whether tags in the text are broken
+        self._elements = list(root.iter())
+        self._tags = {element: tag for tag, element in enumerate(self._elements)}
+        self._parents: dict[str, Joint] = parent_joints(robot)
+
+    @classmethod
+    def of(cls, reading: Reading) -> "Draft | None":
+        """Return the draft of a robot that could be read."""
+        if reading.elements is None or reading.robot is None:
+            return None
+        found = cls(reading.elements, reading.robot, reading.source)
+        found.is_broken = reading.root is None
+        return found
+
+    def links(self) -> Iterator[Element]:
+        """Yield the links."""
+        return self.root.iterchildren("link")
+
+    def joints(self) -> Iterator[Element]:
+        """Yield the joints."""
+        return self.root.iterchildren("joint")
+
+    def link(self, name: str) -> Element | None:
+        """Return the first link of this name; a link without a name has an empty one."""
+        return self._links.get(name)
+
+    @cached_property
+    def _links(self) -> dict[str, Element]:
+        return {link.get("name") or "": link for link in reversed(list(self.links()))}
+
+    def joint_of(self, link: str) -> Element | None:
+        """Return the parent joint of a link, also one whose parent does not exist."""
+        joint = self._parents.get(link)
+        if joint is not None and joint.location is not None:
+            return self._elements[joint.location.tag]
+        return self._joints.get(link)
+
+    @cached_property
+    def _joints(self) -> dict[str, Element]:
+        return {end_of(joint, "child"): joint for joint in reversed(list(self.joints()))}
+
+    def material(self, name: str) -> Element | None:
+        """Return the first definition of a material that counts: under the robot, else in a
+        visual.
+        """
+        return self._materials.get(name)
+
+    @cached_property
+    def _materials(self) -> dict[str, Element]:
+        own = list(self.root.iterchildren("material"))
+        inside = (found for found in self.root.iter("material") if len(found))
+        found: dict[str, Element] = {}
+        for material in (*(it for it in own if len(it)), *inside, *own):
+            found.setdefault(material.get("name") or "", material)
+        return found
+
+    def owner(self, element: Element) -> Element:
+        """Return the child of the root that an element is or is in; the root itself for the
+        root.
+        """
+        while (parent := element.getparent()) is not None and parent is not self.root:
+            element = parent
+        return element
+
+    def link_of(self, element: Element) -> str:
+        """Return the link that an element belongs to: of a joint its child; empty for a
+        material.
+        """
+        owner = self.owner(element)
+        if owner.tag == "joint":
+            return end_of(owner, "child")
+        return (owner.get("name") or "") if owner.tag == "link" else ""
+
+    def describe(self, element: Element, tag: str = "", known: Collection[str] = ()) -> str:
+        """Return what an element, or its child with a tag, is called: the visual origin of
+        'lidar', if `known`.
+        """
+        owner, path = self.owner(element), [tag] if tag else []
+        inner = element
+        while inner is not owner and inner is not self.root:
+            path.insert(0, str(inner.tag))
+            inner = inner.getparent()  # type: ignore[assignment]
+        path = [
+            name for index, name in enumerate(path) if name != "geometry" or index == len(path) - 1
+        ]
+        if owner.tag != "link" or not path:
+            path.insert(0, str(owner.tag))
+        name = self.link_of(owner) if owner.tag in ("link", "joint") else owner.get("name") or ""
+        what = " ".join(path[:1] + path[1:][-1:])
+        if name not in known:
+            return f"the {what}"
+        return f"the link {name!r}" if what == "link" else f"the {what} of {name!r}"
+
+    def text(self, element: Element) -> str:
+        """Return an element as it is written in the file, without comments."""
+        source, start = self.source.element(self._tags[element])
+        return _COMMENT.sub("", element_text(source, start))
+
+    def line(self, element: Element) -> int:
+        """Return the line of an element, from 1."""
+        return self.source.tag(self._tags[element]).line
+
+    @cached_property
+    def _expanded(self) -> "ExpandedEdits | None":
+        """The edits of the source if xacro expanded it: an element is not written there as it is
+        read.
+        """
+        if not self.source.is_expanded:
+            return None
+        from grader.lab.hints.xacro_edits import ExpandedEdits  # late: most robots are not xacro
+
+        return ExpandedEdits(cast("ExpandedSource", self.source))
+
+    @property
+    def is_refused(self) -> bool:
+        """Whether xacro refuses something, so that elements may be missing for that."""
+        return self.source.is_expanded and cast("ExpandedSource", self.source).is_refused
+
+    def corrections(self, names: Sequence[str]) -> list[Proposal]:
+        """Return edits that may correct what xacro refuses; `names` are those that may be meant."""
+        return self._expanded.corrections(names) if self._expanded is not None else []
+
+    def numbers(self, element: Element, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
+        """Return the numbers from which xacro computes an attribute, each with what makes the
+        edit of it.
+        """
+        if self._expanded is None:
+            return []
+        return self._expanded.numbers(self._tags[element], attribute)
+
+    def _siblings(
+        self, element: Element, attribute: str, sets: Iterable[Set]
+    ) -> dict[Element, str]:
+        """Return the values that are set for the elements that come from the same text as one."""
+        if self._expanded is None:
+            return {}
+        same = [self._elements[it] for it in self._expanded.siblings(self._tags[element])]
+        return {
+            it: one.value
+            for it in same
+            for one in sets
+            if one.attribute == attribute and one.element is it
+        }
+
+    def shared(self, sets: Iterable[Set]) -> frozenset[str]:
+        """Return the links whose elements come from the same text of xacro as those that are
+        set.
+        """
+        if self._expanded is None:
+            return frozenset()
+        tags = [self._tags[one.element] for one in sets if one.element is not None]
+        return frozenset(
+            self.link_of(self._elements[it]) for tag in tags for it in self._expanded.siblings(tag)
+        )
+
+    def ways(self, sets: Collection[Set]) -> list[Edits]:
+        """Return the ways to set values; attributes and elements that are missing are added."""
+        found: list[Edits] = [()]
+        attributes: dict[Element, dict[str, str]] = {}
+        children: dict[tuple[Element, str], dict[str, str]] = {}
+        done: set[tuple[Element, str]] = set()
+        for one in dict.fromkeys(sets):
+            element = one.element
+            if element is not None and (element, one.attribute) in done:
+                continue
+            if element is None:
+                children.setdefault((one.owner, one.tag), {})[one.attribute] = one.value
+            elif one.attribute in element.attrib:
+                others = self._siblings(element, one.attribute, sets)
+                done |= {(it, one.attribute) for it in others}
+                is_numeric = bool(PARTS.get(one.attribute))
+                value = (
+                    merged(element.get(one.attribute) or "", one.value) if is_numeric else one.value
+                )
+                ways = self._ways_of(element, one.attribute, value, others)
+                found = [(*before, *more) for before in found for more in ways][:_MAX_WAYS]
+            else:
+                attributes.setdefault(element, {})[one.attribute] = one.value
+        added = [self.add_attributes(element, values) for element, values in attributes.items()]
+        added += [
+            self.insert(owner, _empty_element(tag, values))
+            for (owner, tag), values in children.items()
+        ]
+        rest = tuple(edit for edits in added for edit in edits)
+        return [
+            tuple(edit for edit in dict.fromkeys((*edits, *rest)) if edit.old != edit.new)
+            for edits in self._exchanged(sets, found)[:_MAX_WAYS]
+        ]
+
+    def _exchanged(self, sets: Collection[Set], ways: list[Edits]) -> list[Edits]:
+        """Return the ways to set values: two that are exchanged get the text of each other.
+
+        If names give both values, they may also be defined the wrong way round.
+        """
+        element = next((one.element for one in sets), None)
+        if element is None or len(sets) != 2 or any(one.element is not element for one in sets):
+            return ways
+        source, start = self.source.element(self._tags[element])
+        pair = [markup.attribute(source.text, start, one.attribute) for one in sets]
+        texts = [
+            source.text[it.value_start : it.value_end] for it in reversed(pair) if it is not None
+        ]
+        wanted = [values_of(element.get(one.attribute)) for one in sets][::-1]
+        if len(texts) != 2 or not all(wanted) or [values_of(one.value) for one in sets] != wanted:
+            return ways
+        edits = tuple(
+            with_attribute(source, start, it.attribute, text)
+            for it, text in zip(sets, texts, strict=True)
+        )
+        return [*ways[:1], edits] if all("$" in text for text in texts) else [edits]
+
+    def _ways_of(
+        self, element: Element, attribute: str, value: str, others: Mapping[Element, str]
+    ) -> list[Edits]:
+        """Return the ways to give an attribute another text, and elements that come from the same
+        text others.
+        """
+        tag = self._tags[element]
+        wanted = {tag: (element.get(attribute) or "", escaped(value))}
+        wanted |= {
+            self._tags[it]: (it.get(attribute) or "", escaped(text)) for it, text in others.items()
+        }
+        if self._expanded is not None:
+            return self._expanded.rewrites(attribute, wanted)
+        source, start = self.source.element(tag)
+        if self._broken_tag(source.text, start):
+            edits = self.add_attributes(element, {attribute: value})
+            return [edits] if edits else []
+        return [(with_attribute(source, start, attribute, escaped(value)),)]
+
+    def exchange(self, *elements: Element, attribute: str) -> Edits:
+        """Return the edits with which two elements have the text of an attribute of each other, as
+        it is written.
+        """
+        places = [self.source.element(self._tags[element]) for element in elements]
+        spans = [markup.attribute(source.text, start, attribute) for source, start in places]
+        pairs = zip(places, spans, strict=True)
+        texts = [
+            source.text[it.value_start : it.value_end]
+            for (source, _), it in pairs
+            if it is not None
+        ]
+        if len(texts) != 2 or texts[0] == texts[1]:
+            return ()
+        return tuple(
+            with_attribute(source, start, attribute, text)
+            for (source, start), text in zip(places, reversed(texts), strict=True)
+        )
+
+    def write_text(self, element: Element, text: str) -> Edits:
+        """Return the edit that gives an element another text; none where it has children, or xacro
+        evaluates it.
+        """
+        tag = self._tags[element]
+        wanted = {tag: ((element.text or "").strip(), escaped(text))}
+        if self._expanded is not None:
+            ways = self._expanded.rewrites("", wanted)
+            if ways:
+                return ways[0]
+        source, start = self.source.element(tag)
+        head, _ = markup.head_end(source.text, start)
+        end = source.text.rfind("</", head, markup.element_end(source.text, start))
+        if end < 0 or not {"$", "<"}.isdisjoint(source.text[head:end]):
+            return ()
+        return (source.edit(head, end, escaped(text)),)
+
+    def rename_attribute(self, element: Element, old: str, new: str) -> Edits:
+        """Return the edit that gives an attribute another name."""
+        source, start = self.source.element(self._tags[element])
+        found = markup.attribute(source.text, start, old)
+        if found is None:
+            return ()
+        rest = source.text[found.start + len(old) : found.end]
+        return (source.edit(found.start, found.end, f"{new}{rest}"),)
+
+    def rename_tag(self, element: Element, new: str) -> Edits:
+        """Return the edits that give an element another name, at its start and at its end."""
+        source, start = self.source.element(self._tags[element])
+        text, end = source.text, markup.name_end(source.text, start)
+        edits: Edits = (source.edit(start, end, f"<{new}"),)
+        tail = markup.element_end(text, start)
+        closing = text.rfind("</", start, tail)
+        if not markup.head_end(text, start)[1] and closing >= 0:
+            edits += (source.edit(closing, tail, f"</{new}>"),)
+        return edits
+
+    def add_attributes(self, element: Element, values: Mapping[str, str]) -> Edits:
+        """Return the edit that adds attributes to an element, or writes a broken tag with them."""
+        source, start = self.source.element(self._tags[element])
+        end = markup.name_end(source.text, start)
+        broken = self._broken_tag(source.text, start)
+        if broken:
+            if not broken.endswith(">"):
+                return ()
+            given = {str(name): str(value) for name, value in element.attrib.items()}
+            new = _empty_element(str(element.tag), {**given, **values})
+            if not broken.endswith("/>"):
+                new = f"{new[:-2]}>"
+            return (source.edit(start, start + len(broken), new),)
+        added = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
+        return (source.edit(start, end, f"{source.text[start:end]}{added}"),)
+
+    def _broken_tag(self, text: str, start: int) -> str:
+        if not self.is_broken:
+            return ""
+        from grader.ros.xml.repair import (
+            broken_tag,  # late: its patterns take long, and few files need them
+        )
+
+        return broken_tag(text, start)
+
+    def insert(self, parent: Element, xml: str) -> Edits:
+        """Return the edit that inserts an element as the first child of another one."""
+        return (with_child(*self.source.element(self._tags[parent]), xml),)
+
+    def remove(self, element: Element) -> Edits:
+        """Return the edit that removes an element."""
+        source, start = self.source.element(self._tags[element])
+        return (without_element(source, start),)
+
+    def replace(self, element: Element, xml: str) -> Edits:
+        """Return the edit that replaces an element."""
+        source, start = self.source.element(self._tags[element])
+        return (with_element(source, start, xml),)
+
+
+def _empty_element(tag: str, values: Mapping[str, str]) -> str:
+    """Return the text of an element without content."""
+    attributes = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
+    return f"<{tag}{attributes}/>"
+
+
+def escaped(value: str) -> str:
+    """Return a text as an attribute contains it."""
+    for character, entity in _ESCAPES:
+        value = value.replace(character, entity)
+    return value
+
+
+def end_of(joint: Element, role: str) -> str:
+    """Return the name of the link that is the parent or child of a joint."""
+    found = child_of(joint, role)
+    return (found.get("link") or "") if found is not None else ""
+
+
+def child_of(element: Element, tag: str) -> Element | None:
+    """Return the first child with this tag, which alone counts."""
+    return next(element.iterchildren(tag), None)

@@ -1,0 +1,110 @@
+"""Numbers that a person may have meant, and what is wrong with those that are written: a sign, a
+unit, the order.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import combinations
+from math import isclose, isfinite, radians
+from typing import NamedTuple
+
+from grader.base.text import enumerated
+from grader.ros.urdf.numbers import NumberError, numbers
+
+Values = tuple[float, ...]
+
+LARGE = 3.0  # metres: no part of a robot for a desk is as large
+_SAME = 1e-6
+
+
+class _Mistake(NamedTuple):
+    """What a person does to numbers: the units, the size from which it is likely, how to undo it,
+    and the cause.
+    """
+
+    units: tuple[str, ...]
+    least: float
+    correct: Callable[[float], float]
+    cause: str
+
+
+_LENGTHS, _ANGLES, _ANY = ("m",), ("rad", "rad or m"), ()
+_MISTAKES = (
+    _Mistake(_ANY, 0.0, lambda value: -value, "the sign of {}"),
+    _Mistake(_ANGLES, 6.3, radians, "the unit of {}: degrees, not radians"),
+    _Mistake(
+        _LENGTHS, LARGE, lambda value: value / 1000, "the unit of {}: millimetres, not metres"
+    ),
+    _Mistake(_LENGTHS, LARGE, lambda value: value / 100, "the unit of {}: centimetres, not metres"),
+    _Mistake(("1",), 1.1, lambda value: value / 255, "the range of {}: 0..255, not 0..1"),
+    _Mistake(_LENGTHS, 0.0, lambda value: value / 2, "{}: twice the correct value"),
+    _Mistake(_LENGTHS, 0.0, lambda value: value * 2, "{}: half of the correct value"),
+)
+
+
+def mistake_in(parts: Sequence[str], unit: str, old: Values, new: Values) -> str:
+    """Return what is wrong with numbers; {} stands for what has them."""
+    if not len(parts) == len(old) == len(new):
+        return "the numbers of {}"
+    off = [index for index, pair in enumerate(zip(old, new, strict=True)) if not _is_same(*pair)]
+    names = [_with_article(parts[index]) for index in off]
+    wrong = f"{enumerated(names) if len(off) < 4 else 'the numbers'} of {{}}"
+    for mistake in _MISTAKES:
+        fits = (_is_same(mistake.correct(old[index]), new[index], 2e-3) for index in off)
+        if (not mistake.units or unit in mistake.units) and off and all(fits):
+            return mistake.cause.replace("{}", wrong)
+    if len(off) == 2 and all(_is_same(old[one], new[other]) for one, other in (off, off[::-1])):
+        return f"{wrong} are exchanged"
+    return wrong
+
+
+def _with_article(part: str) -> str:
+    return part if len(part) == 1 else f"the {part}"
+
+
+def plausible(unit: str, old: Values) -> Iterator[Values]:
+    """Yield numbers that a person may have meant: another sign, another unit, twice or half of it,
+    another order.
+    """
+    for mistake in _MISTAKES:
+        if max(map(abs, old), default=0.0) >= mistake.least and (
+            not mistake.units or unit in mistake.units
+        ):
+            for index in (
+                index
+                for index, value in enumerate(old)
+                if value and not (mistake.least and len(old) > 1)
+            ):
+                yield (*old[:index], mistake.correct(old[index]), *old[index + 1 :])
+            if mistake.least and len(old) > 1:
+                yield tuple(map(mistake.correct, old))
+    for one, other in combinations(range(len(old)), 2):
+        if old[one] != old[other]:
+            pair = {one: old[other], other: old[one]}
+            yield tuple(pair.get(index, value) for index, value in enumerate(old))
+
+
+def _is_same(one: float, other: float, relative: float = 1e-9) -> bool:
+    return isclose(one, other, rel_tol=relative, abs_tol=_SAME)
+
+
+def values_of(text: str | None) -> Values:
+    """Return the numbers of an attribute; none where ROS 2 cannot read it."""
+    try:
+        return tuple(numbers(text)) if text is not None else ()
+    except NumberError:
+        return ()
+
+
+def format_numbers(values: Values) -> str:
+    """Return numbers as a URDF contains them."""
+    return " ".join(map(format_number, values))
+
+
+def format_number(value: float) -> str:
+    """Return a number in as few characters as a robot that a person writes needs."""
+    if not isfinite(value):
+        return repr(value)
+    text = f"{round(value, 6) + 0.0:.6g}"
+    if text == "0" and abs(value) > 1e-12:  # an inertia
+        return f"{value:.6g}"
+    return text if "e" not in text else f"{value:.6f}".rstrip("0").rstrip(".")

@@ -1,0 +1,526 @@
+"""Search the edits that make failed criteria pass: each is graded alone, and with those that were
+found before it.
+
+A `Piece` is what one mistake needs, with its words; a `Proposal` is one way to write it into the
+files; what grading proves becomes a `FoundHint`, and in a report a `Hint`. All of them together are
+the `Fix`.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from decimal import Decimal
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
+
+from grader.base.errors import InputError
+from grader.base.source import Certainty, Edits
+from grader.files.limits import ROBOT_ENDINGS
+from grader.files.reading import URDF_LIMIT
+from grader.lab.grading.deciding import decide
+from grader.lab.grading.report import Result
+from grader.lab.hints.edits import FoundHint, Proposal, content, edited_files, with_files, with_urdf
+from grader.lab.hints.generators import STAGES, Situation, Stage, leaves_others, missing_hints
+from grader.lab.hints.robot_difference import REFERENCE, STRUCTURE
+from grader.lab.hints.robot_draft import Draft, end_of
+from grader.lab.rubric.rubric import Rubric
+from grader.lab.submission.submission import Submission
+from grader.ros.package.robot_file import Read
+
+if TYPE_CHECKING:
+    from grader.ros.package.package import Package
+
+
+_Results = Mapping[str, Result]
+
+_MAX_GRADINGS = 170  # of one submission that is as short as most
+_HARMFUL = ("rejects", "drops", "undetermined")
+_RESERVE = 20  # gradings for proofs
+_AROUND = " ,\r\n"  # of a text that is added
+_MAX_PARTS = 5  # edits of a hint of which each is tried without
+
+
+class _NoTrialsLeft(Exception):
+    """The budget for one submission is spent."""
+
+
+class Trials:
+    """Grades edited submissions. The budget counts gradings, so that it is the same on every
+    machine.
+    """
+
+    def __init__(self, rubric: Rubric, submission: Submission, results: _Results) -> None:
+        parts = {part.id for part in rubric.parts if part.needs != "files"}
+        self.rubric, self.submission = rubric, submission
+        self.results = {
+            name: result for name, result in results.items() if result.criterion.part in parts
+        }
+        self._edited = dict[tuple[Edits, bool], Submission | None]()
+        self._of_reference = dict[str, bool]()
+        self.left = _MAX_GRADINGS
+        self.faults: list[str] = []  # the types of exceptions
+        # whether the last one is read with words undone, and the submission is not
+        self.is_assumed = False
+
+    @contextmanager
+    def isolated(self) -> Iterator[None]:
+        """Record a fault of the grader in one generator or one step: it must not cost the hints
+        of the others.
+        """
+        try:
+            yield
+        except _NoTrialsLeft:
+            raise
+        except Exception as error:  # noqa: BLE001
+            self.faults.append(type(error).__name__)
+
+    def graded(
+        self, edits: Edits, wanted: Collection[str] | _Results, *, whole: bool = False
+    ) -> _Results:
+        """Return the results of criteria with edits, none where these do not fit, or ROS 2 would
+        reject or drop more.
+
+        With the results that criteria had, there are none where one is worse now.
+        `whole` reads the submission from scratch. Raises NoTrialsLeft.
+        """
+        self.left -= 1 + self.submission.cost
+        if self.left < 0:
+            raise _NoTrialsLeft
+        edited = self.edited(edits, whole=whole)
+        if edited is None or _has_new_problems(self.submission, edited):
+            return {}
+        self.is_assumed = _is_assumed(edited) and not _is_assumed(self.submission)
+        found: dict[str, Result] = {}
+        for result in decide(self.rubric, edited, wanted):
+            name = result.criterion.id
+            if isinstance(wanted, Mapping) and is_worse(wanted[name], result):
+                return {}  # at once: a shape in another one takes long to measure
+            found[name] = result
+        return found
+
+    def is_of_reference(self, path: str) -> bool:
+        """Return whether a file of the robot is the same in the reference, so that the mistake
+        is in another one.
+        """
+        if path not in self._of_reference and path.endswith(ROBOT_ENDINGS):
+            data, solution = content(self.submission, path), self.rubric.solution
+            self._of_reference[path] = False
+            if data and solution is not None and self.submission.package is not None:
+                with suppress(InputError):
+                    same = [
+                        it
+                        for it in solution.submission.whole_tree.files.values()
+                        if it.size == len(data)
+                    ]
+                    self._of_reference[path] = any(it.read(URDF_LIMIT) == data for it in same)
+        return self._of_reference.get(path, False)
+
+    def edited(self, edits: Edits, *, whole: bool = False) -> Submission | None:
+        """Return the submission with edits; None where they do not fit. What was tried is proven
+        next: it is kept.
+        """
+        key = edits, whole
+        if key not in self._edited:
+            self._edited[key] = self._newly_edited(edits, whole=whole)
+        return self._edited[key]
+
+    def _newly_edited(self, edits: Edits, *, whole: bool) -> Submission | None:
+        files = edited_files(self.submission, edits)
+        if files is None:
+            return None
+        is_robot = isinstance(self.submission.urdf, Read) and None not in files.values()
+        is_decoded = all(
+            edit.old.isascii() for edit in edits
+        )  # else a launch file that could not read it now may
+        if (
+            is_robot
+            and is_decoded
+            and not whole
+            and all(_is_of_robot(path, self.submission) for path in files)
+        ):
+            return with_urdf(self.submission, files)
+        try:
+            return with_files(self.submission, files)
+        except InputError:
+            return None
+
+
+def _has_new_problems(before: Submission, after: Submission) -> bool:
+    """Return whether ROS 2 loads the URDF, with a kind of problem that it had not before: no
+    edit may make it worse.
+    """
+    if not isinstance(before.urdf, Read) or not isinstance(after.urdf, Read):
+        return False
+    if _repeated(after.urdf) - _repeated(before.urdf):
+        return True  # a macro that is called twice makes two links of one name
+    if before.urdf.loaded.verdict == "rejected":
+        return False
+    known = {
+        problem.kind for problem in before.urdf.loaded.problems if problem.kind.effect in _HARMFUL
+    }
+    return any(
+        it.kind not in known for it in after.urdf.loaded.problems if it.kind.effect in _HARMFUL
+    )
+
+
+def _repeated(urdf: Read) -> set[tuple[str, str]]:
+    """Return the names that several links have, and the links that several joints move."""
+    draft = Draft.of(urdf.loaded)
+    links = [("link", it.get("name") or "") for it in draft.links()] if draft is not None else []
+    joints = [("joint", end_of(it, "child")) for it in draft.joints()] if draft is not None else []
+    return {key for key, count in Counter(links + joints).items() if count > 1}
+
+
+def _is_assumed(submission: Submission) -> bool:
+    """Return whether ROS 2 rejects the URDF, and it is read with words undone: criteria may pass
+    by them.
+    """
+    reading = submission.urdf.loaded if isinstance(submission.urdf, Read) else None
+    return reading is not None and reading.verdict == "rejected" and reading.is_meant
+
+
+def _is_of_robot(path: str, submission: Submission) -> bool:
+    """Return whether a file is the URDF or one that its xacro reads, and not one that the
+    package's checks read.
+    """
+    is_robot = path.lower().endswith((".urdf", ".xacro")) and path in submission.whole_tree.files
+    return is_robot or path == submission.path
+
+
+def is_worse(before: Result, after: Result) -> bool:
+    """Return whether a criterion no longer passes, has fewer points, or is undecided now; never
+    an adjusted one.
+    """
+    status = after.outcome.status
+    if after.is_adjusted:
+        return False
+    if before.outcome.status != status and (
+        before.outcome.status == "passed" or status in ("pending", "errored")
+    ):
+        return True
+    return after.points < before.points
+
+
+def costs_of(results: _Results) -> dict[str, Decimal]:
+    """Return what each failed criterion costs, with the criteria that are skipped because of it."""
+    lost: dict[str, Decimal] = {}
+    for name, result in results.items():
+        if result.is_lost:
+            cause = result.because if result.because in results else None
+            lost[cause or name] = lost.get(cause or name, Decimal(0)) + result.criterion.points
+    return {
+        name: points for name, points in lost.items() if results[name].outcome.status == "failed"
+    }
+
+
+def gains_of(before: _Results, after: _Results) -> dict[str, Decimal]:
+    """Return the criteria that pass now and did not before, with the points that this gives."""
+    return {
+        name: result.points - before[name].points
+        for name, result in after.items()
+        if result.outcome.status == "passed"
+        and before[name].outcome.status in ("failed", "skipped")
+        and not result.is_adjusted
+    }
+
+
+class _Tried(NamedTuple):
+    """A proposal that was graded alone, after the edits so far."""
+
+    proposal: Proposal
+    passes: frozenset[str]  # the criteria that pass with it, and did not before
+    is_assumed: bool  # they may pass by what is undone, and not by the edit: others come first
+
+
+class _Proof(NamedTuple):
+    """What a proposal gains, as a hint says it, and together with all edits before it; and the
+    results then.
+    """
+
+    proposal: Proposal
+    gains: Mapping[str, Decimal]
+    together: Mapping[str, Decimal]
+    after: _Results
+    is_late: bool
+
+
+def _is_reverse(one: Proposal, other: Proposal) -> bool:
+    """Return whether the edits change texts of which the other ones make the old ones."""
+    return {(edit.old, edit.new) for edit in one.edits} == {
+        (edit.new, edit.old) for edit in other.edits
+    }
+
+
+class HintSearch:
+    """The search for one submission: `found` are proven edits that fit together, `edits` are
+    those of all.
+    """
+
+    def __init__(
+        self,
+        trials: Trials,
+        reference: Draft | None,
+        package: "Callable[[str], Package | None]" = lambda _: None,
+        told: Collection[str] = (),
+    ) -> None:
+        """`reference` is the robot of the rubric's solution, `package` returns its package of a
+        name.
+
+        No edit is searched for the criteria that are `told`.
+        """
+        self.trials = trials
+        self._situation_of = partial(
+            Situation, wanted=trials.rubric.links, reference=reference, package=package
+        )
+        self._situation = self._situation_of(trials.submission)
+        self._criteria = {criterion.id: criterion for criterion in trials.rubric.criteria}
+        self.found: list[FoundHint] = []
+        self.missing: dict[
+            str, FoundHint
+        ] = {}  # by the criterion that shows that a part is missing, or two edits
+        self._refused: set[Edits] = set()  # after all hints so far
+        self._told = {*told}  # also criteria for which two edits are told that cannot be told apart
+        self._tried_after: dict[Stage, Edits] = {}  # the edits after which a stage was tried last
+        self.results: _Results = trials.results  # with all edits
+        self.is_complete = self._is_cut = False
+
+    @property
+    def edits(self) -> Edits:
+        """The edits of all hints."""
+        return tuple(edit for found in self.found for edit in found.edits)
+
+    def run(self) -> "HintSearch":
+        """Search until nothing more is found, or the budget is spent."""
+        with suppress(_NoTrialsLeft):
+            for stage in STAGES:
+                self._take(stage)
+            self.is_complete = not self._is_cut or not self._lost
+        self.trials.left = max(
+            self.trials.left, 1 + self.trials.submission.cost
+        )  # for the last one
+        with self.trials.isolated():
+            self._verify()
+        with self.trials.isolated():
+            known = {name for found in self.found for name in found.gains} | self.missing.keys()
+            lost = {
+                name: points
+                for name, points in costs_of(self.trials.results).items()
+                if name not in known
+            }
+            after = self._situation_after(self.edits)
+            if after.is_whole:
+                self.missing |= missing_hints(
+                    after.difference, self._situation.draft, self._criteria, lost
+                )
+        return self
+
+    def _situation_after(self, edits: Edits) -> Situation:
+        edited = self.trials.edited(edits) if edits else None
+        return self._situation_of(edited) if edited is not None else self._situation
+
+    def _verify(self) -> None:
+        """Take no hint back only if all together hold where the submission is read from scratch."""
+        if self.found and not self.trials.graded(self.edits, self.results, whole=True):
+            self.found, self.results = [], self.trials.results
+
+    @property
+    def _lost(self) -> list[str]:
+        return [
+            name
+            for name, result in self.results.items()
+            if result.is_lost and name not in self._told
+        ]
+
+    def _take(self, stage: Stage) -> None:
+        """Take the proposals of a stage that are proven, those that gain most first."""
+        if not self._lost or self._tried_after.get(stage) == self.edits:
+            return
+        self._tried_after[stage] = self.edits
+        made = [
+            it.edits
+            for it in self._situation.exchanges
+            if it.edits and {*it.edits} <= {*self.edits}
+        ]
+        if made:  # what else is wrong shows when joints have the right ends; no line moves
+            self._situation = self._situation_after(made[-1])
+        tried: list[_Tried] = []
+        with self.trials.isolated():
+            self._try(stage, tried)
+        while best := self._best(tried):
+            if not self._prove(best, tried):
+                self._refused.add(best.proposal.edits)
+
+    def _try(self, stage: Stage, tried: list[_Tried]) -> None:
+        """Grade the proposals of a stage, each once; add those with which a criterion passes."""
+        before, has_package = self.edits, self.trials.submission.package is not None
+        lost = [
+            name
+            for name in self._lost
+            if has_package or self._criteria[name].check.subject != "package"
+        ]
+        seen: set[Edits] = set()
+        for proposals in stage(self._situation, [self._criteria[name] for name in lost]):
+            with self.trials.isolated():
+                for proposal in proposals:
+                    if proposal.edits in seen:
+                        continue
+                    seen.add(proposal.edits)
+                    if any(
+                        self.trials.is_of_reference(it.path)
+                        for it in proposal.edits
+                        if not it.renamed
+                    ):
+                        continue
+                    if self.trials.left < _RESERVE:
+                        self._is_cut = True
+                        return
+                    results = self.trials.graded((*before, *proposal.edits), lost)
+                    passes = frozenset(
+                        name
+                        for name, result in results.items()
+                        if result.outcome.status == "passed"
+                    )
+                    if passes:
+                        tried.append(_Tried(proposal, passes, self.trials.is_assumed))
+
+    def _best(self, tried: Iterable[_Tried]) -> _Tried | None:
+        lost = set(self._lost)
+        left = (it for it in tried if it.passes & lost and it.proposal.edits not in self._refused)
+        return min(left, key=lambda it: self._order(it, lost), default=None)
+
+    def _order(self, one: _Tried, lost: Collection[str]) -> tuple[bool, Decimal, int, int, int]:
+        gain = sum((self._criteria[name].points for name in one.passes if name in lost), Decimal(0))
+        return one.is_assumed, -gain, one.proposal.rank, one.proposal.way, one.proposal.size
+
+    def _prove(self, best: _Tried, tried: Iterable[_Tried]) -> bool:
+        """Add the hint of a proposal if it is proven, and return whether it was added."""
+        wanted = best.passes & {*self._lost}
+        proof = self._proof_of(best.proposal, wanted)
+        if proof is None or self._is_half(best, proof.after):
+            return False
+        best = best._replace(proposal=proof.proposal)
+        equal = self._equal_to(best, proof.together, wanted, tried)
+        is_of_robot = all(edit.path.endswith((".urdf", ".xacro")) for edit in proof.proposal.edits)
+        if equal is not None and (is_of_robot or _is_reverse(proof.proposal, equal.proposal)):
+            name = max((it for it in self._criteria if it in wanted), key=self._weight)
+            self.missing[name] = FoundHint(
+                proof.proposal, {}, "one of several", alternative=equal.proposal
+            )
+            self._told |= wanted
+            return False
+        certainty: Certainty = "preferred" if equal is None else "one of several"
+        self.found.append(FoundHint(proof.proposal, proof.gains, certainty, proof.is_late))
+        self.results = proof.after
+        self._refused = set()
+        return True
+
+    def _weight(self, name: str) -> tuple[bool, bool, Decimal]:
+        """Return how well a criterion shows a hint: one that is not skipped, that the URDF
+        loads, the costliest.
+        """
+        criterion = self._criteria[name]
+        return (
+            self.results[name].outcome.status == "failed",
+            criterion.check.subject == "urdf",
+            criterion.points,
+        )
+
+    def _proof_of(self, proposal: Proposal, wanted: frozenset[str]) -> _Proof | None:
+        """Return what edits gain alone, or else after the edits before them; None if they lose
+        anything.
+        """
+        edits = tuple(edit for edit in proposal.edits if edit not in self.edits)
+        together, after = self._gains(self.edits, edits, self.results)
+        if not together:
+            return None
+        if proposal.rank in (REFERENCE, STRUCTURE) and 1 < len(edits) <= _MAX_PARTS:
+            edits, together, after = self._needed(edits, together, after)
+        gains, is_late = together, False
+        if self.found:
+            alone, _ = self._gains((), edits, self.trials.results)
+            is_late = wanted.isdisjoint(alone)
+            gains = together if is_late else alone
+        if gains.keys().isdisjoint(wanted) or any(
+            after[name].outcome.status != "passed" for name in gains
+        ):
+            return None
+        known = {name for found in self.found for name in found.gains}
+        gains = {name: points for name, points in gains.items() if name not in known} or gains
+        return _Proof(proposal._replace(edits=edits), gains, together, after, is_late)
+
+    def _needed(
+        self, edits: Edits, gains: dict[str, Decimal], after: _Results
+    ) -> tuple[Edits, dict[str, Decimal], _Results]:
+        """Leave out changes of values without which the others gain as much; return the rest
+        with what it gains.
+        """
+        for edit in [it for it in edits if it.old and it.new]:
+            rest = tuple(it for it in edits if it is not edit)
+            if not rest:
+                break
+            left, results = self._gains(self.edits, rest, self.results)
+            if gains.keys() <= left.keys():
+                edits, gains, after = rest, left, results
+        return edits, gains, after
+
+    def _equal_to(
+        self,
+        best: _Tried,
+        gains: Mapping[str, Decimal],
+        wanted: frozenset[str],
+        tried: Iterable[_Tried],
+    ) -> _Tried | None:
+        """Return another edit that gains as much, at other places, and loses nothing either.
+
+        Another text that may be missing at the same place is one, too: a value of another call of a
+        macro, or negated.
+        """
+        lost, known = set(self._lost), {best.proposal.edits, *self._refused}
+        added = {
+            edit.new.strip(_AROUND) for edit in best.proposal.edits if not edit.old
+        }  # also in the next line
+        others = (it for it in tried if it.passes >= wanted and it.proposal.edits not in known)
+        others = (
+            it
+            for it in others
+            if not added.issuperset(edit.new.strip(_AROUND) for edit in it.proposal.edits)
+        )
+        order, places = self._order(best, lost), best.proposal.places
+        is_added = all(
+            not edit.old and edit.path.endswith(ROBOT_ENDINGS) for edit in best.proposal.edits
+        )
+        for one in others:
+            is_apart = self._order(one, lost) == order and one.proposal.places.isdisjoint(places)
+            is_other_text = (
+                self._order(one, lost)[:-1] == order[:-1]
+                and one.proposal.places == places
+                and is_added
+            )
+            if not is_apart and not is_other_text:
+                continue
+            others_gains, _ = self._gains(self.edits, one.proposal.edits, self.results)
+            if gains.keys() <= others_gains.keys():
+                return one
+        return None
+
+    def _is_half(self, best: _Tried, after: _Results) -> bool:
+        """Return whether an edit leaves what it should correct as well: in another call of a
+        macro, or of its link.
+        """
+        lost = [self._criteria[name] for name, result in after.items() if result.is_lost]
+        if leaves_others(
+            best.proposal.shared, [self._criteria[name] for name in best.passes], lost
+        ):
+            return True
+        is_own = best.proposal.rank not in (REFERENCE, STRUCTURE) and bool(best.proposal.link)
+        chains = (self._situation.own_chain(it.arguments.get("link")) for it in lost if is_own)
+        return any(best.proposal.link in chain for chain in chains)
+
+    def _gains(
+        self, before: Edits, edits: Edits, against: _Results
+    ) -> tuple[dict[str, Decimal], _Results]:
+        """Return what edits gain, with the results; nothing where a criterion is worse with
+        them.
+        """
+        after = self.trials.graded((*before, *edits), against)
+        return gains_of(against, after), after

@@ -1,0 +1,575 @@
+"""The edits of the texts that the elements of an expanded xacro file come from.
+
+A value is changed where it is defined, if a name alone gives it: in a property, in the argument of
+a macro call, in the default of an argument. A number from which it is computed gets the value with
+which the result is the wanted one; an expression that defines it is negated or replaced. Else it is
+replaced where it is used, or given in a macro call that lacks it. Nothing that a YAML file gives is
+changed. What xacro refuses is corrected by near names, by the prefix xacro, and by arguments that
+other calls of a macro give.
+"""
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
+from itertools import islice
+from math import isclose
+from typing import NamedTuple
+
+from grader.base import markup
+from grader.base.names import near
+from grader.base.source import Edit, Edits, Location, Source
+from grader.lab.hints.edits import Proposal, merged, with_attribute
+from grader.lab.hints.robot_numbers import format_number
+from grader.ros.python.values import EvaluationSignal
+from grader.ros.xacro.corrections import (
+    Refusal,
+    negated,
+    respellings,
+    tags_of,
+    values_of_other_calls,
+)
+from grader.ros.xacro.expansion import ExpandedSource
+from grader.ros.xacro.scopes import Definition, Key, ScopePlace, XacroFails, XacroScope
+from grader.ros.xacro.texts import Texts
+from grader.ros.xacro.xacro_nodes import XacroNode, walk
+
+_MAX_LENGTH = 2_000  # of a text that is edited in parts
+_MAX_NAMES, _MAX_NODES = 8, 2000
+_PREFIXED = ("property", "arg", "macro", "include", "if", "unless")
+_NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
+_TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
+_EXPRESSION = re.compile(r"\$\{([^}]*)\}")
+_NAME = re.compile(r"(?<![\w.'\"])[^\W\d]\w*(?![\w(])")
+_NUMBER = re.compile(r"\s*[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\s*")
+# The one expression of a text that is a name, perhaps with a minus.
+_ALONE = re.compile(
+    r"""(?P<before>[^$]*)
+    (?: \$\{\s*(?P<sign>-?)\s*(?P<name>[^\W\d]\w*)\s*\}
+      | \$\(\s*arg\s+(?P<argument>[^\s()]+)\s*\) )
+    (?P<after>[^$]*)""",
+    re.VERBOSE,
+)
+_LOADED = re.compile(r"\$\{\s*(?:xacro\.)?load_yaml\(")
+_NO_CALL = ("value", "default", "params")  # where a name is defined that no call of a macro gives
+_MAX_ORIGINS = 3  # of a text
+_MAX_DEPTH = 4  # definitions that lead to one another
+_MAX_DEFINITIONS = 12
+
+
+class _Written(NamedTuple):
+    """A text at an offset of a file, the scope in which it is evaluated, the attribute that it
+    is in, and its name.
+    """
+
+    source: Source
+    start: int
+    text: str
+    scope: XacroScope
+    attribute: tuple[int, int]  # its offsets, with name and quotes
+    key: Key | None = None  # of what is defined with it
+
+    @property
+    def end(self) -> int:
+        """The offset after it."""
+        return self.start + len(self.text)
+
+    def part(self, start: int, end: int) -> "_Written":
+        """Return a part of it."""
+        return self._replace(start=self.start + start, text=self.text[start:end])
+
+
+class _Use(NamedTuple):
+    """A use of a text: the scope in which it is evaluated, what it is and should be, the call of
+    the macro it is in.
+    """
+
+    scope: XacroScope
+    old: str
+    new: str
+    call: ScopePlace | None = None
+
+
+class _TextChange(NamedTuple):
+    """A text that becomes another one."""
+
+    written: _Written
+    new: str
+
+
+def _edits_of(changes: Iterable[_TextChange]) -> Edits | None:
+    """Return the edits that make changes, one for each attribute; None where two of them
+    overlap.
+    """
+    attributes: dict[tuple[str, int], list[_TextChange]] = {}
+    for change in dict.fromkeys(changes):
+        attributes.setdefault((change.written.source.path, change.written.attribute[0]), []).append(
+            change
+        )
+    edits: list[Edit] = []
+    for inside in attributes.values():
+        source, (start, end) = inside[0].written.source, inside[0].written.attribute
+        new, position = "", start
+        for written, text in sorted(inside, key=lambda change: change.written.start):
+            if written.start < position:
+                return None
+            new += source.text[position : written.start] + text
+            position = written.end
+        edits.append(source.edit(start, end, new + source.text[position:end]))
+    return tuple(edits)
+
+
+def _find_text(place: ScopePlace, attribute: str, scope: XacroScope) -> _Written | None:
+    """Return the value of an attribute, or without a name the text of an element without children.
+
+    None where it is missing, too long, or has entities, so that it is not what is read.
+    """
+    source, at = place.source.element(place.tag)
+    if attribute:
+        found = markup.attribute(source.text, at, attribute)
+        start, end, span = (
+            (found.value_start, found.value_end, (found.start, found.end))
+            if found
+            else (0, 0, None)
+        )
+    else:
+        start = markup.head_end(source.text, at)[0]
+        end = source.text.rfind("</", start, markup.element_end(source.text, at))
+        text = source.text[start:end]
+        start, end = start + len(text) - len(text.lstrip()), start + len(text.rstrip())
+        span = (start, end) if text.strip() else None
+    text = source.text[start:end]
+    is_read = span is not None and not re.search("[&<]", text) and len(text) <= _MAX_LENGTH
+    return _Written(source, start, text, scope, span) if span is not None and is_read else None
+
+
+def _definition_text(definition: Definition) -> _Written | None:
+    """Return the text that a name is defined with: of a parameter's default the part of
+    `params`.
+    """
+    whole = _find_text(definition.place, definition.attribute, definition.scope)
+    if whole is not None and definition.attribute == "params" and whole.text != definition.text:
+        found = re.search(rf"(?:^|\s){re.escape(definition.name)}\s*:?=\s*(?:\^\|?)?", whole.text)
+        if found is None or not whole.text.startswith(definition.text, found.end()):
+            return None
+        whole = whole.part(found.end(), found.end() + len(definition.text))
+    return whole._replace(key=definition.key) if whole is not None else None
+
+
+class _Rewriter:
+    """Makes the edits of one expanded document."""
+
+    def __init__(self, texts: Texts) -> None:
+        self._texts = texts
+
+    def ways(self, place: ScopePlace, attribute: str, uses: Sequence[_Use]) -> list[Edits]:
+        """Return the ways to change an attribute (or, without a name, the text) for its uses,
+        the best first.
+        """
+        text = _find_text(place, attribute, uses[0].scope)
+        changed = [use for use in uses if use.old != use.new]
+        if text is None or not changed:
+            return []
+        found: list[_TextChange] = []
+        has_definition = False
+        parts = (
+            [(use, *part) for use in changed for part in _parts(text, use)]
+            if "$" in text.text
+            else []
+        )
+        for use, part, old, new in parts:
+            changes = self._definitions(part, use.scope, old, new)
+            if not changes and self._is_loaded(part):
+                return []
+            has_definition |= bool(changes)
+            found += changes or [_TextChange(part, new)]
+        by_place = {change.written[:3]: change for change in found}
+        is_one = all(by_place[change.written[:3]].new == change.new for change in found)
+        ways = [*self._literal(text, changed), *self._in_calls(text, changed)]
+        computed = self._computed(parts)
+        # Where it is used, it would change for other calls of a macro, too.
+        ways = [*computed, *ways] if len(changed) < len(uses) else [*ways, *computed]
+        edits = _edits_of(by_place.values()) if has_definition and is_one else None
+        return [*dict.fromkeys([edits, *ways] if edits else ways)]
+
+    def _computed(self, parts: Iterable[tuple[_Use, _Written, str, str]]) -> list[Edits]:
+        """Return the edits of what parts of a text are computed from: of one definition for each
+        part.
+        """
+        each = [
+            islice(self._origins(part, use.scope, old, new), _MAX_ORIGINS)
+            for use, part, old, new in parts
+        ]
+        return [edits for changes in zip(*each, strict=False) if (edits := _edits_of(changes))]
+
+    def _origins(
+        self, text: _Written, scope: XacroScope, old: str, new: str, depth: int = _MAX_DEPTH
+    ) -> Iterator[_TextChange]:
+        """Yield the changes of one definition with which a text has another value: numbers, then
+        expressions.
+        """
+        defined = self._defined(text, scope, old, new)
+        if defined is None:
+            names = [
+                name
+                for name in _NAME.findall(text.text)
+                if depth and self._of_name(name, scope) is not None
+            ]
+            for name in [*dict.fromkeys(names)][:_MAX_ORIGINS]:
+                for was, value in self._solved(text, name, scope, old, new):
+                    alone = text._replace(text=f"${{{name}}}")
+                    found = self._origins(alone, scope, was, value, depth - 1)
+                    keeps_sign = was.startswith("-") == value.startswith("-") or was in (
+                        "1.0",
+                        "-1.0",
+                    )
+                    yield from (
+                        change
+                        for change in found
+                        if _may_change(change.written, keeps_sign=keeps_sign)
+                    )
+            return
+        own, inside, was, value = defined
+        parts = _parts(own, _Use(inside, was, value))
+        if _LOADED.match(own.text):
+            return
+        if not self.definitions(own):
+            yield self._rewritten(own, value)
+        elif len(parts) == 1 and depth:
+            part, before, after = parts[0]
+            yield from self._origins(part, inside, before, after, depth - 1)
+            if _is_equal(before, format_number(-float(after)) if _NUMBER.fullmatch(after) else ""):
+                yield _TextChange(part, negated(part.text))
+            yield _TextChange(part, after)
+
+    def _solved(
+        self, text: _Written, name: str, scope: XacroScope, old: str, new: str
+    ) -> Iterator[tuple[str, str]]:
+        """Yield the number that a name stands for, and the one with which a linear expression
+        has another value.
+        """
+        inside = XacroScope(scope)
+
+        def value_with(number: float) -> float:
+            inside.bind(name, number)
+            return float(self._texts.written(self._texts.evaluate(text.text, inside)))
+
+        try:
+            at = float(self._texts.written(self._texts.find(name, scope)))
+            first = value_with(at)
+            found = at + (float(new) - first) / (value_with(at + 1) - first)
+            is_solved = _is_equal(old, repr(first)) and isclose(
+                value_with(found), float(new), abs_tol=1e-9
+            )
+        except (EvaluationSignal, ArithmeticError, ValueError, TypeError):
+            return
+        if is_solved:
+            yield repr(at), format_number(found)
+
+    def _in_calls(self, text: _Written, changed: Sequence[_Use]) -> list[Edits]:
+        """Return the edits that give a parameter, of which a text is the default, in the calls
+        of its macro.
+        """
+        name = text.text[2:-1].strip() if text.text.startswith("${") else ""
+        definition = self._of_name(name, changed[0].scope)
+        if definition is None or definition.attribute != "params":
+            return []
+        calls = {use.call: use.new for use in changed if use.call is not None}
+        each = ((*call.source.element(call.tag), new) for call, new in calls.items())
+        return [tuple(with_attribute(source, start, name, new) for source, start, new in each)]
+
+    def _literal(self, text: _Written, changed: Sequence[_Use]) -> list[Edits]:
+        """Return the edit that writes a value where it is used; none where uses differ, or a
+        YAML file gives it.
+        """
+        around = {_around(text, use) for use in changed}
+        if len(around) == 1 and "" not in around:
+            edits = _edits_of([_TextChange(text, around.pop())])
+            return [edits] if edits else []
+        if len({use.new for use in changed}) != 1 or self._is_loaded(text):
+            return []
+        parts = _parts(text, changed[0])
+        if len(parts) == 2 and parts[0][1:] == parts[1][:0:-1]:  # two expressions are exchanged
+            edits = _edits_of(
+                [
+                    _TextChange(parts[0][0], parts[1][0].text),
+                    _TextChange(parts[1][0], parts[0][0].text),
+                ]
+            )
+        else:
+            written, _, new = parts[0] if len(parts) == 1 else (text, "", changed[0].new)
+            edits = _edits_of(
+                [_TextChange(written, new if "$" in written.text else merged(written.text, new))]
+            )
+        return [edits] if edits else []
+
+    def _definitions(
+        self, text: _Written, scope: XacroScope, old: str, new: str, depth: int = _MAX_DEPTH
+    ) -> list[_TextChange]:
+        """Return the changes of what defines the one name in a text, with which the text has
+        another value.
+        """
+        defined = self._defined(text, scope, old, new) if depth else None
+        if defined is None:
+            return []
+        own, inside, was, inner = defined
+        if self.definitions(own):
+            parts = _parts(own, _Use(inside, was, inner))
+            changes = [self._definitions(part, inside, a, b, depth - 1) for part, a, b in parts]
+            return [change for several in changes for change in several] if all(changes) else []
+        return [self._rewritten(own, inner)]
+
+    def _defined(
+        self, text: _Written, scope: XacroScope, old: str, new: str
+    ) -> tuple[_Written, XacroScope, str, str] | None:
+        """Return the definition of the one name that gives a text, its scope, and what it is and
+        should be.
+        """
+        found = _ALONE.fullmatch(text.text)
+        before, after = (found["before"], found["after"]) if found else ("", "")
+        is_inside = (
+            new.startswith(before) and new.endswith(after) and len(new) > len(before) + len(after)
+        )
+        if found is None or not is_inside:
+            return None
+        inner, was = (it[len(before) : len(it) - len(after)] for it in (new, old))
+        if found["sign"]:
+            inner, was = (it[1:] if it.startswith("-") else f"-{it}" for it in (inner, was))
+        name = found["argument"]
+        definition = self._texts.defaults.get(name) if name else self._of_name(found["name"], scope)
+        own = _definition_text(definition) if definition is not None else None
+        return (
+            (own, definition.scope, was, inner)
+            if definition is not None and own is not None
+            else None
+        )
+
+    def _rewritten(self, own: _Written, value: str) -> _TextChange:
+        """Return the change of a definition to a value, which stays in quotes."""
+        is_quoted = own.text[:1] == "'" == own.text[-1:]
+        return _TextChange(own, f"'{value}'" if is_quoted else merged(own.text, value))
+
+    def _is_loaded(self, text: _Written) -> bool:
+        """Return whether a YAML file gives a text."""
+        return any(_LOADED.match(it.text) for it in self.definitions(text))
+
+    def _of_name(self, name: str, scope: XacroScope) -> Definition | None:
+        holder = scope.holder(name)
+        return holder.properties[name].definition if holder is not None else None
+
+    def definitions(self, text: _Written) -> list[_Written]:
+        """Return the texts with which the names in a text are defined, also by way of others."""
+        found: dict[object, _Written] = {}
+        waiting = [text]
+        while waiting and len(found) < _MAX_DEFINITIONS:
+            one = waiting.pop(0)
+            for definition in self._named(one):
+                own = _definition_text(definition)
+                if own is not None and definition.key not in found:
+                    found[definition.key] = own._replace(scope=definition.scope)
+                    waiting.append(found[definition.key])
+        return list(found.values())
+
+    def _named(self, text: _Written) -> Iterator[Definition]:
+        for expression in _EXPRESSION.findall(text.text):
+            for name in _NAME.findall(expression):
+                definition = self._of_name(name, text.scope)
+                if definition is not None:
+                    yield definition
+        for argument in re.findall(r"\$\(\s*arg\s+([^\s()]+)\s*\)", text.text):
+            if argument in self._texts.defaults:
+                yield self._texts.defaults[argument]
+
+    def numbers(self, place: ScopePlace, attribute: str, scope: XacroScope) -> list[_Written]:
+        """Return the texts that define numbers from which an attribute is computed."""
+        text = _find_text(place, attribute, scope)
+        return (
+            [it for it in self.definitions(text) if _NUMBER.fullmatch(it.text)]
+            if text is not None
+            else []
+        )
+
+
+def _may_change(text: _Written, *, keeps_sign: bool) -> bool:
+    """Return whether a definition is an argument in a call, or a number that keeps its sign, as
+    a length does.
+    """
+    is_argument = text.key is not None and text.key[2] not in _NO_CALL
+    return is_argument or (keeps_sign and bool(_NUMBER.fullmatch(text.text)))
+
+
+def _parts(text: _Written, use: _Use) -> list[tuple[_Written, str, str]]:
+    """Return the parts of a text that should be others, each with what it is and should be:
+    words, or the whole.
+    """
+    tokens = [text.part(*found.span()) for found in _TOKEN.finditer(text.text)]
+    old, new = use.old.split(), use.new.split()
+    if len(tokens) != len(old) or len(old) != len(new) or len(tokens) < 2:
+        return [(text, use.old, use.new)]
+    return [part for part in zip(tokens, old, new, strict=True) if not _is_equal(*part[1:])]
+
+
+def _around(text: _Written, use: _Use) -> str:
+    """Return a text with another one around its only expression, whose value stays:
+    ${side}_joint; empty if it goes.
+    """
+    found = _ALONE.fullmatch(text.text)
+    if found is None or not (found["before"] or found["after"]):
+        return ""
+    value = use.old[len(found["before"]) : len(use.old) - len(found["after"])]
+    expression = text.text[len(found["before"]) : len(text.text) - len(found["after"])]
+    return (
+        use.new.replace(value, expression)
+        if value.isidentifier() and use.new.count(value) == 1
+        else ""
+    )
+
+
+def _is_equal(one: str, other: str) -> bool:
+    """Return whether two texts are equal, or are the same number."""
+    try:
+        return one == other or abs(float(one) - float(other)) < 1e-9
+    except ValueError:
+        return False
+
+
+def _conditions(source: Source, known: Sequence[str]) -> list[Edits]:
+    """Return the edits that correct a text in quotes in the condition of an <xacro:if> or
+    <xacro:unless>: 'rigth'.
+    """
+    found: list[Edits] = []
+    for tag in re.finditer(r"<xacro:(?:if|unless)\b", source.text):
+        value = markup.attribute(source.text, tag.start(), "value")
+        if value is None:
+            continue
+        text = source.text[value.value_start : value.value_end]
+        for single, double in re.findall(r"'(\w+)'|\"(\w+)\"", text):
+            word = single or double
+            meant = near(word, known) if word not in known else None
+            if meant is not None:
+                new = re.sub(rf"\b{word}\b", meant, text)
+                found.append((with_attribute(source, tag.start(), "value", new),))
+    return found
+
+
+class ExpandedEdits:
+    """Makes the edits of an expanded xacro file; elements are named by their indices in the
+    expanded document.
+    """
+
+    def __init__(self, source: ExpandedSource) -> None:
+        self._source = source
+
+    def rewrites(self, attribute: str, wanted: Mapping[int, tuple[str, str]]) -> list[Edits]:
+        """Return the ways to give an attribute (or, without a name, the text) of elements of one
+        place other values.
+        """
+        place = self._source.nodes[next(iter(wanted))].place
+        scope = place.scope or XacroScope()
+        uses = []
+        for tag in self.siblings(next(iter(wanted))):
+            node = self._source.nodes[tag]
+            text = (
+                node.attributes.get(attribute, "")
+                if attribute
+                else "".join(map(str, node.children)).strip()
+            )
+            call = node.place.calls[-1][1] if node.place.calls else None
+            uses.append(_Use(node.place.scope or scope, *wanted.get(tag, (text, text)), call))
+        return self._rewriter.ways(place, attribute, uses)
+
+    def numbers(self, tag: int, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
+        """Return the numbers from which an attribute is computed, each with what makes the edit
+        of its definition.
+        """
+
+        def changing(written: _Written) -> Callable[[str], Edits]:
+            return lambda new: _edits_of([_TextChange(written, new)]) or ()
+
+        place = self._source.nodes[tag].place
+        found = self._rewriter.numbers(place, attribute, place.scope or XacroScope())
+        return [(it.text.strip(), changing(it)) for it in found]
+
+    def siblings(self, tag: int) -> list[int]:
+        """Return the indices of the expanded elements that come from the same place of the
+        source.
+        """
+        place = self._source.nodes[tag].place
+        return self._by_place[place.source.path, place.tag]
+
+    @cached_property
+    def _by_place(self) -> dict[tuple[str, int], list[int]]:
+        found: dict[tuple[str, int], list[int]] = {}
+        for index, node in enumerate(self._source.nodes):
+            found.setdefault((node.place.source.path, node.place.tag), []).append(index)
+        return found
+
+    def corrections(self, names: Sequence[str]) -> list[Proposal]:
+        """Return edits that may correct undeclared and undefined names, calls of macros, and
+        conditions.
+
+        `names` are those that the reference and the format have.
+        """
+        written = Source(self._source.path, self._source.text)
+        found = (
+            [Proposal(self._source.corrected, "what xacro refuses")]
+            if self._source.corrected
+            else []
+        )
+        found += _corrections(written, self._source.documents, self._source.refused)
+        given = sorted({word for name in names for word in name.split("_")})
+        for document in self._source.documents.values():
+            edited = _conditions(document.place.source, given)
+            found += [Proposal(edits, "a text in a condition") for edits in edited]
+        return list({correction.edits: correction for correction in reversed(found)}.values())[::-1]
+
+    def calls(self, edit: Edit) -> dict[str, list[Location]]:
+        """Return the calls of the macros that an edit is in, by their names."""
+        found: dict[str, dict[Location, None]] = {}
+        if not edit.old:
+            return {}
+        for node in self._source.nodes:
+            place = node.place.at(
+                next((it for it in node.attributes if it and edit.old.startswith(f"{it}=")), None)
+            )
+            if node.place.calls and place[:3] == edit[:3]:
+                name, call = node.place.calls[-1]
+                found.setdefault(name, {})[call.at()] = None
+        return {name: [*calls] for name, calls in found.items()}
+
+    @cached_property
+    def _rewriter(self) -> _Rewriter:
+        return _Rewriter(self._source.texts)
+
+
+def _corrections(
+    document: Source, files: Mapping[str, XacroNode], refusals: Sequence[Refusal]
+) -> Iterator[Proposal]:
+    """Yield the edits that may correct what xacro refuses in a document with the files that it
+    includes.
+    """
+    text = document.text
+    if "xmlns:xacro" not in text and "xacro:" in text:
+        _, start = document.element(0)
+        end = markup.name_end(text, start)
+        edit = document.edit(start, end, text[start:end] + _NAMESPACE)
+        yield Proposal((edit,), "the prefix xacro, which is not declared")
+    nodes = [node for file in files.values() for node in islice(walk(file), 1, _MAX_NODES)]
+    macros = {node.attributes.get("name", "") for node in nodes if node.tag == "xacro:macro"}
+    for node in nodes:
+        if node.tag in _PREFIXED or node.tag in macros:
+            edits = tuple(tags_of(node.place, node.tag, f"xacro:{node.tag}"))
+            yield Proposal(edits, f"<{node.tag}> without xacro:")
+    named = [
+        it
+        for it in refusals
+        if isinstance(it[0], XacroFails) and (it[0].unknown is not None or it[0].lacking)
+    ]
+    for error, place, attribute in named[:_MAX_NAMES]:
+        assert isinstance(error, XacroFails)
+        if error.unknown is not None:
+            for edits in respellings(place, attribute, error.unknown):
+                yield Proposal(edits, "a name that xacro does not know")
+        for edits, values in (
+            values_of_other_calls(place, nodes, error.lacking) if error.lacking else ()
+        ):
+            yield Proposal(edits, f"this call gives no value for {' and '.join(values)}")

@@ -1,0 +1,1 @@
+"""A rubric: its file, its keys, its criteria, its model answers."""

@@ -1,0 +1,360 @@
+"""Read a TOML file and its tables; all mistakes in it are one error, each with its line.
+
+tomllib does not report the lines of keys, so a mistake in a value is collected with the path of its
+key, and the lines are found in the text. Values are converted by the type of their key.
+"""
+
+import re
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from decimal import Decimal
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from grader.base.errors import RubricError
+from grader.base.names import did_you_mean
+from grader.base.text import cut, enumerated, printable, printable_path
+from grader.lab.checks.toml_types import TomlType, WrongValue, simple_type
+
+TomlPath = tuple[str | int, ...]
+TomlRow = dict[str, Any]
+_NOTHING: Mapping[str, Any] = {}
+
+
+# keys in a path: no rubric nests deeper, and the paths of a deeper key grow with its square
+_MAX_DEPTH = 20
+
+_TOKEN = r"""(?sx)
+      "{3}(?:\\.|[^\\])*?"{3}(?!")      # several lines; the last three of five quotes close it
+    | '{3}.*?'{3}(?!')                # the same, without escapes
+    | "(?:\\.|[^"\\\n])*"             # "30\" wide"
+    | '[^'\n]*'                       # 'C:\labs'
+    | \#[^\n]*                        # a comment, which may hold quotes and brackets
+    | [\[\]{}\n=.]
+    | [^\s"'\#\[\]{}=.]+              # a bare key, a number, or a boolean: points, 12, true
+    | [ \t\r]+
+    """
+# tomllib stores each beginning of a dotted key: memory that grows with the square of its parts.
+_LONG_KEY = re.compile(
+    r"""(?m)(?:^|[\[{,])[ \t]*+"""
+    r"""((?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+)"""
+    rf"""{{{_MAX_DEPTH}}})"""
+)
+_MAX_COMPLAINTS, _MAX_PLACES = 1000, 6  # lines about one file; places of one mistake
+_MAX_WIDTH = 100  # characters of a line that are shown on each side of a mistake
+_PLACE = r" \(at (?:line (\d+), column (\d+)|end of document)\)$"
+_CLOSING = {
+    "Unterminated string": '"""',
+    'Expected "\'"': "'",
+    "Expected \"'''\"": "'''",
+}  # what an error misses
+_TWICE = "this table is already given above"
+_SAID = {
+    "Cannot overwrite a value": "this key is given twice",
+    "Cannot declare": _TWICE,
+    "Cannot mutate": _TWICE,
+}
+# What usually is wrong where TOML cannot be read: a pattern of the line, in which \0 is the place
+# of the error.
+_SLIPS = (
+    ("\0[“”„‟‘’«]|[“”„‟]\\s*\0$", "typographic quotes: write straight ones"),
+    (r"""^[^"']*("[^"\\]*|'[^']*)\0$""", "a text in quotes does not end on its line"),
+    (r'"""\0\S', 'these quotes end a text that begins above: one before does not end in """'),
+    (r'"\0\w', r"quotes in a text: write \" for them, or single quotes around it"),
+    (
+        r"\{[^}]*\0$",
+        "a table in braces is one line: write [criterion.with] above, and each key on a line below",
+    ),
+    ("\0(True|False)", "true and false have small letters"),
+    (r"\d\0,\d", "a number has a decimal point, no comma"),
+    (r"\\.\0", r"in double quotes, \ begins an escape: write / in a path"),
+    (r"^\s*\[(part|criterion|evidence)\0?\]", "write double brackets: [[{0}]]"),
+    (
+        r"^\s*\[\[(part|criterion|evidence)\0\]\]",
+        "an earlier [{0}] has single brackets: write [[{0}]]",
+    ),
+)
+_MAX_GUESSES = 50  # searches for a similar name in one rubric: each takes its time
+_MAX_SHOWN = 40  # characters of a value
+_MAX_BITS = 1000  # of a whole number that is written out
+_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
+    """Return the text and the table of a TOML file; raise RubricError."""
+    shown = printable_path(path)
+    try:
+        text = data.decode().removeprefix("\ufeff")
+        if found := _LONG_KEY.search(text):
+            line = text.count("\n", 0, found.start(1)) + 1
+            raise RubricError((f"{shown}:{line}: a key has more than {_MAX_DEPTH} parts",))
+        return text, tomllib.loads(text, parse_float=Decimal)
+    except UnicodeDecodeError as error:
+        raise RubricError((f"{shown}{_why_not_utf8(data, error.start)}",)) from None
+    except tomllib.TOMLDecodeError as error:
+        raise RubricError((f"{shown}:{_syntax_mistake(str(error), text)}",)) from None
+    except RecursionError:
+        raise RubricError((f"{shown}: lists or tables are nested too deeply",)) from None
+    except (ValueError, ArithmeticError):
+        raise RubricError((f"{shown}: a number has too many digits",)) from None
+
+
+def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Path) -> None:
+    """Raise RubricError with a line for each complaint, in the order of the file, if there are
+    any.
+    """
+    if complaints:
+        lines, shown = key_lines(text), printable_path(path)
+        found = one_line_each(path, [(line_of(lines, at), what) for at, what in complaints])
+        more = len(found) - _MAX_COMPLAINTS
+        rest = (f"{shown}: {more} more mistakes are not listed",) if more > 0 else ()
+        raise RubricError((*found[:_MAX_COMPLAINTS], *rest))
+
+
+def one_line_each(path: Path, found: Iterable[tuple[int, str]]) -> list[str]:
+    """Return what was found in a file by its lines; what several lines share once, with all of
+    them.
+    """
+    places: dict[str, list[int]] = {}
+    for line, what in sorted(found, key=lambda it: it[0]):
+        places.setdefault(what, []).append(line)
+    return [
+        f"{printable_path(path)}:{line}: {what}{_also(other)}"
+        for what, (line, *other) in places.items()
+    ]
+
+
+def _also(lines: Sequence[int]) -> str:
+    """Return the other lines of the same mistake, as a clause."""
+    numbers = [str(line) for line in dict.fromkeys(lines)]
+    return (
+        f" (also line{'s' if len(numbers) > 1 else ''} {enumerated(numbers, _MAX_PLACES)})"
+        if numbers
+        else ""
+    )
+
+
+def _syntax_mistake(error: str, text: str) -> str:
+    """Return the place of the mistake that a message of tomllib is about, what it means, and the
+    line.
+    """
+    text = text.replace("\r\n", "\n")
+    lines = text.split("\n")
+    said, line, column, _ = re.split(_PLACE, error)
+    row, at = (int(line), int(column)) if line else (len(lines), len(lines[-1]) + 1)
+    if (
+        opened := text.rfind(_CLOSING.get(said, "\0"))
+    ) >= 0:  # else the place is the end of the file
+        row, at = text.count("\n", 0, opened) + 1, opened - text.rfind("\n", 0, opened)
+        said = "a text in quotes begins here and does not end"
+    said = next((words for start, words in _SAID.items() if said.startswith(start)), said)
+    before, after = (
+        lines[row - 1][max(0, at - _MAX_WIDTH) : at - 1],
+        lines[row - 1][at - 1 : at + _MAX_WIDTH],
+    )
+    marked = "\0".join(part.replace("\0", " ") for part in (before, after))
+    meant = (
+        words.format(*slip.groups())
+        for pattern, words in _SLIPS
+        if (slip := re.search(pattern, marked))
+    )
+    around = (before + after).strip() or "an empty line"
+    return f"{row}:{at}: {next(meant, said[0].lower() + said[1:])}: {printable(around)}"
+
+
+def _why_not_utf8(data: bytes, at: int) -> str:
+    """Return why bytes are not UTF-8 text, after a line if that is known."""
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return ": this is UTF-16 text; save it as UTF-8"
+    line = data.count(b"\n", 0, at) + 1
+    return f":{line}: this is not UTF-8 text; save it as UTF-8"
+
+
+def key_lines(text: str) -> dict[TomlPath, int]:
+    """Return the line of every table header and key of a valid TOML text, by its path; arrays
+    count from 0.
+    """
+    lines: dict[TomlPath, int] = {(): 1}
+    for line, path in _statement_paths(text):
+        for length in range(len(path)):
+            lines.setdefault(path[: length + 1], line)
+    return lines
+
+
+def _statement_paths(text: str) -> Iterator[tuple[int, TomlPath]]:
+    """Yield the line and the path of every table header and key."""
+    counts: dict[TomlPath, int] = {}
+    table: TomlPath = ()
+    for line, tokens in _split_statements(text):
+        if tokens[0] == "[":
+            is_array = tokens[1] == "["
+            table = _table_path(
+                _key_names(tokens[1 + is_array : tokens.index("]")]), counts, is_array=is_array
+            )
+            yield line, table
+        else:
+            yield line, (*table, *_key_names(tokens[: tokens.index("=")]))
+
+
+def _table_path(names: list[str], counts: dict[TomlPath, int], *, is_array: bool) -> TomlPath:
+    """Return the path of a header's table; in an array of tables it is in the last table so far."""
+    path: TomlPath = ()
+    for index, name in enumerate(names):
+        path = (*path, name)
+        if is_array and index == len(names) - 1:
+            counts[path] = counts.get(path, -1) + 1
+        if path in counts:
+            path = (*path, counts[path])
+    return path
+
+
+def line_of(lines: dict[TomlPath, int], path: TomlPath) -> int:
+    """Return the line of a path, or of the innermost table around it that has one."""
+    while path not in lines:
+        path = path[:-1]
+    return lines[path]
+
+
+def _split_statements(text: str) -> list[tuple[int, list[str]]]:
+    """Return each header and key with its value as tokens, and the line on which it begins."""
+    statements: list[tuple[int, list[str]]] = []
+    line, depth = 1, 0
+    current: list[str] = []
+    for match in re.finditer(_TOKEN, text):
+        token = match[0]
+        if token == "\n" and depth == 0:
+            current = []
+        elif token.strip() and not token.startswith("#"):
+            if not current:
+                statements.append((line, current))
+            current.append(token)
+            depth += (token in ("[", "{")) - (token in ("]", "}"))
+        line += token.count("\n")
+    return statements
+
+
+def _key_names(tokens: list[str]) -> list[str]:
+    """Return the keys that tokens stand for, quoted ones without their quotes."""
+    names = [token for token in tokens if token != "."][:_MAX_DEPTH]
+    return [
+        next(iter(tomllib.loads(f"{token}=0"))) if token[0] in "\"'" else token for token in names
+    ]
+
+
+class KeyTable(NamedTuple):
+    """A table of the rubric: what one is called, and its keys."""
+
+    name: str
+    keys: Mapping[str, TomlType]
+    required: tuple[str, ...] = ()
+
+    @property
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of the table."""
+        return {
+            "type": "object",
+            "properties": {key: dict(value.schema) for key, value in self.keys.items()},
+            "required": list(self.required),
+            "additionalProperties": False,
+        }
+
+    @property
+    def rows(self) -> TomlType:
+        """The type of several such tables."""
+        schema = {"type": "array", "items": self.schema, "minItems": 1}
+        return simple_type(f"one or more [[{self.name}]] tables", schema, _are_tables)
+
+    @property
+    def one_or_more(self) -> TomlType:
+        """The type of one such table, or several."""
+        schema = {**self.schema, **self.rows.schema, "type": ["object", "array"]}
+        return simple_type(
+            "a table, or several",
+            schema,
+            lambda value: isinstance(value, dict) or _are_tables(value),
+        )
+
+
+def _are_tables(value: Any) -> bool:
+    return isinstance(value, list) and value != [] and all(isinstance(item, dict) for item in value)
+
+
+class TomlRowReader:
+    """Reads tables; `complaints` are the mistakes so far."""
+
+    def __init__(self) -> None:
+        self.complaints: list[tuple[TomlPath, str]] = []
+        self._guesses = _MAX_GUESSES
+
+    def row(
+        self, where: TomlPath, row: TomlRow, table: KeyTable, defaults: Mapping[str, Any] = _NOTHING
+    ) -> TomlRow:
+        """Return the valid values of a table, converted; complain of the others and of missing
+        ones.
+        """
+        parsed: TomlRow = {**defaults}
+        for key, value in row.items():
+            if key not in table.keys:
+                hint = self.guess(key, table.keys) or f"; it has: {', '.join(table.keys)}"
+                self.complain((*where, key), f"a {table.name} has no key {key!r}{hint}")
+                continue
+            try:
+                parsed[key] = table.keys[key].parse(value)
+            except WrongValue as error:
+                self.complain((*where, key), f"{key} must be {error}, not {shorten_value(value)}")
+        below = row.get("with")
+        for key in table.required:
+            is_below = isinstance(below, dict) and key in below  # which is a mistake of its own
+            if key not in row and key not in defaults and not is_below:
+                self.complain(where, f"this {table.name} has no {key}")
+        return parsed
+
+    def guess(self, name: str, known: Iterable[str]) -> str:
+        """Return which known name a misspelt one may mean, as a clause; empty if none is
+        similar.
+        """
+        self._guesses -= 1
+        return did_you_mean(name, known) if self._guesses >= 0 else ""
+
+    def complain(self, where: TomlPath, message: str) -> None:
+        """Add a mistake in the value of a key."""
+        self.complaints.append((where, message))
+
+
+def shorten_value(value: Any) -> str:
+    """Return a value of TOML in a few characters."""
+    return cut(toml_literal(value), _MAX_SHOWN)
+
+
+def toml_literal(value: Any) -> str:
+    """Return a value as TOML, in one line."""
+    match value:
+        case bool():
+            text = str(value).lower()
+        case float():
+            text = repr(value)
+            text = f"{value:.15f}".rstrip("0") if "e" in text and 1e-15 < abs(value) < 1 else text
+        case str():
+            import json  # late: for a rubric with a mistake, or a new one
+
+            text = json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+        case Mapping():
+            text = (
+                f"{{ {', '.join(assignment(key, item) for key, item in value.items())} }}"
+                if value
+                else "{}"
+            )
+        case list() | tuple():
+            text = f"[{', '.join(map(toml_literal, value))}]"
+        case int() if (
+            value.bit_length() > _MAX_BITS
+        ):  # Python refuses to write numbers of thousands of digits
+            text = "a number with too many digits"
+        case _:
+            text = str(value)
+    return text
+
+
+def assignment(key: str, value: Any) -> str:
+    """Return a line that sets a key."""
+    return f"{key if _BARE_KEY.fullmatch(key) else toml_literal(key)} = {toml_literal(value)}"

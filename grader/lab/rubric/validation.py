@@ -1,0 +1,323 @@
+"""Validate a rubric's TOML: every mistake is collected, with the path of the key that it is in."""
+
+from collections.abc import Collection, Mapping
+from decimal import Decimal
+from functools import cache
+from typing import Any
+
+from grader.base.errors import InputError
+from grader.base.text import enumerated
+from grader.lab.checks.check import LINK_ARGUMENTS, Check
+from grader.lab.checks.registry import check_names, find_check
+from grader.lab.checks.toml_types import WrongValue
+from grader.lab.rubric import keys
+from grader.lab.rubric.criterion import DEADLINE, TOTAL
+from grader.lab.rubric.toml_file import KeyTable, TomlPath, TomlRow, TomlRowReader, shorten_value
+from grader.ros.urdf.link_tree import JOINT_OF, is_selector, texts_in
+
+_MAX_LISTED = 20  # names in one message
+
+BoundCheck = tuple[Check, TomlRow]
+BoundCarried = tuple[
+    tuple[str, ...], Check, TomlRow
+]  # the possible causes, and the fact that counts instead
+
+
+class Validation:
+    """One pass over a parsed rubric. Where `complaints` is empty, the rows contain the converted
+    values of a rubric.
+
+    `bound` has the check of each criterion with its arguments, in the order of the rows, `carried`
+    what its `carried` says.
+    """
+
+    def __init__(self, table: TomlRow) -> None:
+        self._reader = TomlRowReader()
+        self._row, self._guess, self._complain = (
+            self._reader.row,
+            self._reader.guess,
+            self._reader.complain,
+        )
+        self.bound: list[BoundCheck] = []
+        self.carried: list[list[BoundCarried]] = []
+        self._find_check, self._check_names = cache(find_check), cache(check_names)
+        self.rubric = self._row((), table, keys.RUBRIC)
+        self._defaults: TomlRow = {}
+        self._default_arguments: dict[str, TomlRow] = {}
+        self._read_defaults()
+        self.parts = self._read_rows("part", keys.PART)
+        self.criteria = self._read_rows("criterion", keys.CRITERION, self._defaults)
+        self.evidence = self._read_rows("evidence", keys.EVIDENCE)
+        self.late = (
+            self._row(("late",), self.rubric["late"], keys.LATE) if "late" in self.rubric else None
+        )
+        self.ignored = [
+            self._row(("test", "ignore", index), row, keys.IGNORE)
+            for index, row in enumerate(
+                self._row(("test",), self.rubric.get("test", {}), keys.TEST).get("ignore", ())
+            )
+        ]
+        part_ids, positions = self._find_positions("part"), self._find_positions("criterion")
+        self._check_part(("defaults",), self._defaults, part_ids)
+        self._check_criteria(part_ids, positions)
+        for index, row in enumerate(self.evidence):
+            self._check_part(("evidence", index), row, part_ids)
+        main, packages = self.rubric.get("package", ""), self.rubric.get("packages", ())
+        if main and packages and main not in packages:
+            self._complain(("package",), f"packages does not list the package {main!r}")
+        self.adjusted = self._read_adjustments(positions)
+        self._check_totals()
+
+    @property
+    def complaints(self) -> list[tuple[TomlPath, str]]:
+        """The mistakes, each with the path of its key."""
+        return self._reader.complaints
+
+    def _check_criteria(self, part_ids: Collection[str], positions: Mapping[str, int]) -> None:
+        for index, row in enumerate(self.criteria):
+            where: TomlPath = ("criterion", index)
+            if "part" in self.rubric["criterion"][index]:
+                self._check_part(where, row, part_ids)
+            self._check_order((*where, "requires"), row, positions)
+            self._check_package(where, row)
+            if (bound := self._bind_check(where, row)) is not None:
+                self.bound.append(bound)
+                self._check_subject(where, row, bound[0])
+            given = row.get("carried", [])
+            tables = (
+                [((), given)]
+                if isinstance(given, dict)
+                else [((i,), table) for i, table in enumerate(given)]
+            )
+            found = [
+                self._bind_carried((*where, "carried", *i), row, table, positions)
+                for i, table in tables
+            ]
+            self.carried.append([*filter(None, found)])
+            if use := {TOTAL: "final marks", DEADLINE: "deadlines"}.get(row.get("id", "")):
+                self._complain(
+                    (*where, "id"),
+                    f"the id {row['id']!r} is reserved for {use}: choose another one",
+                )
+
+    def _check_package(self, where: TomlPath, row: TomlRow) -> None:
+        """Complain of a package that is none of several packages of the rubric."""
+        packages = self.rubric.get("packages", ())
+        if "package" in row and row["package"] not in packages:
+            hint = (
+                self._guess(row["package"], packages)
+                or f"; there are: {enumerated(packages, _MAX_LISTED) or 'none'}"
+            )
+            self._complain((*where, "package"), f"packages has no {row['package']!r}{hint}")
+
+    def _read_rows(
+        self, key: str, table: KeyTable, defaults: Mapping[str, Any] | None = None
+    ) -> list[TomlRow]:
+        rows = enumerate(self.rubric.get(key, ()))
+        return [self._row((key, index), row, table, defaults or {}) for index, row in rows]
+
+    def _read_defaults(self) -> None:
+        """Read the values that criteria have unless they give others, and the default arguments
+        of checks.
+        """
+        defaults = self._row(("defaults",), self.rubric.get("defaults", {}), keys.DEFAULTS)
+        for name, given in defaults.pop("with", {}).items():
+            where: TomlPath = ("defaults", "with", name)
+            check = self._look_up_check(where, name)
+            if not isinstance(given, dict):
+                self._complain(
+                    where, f"the arguments of {name} must be a table, not {shorten_value(given)}"
+                )
+            elif check is not None:
+                unset = dict.fromkeys(
+                    given
+                )  # invalid ones are complained of once, not at each criterion
+                self._default_arguments[name] = unset | self._parse_arguments(where, check, given)
+        self._defaults = defaults
+
+    def _check_subject(self, where: TomlPath, row: TomlRow, check: Check) -> None:
+        """Complain of a pose for a check that examines no robot, and of a comparison without a
+        reference.
+        """
+        if "at" in row and "robot" not in check.examined:
+            self._complain(
+                (*where, "at"),
+                f"at poses the robot, but the check {check.name} does not examine it",
+            )
+        if "args" in row and not {"robot", "urdf", "package"}.intersection(check.examined):
+            message = (
+                f"args gives launch arguments, but the check {check.name} examines neither the "
+                "robot nor a package"
+            )
+            self._complain((*where, "args"), message)
+        links = [
+            *texts_in(
+                [value for key, value in row.get("with", {}).items() if key in LINK_ARGUMENTS]
+            )
+        ]
+        unknown = [
+            text
+            for text in (*row.get("at", ()), *links)
+            if text.startswith("@") and not is_selector(text)
+        ]
+        for name in (*unknown, *(text for text in links if text.startswith(JOINT_OF))):
+            self._complain(
+                where,
+                f"no link is named by {name!r}: write @root, @tip, or @moved:1, @moved:2 and so on",
+            )
+        if "reference" in check.examined and not self.rubric.get("reference"):
+            message = (
+                f"the check {check.name} compares with the reference solution: the rubric needs "
+                "the key reference"
+            )
+            self._complain((*where, "check"), message)
+
+    def _find_positions(self, key: str) -> dict[str, int]:
+        """Return the position of the first row with each id, and complain of later ones with the
+        same id.
+        """
+        positions: dict[str, int] = {}
+        for index, row in enumerate(self.rubric.get(key, ())):
+            name = row.get("id")
+            if isinstance(name, str) and positions.setdefault(name, index) != index:
+                self._complain((key, index, "id"), f"the {key} {name!r} is already used")
+        return positions
+
+    def _check_part(self, where: TomlPath, row: TomlRow, parts: Collection[str]) -> None:
+        part = row.get("part")
+        if part is not None and part not in parts:
+            hint = (
+                self._guess(part, parts)
+                or f"; there are: {enumerated(parts, _MAX_LISTED) or 'none'}"
+            )
+            self._complain((*where, "part"), f"there is no part {part!r}{hint}")
+
+    def _check_order(self, where: TomlPath, row: TomlRow, positions: Mapping[str, int]) -> None:
+        """Complain of ids in a list of a criterion that are not those of others; of `requires`,
+        of those above it.
+        """
+        given: Any = self.rubric  # also of a list with other mistakes in it
+        for key in where:
+            given = given[key] if isinstance(key, int) else given.get(key, {})
+        index, is_required = int(where[1]), where[-1] == "requires"
+        verb = "requires" if is_required else "is carried from"
+        if not isinstance(given, list):
+            return
+        for name in given:
+            if not isinstance(name, str) or positions.get(name, index) < index:
+                continue
+            if name == row.get("id"):
+                message = f"{verb} itself"
+            elif name in positions and not is_required:
+                continue
+            elif name in positions:
+                message = (
+                    f"{verb} {name!r}, which is below: a criterion can only require those above it"
+                )
+            else:
+                message = f"{verb} {name!r}, which does not exist{self._guess(name, positions)}"
+            self._complain(where, message)
+
+    def _bind_carried(
+        self, where: TomlPath, row: TomlRow, table: TomlRow, positions: Mapping[str, int]
+    ) -> BoundCarried | None:
+        carried = self._row(where, table, keys.CARRIED)
+        self._check_order((*where, "from"), row, positions)
+        bound = self._bind_check(where, carried)
+        return (carried["from"], *bound) if bound is not None and "from" in carried else None
+
+    def _read_adjustments(self, positions: Mapping[str, int]) -> dict[str, TomlRow]:
+        """Return the adjustments by criterion."""
+        for name in (adjusted := self.rubric.get("adjust", {})):
+            if name not in positions:
+                hint = self._guess(name, positions)
+                self._complain(("adjust", name), f"adjusts {name!r}, which does not exist{hint}")
+            elif not isinstance(adjusted[name], dict):
+                message = (
+                    f"the adjustment of {name} must be a table, not {shorten_value(adjusted[name])}"
+                )
+                self._complain(("adjust", name), message)
+        return {
+            name: self._row(("adjust", name), row, keys.ADJUSTMENT)
+            for name, row in adjusted.items()
+            if isinstance(row, dict)
+        }
+
+    def _bind_check(self, where: TomlPath, row: TomlRow) -> BoundCheck | None:
+        """Return the check of a row with its converted arguments; None if there is no such
+        check.
+        """
+        name, given = row.get("check"), row.get("with", {})
+        check = self._look_up_check((*where, "check"), name) if name is not None else None
+        if check is None:
+            return None
+        arguments = self._parse_arguments((*where, "with"), check, given)
+        defaults = self._default_arguments.get(check.name, {})
+        for key, parameter in check.parameters.items():
+            if parameter.required and key not in given and key not in defaults:
+                self._complain(
+                    (*where, "with"), f"the check {check.name} needs {key}: {parameter.type.name}"
+                )
+        arguments = {
+            **{key: value for key, value in defaults.items() if key not in given},
+            **arguments,
+        }
+        return check.for_arguments(arguments), arguments
+
+    def _parse_arguments(self, where: TomlPath, check: Check, given: TomlRow) -> TomlRow:
+        """Return the valid arguments of a check, converted; complain of the others."""
+        arguments: TomlRow = {}
+        for key, value in given.items():
+            parameter = check.parameters.get(key)
+            if parameter is None:
+                known = [parameter for parameter in check.parameters if parameter not in given]
+                hint = (
+                    self._guess(key, known)
+                    or f"; it takes: {', '.join(check.parameters) or 'nothing'}"
+                )
+                if key in keys.CRITERION.keys:
+                    hint = ": it is a key of the criterion, which belongs above [criterion.with]"
+                self._complain((*where, key), f"the check {check.name} takes no {key!r}{hint}")
+                continue
+            try:
+                arguments[key] = parameter.type.parse(value)
+            except WrongValue as error:
+                self._complain(
+                    (*where, key),
+                    f"{key} of {check.name} must be {error}, not {shorten_value(value)}",
+                )
+        return arguments
+
+    def _look_up_check(self, where: TomlPath, name: str) -> Check | None:
+        try:
+            check = self._find_check(name)
+        except InputError as error:  # in another package
+            self._complain(where, str(error))
+            return None
+        if check is None:
+            hint = self._guess(name, self._check_names()) or "; `grader rubric checks` lists them"
+            self._complain(where, f"there is no check {name!r}{hint}")
+        return check
+
+    def _check_totals(self) -> None:
+        """Compare declared totals with the sums, where all points are valid."""
+        if any("points" not in row for row in self.criteria):
+            return
+        by_part: dict[str, list[TomlRow]] = {}
+        for row in self.criteria:
+            by_part.setdefault(row.get("part", ""), []).append(row)
+        declared: list[tuple[TomlPath, TomlRow, str, list[TomlRow]]] = [
+            ((), self.rubric, "the rubric", self.criteria)
+        ]
+        for index, part in enumerate(self.parts):
+            name = part.get("id", "")
+            declared.append((("part", index), part, f"part {name!r}", by_part.get(name, [])))
+        for where, owner, name, rows in declared:
+            actual = sum((row["points"] for row in rows if not row.get("bonus")), Decimal(0))
+            if owner.get("points", actual) != actual:
+                without = " without extra credit" if any(row.get("bonus") for row in rows) else ""
+                message = (
+                    f"{name} declares {owner['points']} points, but its criteria add up to "
+                    f"{actual}{without}"
+                )
+                self._complain((*where, "points"), message)

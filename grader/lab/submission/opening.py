@@ -1,0 +1,231 @@
+"""Opens a submission: a URDF, a folder, an archive or standard input."""
+
+import os
+from collections.abc import Iterable
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from grader.base.errors import InputError, MachineError
+from grader.base.text import enumerated, printable, printable_path
+from grader.files.opening import open_tree, tree_name
+from grader.files.reading import read_capped, read_standard_input, read_start
+from grader.files.tree import File, Tree, overlaid
+from grader.lab.submission.submission import DEFAULTS, Lab, Opening, Submission
+from grader.ros.package.package import MANIFEST
+from grader.ros.package.robot_file import Absent, Surroundings, Unreadable, Urdf, read_as_ros
+from grader.ros.python.budget import Budget
+
+STANDARD_INPUT = "-"
+# Other files of a lab, which are never meant as a URDF.
+_NO_URDFS = frozenset(
+    {
+        ".py",
+        ".md",
+        ".rviz",
+        ".yaml",
+        ".yml",
+        ".toml",
+        ".cfg",
+        ".json",
+        ".png",
+        ".jpg",
+        ".jpeg",
+        ".gif",
+        ".pdf",
+        ".docx",
+    }
+)
+_TABLES = frozenset({".csv", ".tsv", ".xlsx", ".xls", ".ods"})
+_MAX_NAMED = 6  # files in a note
+_EXPECTED = "give a .urdf file, or the folder or archive that was submitted"
+
+
+def read_submission(
+    data: bytes, *, identity: str, path: str, opening: Opening = DEFAULTS
+) -> Submission:
+    """Return the submission that consists of the bytes of one URDF."""
+    if not opening.arguments and b"xacro" not in data:
+        return Submission(identity, read_as_ros(data, path))
+    surroundings = Surroundings(Budget(), arguments=opening.arguments)
+    return Submission(
+        identity, read_as_ros(data, path, surroundings), opening=opening, budget=surroundings.budget
+    )
+
+
+def open_submission(
+    path: str, lab: Lab, opening: Opening = DEFAULTS, *, with_neighbours: bool = False
+) -> Submission:
+    """Read the submission at a path: a URDF, a folder, an archive, or standard input for `-`.
+
+    `with_neighbours` reads the files that a single xacro file includes from the package around it.
+    Raises InputError, with one sentence, if the path cannot be read.
+    """
+    if path == STANDARD_INPUT:
+        return read_submission(
+            read_standard_input(opening.max_size), identity="stdin", path="-", opening=opening
+        )
+    if not path:
+        raise InputError(f"the path is empty: {_EXPECTED}")
+    place = Path(path)
+    if place.suffix.lower() in _TABLES and place.is_file():
+        raise InputError(f"{printable_path(place)} is a table, not a submission: {_EXPECTED}")
+    tree = open_tree(place, partial(_is_lab, lab))
+    shown = printable_path(place)
+    if tree is not None:
+        identity = tree.name if place.is_dir() else tree_name(place)
+        if opening.reports and place.is_dir():
+            tree = tree.only(lambda inside: os.path.realpath(place / inside) not in opening.reports)
+        return submission_of(tree, identity, lab, opening, shown=shown)
+    if place.suffix.lower() in _NO_URDFS:
+        from grader.ros.package.robots import START, is_robot  # late: most URDFs are called .urdf
+
+        if not is_robot(read_start(place, START)):
+            raise InputError(f"{shown} is not a URDF: {_EXPECTED}")
+    data = read_capped(place, opening.max_size)
+    identity = printable_path(place.stem)
+    if with_neighbours and b"xacro" in data:
+        return _read_with_neighbours(place, data, identity, opening)
+    return read_submission(
+        data, identity=identity, path=printable_path(place.name), opening=opening
+    )
+
+
+def _read_with_neighbours(place: Path, data: bytes, identity: str, opening: Opening) -> Submission:
+    """Return the submission that is one file of xacro, and what it reads from the package around
+    it.
+
+    If it reads anything, its path is relative to the nearest folder above with a package.xml, else
+    to its own folder.
+    """
+    # Late: most URDFs are no xacro.
+    from grader.files.folder import read_folder
+
+    asked: list[str] = []
+    alone = Surroundings(Budget(), arguments=opening.arguments, ask=asked.append)
+    submission = Submission(
+        identity,
+        read_as_ros(data, printable_path(place.name), alone),
+        opening=opening,
+        budget=alone.budget,
+    )
+    if not asked:
+        return submission
+    try:
+        folder = place.parent.resolve()
+        root = next(
+            (above for above in (folder, *folder.parents) if (above / MANIFEST).is_file()), folder
+        )
+        if any(
+            (root.parent / name / MANIFEST).is_file()
+            for name in _packages_in(asked)
+            if name != root.name
+        ):
+            root = root.parent  # of a workspace, in which another package is beside this one
+        path = printable((folder / place.name).relative_to(root).as_posix())
+        found = read_folder(root)
+        tree = overlaid(found, {path: data}) if path in found.files or place.is_symlink() else None
+    except (OSError, InputError) as error:
+        MachineError.check(error, printable_path(place.name))
+        tree = None
+    return _with_files_around(submission, tree, path, alone) if tree is not None else submission
+
+
+def _packages_in(asked: Iterable[str]) -> set[str]:
+    """Return the packages in which files are looked for."""
+    from grader.ros.xacro.texts import INSTALLED
+
+    return {text.split("/")[2] for text in asked if text.startswith(f"{INSTALLED}/")}
+
+
+def _with_files_around(
+    submission: Submission, tree: Tree, path: str, alone: Surroundings
+) -> Submission:
+    """Return a single file with what is read for it of a tree; `alone`: its surroundings without a
+    tree.
+    """
+    from grader.ros.package.finding import read_packages
+
+    known: dict[str, bytes] = {}
+
+    def read(file: File, limit: int, *, first: bool = False) -> bytes:
+        data = file.read(limit, first=first)
+        return data if first else known.setdefault(file.path, data)
+
+    recorded = replace(
+        tree,
+        files={name: file._replace(read=partial(read, file)) for name, file in tree.files.items()},
+    )
+    packages = read_packages(recorded, "")
+    data = tree.files[path].read(tree.files[path].size)
+    surroundings = alone._replace(tree=recorded, packages=packages, is_single=True, budget=Budget())
+    urdf = read_as_ros(data, path, surroundings)
+    besides = tuple(sorted(known.keys() - {path}))
+    note = (
+        f"{enumerated(besides, _MAX_NAMED)} {'were' if len(besides) > 1 else 'was'} read "
+        f"besides {path}"
+    )
+    return replace(
+        submission,
+        urdf=urdf,
+        whole_tree=overlaid(tree, known),
+        notes=(note,) if besides else (),
+        budget=surroundings.budget,
+        neighbours=packages,
+        besides=besides,
+    )
+
+
+def _is_lab(lab: Lab, name: str) -> bool:
+    """Return whether an archive is named like the lab's folder."""
+    from grader.lab.submission.labs import LabFolders  # late: a URDF on its own needs no search
+
+    return LabFolders(lab.folders).is_lab(name)
+
+
+def submission_of(
+    tree: Tree, identity: str, lab: Lab, opening: Opening = DEFAULTS, *, shown: str = ""
+) -> Submission:
+    """Return the submission that a file tree makes; raises InputError, which names it `shown`, if
+    it has no files.
+    """
+    if not tree.files and not tree.generated:
+        reason = (
+            f": {tree.ignored[0]}"
+            if tree.ignored
+            else " (hidden files and build folders are ignored)"
+        )
+        raise InputError(f"{shown or identity} is empty{reason}")
+    # Late: a URDF on its own needs no search.
+    from grader.lab.submission.selection import select
+
+    chosen = select(tree, lab, opening)
+    urdf: Urdf = Absent()
+    budget = Budget()
+    surroundings = Surroundings(budget, tree, chosen.package, chosen.packages, opening.arguments)
+    was_read = chosen.choice.read_in(surroundings)
+    if was_read is not None:
+        urdf, budget = was_read
+    elif (path := chosen.choice.path) is not None:
+        try:
+            urdf = read_as_ros(tree.files[path].read(opening.max_size), path, surroundings)
+        except InputError as error:  # the rest of the submission is graded
+            urdf = Unreadable(path, str(error))
+    return Submission(
+        identity,
+        urdf,
+        other_candidates=chosen.others,
+        tree=chosen.tree,
+        packages=chosen.packages,
+        package=chosen.package,
+        no_package=chosen.no_package,
+        lab_packages=chosen.lab_packages,
+        whole_tree=tree,
+        several=chosen.several,
+        notes=chosen.notes,
+        is_single=False,
+        other_lab=chosen.other_lab,
+        opening=opening,
+        budget=budget,
+        reopen=partial(submission_of, identity=identity, lab=lab, opening=opening),
+    )

@@ -1,0 +1,84 @@
+"""The graded package of a submission, and the reasons against the others."""
+
+from collections.abc import Sequence
+from itertools import product
+
+from grader.base.text import enumerated, quoted
+from grader.ros.package.finding import (
+    IN_NAMED_FOLDER,
+    NAMED,
+    SIMILAR,
+    is_backup,
+    missing_files,
+    name_distance,
+)
+from grader.ros.package.package import NO_PACKAGE, Package
+
+_MAX_NAMED = 5  # packages in a message
+DEEPER = "it matches equally well, but is deeper in the folders"
+LATER = "it matches equally well, but comes later in alphabetical order"
+BACKUP = "it is named like a backup"
+
+
+def best_named(packages: tuple[Package, ...], name: str) -> Package | None:
+    """Return the package that has this name, or is in a folder of this name; any if the name is
+    empty.
+    """
+    for package in packages[:1]:
+        return package if not name or name_distance(package, name) <= IN_NAMED_FOLDER else None
+    return None
+
+
+def packages_of_lab(packages: Sequence[Package], names: Sequence[str]) -> dict[str, Package]:
+    """Return the package that each name means: that of the name, else in a folder of it, else of a
+    similar name.
+    """
+    found: dict[str, Package] = {}
+    for distance, name in product((NAMED, IN_NAMED_FOLDER, SIMILAR), names):
+        spare = (
+            it
+            for it in packages
+            if it not in found.values() and name_distance(it, name) <= distance
+        )
+        if name not in found and (package := next(spare, None)) is not None:
+            found[name] = package
+    return found
+
+
+def why_none(
+    packages: tuple[Package, ...], elsewhere: tuple[Package, ...], name: str
+) -> tuple[str, str]:
+    """Return why none of these packages has this name, nor one `elsewhere`, outside of the lab; and
+    which there are.
+    """
+    names = [
+        f"{quoted(package.name)} in {package.folder or 'the submission'}"
+        for package in packages or elsewhere
+    ]
+    there = f"; there {'are' if len(names) > 1 else 'is'} {enumerated(names, _MAX_NAMED)}"
+    if packages:
+        broken = (
+            it.manifest.refusals
+            for it in packages
+            if it.manifest is not None and it.manifest.refusals
+        )
+        for problem, *_ in broken:
+            there += (
+                f"; {problem.message} (line {problem.location.line} of {problem.location.path})"
+            )
+            break
+        return f"no package is named {name!r}, and none contains the graded URDF", there
+    return ("no package was submitted for this lab", there) if names else (NO_PACKAGE, "")
+
+
+def why_not(graded: Package | None, other: Package, urdf: str) -> str:
+    """Return why another package than this one is graded, or none."""
+    if graded is None:
+        return f"the package {other.name!r} has another name, and does not contain the graded URDF"
+    if other.name != graded.name:
+        return f"the package {graded.name!r} is graded, not {other.name!r}"
+    if is_backup(other.folder) and not is_backup(graded.folder):
+        return BACKUP
+    if missing_files(other, urdf) != missing_files(graded, urdf):
+        return "the package that is graded has more of the files that the lab asks for"
+    return DEEPER if other.folder.count("/") != graded.folder.count("/") else LATER

@@ -1,0 +1,342 @@
+"""A submission: its files, and which URDF and which package of it are graded."""
+
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+from grader.base.errors import MissingElement, NotDecided
+from grader.base.source import Source
+from grader.base.text import enumerated, was_not_committed
+from grader.files.limits import MAX_FILE_SIZE, ROBOT_ENDINGS
+from grader.files.reading import URDF_LIMIT, sha256_of
+from grader.files.tree import File, Tree, make_tree
+from grader.ros.package.package import MANIFEST, NO_PACKAGE, Package
+from grader.ros.package.robot_file import (
+    Absent,
+    OtherCandidate,
+    Read,
+    Surroundings,
+    Unreadable,
+    Urdf,
+    read_as_ros,
+)
+from grader.ros.python.budget import Budget
+from grader.ros.urdf.model import Robot
+from grader.ros.urdf.reader import Reading, Verdict
+
+if TYPE_CHECKING:
+    from grader.lab.documents.collection import DocumentCollection
+    from grader.lab.documents.evidence import LabelledFile
+    from grader.ros.workspace.workspace import Workspace
+
+# parts of a package's evaluation that take as long as reading a short URDF
+_WORK_OF_READING = 1_500
+_FILES_OF_READING = 200
+_MAX_COST = 60  # of one reading, for hints
+_NO_FILES = make_tree("", (), ())
+_NO_ARGUMENTS: Mapping[str, str] = {}
+
+
+class Lab(NamedTuple):
+    """What a rubric asks for."""
+
+    urdf: str  # its path in the package
+    package: str = ""  # the name of the package
+    folders: tuple[str, ...] = ()  # names of the lab's folder
+    links: frozenset[str] = frozenset()  # the names of the robot's links
+    packages: tuple[str, ...] = ()  # the names of all packages, if there are several
+
+    @property
+    def package_names(self) -> tuple[str, ...]:
+        """The names of its packages."""
+        return self.packages or (self.package,)
+
+
+class Opening(NamedTuple):
+    """How a submission is opened."""
+
+    max_size: int = URDF_LIMIT  # of a URDF, in bytes
+    arguments: Mapping[str, str] = _NO_ARGUMENTS  # of xacro
+    no_documents: str = ""  # why no document is read, where grading ran out of memory with them
+    # the texts of Word and PDF files that were read before, by path
+    converted: Mapping[str, str] = _NO_ARGUMENTS
+    reports: frozenset[str] = (
+        frozenset()
+    )  # real paths of earlier reports, which are not part of a folder
+
+
+DEFAULTS = Opening()
+
+
+class NoPackage(NamedTuple):
+    """Why there is no package, and which there are; of several packages, the name of the one that
+    is missing.
+    """
+
+    message: str = NO_PACKAGE
+    detail: str = ""
+    name: str = ""
+
+
+_NO_PACKAGE = NoPackage()
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Submission:
+    """The work that a student submitted, with what of it is graded: a URDF, a package, documents.
+
+    `opening.py` makes it of a path or of bytes: `selection.py` says which URDF and package it is,
+    and why. Checks read it, hints make others of it with edited files, and a report quotes its
+    files. A part that is missing or broken never keeps the rest from being graded: `urdf` is one of
+    three states, and `needed_urdf` and `needed_package` raise what a check reports. Documents are
+    read when they are needed.
+
+    >>> from grader.lab.submission.opening import read_submission
+    >>> robot = b'<robot name="arm"><link name="base"/></robot>'
+    >>> submission = read_submission(robot, identity="ash", path="arm.urdf")
+    >>> submission.path, submission.verdict, submission.is_single
+    ('arm.urdf', 'clean', True)
+    >>> submission.needed_package()
+    Traceback (most recent call last):
+    grader.base.errors.MissingElement: the submission has no ROS 2 package: there is no package.xml
+    """
+
+    id: str  # of the student, or the name of the file
+    urdf: Urdf
+    other_candidates: tuple[OtherCandidate, ...] = ()  # robots and packages that are not graded
+    tree: Tree = _NO_FILES  # the files of the lab
+    packages: tuple[Package, ...] = ()  # the one that matches best first
+    package: Package | None = None  # the graded one
+    no_package: NoPackage = _NO_PACKAGE
+    lab_packages: Mapping[str, Package] = field(
+        default_factory=dict
+    )  # by the names that the lab gives
+    whole_tree: Tree = _NO_FILES  # the files of the lab and those around it
+    several: str = ""  # the note that says that several robots fit
+    notes: tuple[str, ...] = ()  # on how it was read
+    is_single: bool = True  # whether it is a URDF on its own, not a folder or archive
+    other_lab: str = ""  # the folder of another lab, where it is graded
+    opening: Opening = DEFAULTS
+    budget: Budget = field(default_factory=Budget)  # of the work to read it
+    neighbours: tuple[Package, ...] = ()  # those around a URDF on its own
+    besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes
+    reopen: "Callable[[Tree], Submission] | None" = None  # opens other files in the same way
+    # Those of its documents that were read, by the files that they are among: copies of it have
+    # them as well.
+    _documents: "dict[Tree, DocumentCollection]" = field(default_factory=dict, repr=False)
+
+    @property
+    def documents(self) -> "DocumentCollection":
+        """The documents in it, each of which is read once, also for copies of it that lack work."""
+        from grader.lab.documents.collection import DocumentCollection  # a URDF on its own has none
+
+        if self.tree not in self._documents:
+            self._documents[self.tree] = DocumentCollection(self.tree, self.opening.converted)
+        return self._documents[self.tree]
+
+    @property
+    def readable_documents(self) -> "DocumentCollection | None":
+        """The documents in it; None where they must not be read."""
+        return None if self.opening.no_documents else self.documents
+
+    @cached_property
+    def labelled_files(self) -> "tuple[LabelledFile, ...]":
+        """The pictures, films and PDF files in it."""
+        from grader.lab.documents.evidence import read_labelled_files
+
+        return read_labelled_files(self.tree)
+
+    @property
+    def evidence_files(self) -> tuple[File, ...]:
+        """The files that may show the work: pictures, films, PDF and Word files."""
+        named = {labelled.file.path for labelled in self.labelled_files}
+        return tuple(
+            file
+            for path, file in self.tree.files.items()
+            if path in named or file.suffix == ".docx"
+        )
+
+    @cached_property
+    def workspace(self) -> "Workspace":
+        """Its packages and its robot, whose names are compared."""
+        from grader.ros.workspace.workspace import Workspace  # late: few rubrics ask for names
+
+        has_other_robots = any(
+            not it.is_part for it in self.unused_candidates if not it.path.endswith(MANIFEST)
+        )
+        return Workspace(self.packages, self.urdf, self.whole_tree, has_other_robots)
+
+    @property
+    def path(self) -> str | None:
+        """The path of the URDF, relative to the submission; None without one."""
+        return None if isinstance(self.urdf, Absent) else self.urdf.path or None
+
+    @property
+    def robot(self) -> Robot | None:
+        """The robot that is graded; None if there is none."""
+        return self.urdf.reading.robot if isinstance(self.urdf, Read) else None
+
+    @property
+    def unused_candidates(self) -> tuple[OtherCandidate, ...]:
+        """The other candidates that the URDF is not expanded from."""
+        return tuple(it for it in self.other_candidates if it.path not in self.included)
+
+    @cached_property
+    def sha256(self) -> str | None:
+        """The hash of the URDF's bytes; of a URDF on its own that includes others, of a list of the
+        hashes of all.
+        """
+        own = sha256_of(self.urdf.data) if isinstance(self.urdf, Read) else None
+        if own is None or not self.besides:
+            return own
+        hashes = [
+            sha256_of(self.whole_tree.files[path].read(MAX_FILE_SIZE)) for path in self.besides
+        ]
+        lines = [f"{found} {path}\n" for found, path in zip(hashes, self.besides, strict=True)]
+        return sha256_of("".join([f"{own}\n", *lines]).encode())
+
+    @property
+    def cost(self) -> int:
+        """How much longer reading it takes than reading a short URDF."""
+        of_urdf = self.urdf.reading.source.cost if isinstance(self.urdf, Read) else 0
+        of_package = self.package.budget.used if self.package is not None else 0
+        return (
+            of_urdf
+            + len(self.whole_tree.files) // _FILES_OF_READING
+            + of_package // _WORK_OF_READING
+        )
+
+    @property
+    def is_costly(self) -> bool:
+        """Return whether reading it takes so long that no hints are searched."""
+        return self.cost > _MAX_COST or self.budget.used > self.budget.limit // 10
+
+    @property
+    def has_urdf(self) -> bool:
+        """Return whether there is a URDF that could be read, even if ROS 2 rejects it."""
+        return isinstance(self.urdf, Read)
+
+    @property
+    def unread(self) -> str:
+        """The reason why the URDF could not be read; empty if it was, or if there is none."""
+        return self.urdf.reason if isinstance(self.urdf, Unreadable) else ""
+
+    @property
+    def included(self) -> Collection[str]:
+        """The files that the URDF is expanded from, itself among them."""
+        source = self.urdf.reading.source if isinstance(self.urdf, Read) else None
+        return getattr(source, "documents", ())
+
+    @property
+    def verdict(self) -> Verdict | None:
+        """ROS 2's verdict on the URDF; None if it was not read, or cannot be determined."""
+        return (
+            self.urdf.loaded.verdict
+            if isinstance(self.urdf, Read) and self.urdf.loaded.is_certain
+            else None
+        )
+
+    @property
+    def ignored(self) -> tuple[str, ...]:
+        """The files that are not read, and why, in one line each."""
+        return tuple(map(str, self.tree.ignored))
+
+    def needed_package(self) -> Package:
+        """Return the graded package; raises MissingElement without one, NotDecided if an archive is
+        unopened.
+        """
+        if self.package is not None:
+            return self.package
+        self._refuse_unopened("package")
+        message, detail, name = self.no_package
+        raise MissingElement(
+            "package", name, message=message, detail=detail, absent=f"package {name}".rstrip()
+        )
+
+    def with_package(self, name: str) -> "Submission":
+        """Return the submission with the package that the lab gives this name as the graded one."""
+        package = self.lab_packages.get(name)
+        if package is None and self.packages:
+            others = enumerated([repr(other.name) for other in self.packages])
+            return replace(
+                self,
+                package=None,
+                no_package=NoPackage(f"no package is named {name!r}", f"; there is {others}", name),
+            )
+        return replace(self, package=package)
+
+    def needed_urdf(self) -> Reading:
+        """Return the graded URDF; raises MissingElement without one, NotDecided if it cannot be
+        read statically.
+        """
+        match self.urdf:
+            case Read(reading=reading):
+                if reading.robot is None and reading.undetermined:
+                    raise NotDecided(reading.undetermined)
+                return reading
+            case Unreadable(reason=reason):
+                raise NotDecided(reason, "the URDF cannot be read")
+            case Absent():
+                self._refuse_unopened("URDF")
+        count = len(self.tree.files)
+        files = (
+            f"none of the {count} files contains a <robot>"
+            if count > 1
+            else "the only file contains no <robot>"
+        )
+        built = next(
+            (path for path in self.tree.generated if path.lower().endswith(ROBOT_ENDINGS)), ""
+        )
+        detail = f"{f': {files}' if count else ''}{was_not_committed(built) if built else ''}"
+        raise MissingElement(
+            "URDF", "", message="no URDF was submitted", detail=detail, absent="URDF"
+        )
+
+    def under(self, arguments: Mapping[str, str]) -> "Submission":
+        """Return the submission with its launch files, and its robot if it is xacro, under launch
+        arguments.
+        """
+        known = {
+            package: package.under(arguments) for package in (*self.packages, *self.neighbours)
+        }
+        changed = replace(
+            self,
+            packages=tuple(known[package] for package in self.packages),
+            neighbours=tuple(known[package] for package in self.neighbours),
+            package=known.get(self.package, self.package) if self.package is not None else None,
+            lab_packages={
+                name: known.get(package, package) for name, package in self.lab_packages.items()
+            },
+            budget=Budget(),
+        )
+        if not isinstance(self.urdf, Read) or not self.urdf.has_xacro:
+            return changed
+        surroundings = changed.surroundings(changed.budget)._replace(launch_arguments=arguments)
+        return replace(changed, urdf=read_as_ros(self.urdf.data, self.urdf.path, surroundings))
+
+    def surroundings(self, budget: Budget, tree: Tree | None = None) -> Surroundings:
+        """Return the files around its URDF: its own, or other ones."""
+        return Surroundings(
+            budget,
+            self.whole_tree if tree is None else tree,
+            self.package,
+            self.packages or self.neighbours,
+            self.opening.arguments,
+            is_single=self.is_single,
+        )
+
+    def _refuse_unopened(self, missing: str) -> None:
+        if self.tree.unopened:
+            archives = ", ".join(archive.path for archive in self.tree.unopened[:3])
+            raise NotDecided(
+                f"no {missing} was found, but {archives} could not be opened",
+                "an archive could not be opened",
+            )
+
+    def source(self, path: str) -> Source | None:
+        """Return the text of one of its files, for quoting; None if it cannot be read."""
+        if isinstance(self.urdf, Read) and path == self.urdf.path:
+            return self.urdf.source
+        data = self.whole_tree.read(path, URDF_LIMIT)
+        return Source(path, data.decode("utf-8", "replace")) if data is not None else None

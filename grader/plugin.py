@@ -1,0 +1,47 @@
+"""What a plug-in check imports: what it examines, the types of its arguments, what it returns.
+
+docs/python.md describes them. All other modules may change with any release.
+"""
+
+from grader.base.errors import MissingElement, NotDecided
+from grader.lab.checks.check import About
+from grader.lab.checks.outcome import (
+    Outcome,
+    failed,
+    judged,
+    measured,
+    measured_point,
+    passed,
+    pending,
+    place,
+)
+from grader.lab.checks.toml_types import Colour, Direction, NonNegative, Size
+from grader.lab.submission.submission import Submission
+from grader.ros.package.package import Package
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.reader import Reading
+from grader.ros.urdf.transforms import Transform, Vector
+
+__all__ = [
+    "About",
+    "Colour",
+    "Configuration",
+    "Direction",
+    "MissingElement",
+    "NonNegative",
+    "NotDecided",
+    "Outcome",
+    "Package",
+    "Reading",
+    "Size",
+    "Submission",
+    "Transform",
+    "Vector",
+    "failed",
+    "judged",
+    "measured",
+    "measured_point",
+    "passed",
+    "pending",
+    "place",
+]

@@ -1,0 +1,102 @@
+"""How a command is called and answers: the values of --fail-under, --save and --arg, and its
+exit code.
+"""
+
+import os
+import re
+from collections.abc import Sequence
+from decimal import Decimal
+from enum import IntEnum
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.base.errors import GraderError
+from grader.report.formats import Format
+
+if TYPE_CHECKING:
+    from grader.lab.grading.report import Report
+
+
+_THRESHOLD = r"[0-9]{1,9}(?:\.[0-9]{1,9})?%?"
+_MAX_PERCENT = 100
+Saves = tuple[tuple[Format, Path], ...]
+
+
+class ExitCode(IntEnum):
+    """The exit code of a command."""
+
+    PASSED = 0
+    FAILED = 1
+    NOT_GRADED = 2
+    FAULT = 3
+    INTERRUPTED = 130
+
+
+def read_threshold(text: str) -> tuple[Decimal, bool]:
+    """Return the score of `--fail-under`, such as 58.5 or 80%, and whether it is in percent.
+    Raises GraderError.
+    """
+    if not re.fullmatch(_THRESHOLD, text) or (
+        text.endswith("%") and Decimal(text[:-1]) > _MAX_PERCENT
+    ):
+        raise GraderError(
+            f"--fail-under takes points or a percentage from 0% to 100%, not {text!r}"
+        )
+    return Decimal(text.removesuffix("%")), text.endswith("%")
+
+
+def exit_code(report: "Report", threshold: tuple[Decimal, bool] | None) -> ExitCode:
+    """Return the exit code for a report.
+
+    A faulty check takes precedence. With a threshold, only the score decides, but a file that ROS 2
+    rejects never passes. Without one, every automatic criterion must have passed, except extra
+    credit and adjusted criteria. A criterion that could not be decided has not passed.
+    """
+    if report.fault:
+        return ExitCode.FAULT
+    if threshold is not None:
+        least, is_percent = threshold
+        is_passed = report.score * 100 >= least * (report.max_score if is_percent else 100)
+        is_passed = is_passed and report.submission.verdict != "rejected"
+    else:
+        short = [result for result in report.results if result.is_lost] + report.pending_automatic
+        is_passed = all(result.criterion.bonus for result in short)
+    return ExitCode.PASSED if is_passed else ExitCode.FAILED
+
+
+def read_saves(texts: Sequence[str]) -> Saves:
+    """Return the formats and files that `--save` names. Raises GraderError."""
+    saves = tuple(map(_read_save, texts))
+    files = [os.path.realpath(file) for _, file in saves if file.is_file() or not file.exists()]
+    for _, file in saves:
+        if files.count(os.path.realpath(file)) > 1:
+            raise GraderError(f"--save names {file} twice, and one file cannot hold two reports")
+    return saves
+
+
+def _read_save(text: str) -> tuple[Format, Path]:
+    kind, equals, file = text.partition("=")
+    if kind not in list(Format) or not equals or file in ("", "-"):
+        meant = next((kind for kind in Format if text.endswith(f".{kind.ending}")), None)
+        guess = f"; did you mean --save {meant}={text}?" if meant is not None and not equals else ""
+        raise GraderError(
+            f"--save takes FORMAT=FILE with one of the formats {', '.join(Format)}, not "
+            f"{text!r}{guess}"
+        )
+    # The shell expands no ~ after `=`; Path.expanduser raises for an unknown user.
+    return Format(kind), Path(os.path.expanduser(file))  # noqa: PTH111
+
+
+def read_arguments(texts: Sequence[str]) -> dict[str, str]:
+    """Return the values that `--arg` gives arguments of xacro, by their names. Raises
+    GraderError.
+    """
+    arguments: dict[str, str] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals or not name.removesuffix(":"):
+            raise GraderError(
+                f"--arg takes NAME=VALUE, an argument of the xacro file, not {text!r}"
+            )
+        arguments[name.removesuffix(":")] = value  # NAME:=VALUE, as xacro takes it
+    return arguments

@@ -1,0 +1,50 @@
+"""Open an address that contains a secret in the user's browser."""
+
+import webbrowser
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from html import escape
+from pathlib import Path
+from threading import Thread
+
+from grader.report.writing import save
+
+_PRIVATE = 0o600
+
+
+@contextmanager
+def opened_in_browser(address: str, file: Path) -> Iterator[bool]:
+    """Open an address while a block runs; yields whether there is a browser that a window shows.
+
+    It opens a private file that leads to the address: all users of the machine see the arguments of
+    a process. Some browsers cannot see the folder for temporary files.
+    """
+    if not _has_window():
+        yield False
+        return
+    save(
+        file,
+        f'<!DOCTYPE html><meta http-equiv="refresh" content="0; url={escape(address)}">\n',
+        mode=_PRIVATE,
+    )
+    try:
+        Thread(
+            target=webbrowser.open, args=[file.resolve().as_uri()], daemon=True
+        ).start()  # some wait for the page
+        yield True
+    finally:
+        with suppress(OSError):
+            file.unlink()
+
+
+def _has_window() -> bool:
+    """Return whether the browser is not one of the terminal, such as w3m, which would take the
+    terminal away.
+    """
+    try:
+        browser = webbrowser.get()
+    except webbrowser.Error:
+        return False
+    return isinstance(browser, webbrowser.BackgroundBrowser) or not isinstance(
+        browser, webbrowser.GenericBrowser
+    )

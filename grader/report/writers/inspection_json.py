@@ -1,0 +1,64 @@
+"""An inspection as JSON, schema grader/inspect/v1."""
+
+from grader.report.inspection import EFFECTS, Inspection, main_root
+from grader.report.json_data import (
+    NUMBER,
+    TEXT,
+    JsonObject,
+    Many,
+    Maybe,
+    Schema,
+    array,
+    each,
+    mapping,
+    nullable,
+    schema_key,
+    to_json,
+)
+from grader.report.writers.as_json import PROBLEM
+from grader.ros.urdf.transforms import Transform
+
+
+def _poses(inspection: Inspection) -> dict[str, list[list[float]] | None]:
+    """Return the poses of links as rows of numbers, rounded to 1e-12, because machines differ
+    beyond that.
+    """
+    poses = inspection.poses()
+    return {
+        name: _matrix_rows(pose) if isinstance(pose, Transform) else None for name, pose in poses
+    }
+
+
+def _matrix_rows(pose: Transform) -> list[list[float]]:
+    return [[round(value, 12) + 0.0 for value in row] for row in pose.matrix]
+
+
+def _vector(items: Schema, length: int) -> Schema:
+    return {**array(items), "minItems": length, "maxItems": length}
+
+
+_JOINT = JsonObject({**each(TEXT, "name type parent child"), "axis": nullable(_vector(NUMBER, 3))})
+_ROBOT = JsonObject(
+    {
+        "name": (TEXT, "robot.name"),
+        "root": (nullable(TEXT), main_root),
+        "links": (array(TEXT), lambda robot: [link.name for link in robot.robot.links]),
+        "joints": (Many(_JOINT), "robot.joints"),
+    }
+)
+INSPECTION = JsonObject(
+    {
+        **schema_key("grader/inspect/v1"),
+        "path": TEXT,
+        "verdict": (nullable({"enum": list(EFFECTS)}), "verdict"),
+        "problems": Many(PROBLEM),
+        "robot": Maybe(_ROBOT),
+        "relative_to": nullable(TEXT),
+        "poses": (mapping(nullable(_vector(_vector(NUMBER, 4), 4))), _poses),
+    }
+)
+
+
+def inspection_json(inspection: Inspection) -> str:
+    """Return the inspection as JSON. An undefined pose is null."""
+    return to_json(INSPECTION.data(inspection))

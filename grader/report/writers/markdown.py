@@ -1,0 +1,211 @@
+"""A report as Markdown (CommonMark, and HTML only to fold what passed): for job summaries, comments
+and LMS pages.
+
+Text of a submission is escaped: it never becomes markup, HTML, a link or a mention.
+"""
+
+import html
+import re
+from collections.abc import Iterator, Sequence
+from itertools import accumulate, groupby
+from textwrap import indent
+
+from grader.base.source import Location
+from grader.base.text import printable
+from grader.lab.grading.report import Report
+from grader.report import content
+from grader.report.content import report_sections
+from grader.report.criteria import (
+    SYMBOLS,
+    Answer,
+    CriteriaGroup,
+    Diff,
+    Entry,
+    Line,
+    Section,
+    earned_text,
+    groups,
+    has_passed,
+    is_failure,
+)
+from grader.report.locations import diff_lines, excerpt_lines, location_text
+
+_HTML = {"<": "&lt;", ">": "&gt;", "&": "&amp;"}
+_ACTIVE = re.compile(
+    r"[\\`*\[\]<>&|~$#]|(?<![^\W_])_|_(?![^\W_])"  # an underscore inside a word is plain text
+    # GitHub makes links of bare addresses
+    r"|(?<=http):(?=//)|(?<=https):(?=//)|(?<=ftp):(?=//)|(?<=www)\.",
+    re.IGNORECASE,
+)
+_OPENING = re.compile(r"^([-+=]|\d+[.)](?= |$))")  # a list, rule or heading at the start of a line
+# GitHub looks for mentions and issue numbers after it has rendered Markdown, so escapes do not
+# prevent them.
+_MENTION = re.compile(r"@|#(?=\d)")
+_FENCE = re.compile(r"`{3,}")
+_LOOKS = {"graded": "# {}", "result": "**{}**", "hint": "**{}**", "feedback": "*{}*", "part": "{}:"}
+# backticks: GitHub's parser takes no more to start code, and counts those of a block to 255
+_MAX_FENCE = 80
+_CUT = (
+    "**The report is cut off here, because it is too long.** A report that is saved to a file "
+    "is complete.\n"
+)
+
+
+def render_markdown(report: Report) -> str:
+    """Return the report."""
+    return "\n".join(f"{block}\n" for block in _blocks(report, answers=True))
+
+
+def cut_markdown(report: Report, most: int) -> str:
+    """Return the first blocks of a report that fit into a number of bytes of UTF-8, and a notice if
+    some are missing.
+
+    It is for job summaries, which students read, so it has no model answers.
+    """
+    blocks = [f"{block}\n" for block in _blocks(report, answers=False)]
+    whole, room = "\n".join(blocks), most - len(_CUT.encode())
+    if len(whole.encode()) <= most:
+        return whole
+    ends = accumulate(len(block.encode()) + 1 for block in blocks)
+    kept = (block for block, end in zip(blocks, ends, strict=True) if end <= room)
+    return "\n".join((*kept, _CUT)) if room >= 0 else ""
+
+
+def overview_markdown(report: Report) -> str:
+    """Return the report without its criteria."""
+    sections = (
+        part
+        for section in content.closing(report)
+        for part in _section(section, report, answers=False)
+    )
+    return "\n\n".join((*_head(report), *sections))
+
+
+def criterion_markdown(entry: Entry, report: Report) -> str:
+    """Return the text about one criterion, besides its title and points."""
+    return "\n\n".join(_details(entry, report, answers=False))
+
+
+def _blocks(report: Report, *, answers: bool) -> Iterator[str]:
+    """Yield the report block by block, each of which can be the last one."""
+    yield from _head(report)
+    for section in report_sections(report).sections:
+        yield from _section(section, report, answers=answers)
+    passed = [folded for group in groups(report) if (folded := _fold_passed(group))]
+    if passed:
+        yield from ("## Passed", *passed)
+    for section in content.closing(report):
+        yield from _section(section, report, answers=answers)
+    command = content.next_command(report)
+    if command:
+        yield f"Next: {code(command)}"
+
+
+def _head(report: Report) -> Iterator[str]:
+    yield from (
+        _LOOKS.get(line.role, "{}").format(escape(line.text)) for line in content.head(report)
+    )
+
+
+def _section(section: Section, report: Report, *, answers: bool) -> Iterator[str]:
+    yield f"## {escape(section.title)}"
+    for entry in section.entries:
+        details = (indent(block, "  ") for block in _details(entry, report, answers=answers))
+        yield "\n\n".join((f"- {SYMBOLS[entry.status]} {_entry_head(entry)}", *details))
+    for is_item, lines in groupby(
+        section.lines, lambda line: line.role not in ("part", "carried", "there")
+    ):
+        texts = [_LOOKS.get(line.role, "{}").format(_escape_words(line.text)) for line in lines]
+        if is_item:
+            yield "\n".join(f"- {text}" for text in texts)
+        else:
+            yield from texts
+
+
+def _entry_head(entry: Entry) -> str:
+    """Return what a mistake costs and its criteria; of another criterion the points, and the title
+    where it holds.
+    """
+    result, name = entry.result, code(entry.id)
+    if entry.lost or is_failure(result):
+        return f"**{entry.cost}**: {code(entry.names)}"
+    if result.is_adjusted:
+        return f"{earned_text(result)} {name}"
+    return f"{earned_text(result)} {escape(printable(result.criterion.title))} ({name})"
+
+
+def _details(entry: Entry, report: Report, *, answers: bool) -> Iterator[str]:
+    """Yield the text about a criterion, block by block."""
+    for block in entry.blocks:
+        match block:
+            case Line(role, text):
+                yield _LOOKS.get(role, "{}").format(_escape_words(text))
+            case Location():
+                yield code(location_text(block))
+                if excerpt := [*excerpt_lines(block, report.submission.source)]:
+                    yield fence(excerpt)
+            case Answer(title, lines) if answers or title == "Found":
+                yield f"{title}:"
+                yield fence(lines)
+            case Diff(edits):
+                yield fence(diff_lines(edits, report.submission.source), "diff")
+
+
+def _fold_passed(group: CriteriaGroup) -> str:
+    """Return the criteria of a group that passed, folded below its points; empty if none did."""
+    lines = [
+        f"- {SYMBOLS['passed']} {earned_text(result)} {escape(printable(result.criterion.title))}"
+        for result in group.results
+        if has_passed(result)
+    ]
+    return _fold(f"{printable(group.title)} {group.points}", lines) if lines else ""
+
+
+def escape(text: str) -> str:
+    """Return one line of printable text that Markdown shows as it is."""
+    plain = _ACTIVE.sub(lambda found: _HTML.get(found[0]) or f"\\{found[0]}", text.strip())
+    plain = _OPENING.sub(lambda found: f"{found[0][:-1]}\\{found[0][-1]}", plain)
+    return _MENTION.sub("\\g<0>\u2060", plain)
+
+
+def _escape_words(text: str) -> str:
+    """Return one line of printable text in which what is between backticks is code."""
+    parts = text.strip().split("`")
+    if len(parts) % 2 == 0 or "``" in text:
+        return escape(text)
+    return "".join(
+        code(part) if number % 2 else _keep_spaces(part) for number, part in enumerate(parts)
+    )
+
+
+def _keep_spaces(text: str) -> str:
+    """Return escaped text with the spaces around it."""
+    inner = text.strip(" ")
+    return text.replace(inner, escape(inner)) if inner else text
+
+
+def code(text: str) -> str:
+    """Return printable text as inline code; as plain text if it has too many backticks."""
+    longest = max((len(found[0]) for found in re.finditer(r"`+", text)), default=0)
+    if longest >= _MAX_FENCE:
+        return escape(text)
+    fence = "`" * (longest + 1)
+    space = " " if not text or text[0] in "` " or text[-1] in "` " else ""
+    return f"{fence}{space}{text}{space}{fence}"
+
+
+def fence(lines: Sequence[str], language: str = "text") -> str:
+    """Return printable lines, none of them blank, as a code block that nothing in them can end."""
+    fence = "`" * max(
+        (len(found[0]) + 1 for line in lines for found in _FENCE.finditer(line)), default=3
+    )
+    if len(fence) > _MAX_FENCE:
+        return "\n".join(f"    {line}" for line in lines)
+    return "\n".join((f"{fence}{language}", *lines, fence))
+
+
+def _fold(summary: str, lines: list[str]) -> str:
+    """Return Markdown below a line of printable text that unfolds it."""
+    shown = _MENTION.sub("\\g<0>\u2060", html.escape(summary))
+    # CommonMark reads Markdown in HTML only after an empty line.
+    return "\n".join(("<details>", f"<summary>{shown}</summary>", "", *lines, "", "</details>"))

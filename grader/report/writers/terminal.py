@@ -1,0 +1,420 @@
+"""A report for a person at a terminal: what to fix first; the score last, where the eye is when the
+command ends.
+
+It has the first mistakes in full, and a line for each further one; `--verbose` has everything. Text
+of a submission is never interpreted as markup or control codes.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import groupby
+from typing import TYPE_CHECKING, NamedTuple, get_args
+
+from rich.console import Console
+from rich.text import Text
+
+from grader.base.source import Location, Source
+from grader.base.text import counted, enumerated, printable
+from grader.lab.grading.report import Report, Result
+from grader.lab.rubric.criterion import worth
+from grader.report import content
+from grader.report.content import ReportSections, report_sections
+from grader.report.criteria import (
+    ASCII_SYMBOLS,
+    STYLES,
+    SYMBOLS,
+    Answer,
+    Block,
+    Diff,
+    Entry,
+    Line,
+    Role,
+    Section,
+    alike,
+    earned_text,
+    groups,
+    is_failure,
+    is_manual,
+    pending_reason,
+    points_of,
+    remarks_on,
+    status_of,
+)
+from grader.report.locations import diff_lines, excerpt, location_text
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+
+INDENT = 2
+LOOKS: Mapping[Role, str] = {
+    **dict.fromkeys(get_args(Role), ""),
+    **dict.fromkeys(("result", "comment", "hint"), "bold"),
+    **dict.fromkeys(("graded", "provenance", "expected", "part", "ignored", "there"), "dim"),
+    **dict.fromkeys(("missing", "alike", "carried", "warning"), "yellow"),
+    "feedback": "italic",
+    "error": "bold red",
+    "note": "cyan",
+}
+_DIFF_STYLES = {"-": "red", "+": "green"}
+_MAX_WHOLE = 5  # mistakes in full
+_MAX_NAMES, _MAX_PROBLEMS, _MAX_FILES = 3, 3, 2
+
+
+class Page(NamedTuple):
+    """The rows of a report for a console. All texts are printable."""
+
+    console: Console
+    rows: list[Text]
+
+    def leave_row(self) -> None:
+        """Add an empty row."""
+        self.rows.append(Text())
+
+    def title(self, text: str | Text, style: str = "bold") -> None:
+        """Add a title below an empty row."""
+        self.leave_row()
+        self.line(text, style)
+
+    def line(self, text: str | Text, style: str = "") -> None:
+        """Add a line, with an indent where it wraps."""
+        self.inset(text, style, head=Text())
+
+    def inset(
+        self, text: str | Text, style: str = "", indent: int = INDENT, head: Text | None = None
+    ) -> None:
+        """Add a text below a title or an item."""
+        self.rows.append(
+            block(self.console, Text(text, style) if isinstance(text, str) else text, indent, head)
+        )
+
+    def item(self, status: str, *parts: str | tuple[str, str]) -> None:
+        """Add texts, with their styles, behind the symbol of a status."""
+        self.inset(Text.assemble(*parts), head=self.mark(status) + Text(" "))
+
+    def mark(self, status: str) -> Text:
+        """Return the symbol of a status in its colour."""
+        return Text(_symbol(self.console, SYMBOLS[status], ASCII_SYMBOLS[status]), STYLES[status])
+
+    def table(self, table: "Table") -> None:
+        """Add a table, which a terminal may be too narrow for."""
+        self.print()
+        self.console.print(table)
+
+    def print(self) -> None:
+        """Print the rows so far, all at once: a print costs more than a row."""
+        self.console.print(Text("\n").join(self.rows), overflow="ignore", no_wrap=True, crop=False)
+        self.rows.clear()
+
+
+def render_terminal(report: Report, console: Console, *, verbose: bool = False) -> None:
+    """Print a report, with `verbose` everything in it."""
+    found = report_sections(report, everything=verbose)
+    page = Page(console, [])
+    if verbose:
+        _show_everything(report, found, page)
+    else:
+        _show_brief(report, found, page)
+    _show_end(report, page)
+    page.print()
+
+
+def _show_brief(report: Report, found: ReportSections, page: Page) -> None:
+    """Add the short report, without its last lines."""
+    _show_start(report, page)
+    _show_mistakes(found.mistakes, report, page)
+    if found.unbuilt:
+        page.title(found.unbuilt_title)
+    for line in found.unbuilt_lines:
+        page.inset(line.text)
+    if found.carried:
+        page.leave_row()
+    for line in found.carried:
+        page.line(line.text, LOOKS[line.role])
+    if found.missing:
+        page.title("Not found")
+    for line in found.missing:
+        page.inset(line.text, LOOKS[line.role])
+    _show_pending(report, found.pending, page)
+    for section in found.remarks:
+        page.leave_row()
+        for entry in section.entries:
+            words = " ".join(remarks_on(entry.result)) or entry.texts("finding")[0]
+            page.item(
+                entry.status,
+                (printable(entry.id), "bold"),
+                f"  {earned_text(entry.result)}: {words}",
+            )
+    _show_groups(report, page)
+    _show_files(report, page)
+    page.leave_row()
+
+
+def _show_start(report: Report, page: Page) -> None:
+    """Add what was graded, the result, and notes; the package only if the path of the URDF does not
+    show it.
+    """
+    submission = report.submission
+    rejected = ", which ROS 2 rejects" if submission.verdict == "rejected" else ""
+    page.line(content.graded_line(report) + rejected, LOOKS["graded"])
+    page.line(content.result_line(report), LOOKS["result"])
+    folder = (
+        f"{submission.package.folder}/"
+        if submission.package is not None and submission.package.folder
+        else ""
+    )
+    package = content.package_line(report)
+    if package and not (submission.path or "").startswith(folder or "urdf/"):
+        page.line(package, "dim")
+    for line in content.notes(report):
+        page.line(line, LOOKS["note"])
+
+
+def _show_mistakes(mistakes: Sequence[Entry], report: Report, page: Page) -> None:
+    """Add the first mistakes in full, and the costs and places of the rest."""
+    for entry in mistakes[:_MAX_WHOLE]:
+        page.leave_row()
+        _show_entry(entry, report, page, _brief_blocks(entry))
+    rest = mistakes[_MAX_WHOLE:]
+    if rest:
+        them = "it" if len(rest) == 1 else "them"
+        page.title(f"{counted(len(rest), 'more mistake')}: --verbose shows {them} in full")
+    for entry in rest:
+        page.line(_mistake_head(entry, page))
+
+
+def _brief_blocks(entry: Entry) -> Iterator[Block]:
+    """Yield the blocks of a short report: what is expected only if needed, and nothing that head
+    and hint say.
+    """
+    is_clear = entry.result.outcome.expected is not None or bool(entry.texts("hint", "feedback"))
+    for part in entry.blocks:
+        match part:
+            case Diff() | Line("also" | "skipped"):
+                pass
+            case Line("expected") if is_clear:
+                pass
+            case Answer() if is_failure(entry.result):
+                pass
+            case _:
+                yield part
+
+
+def _show_entry(
+    entry: Entry, report: Report, page: Page, blocks: Iterable[Block], *, is_whole: bool = False
+) -> None:
+    """Add a criterion or a mistake with these blocks; `is_whole` never shortens its place."""
+    is_mistake = bool(entry.lost) or is_failure(entry.result)
+    page.line(
+        _mistake_head(entry, page, is_whole=is_whole) if is_mistake else _entry_head(entry, page)
+    )
+    page.inset(" ".join(entry.texts("finding")))
+    source_of = report.submission.source
+    for part in blocks:
+        match part:
+            case Line(role, text) if role != "finding":
+                page.inset(text, LOOKS[role])
+            case Location():
+                source = source_of(part.path)
+                if source is not None and source.line(part.line).strip():
+                    page.rows.append(excerpt_block(page.console, source, part, INDENT))
+            case Answer(title, lines):
+                page.inset(f"{title}:", "bold")
+                for line in lines:
+                    page.inset(line, indent=2 * INDENT)
+            case Diff(edits):
+                for line in diff_lines(edits, source_of):
+                    page.inset(line, _DIFF_STYLES.get(line[0], "dim"), 2 * INDENT)
+
+
+def _mistake_head(entry: Entry, page: Page, *, is_whole: bool = False) -> Text:
+    """Return what a mistake costs, its criteria, and its place, without the folder where there is
+    no room for it.
+    """
+    cost = (entry.cost, STYLES[entry.status]), ": ", (entry.names, "bold")
+    text = Text.assemble(page.mark(entry.status), " ", *cost)
+    where = entry.location
+    if where is None:
+        return text
+    places = (
+        (where,)
+        if is_whole
+        else (where, where._replace(path=where.path.rpartition("/")[2], calls=()))
+    )
+    room = page.console.width - INDENT - text.cell_len
+    fitting = (it for it in places if len(location_text(it)) + 2 <= room)
+    return text.append(f"  {location_text(next(fitting, where))}", "dim")
+
+
+def _entry_head(entry: Entry, page: Page) -> Text:
+    """Return the title, name and points of a criterion that did not fail."""
+    title, name = printable(entry.result.criterion.title), printable(entry.id)
+    points = earned_text(entry.result)
+    return Text.assemble(
+        page.mark(entry.status), " ", (title, "bold"), (f"  {name}", "dim"), f"  {points}"
+    )
+
+
+def block(console: Console, text: Text, indent: int, head: Text | None = None) -> Text:
+    """Return text that keeps its indent when it wraps; `head` is in place of the indent of the
+    first line.
+    """
+    lines = text.wrap(console, max(8, console.width - indent))
+    for line in lines:
+        line.rstrip()
+    return (Text(" " * indent) if head is None else head) + Text("\n" + " " * indent).join(lines)
+
+
+def excerpt_block(console: Console, source: Source, where: Location, indent: int) -> Text:
+    """Return the source line of a location, and a line that underlines the marked part."""
+    number = str(where.line)
+    before, meant, after = excerpt(source, where, max(8, console.width - indent - len(number) - 3))
+    mark, bar = _symbol(console, "\u2500", "-"), _symbol(console, "\u2502", "|")
+    text = Text.assemble(
+        (f"{' ' * indent}{number} {bar} ", "dim"), (before + meant + after).rstrip()
+    )
+    under = " " * len(before) + mark * max(1, len(meant))
+    return text.append(f"\n{' ' * (indent + len(number))} {bar} ", "dim").append(under, "red")
+
+
+def _symbol(console: Console, fancy: str, plain: str) -> str:
+    """Return a symbol, or its ASCII form if the terminal cannot show it."""
+    return fancy if console.encoding.lower().startswith("utf") else plain
+
+
+def _show_pending(report: Report, pending: Sequence[Entry], page: Page) -> None:
+    """Add what needs manual grading: where each answer and picture was found, or why a check cannot
+    decide.
+    """
+    if pending:
+        points = points_of(result for entry in pending for result in entry.results)
+        page.title(f"Needs manual grading ({points})" if report.open_points else "Not graded")
+    every = [one for entry in pending for one in (entry, *entry.also)]
+    for reason, some in alike(every, lambda entry: pending_reason(entry.result)):
+        results = [entry.result for entry in some]
+        if any(one.comment or (is_manual(one) and one.criterion.answer) for one in results):
+            for entry in some:
+                _show_entry(entry, report, page, _brief_blocks(entry))
+            continue
+        names = enumerated([printable(entry.id) for entry in some], _MAX_NAMES)
+        points = worth(result.criterion for result in results).short
+        page.item("pending", (names, "bold"), f" ({points}): {reason}")
+
+
+def _show_groups(report: Report, page: Page) -> None:
+    """Add the points of each group that lost some, or of all groups if none did.
+
+    Groups of which nothing is known yet are listed elsewhere.
+    """
+    known = [
+        group for group in groups(report) if not all(result.is_open for result in group.results)
+    ]
+    kinds = alike(known, lambda group: group.status)
+    if kinds:
+        page.leave_row()
+    for status, some in [kind for kind in kinds if kind[0] != "passed"] or kinds:
+        page.item(status, ", ".join(f"{printable(group.title)} {group.points}" for group in some))
+
+
+def _show_files(report: Report, page: Page) -> None:
+    """Add the first problems that no criterion has reported, and the first of the files that were
+    not graded.
+    """
+    problems = content.other_problems(report)
+    listed = [found for found in problems if found.severity != "note"]
+    if listed:
+        page.leave_row()
+    for found in listed[:_MAX_PROBLEMS]:
+        where = f"{printable(found.location.path.rpartition('/')[2])}:{found.location.line}"
+        text = Text.assemble(
+            (f"{found.code} {found.severity} ", LOOKS[found.severity]), (where, "dim")
+        )
+        page.line(text.append(f": {printable(found.message)}"))
+    rest = len(problems) - len(listed[:_MAX_PROBLEMS])
+    if rest:
+        words = counted(rest, "more problem" if listed else "note")
+        page.line(f"{words}: --verbose shows {'it' if rest == 1 else 'them'}", "dim")
+    others, ignored = (
+        [file.path for file in report.submission.unused_candidates],
+        report.submission.ignored,
+    )
+    if others:
+        page.line(
+            printable(f"Not graded: {enumerated(others, _MAX_FILES)} (--verbose says why)"), "dim"
+        )
+    if ignored:
+        more = f" (and {len(ignored) - 1} more: --verbose lists them)" if len(ignored) > 1 else ""
+        page.line(printable(f"Ignored: {ignored[0]}{more}"), "dim")
+
+
+def _show_end(report: Report, page: Page) -> None:
+    """Add the next command and the score."""
+    command = content.next_command(report)
+    for line in (f"Next: {command}" if command else "", content.bonus_line(report)):
+        if line:
+            page.line(line)
+    counting = report.counting
+    is_full = counting is not None and counting + report.open_points >= report.max_score
+    score = content.score_text(report).replace(" / ", "/").removesuffix(" points")
+    parts = (
+        (score, "bold green" if is_full else "bold"),
+        "  ",
+        (printable(report.rubric.title), "bold"),
+    )
+    page.inset(Text.assemble(*parts), indent=0)
+
+
+def _show_everything(report: Report, found: ReportSections, page: Page) -> None:
+    """Add a report, without its last lines."""
+    for line in content.head(report):
+        page.line(line.text, LOOKS[line.role])
+    for section in found.sections:
+        _show_section(section, report, page)
+    _show_parts(report, page)
+    for section in content.closing(report):
+        _show_section(section, report, page)
+    page.leave_row()
+    if report.submission.has_urdf:
+        page.line("grader inspect shows the whole robot.", "dim")
+
+
+def _show_section(section: Section, report: Report, page: Page) -> None:
+    page.title(section.title)
+    for number, entry in enumerate(section.entries):
+        if number and is_failure(entry.result):
+            page.leave_row()
+        _show_entry(entry, report, page, entry.blocks, is_whole=True)
+    for line in section.lines:
+        page.inset(
+            line.text, LOOKS[line.role], 2 * INDENT if line.role in ("found", "missing") else INDENT
+        )
+
+
+def _show_parts(report: Report, page: Page) -> None:
+    """Add each part with its groups and all their criteria."""
+    for part, of_part in groupby(groups(report), key=lambda group: group.part):
+        found, title = list(of_part), report.rubric.part(part).title
+        if len(report.parts) > 1:
+            points = earned_text(*(result for group in found for result in group.results))
+            page.title(f"{printable(title)}  {points}", "bold underline")
+        for group in found:
+            if len(found) > 1 or group.title != title:
+                page.title(
+                    Text.assemble((printable(group.title), "bold"), (f"  {group.points}", "dim"))
+                )
+            for result in group.results:
+                start = Text.assemble(
+                    "  ", page.mark(status_of(result)), f" {earned_text(result):<5} "
+                )
+                page.inset(_criterion_row(result), indent=len(start), head=start)
+
+
+def _criterion_row(result: Result) -> Text:
+    """Return a criterion in a line: its title if it passed, else its name, because a title would
+    read as a fact.
+    """
+    status = status_of(result)
+    if status == "passed":
+        return Text(printable(result.criterion.title))
+    is_consequence = status == "skipped" and result.because is not None
+    reason = f"  skipped because {printable(result.because or '')} failed" if is_consequence else ""
+    return Text.assemble(printable(result.criterion.id), (reason, "dim"))

@@ -1,0 +1,1 @@
+"""What a build of a package installs: package.xml, setup.py and CMakeLists.txt."""

@@ -1,0 +1,521 @@
+"""The targets and the installed files of a CMakeLists.txt, and what stops its build."""
+
+import posixpath
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from fnmatch import translate
+from itertools import pairwise
+
+from grader.base.names import did_you_mean
+from grader.base.source import Source
+from grader.files.limits import ignored_part
+from grader.ros.build.cmake.cmake_values import ROOT, Text, Values, known_words
+from grader.ros.build.cmake.language import Command
+from grader.ros.build.file_search import EmptyGlob, PackageListing
+from grader.ros.build.installation import Installation, InstalledFile, InstallError
+from grader.ros.build.places import PREFIX
+from grader.ros.python.parse import START, Position
+from grader.ros.python.values import Undetermined, Unknown
+
+_MANIFEST = "package.xml"
+_OF_INTERFACES = frozenset(
+    {
+        "DEPENDENCIES",
+        "LIBRARY_NAME",
+        "SKIP_INSTALL",
+        "ADD_LINTER_TESTS",
+        "SKIP_GROUP_MEMBERSHIP_CHECK",
+    }
+)
+_OF_PYTHON = frozenset(
+    {"PACKAGE_DIR", "SETUP_CFG", "DESTINATION", "SCRIPTS_DESTINATION", "VERSION", "SKIP_COMPILE"}
+)
+_ARTIFACTS = frozenset(
+    {"ARCHIVE", "LIBRARY", "RUNTIME", "INCLUDES", "PUBLIC_HEADER", "PRIVATE_HEADER"}
+)
+_Options = Mapping[str, list[str]]
+
+
+class Build:
+    """What a build makes and installs, as far as the file was evaluated."""
+
+    def __init__(self, listing: PackageListing, values: Values, name: str) -> None:
+        """`name` is the one in package.xml."""
+        self.listing, self.values, self.name = listing, values, name
+        self.targets: dict[str, str] = {}  # executable, library, interfaces or unknown
+        self.copies: dict[str, InstalledFile] = {}  # by the path below the prefix
+        self.programs: set[str] = set()  # paths below the prefix
+        self.scripts: set[str] = set()  # likewise, of files
+        self.modules: list[str] = []  # Python packages
+        self.stops: list[InstallError] = []
+        self.unknown: list[Unknown] = []
+        self.doubts: list[Unknown] = []
+        self.last = START
+        self._package_at: Position | None = None  # where ament_package() is called
+        self._automatic: list[str] = []  # targets that ament_auto_package() installs
+
+    def result(self, source: Source) -> Installation:
+        """Return what is known at the end."""
+        if self._package_at is None and not self.doubts:
+            self.stop(
+                "CMakeLists.txt does not call ament_package(), so ROS 2 does not find the package",
+                self.last,
+            )
+        project = self.values.variables.get("PROJECT_NAME")
+        return Installation(
+            source,
+            name=project if isinstance(project, str) else None,
+            copies=tuple(self.copies.values()),
+            programs=tuple(sorted(self.programs)),
+            scripts=tuple(sorted(self.scripts)),
+            stops=tuple(self.stops),
+            empty=tuple(self.listing.empty),
+            unknown=tuple(dict.fromkeys([*self.doubts, *self.unknown])),
+            doubt=self.doubts[0] if self.doubts else None,
+            called_at=self._package_at or self.last,
+            packages=tuple(self.modules),
+        )
+
+    def give_up(self, reason: str, at: Position) -> None:
+        """Note that something is not evaluated that may set variables, install files or stop the
+        build.
+        """
+        self.doubts.append(self.values.uncertain or Unknown(reason, at))
+        self.values.is_opaque = True
+
+    def stop(self, reason: str, at: Position, path: str = "", hint: str = "") -> None:
+        """Note an error that stops the build."""
+        if self.values.uncertain is not None:
+            self.doubts.append(self.values.uncertain)
+        else:
+            self.stops.append(InstallError(path, reason, at, hint, by="install()"))
+
+    # --- Files
+    # ----------------------------------------------------------------------
+
+    def inside(self, text: str) -> str | None:
+        """Return a path as one in the package, without dots; None for one outside of it."""
+        path = posixpath.normpath("" if text == ROOT else text.removeprefix(f"{ROOT}/"))
+        if path == ".":
+            return ""
+        return None if path.startswith(("/", "..")) else path
+
+    def _has(self, path: str) -> bool | None:
+        """Return whether the package has a file or folder at a path; None where that is not
+        known.
+        """
+        try:
+            is_there = not path or self.listing.real(path) is not None
+        except Undetermined:
+            return None
+        return None if not is_there and ignored_part(path) else is_there
+
+    def exists(self, text: str) -> bool | None:
+        """Return whether a file or folder of the package exists; None where that is not known."""
+        path = self.inside(text)
+        return None if path is None else self._has(path)
+
+    def searched(self, texts: Sequence[Text], at: Position, *, recursive: bool) -> Text:
+        """Return the list that file(GLOB) makes."""
+        start = f"{ROOT}/"
+        words = [text for text in texts if text not in ("CONFIGURE_DEPENDS", "FOLLOW_SYMLINKS")]
+        if words[:1] == ["RELATIVE"]:
+            if words[1:2] != [ROOT]:
+                return Unknown("a search relative to another folder is not evaluated", at)
+            words, start = words[2:], ""
+        found: set[str] = set()
+        for word in words:
+            pattern = self.inside(word) if isinstance(word, str) else None
+            if pattern is None or words[0] == "LIST_DIRECTORIES":
+                return Unknown("a search is not evaluated", at)
+            paths = self._matching(pattern, recursive=recursive)
+            if not paths:
+                self.listing.empty[EmptyGlob(pattern, at)] = None
+            found.update(paths)
+        return ";".join(f"{start}{path}" for path in sorted(found))
+
+    def _matching(self, pattern: str, *, recursive: bool) -> list[str]:
+        """Return the files that a pattern of CMake matches; without `recursive` the folders,
+        too.
+        """
+        if not recursive:
+            with suppress(Undetermined):
+                return self.listing.glob(pattern)
+            return []
+        folder, _, name = pattern.rpartition("/")
+        matches = re.compile(translate(name)).match
+        below = (
+            path for path in self.listing.files if path.startswith(f"{folder}/" if folder else "")
+        )
+        return [path for path in below if matches(posixpath.basename(path))]
+
+    # --- Targets
+    # ----------------------------------------------------------------------
+
+    def add_target(self, command: Command) -> None:
+        """Add an executable or a library, whose sources must exist."""
+        texts = self.values.texts(command.arguments)
+        name = (texts or [""])[0]
+        if isinstance(name, Unknown):
+            self.give_up("the name of a target is not known", command.at)
+            return
+        kind = "executable" if command.name.endswith("executable") else "library"
+        self.targets[name] = kind if self.values.uncertain is None else "unknown"
+        if command.name.startswith("ament_auto"):
+            self._automatic.append(name)
+        words = [text for text in texts[1:] if isinstance(text, str)]
+        if {"IMPORTED", "ALIAS", "DIRECTORY"}.isdisjoint(words):
+            self._require_sources(words, command)
+
+    def _require_sources(self, sources: Sequence[str], command: Command) -> None:
+        for source in sources:
+            path = self.inside(source) or ""
+            is_file = source not in known_words("target_keywords") and posixpath.splitext(path)[1]
+            if is_file and self._has(path) is False:
+                self._stop_missing(command, path)
+
+    def _stop_missing(self, command: Command, path: str) -> None:
+        hint = did_you_mean(path, self.listing.files)
+        self.stop(
+            f"{command.name}() lists {path!r}, but there is no such file", command.at, hint=hint
+        )
+
+    def use_target(self, command: Command) -> None:
+        """Note a target that is not defined, and a package that was not found."""
+        name, *rest = self.values.texts(command.arguments) or [""]
+        if isinstance(name, Unknown) or self.values.is_opaque:
+            return
+        if name not in self.targets:
+            self._stop_target(command, name)
+        for text in rest if command.name == "ament_target_dependencies" else ():
+            if isinstance(text, str) and text.islower() and text not in self.values.packages:
+                self.stop(
+                    f"{command.name}() names the package {text!r}, without find_package({text})",
+                    command.at,
+                )
+
+    def _stop_target(self, command: Command, name: str) -> None:
+        hint = did_you_mean(name, self.targets)
+        self.stop(
+            f"{command.name}() names the target {name!r}, which is not defined",
+            command.at,
+            hint=hint,
+        )
+
+    def register_component(self, command: Command) -> None:
+        """Install the program that rclcpp_components_register_node() makes, which its EXECUTABLE
+        names.
+        """
+        texts = self.values.texts(command.arguments)
+        after = dict(pairwise(texts))
+        name = after.get("EXECUTABLE", "")
+        if isinstance(name, Unknown):
+            self.give_up("the name of a program is not known", command.at)
+        elif name and self.values.uncertain is None:
+            self.programs.add(f"lib/{self._project()}/{name}")
+        elif name:
+            self._leave_open(Unknown(f"the program {name} is not known", command.at))
+
+    def generate_interfaces(self, command: Command) -> None:
+        """Install the message, service and action files of a package."""
+        texts = self.values.texts(command.arguments)
+        texts = texts[
+            : next(
+                (index for index, text in enumerate(texts) if text in _OF_INTERFACES), len(texts)
+            )
+        ]
+        known = [text for text in texts if isinstance(text, str)]
+        if not texts or len(known) < len(texts):
+            self.give_up("the arguments of rosidl_generate_interfaces() are not known", command.at)
+            return
+        name, *files = known
+        self.targets[name] = "interfaces"
+        for text in files:
+            path = self.inside(text)
+            if path is None:
+                self.give_up(f"{text} is not in the package", command.at)
+            elif self._has(path) is False:
+                self._stop_missing(command, path)
+            else:
+                self._copy(path, f"{self._share()}/{path}", command.at)
+
+    # --- Installed files
+    # ----------------------------------------------------------------------
+
+    def package(self, command: Command) -> None:
+        """End the package, as ament_package() does; the name of the project must be that in
+        package.xml.
+        """
+        if self.values.uncertain is not None:
+            self.give_up("it is not known whether ament_package() is called", command.at)
+            return
+        self._package_at = command.at
+        project = self.values.variables.get("PROJECT_NAME", "")
+        if isinstance(project, str) and self.name and project != self.name:
+            self.stop(
+                f"project() names the package {project!r}, package.xml names it {self.name!r}",
+                command.at,
+            )
+        if _MANIFEST in self.listing.files:
+            self._copy(_MANIFEST, f"{self._share()}/{_MANIFEST}", command.at)
+
+    def auto_package(self, command: Command) -> None:
+        """Install the targets of ament_cmake_auto and whole folders, and end the package."""
+        texts = self.values.known(command)
+        if texts is None:
+            self.give_up("the arguments of ament_auto_package() are not known", command.at)
+            return
+        executables = (name for name in self._automatic if self.targets[name] == "executable")
+        self.programs.update(f"lib/{self._project()}/{name}" for name in executables)
+        for keyword, folders in _groups(texts, frozenset({"INSTALL_TO_SHARE", "INSTALL_TO_PATH"}))[
+            1:
+        ]:
+            target = self._share() if keyword == "INSTALL_TO_SHARE" else "bin"
+            for folder in folders:
+                self._copy_folder(folder, target, command, {})
+        self.package(command)
+
+    def python_package(self, command: Command) -> None:
+        """Install a Python package, whose folder must have an __init__.py."""
+        texts = self.values.known(command)
+        if not texts:
+            self.give_up(
+                "the arguments of ament_python_install_package() are not known", command.at
+            )
+            return
+        options = dict(_groups(texts, _OF_PYTHON))
+        folder = self.inside((options.get("PACKAGE_DIR") or texts)[0])
+        self.modules.append(texts[0])
+        if "SCRIPTS_DESTINATION" in options or "setup.cfg" in self.listing.files:
+            self.unknown.append(
+                Unknown("the programs of a setup.cfg are not evaluated", command.at)
+            )
+        if folder is not None and self._has(f"{folder}/__init__.py") is False:
+            what = "has no __init__.py" if self._has(folder) else "does not exist"
+            self.stop(
+                f"ament_python_install_package() needs the folder {folder!r}, which {what}",
+                command.at,
+            )
+
+    def plugin_description(self, command: Command) -> None:
+        """Install the description of plugins in the package's share folder."""
+        texts = self.values.known(command) or []
+        self._copy_files(texts[1:2], self._share(), command, {})
+
+    def install(self, command: Command) -> None:
+        """Install files, folders, programs or targets."""
+        texts = self.values.texts(command.arguments)
+        kind = (texts or [""])[0]
+        words = [text for text in texts[1:] if isinstance(text, str)]
+        unknown = next((text for text in texts if isinstance(text, Unknown)), None)
+        if kind in ("EXPORT", "RUNTIME_DEPENDENCY_SET"):
+            return
+        if not texts:
+            self.stop("install() has no arguments", command.at)
+            return
+        if unknown is not None or kind not in ("DIRECTORY", "FILES", "PROGRAMS", "TARGETS"):
+            self._leave_open(
+                unknown or Unknown(f"install({kind} ...) is not evaluated", command.at)
+            )
+            return
+        groups = _groups(words, known_words("install_keywords"))
+        if kind == "TARGETS":
+            self._install_targets(groups, command)
+            return
+        options = dict(groups[1:])
+        if not groups[0][1]:
+            return  # CMake does not look at the rest then
+        target, before = self._destination(options, command), set(self.copies)
+        for text in groups[0][1] if target is not None and kind == "DIRECTORY" else ():
+            self._copy_folder(text, target or "", command, options, _Patterns(groups))
+        if target is not None and kind != "DIRECTORY":
+            self._copy_files(groups[0][1], target, command, options)
+        if kind == "PROGRAMS" or any("PERMISSIONS" in key for key in options):
+            self.scripts.update(self.copies.keys() - before)
+
+    def _leave_open(self, reason: Unknown) -> None:
+        """Note that more may be installed."""
+        self.unknown.append(self.values.uncertain or reason)
+
+    def _destination(self, options: _Options, command: Command) -> str | None:
+        """Return the path below the prefix where files go; None where it is not known, or there is
+        none.
+        """
+        values = options.get("DESTINATION", [])
+        if len(values) != 1:
+            if "TYPE" in options:
+                self._leave_open(Unknown("install(... TYPE ...) is not evaluated", command.at))
+            else:
+                self.stop("install() has no DESTINATION", command.at)
+            return None
+        target = posixpath.normpath(values[0].removeprefix(f"{PREFIX}/"))
+        if target.startswith(("/", "..")):
+            self._leave_open(Unknown(f"{target} is outside of the prefix", command.at))
+            return None
+        return target
+
+    def _install_targets(self, groups: Sequence[tuple[str, list[str]]], command: Command) -> None:
+        """Install executables; where libraries go is not needed."""
+        kind, places = "", dict[str, str]()
+        for keyword, values in groups[1:]:
+            if keyword in _ARTIFACTS:
+                kind = keyword
+            elif keyword == "DESTINATION" and values:
+                places.setdefault(kind, posixpath.normpath(values[0].removeprefix(f"{PREFIX}/")))
+        target = places.get("RUNTIME") or places.get("") or "bin"
+        for name in groups[0][1]:
+            known = self.targets.get(name)
+            if known is None and not self.values.is_opaque:
+                self._stop_target(command, name)
+            elif known in (None, "unknown") or self.values.uncertain is not None:
+                self._leave_open(Unknown(f"the target {name} is not known", command.at))
+            elif known == "executable":
+                self.programs.add(f"{target}/{name}")
+
+    def _copy_files(
+        self, texts: Sequence[str], target: str, command: Command, options: _Options
+    ) -> None:
+        names = options.get("RENAME", [])
+        if names and len(texts) > 1:
+            self.stop("install() gives several files one name with RENAME", command.at)
+            return
+        for text in texts:
+            path = self.inside(text)
+            state = self._has(path) if path is not None else None
+            if path in self.listing.files:
+                name = names[0] if names else posixpath.basename(path or "")
+                self._copy(path or "", posixpath.normpath(posixpath.join(target, name)), command.at)
+            elif state is None:
+                self._leave_open(Unknown(f"{text} is not a file of the package", command.at))
+            elif state or "OPTIONAL" not in options:
+                reason = (
+                    "it is a folder: write install(DIRECTORY ...)"
+                    if state
+                    else "there is no such file"
+                )
+                hint = "" if state else did_you_mean(path or "", self.listing.files)
+                self.stop(reason, command.at, path or text, hint)
+
+    def _copy_folder(
+        self,
+        text: str,
+        target: str,
+        command: Command,
+        options: _Options,
+        patterns: "_Patterns | None" = None,
+    ) -> None:
+        """Install the files of a folder; with a slash at its end without its own name."""
+        path = self.inside(text)
+        state = self._has(path) if path is not None else None
+        if (
+            path is None
+            or state is None
+            or (patterns is not None and patterns.has_regex)
+            or text == "."
+        ):
+            self._leave_open(
+                Unknown(f"which files of {text} are installed is not known", command.at)
+            )
+        elif path in self.listing.files:
+            self.stop("it is a file: write install(FILES ...)", command.at, path)
+        elif not state and (patterns is not None and patterns.is_limited):
+            pass  # CMake takes it for a file that no pattern matches
+        elif not state and "OPTIONAL" not in options:
+            self.stop(
+                "there is no such folder",
+                command.at,
+                path,
+                did_you_mean(path, self.listing.folders),
+            )
+        else:
+            above = (
+                target if text.endswith("/") else posixpath.join(target, posixpath.basename(path))
+            )
+            for file in self._below(path, patterns):
+                self._copy(
+                    posixpath.join(path, file),
+                    posixpath.normpath(posixpath.join(above, file)),
+                    command.at,
+                )
+
+    def _below(self, folder: str, patterns: "_Patterns | None") -> Iterator[str]:
+        """Yield the paths of the files below a folder, as seen from it."""
+        start = f"{folder}/" if folder else ""
+        for file in self.listing.files:
+            self.listing.budget.charge(1)
+            if file.startswith(start) and (
+                patterns is None or patterns.include(folder, file[len(start) :])
+            ):
+                yield file[len(start) :]
+
+    def _copy(self, path: str, target: str, at: Position) -> None:
+        if self.values.uncertain is not None:
+            self.unknown.append(self.values.uncertain)
+        else:
+            self.copies[target] = InstalledFile(path, target, at)
+
+    def _project(self) -> str:
+        name = self.values.variables.get("PROJECT_NAME", "")
+        return name if isinstance(name, str) else self.name
+
+    def _share(self) -> str:
+        return f"share/{self._project()}"
+
+
+class _Patterns:
+    """The options PATTERN of install(DIRECTORY ...): what they match is excluded, or with
+    FILES_MATCHING included.
+    """
+
+    def __init__(self, groups: Sequence[tuple[str, list[str]]]) -> None:
+        keywords = [keyword for keyword, _ in groups]
+        self.has_regex = "REGEX" in keywords
+        self.is_limited = "FILES_MATCHING" in keywords
+        self._excluded: list[re.Pattern[str]] = []
+        self._included: list[re.Pattern[str]] = []
+        for (keyword, values), after in zip(groups, [*keywords[1:], ""], strict=True):
+            if keyword == "PATTERN" and values:
+                glob = translate(values[0]).replace(".*", "[^/]*")
+                (self._excluded if after == "EXCLUDE" else self._included).append(
+                    re.compile(f"(?:.*/)?{glob}")
+                )
+
+    def include(self, folder: str, path: str) -> bool:
+        """Return whether a file at a path below an installed folder is installed; the folder itself
+        may be excluded.
+        """
+        parts = f"{folder}/{path}".split("/")
+        above = len(parts) - path.count("/") - 1
+        reached = ["/".join(parts[:count]) for count in range(above, len(parts) + 1)]
+        if any(pattern.match(end) for pattern in self._excluded for end in reached):
+            return False
+        return not self.is_limited or any(pattern.match(reached[-1]) for pattern in self._included)
+
+
+def _groups(texts: Sequence[str], keywords: frozenset[str]) -> list[tuple[str, list[str]]]:
+    """Return arguments by the keyword before them; the first ones have none."""
+    groups: list[tuple[str, list[str]]] = [("", [])]
+    for text in texts:
+        if text in keywords:
+            groups.append((text, []))
+        else:
+            groups[-1][1].append(text)
+    return groups
+
+
+BUILD_COMMANDS: dict[str, Callable[[Build, Command], None]] = {
+    **dict.fromkeys(
+        ("add_executable", "add_library", "ament_auto_add_executable", "ament_auto_add_library"),
+        Build.add_target,
+    ),
+    **dict.fromkeys(("target_link_libraries", "ament_target_dependencies"), Build.use_target),
+    "generate_parameter_library": Build.add_target,  # its YAML file is a source
+    "rclcpp_components_register_node": Build.register_component,
+    "rosidl_generate_interfaces": Build.generate_interfaces,
+    "ament_package": Build.package,
+    "ament_auto_package": Build.auto_package,
+    "ament_python_install_package": Build.python_package,
+    "pluginlib_export_plugin_description_file": Build.plugin_description,
+    "install": Build.install,
+}

@@ -1,0 +1,281 @@
+"""Evaluates a package's CMakeLists.txt for what a build installs.
+
+What CMake and ament_cmake certainly do is known; modules, and commands that are not known, leave
+undecided what they could touch.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+
+from grader.base.source import Source
+from grader.files.tree import Tree
+from grader.ros.build.cmake.cmake_build import BUILD_COMMANDS, Build
+from grader.ros.build.cmake.cmake_values import (
+    Text,
+    Values,
+    joined,
+    known_table,
+    known_words,
+    split_list,
+)
+from grader.ros.build.cmake.conditions import Condition
+from grader.ros.build.cmake.language import CMakeFault, Command, parse_cmake
+from grader.ros.build.file_search import PackageListing
+from grader.ros.build.installation import Installation
+from grader.ros.python.budget import Budget, OutOfBudget
+from grader.ros.python.parse import START, Position, SyntaxFault, location_in
+from grader.ros.python.values import Unknown
+
+
+class _Returns(Exception):
+    """The file is evaluated no further."""
+
+
+def read_cmake(
+    text: str, path: str, tree: Tree, name: str, budget: Budget | None = None
+) -> Installation:
+    """Evaluate the CMakeLists.txt of a package with these files, which package.xml gives this
+    name. Never raises.
+    """
+    source = Source(path, text)
+    try:
+        commands = parse_cmake(source)
+    except CMakeFault as fault:
+        return Installation(
+            source, SyntaxFault(source, str(fault), location_in(source, fault.at), fault.sure)
+        )
+    listing = PackageListing(tree, budget)
+    build = Build(listing, Values(listing.budget), name)
+    try:
+        with suppress(_Returns):
+            _Evaluation(build).run(commands)
+    except OutOfBudget:
+        build.give_up("the file is too long to evaluate", START)
+    return build.result(source)
+
+
+class _Evaluation:
+    """Runs the commands of a file."""
+
+    def __init__(self, build: Build) -> None:
+        self.build, self.values = build, build.values
+        self.own: dict[str, Command] = {}  # functions and macros
+        self._for_outside: dict[str, Text] = {}  # what the current function sets with PARENT_SCOPE
+
+    def run(self, commands: Sequence[Command]) -> None:
+        """Evaluate commands in their order."""
+        for command in commands:
+            self.values.budget.charge(1 + len(command.arguments))
+            self.build.last = command.at
+            if command.name in _COMMANDS:
+                _COMMANDS[command.name](self, command)
+            elif command.name in BUILD_COMMANDS:
+                BUILD_COMMANDS[command.name](self.build, command)
+            elif command.name in self.own:
+                self._call(command)
+            elif command.name in known_words("harmless"):
+                self._forget_outputs(command)
+            else:
+                self.build.give_up(f"{command.name}() is not evaluated", command.at)
+
+    def _forget_outputs(self, command: Command) -> None:
+        """Forget the variables that a harmless command sets; message() may stop."""
+        texts = self.values.texts(command.arguments)
+        if command.name == "message" and texts[:1] in (["FATAL_ERROR"], ["SEND_ERROR"]):
+            words = " ".join(text for text in texts[1:] if isinstance(text, str))
+            self.build.stop(f"CMakeLists.txt stops with the message {words!r}", command.at)
+        self.values.is_opaque |= command.name in known_words("opaque")
+        index = int(known_table("outputs").get(command.name, len(texts)))
+        names = texts if index < 0 else texts[index : index + 1]
+        self.values.forget(names, f"the result of {command.name}() is not evaluated", command.at)
+
+    # --- Control flow
+    # ----------------------------------------------------------------------
+
+    def _maybe(self, commands: Sequence[Command], reason: Unknown) -> None:
+        """Evaluate commands that may run, or may run several times."""
+        before, self.values.uncertain = self.values.uncertain, self.values.uncertain or reason
+        try:
+            self.run(commands)
+        finally:
+            self.values.uncertain = before
+
+    def if_(self, command: Command) -> None:
+        """Evaluate the branches that may run, up to the first whose condition certainly holds."""
+        doubt: Unknown | None = None
+        for branch in (command, *command.others):
+            holds = True if branch.name == "else" else self._holds(branch)
+            if holds is None:
+                doubt = doubt or Unknown(
+                    f"the condition of {branch.name}() is not known", branch.at
+                )
+            if holds is not False and doubt is not None:
+                self._maybe(branch.body, doubt)
+            elif holds:
+                self.run(branch.body)
+            if holds:
+                return
+
+    def _holds(self, command: Command) -> bool | None:
+        tokens: list[tuple[Text, bool]] = []
+        for argument in command.arguments:
+            is_plain = argument.kind in ("unquoted", "paren")
+            tokens += [(text, is_plain) for text in self.values.expanded(argument)]
+        return Condition(tokens, self.values, self.build.exists, command.at).holds()
+
+    def foreach(self, command: Command) -> None:
+        """Evaluate a loop over known items, and its body once for each that is not known."""
+        texts = self.values.texts(command.arguments)
+        name, items = (texts or [""])[0], texts[1:]
+        if items[:1] == ["IN"]:
+            items = [*self._items(items[1:], command.at)]
+        elif items[:1] == ["RANGE"]:
+            items = [Unknown("a range is not evaluated", command.at)]
+        for item in items:
+            doubt = next((text for text in (name, item) if isinstance(text, Unknown)), None)
+            self.values.assign(str(name), item)
+            if doubt is not None:
+                self._maybe(command.body, doubt)
+            else:
+                self.run(command.body)
+
+    def _items(self, texts: Sequence[Text], at: Position) -> Iterator[Text]:
+        """Yield the items of foreach(... IN LISTS lists ITEMS items)."""
+        is_list = False
+        for text in texts:
+            if text in ("LISTS", "ITEMS"):
+                is_list = text == "LISTS"
+            elif is_list and isinstance(text, str):
+                value = self.values.lookup(text, at)
+                if isinstance(value, Unknown):
+                    yield value
+                else:
+                    yield from split_list(value)
+            else:
+                yield text
+
+    def repeat(self, command: Command) -> None:
+        """Evaluate the body of while() or block(), of which more is not known."""
+        self._maybe(command.body, Unknown(f"{command.name}() is not evaluated", command.at))
+
+    def define(self, command: Command) -> None:
+        """Remember a function or macro."""
+        self.own[str(self.values.first(command)).lower()] = command
+
+    def _call(self, command: Command) -> None:
+        """Evaluate the body of an own function or macro; the variables of a function are its
+        own.
+        """
+        definition, values = self.own.pop(command.name), self.values  # so that none calls itself
+        texts, outside = values.texts(command.arguments), dict(values.variables)
+        names = [str(text) for text in values.texts(definition.arguments[1:])]
+        values.variables |= dict(zip(names, texts, strict=False))
+        values.variables |= {
+            "ARGV": joined(texts, ";"),
+            "ARGN": joined(texts[len(names) :], ";"),
+            "ARGC": str(len(texts)),
+        }
+        with suppress(_Returns):
+            self.run(definition.body)
+        if definition.name == "function":
+            values.variables = {**outside, **self._for_outside}
+        self._for_outside = {}
+        self.own[command.name] = definition
+
+    def return_(self, command: Command) -> None:
+        """End the file, or note that it may end here."""
+        if self.values.uncertain is None:
+            raise _Returns
+        self.build.give_up("return() may end the file", command.at)
+
+    # --- Variables
+    # ----------------------------------------------------------------------
+
+    def project(self, command: Command) -> None:
+        """Set the name of the project."""
+        name = self.values.first(command)
+        self.values.assign("PROJECT_NAME", name)
+        self.values.assign("CMAKE_PROJECT_NAME", name)
+        self.values.packages.add(str(name).lower())
+
+    def set_(self, command: Command) -> None:
+        """Set or unset a variable."""
+        name, *values = self.values.texts(command.arguments) or [""]
+        if isinstance(name, Unknown):
+            self.values.is_opaque = True
+            return
+        end = next(
+            (index for index, value in enumerate(values) if value in ("CACHE", "PARENT_SCOPE")),
+            len(values),
+        )
+        value = joined(values[:end] if command.name == "set" else (), ";")
+        if values[end:] == ["PARENT_SCOPE"]:
+            self._for_outside[name] = self.values.uncertain or value
+        else:
+            self.values.assign(name, value)
+
+    def option(self, command: Command) -> None:
+        """Set an option to its default, which colcon does not change."""
+        name, *rest = self.values.texts(command.arguments) or [""]
+        if isinstance(name, str) and name not in self.values.variables:
+            self.values.assign(name, rest[1] if len(rest) > 1 else "OFF")
+
+    def list_(self, command: Command) -> None:
+        """Append to a list; the results of other operations are not known."""
+        match self.values.texts(command.arguments):
+            case ["APPEND", str() as name, *items]:
+                old = self.values.variables.get(name, "")
+                self.values.assign(name, joined([*([old] if old else []), *items], ";"))
+            case texts:
+                self.values.forget(texts[1:], "this list() is not evaluated", command.at)
+
+    def include(self, command: Command) -> None:
+        """Set what a well-known module does; another one may do anything."""
+        name = self.values.first(command)
+        if name == "GNUInstallDirs":
+            self.values.variables |= {
+                key: str(value) for key, value in known_table("install_dirs").items()
+            }
+        elif name not in known_words("modules"):
+            self.build.give_up("include() is not evaluated", command.at)
+
+    def find_package(self, command: Command) -> None:
+        """Remember a package, whose variables are not known."""
+        name = self.values.first(command)
+        if isinstance(name, Unknown):
+            self.values.is_opaque = True
+            return
+        self.values.packages.add(name.lower())
+        self.values.assign(f"{name}_FOUND", "1")
+
+    def file_(self, command: Command) -> None:
+        """Search files; the results of other operations are not known."""
+        texts = self.values.texts(command.arguments)
+        match texts:
+            case ["GLOB" | "GLOB_RECURSE" as word, str() as name, *patterns]:
+                found = self.build.searched(patterns, command.at, recursive=word != "GLOB")
+                self.values.assign(name, found)
+            case _:
+                names = [
+                    text for text in texts[1:] if isinstance(text, str) and text.isidentifier()
+                ]
+                self.values.forget(names, "the result of file() is not evaluated", command.at)
+
+
+_COMMANDS: dict[str, Callable[[_Evaluation, Command], None]] = {
+    "if": _Evaluation.if_,
+    "foreach": _Evaluation.foreach,
+    "while": _Evaluation.repeat,
+    "block": _Evaluation.repeat,
+    "function": _Evaluation.define,
+    "macro": _Evaluation.define,
+    "return": _Evaluation.return_,
+    "project": _Evaluation.project,
+    "set": _Evaluation.set_,
+    "unset": _Evaluation.set_,
+    "option": _Evaluation.option,
+    "list": _Evaluation.list_,
+    "include": _Evaluation.include,
+    "find_package": _Evaluation.find_package,
+    "file": _Evaluation.file_,
+}

@@ -1,0 +1,145 @@
+"""The variables of a CMakeLists.txt, and the texts that its arguments stand for."""
+
+import re
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from pathlib import Path
+
+from grader.ros.build.cmake.language import Argument, Command
+from grader.ros.build.places import PREFIX
+from grader.ros.python.budget import Budget
+from grader.ros.python.library import PACKAGE_FOLDER
+from grader.ros.python.parse import Position
+from grader.ros.python.values import Unknown
+
+Text = str | Unknown
+ROOT, _BUILD = f"/{PACKAGE_FOLDER}", "/<build>"  # the folders of the package, and of what is built
+_FOLDERS = {
+    **dict.fromkeys(("CMAKE_SOURCE_DIR", "CMAKE_CURRENT_SOURCE_DIR", "PROJECT_SOURCE_DIR"), ROOT),
+    "CMAKE_CURRENT_LIST_DIR": ROOT,
+    **dict.fromkeys(("CMAKE_BINARY_DIR", "CMAKE_CURRENT_BINARY_DIR", "PROJECT_BINARY_DIR"), _BUILD),
+    "CMAKE_INSTALL_PREFIX": PREFIX,
+}
+_PIECES = re.compile(r"\\(.)|(\$\{)|(\})|\$(?:ENV|CACHE)\{[^}]*\}?|\$<|[^\\$}]+|.", re.DOTALL)
+_ESCAPES = {"n": "\n", "t": "\t", "r": "\r", ";": "\\;"}
+_SEPARATOR = re.compile(r"(?<!\\);")
+_MAX_TEXT = 64 * 1024  # characters of a value
+
+
+@cache
+def known_words(key: str) -> frozenset[str]:
+    """Return the words that are known of CMake, by their key in known.toml."""
+    return frozenset(str(_known()[key]).split())
+
+
+@cache
+def known_table(key: str) -> Mapping[str, str | int]:
+    """Return a table that is known of CMake, by its key in known.toml."""
+    table = _known()[key]
+    assert isinstance(table, dict)
+    return table
+
+
+@cache
+def _known() -> Mapping[str, object]:
+    return tomllib.loads(Path(__file__).with_name("known.toml").read_text("utf-8"))
+
+
+class Values:
+    """The variables of a file while it is evaluated."""
+
+    def __init__(self, budget: Budget) -> None:
+        self.budget = budget
+        self.variables: dict[str, Text] = {
+            name: str(value) for name, value in known_table("variables").items()
+        }
+        self.variables |= _FOLDERS
+        self.packages: set[str] = set()  # that were found, in lower case
+        # why it is not known whether the current command is run
+        self.uncertain: Unknown | None = None
+        self.is_opaque = False  # whether something that is not evaluated may have set any variable
+
+    def texts(self, arguments: Sequence[Argument]) -> list[Text]:
+        """Return what arguments stand for; a list is several texts."""
+        return [text for argument in arguments for text in self.expanded(argument)]
+
+    def known(self, command: Command) -> list[str] | None:
+        """Return what the arguments of a command stand for; None if one is not known."""
+        texts = self.texts(command.arguments)
+        known = [text for text in texts if isinstance(text, str)]
+        return known if len(known) == len(texts) else None
+
+    def first(self, command: Command) -> Text:
+        """Return what the first argument of a command stands for; an empty text without any."""
+        return next(iter(self.texts(command.arguments[:1])), "")
+
+    def expanded(self, argument: Argument) -> list[Text]:
+        """Return what an argument stands for."""
+        if argument.kind in ("bracket", "paren"):
+            return [argument.text]
+        text = self._value(argument.text, argument.at)
+        return (
+            [text]
+            if isinstance(text, Unknown) or argument.kind == "quoted"
+            else [*split_list(text)]
+        )
+
+    def _value(self, text: str, at: Position) -> Text:
+        """Return a text with the values of variables, whose names may be made of variables."""
+        stack: list[list[Text]] = [[]]
+        for piece in _PIECES.finditer(text):
+            escaped, opening, closing = piece.groups()
+            if opening:
+                stack.append([])
+            elif closing and len(stack) > 1:
+                name = joined(stack.pop())
+                stack[-1].append(name if isinstance(name, Unknown) else self.lookup(name, at))
+            elif escaped:
+                stack[-1].append(_ESCAPES.get(escaped, escaped))
+            elif piece[0].startswith("$") and len(piece[0]) > 1:
+                stack[-1].append(Unknown(f"{piece[0]} is not known", at))
+            else:
+                stack[-1].append(piece[0])
+        found = joined(part for parts in stack for part in parts)
+        self.budget.charge(1, len(text) if isinstance(found, Unknown) else len(found))
+        return (
+            Unknown("a value is too long", at)
+            if isinstance(found, str) and len(found) > _MAX_TEXT
+            else found
+        )
+
+    def lookup(self, name: str, at: Position) -> Text:
+        """Return the value of a variable: an empty text if it is certainly not set."""
+        if name in self.variables:
+            return self.variables[name]
+        of_packages = (f"{package}_" for package in self.packages)
+        is_foreign = name.lower().startswith((*known_words("foreign"), *of_packages))
+        return (
+            Unknown(f"the value of {name} is not known", at) if self.is_opaque or is_foreign else ""
+        )
+
+    def assign(self, name: str, value: Text) -> None:
+        """Set a variable; to what is not known if the command may not run."""
+        self.variables[name] = self.uncertain or value
+
+    def forget(self, names: Iterable[Text], reason: str, at: Position) -> None:
+        """Set variables to a value that is not known."""
+        self.variables |= dict.fromkeys(
+            (name for name in names if isinstance(name, str)), Unknown(reason, at)
+        )
+
+
+def split_list(text: str) -> list[str]:
+    """Return the items of a list that are not empty."""
+    return [part.replace("\\;", ";") for part in _SEPARATOR.split(text) if part]
+
+
+def joined(parts: Iterable[Text], between: str = "") -> Text:
+    """Return one text; a part that is not known makes it unknown."""
+    known: list[str] = []
+    for part in parts:
+        if isinstance(part, Unknown):
+            return part
+        known.append(part)
+    return between.join(known)

@@ -1,0 +1,154 @@
+"""The commands of a CMakeLists.txt, with their blocks; the grammar is that of cmake-language(7)."""
+
+import re
+from collections.abc import Iterator
+from typing import Literal, NamedTuple
+
+from grader.base.source import Source
+from grader.ros.python.parse import Position
+
+_MAX_DEPTH = 30  # blocks in each other
+_SKIP = re.compile(r"(?:\s++|#\[(=*)\[.*?\]\1\]|#(?!\[=*\[)[^\n]*+)++", re.DOTALL)
+_NAME = re.compile(r"([A-Za-z_]\w*+)[ \t]*+\(")
+_ARGUMENT = re.compile(
+    r'(?P<paren>[()])|(?P<bracket>\[(=*)\[\n?(.*?)\]\3\])|"(?P<quoted>(?:[^"\\]|\\.)*+)"'
+    r'|(?P<unquoted>(?:[^\s()#"\\]|\\.)(?:[^\s()#"\\]|\\.|"(?:[^"\\]|\\.)*+")*+)',
+    re.DOTALL,
+)
+_ENDS = {
+    "if": "endif",
+    "foreach": "endforeach",
+    "while": "endwhile",
+    "function": "endfunction",
+    "macro": "endmacro",
+    "block": "endblock",
+}
+
+
+class CMakeFault(Exception):
+    """What CMake cannot parse, and where; `sure` is False for what only this reader does not
+    parse.
+    """
+
+    def __init__(self, message: str, at: Position, *, sure: bool = True) -> None:
+        super().__init__(message)
+        self.at, self.sure = at, sure
+
+
+class Argument(NamedTuple):
+    """An argument as it is written, without its quotes or brackets."""
+
+    text: str
+    kind: Literal["paren", "bracket", "quoted", "unquoted"]
+    at: Position
+
+
+class Command(NamedTuple):
+    """A command, with the commands in it if it begins a block; of `if`, `elseif` and `else` are in
+    `others`.
+    """
+
+    name: str  # in lower case
+    arguments: tuple[Argument, ...]
+    at: Position
+    body: tuple["Command", ...] = ()
+    others: tuple["Command", ...] = ()
+
+
+def parse_cmake(source: Source) -> tuple[Command, ...]:
+    """Return the commands of a file. Raises CMakeFault."""
+    commands = [*_commands(source)]
+    found, rest = _block(commands, 0, "", 0)
+    if rest < len(commands):
+        raise CMakeFault(f"{commands[rest].name}() has no beginning", commands[rest].at)
+    return found
+
+
+def _block(
+    commands: list[Command], index: int, end: str, depth: int
+) -> tuple[tuple[Command, ...], int]:
+    """Return the commands up to the end of a block, and the index of that end."""
+    found: list[Command] = []
+    while index < len(commands):
+        command = commands[index]
+        if command.name == end or (end == "endif" and command.name in ("elseif", "else")):
+            break
+        if command.name in _ENDS.values() or command.name in ("elseif", "else"):
+            break
+        if command.name in _ENDS:
+            command, index = _opened(commands, index, depth)
+        found.append(command)
+        index += 1
+    return tuple(found), index
+
+
+def _opened(commands: list[Command], start: int, depth: int) -> tuple[Command, int]:
+    """Return the command that begins a block, with what is in it, and the index of its end. Raises
+    CMakeFault.
+    """
+    first, end = commands[start], _ENDS[commands[start].name]
+    if depth > _MAX_DEPTH:
+        raise CMakeFault("the blocks are too deeply nested to read", first.at, sure=False)
+    body, index = _block(commands, start + 1, end, depth + 1)
+    others: list[Command] = []
+    while index < len(commands) and commands[index].name in ("elseif", "else") and end == "endif":
+        other = commands[index]
+        part, index = _block(commands, index + 1, end, depth + 1)
+        others.append(other._replace(body=part))
+    if index >= len(commands) or commands[index].name != end:
+        raise CMakeFault(f"{first.name}() has no {end}()", first.at)
+    return first._replace(body=body, others=tuple(others)), index
+
+
+def _commands(source: Source) -> Iterator[Command]:
+    """Yield the commands of a file, without blocks. Raises CMakeFault."""
+    text, offset = source.text, 0
+    while (offset := _skip(text, offset)) < len(text):
+        name = _NAME.match(text, offset)
+        if name is None:
+            word = re.match(r"\S{1,30}", text[offset:])
+            raise CMakeFault(
+                f"CMake expects a command such as install(...), not {word and word[0]!r}",
+                _position(source, offset),
+            )
+        arguments, end = _arguments(source, name.end())
+        yield Command(name[1].lower(), arguments, _position(source, offset))
+        offset = end
+
+
+def _arguments(source: Source, offset: int) -> tuple[tuple[Argument, ...], int]:
+    """Return the arguments of a command and where it ends. Raises CMakeFault."""
+    text, start, depth = source.text, offset, 0
+    found: list[Argument] = []
+    while True:
+        offset = _skip(text, offset)
+        match = _ARGUMENT.match(text, offset)
+        if match is None:
+            reason = (
+                "a quote is not closed"
+                if text[offset : offset + 1] == '"'
+                else "a parenthesis is not closed"
+            )
+            raise CMakeFault(reason, _position(source, start))
+        offset = match.end()
+        kind: Literal["paren", "bracket", "quoted", "unquoted"] = match.lastgroup  # type: ignore[assignment]
+        if match["paren"]:
+            depth += 1 if match["paren"] == "(" else -1
+            if depth < 0:
+                return tuple(found), offset
+        content = match[4] if kind == "bracket" else match[kind]
+        found.append(Argument(content, kind, _position(source, match.start())))
+
+
+def _skip(text: str, offset: int) -> int:
+    """Return where the next token begins, after space and comments."""
+    found = _SKIP.match(text, offset)
+    return found.end() if found is not None else offset
+
+
+def _position(source: Source, offset: int) -> Position:
+    """Return the position of an offset, whose column counts bytes, as Python counts them."""
+    at = source.at(offset)
+    return Position(
+        at.line, len(source.line(at.line)[: at.column - 1].encode("utf-8", "surrogateescape")) + 1
+    )

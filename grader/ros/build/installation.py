@@ -1,0 +1,161 @@
+"""What a build of a package installs, as far as it is certain: the result of its setup.py or
+CMakeLists.txt.
+"""
+
+import posixpath
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from grader.base.source import Location, Source
+from grader.ros.build.file_search import EmptyGlob
+from grader.ros.python.evaluation import PythonError
+from grader.ros.python.parse import START, Position, SyntaxFault, location_in
+from grader.ros.python.values import Unknown, Value
+
+
+class InstalledFile(NamedTuple):
+    """One installed file: its path in the package, its path below the prefix, and the position that
+    installs it.
+    """
+
+    source: str
+    target: str
+    at: Position
+
+
+class InstallError(NamedTuple):
+    """Something that cannot be installed, so that the build stops."""
+
+    path: str
+    reason: str
+    at: Position
+    hint: str = ""  # what the path may mean instead
+    by: str = "data_files"  # what lists the path
+
+    @property
+    def message(self) -> str:
+        """The error that stops the build, as part of a sentence."""
+        return f"{self.by} lists {self.path!r}, but {self.reason}" if self.path else self.reason
+
+
+class IgnoredArgument(NamedTuple):
+    """An argument that setup() does not have: setuptools ignores it, with a warning."""
+
+    name: str
+    meant: str | None  # the argument with a similar name
+
+    @property
+    def message(self) -> str:
+        """What is wrong with it, as a sentence."""
+        return f"setup() has no argument {self.name}" + (
+            f"; did you mean {self.meant}?" if self.meant else ""
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Installation:
+    """The result of a setup.py or CMakeLists.txt. `fault` is set if it cannot be parsed: nothing
+    else is known then.
+
+    What certainly stops a setup.py is read as if it was fixed, and a misspelt data_files as what it
+    means: `copies` are the files that are installed then.
+    """
+
+    source: Source
+    fault: SyntaxFault | None = None
+    name: str | None = None
+    copies: tuple[InstalledFile, ...] = ()
+    programs: tuple[
+        str, ...
+    ] = ()  # the paths below the prefix of what a build makes and `ros2 run` may start
+    stops: tuple[InstallError, ...] = ()
+    empty: tuple[EmptyGlob, ...] = ()
+    faults: tuple[PythonError, ...] = ()
+    unknown: tuple[
+        Unknown, ...
+    ] = ()  # with any of these, a file that is not among the copies may be installed as well
+    # the first that is not evaluated, so that the file may not get to its end
+    doubt: Unknown | None = None
+    is_called: bool = True
+    called_at: Position = START
+    entry_points: Value = None  # what setup() is given
+    ignored: tuple[IgnoredArgument, ...] = ()  # arguments that setup() does not have
+    scripts_folder: str = "bin"  # below the prefix, for console_scripts
+    scripts: tuple[
+        str, ...
+    ] = ()  # likewise, of files that CMake installs with the right to execute them
+    packages: tuple[str, ...] = ()  # the Python packages, as far as they are known
+
+    def has_program(self, name: str, package: str) -> bool | None:
+        """Return whether a build installs a program where `ros2 run` looks for it; None where this
+        is not known.
+        """
+        if self.fault is not None:
+            return None
+        path = f"lib/{package}/{name}"
+        if path in self.programs or path in self.installed():
+            # CMake takes the right to execute from the files of install(FILES ...) and
+            # install(DIRECTORY ...).
+            return path in (*self.programs, *self.scripts) or not self.is_cmake
+        points = self.entry_points if self.entry_points is not None else {}
+        scripts = points.get("console_scripts", []) if isinstance(points, dict) else None
+        if (
+            not isinstance(scripts, list)
+            or not all(isinstance(script, str) for script in scripts)
+            or self.unknown
+        ):
+            return None
+        is_listed = name in [script.partition("=")[0].strip() for script in scripts]
+        return is_listed and self.scripts_folder == f"lib/{package}"
+
+    def location(self, position: Position) -> Location:
+        """Return the location of a position in the file."""
+        return location_in(self.source, position)
+
+    @property
+    def file(self) -> str:
+        """The name of the file: setup.py or CMakeLists.txt."""
+        return posixpath.basename(self.source.path)
+
+    @property
+    def is_cmake(self) -> bool:
+        """Whether it is a CMakeLists.txt."""
+        return self.file != "setup.py"
+
+    @property
+    def fault_text(self) -> str:
+        """Why the file is not read, as part of a sentence; empty if it is."""
+        if self.fault is None:
+            return ""
+        return (
+            f"{'CMake' if self.is_cmake else 'Python'} cannot read {self.file}: "
+            f"{self.fault.message}"
+        )
+
+    @property
+    def unread(self) -> str:
+        """Why it is not known what the file does, as part of a sentence; empty if it is, or if it
+        certainly fails.
+        """
+        if self.fault is None or self.fault.sure:
+            return ""
+        return f"{self.file} cannot be read ({self.fault.message})"
+
+    @property
+    def entries(self) -> str:
+        """What lists the installed files: data_files in setup.py, install() in CMakeLists.txt."""
+        return f"{'install()' if self.is_cmake else 'data_files'} in {self.file}"
+
+    @property
+    def entry(self) -> str:
+        """One of these: entry of data_files in setup.py, install() in CMakeLists.txt."""
+        return self.entries if self.is_cmake else f"entry of {self.entries}"
+
+    @property
+    def misspelt(self) -> IgnoredArgument | None:
+        """The argument that stands for data_files, so that a build installs none of its files."""
+        return next((argument for argument in self.ignored if argument.meant == "data_files"), None)
+
+    def installed(self) -> dict[str, str]:
+        """Return each installed file's source by its path below the prefix."""
+        return {copy.target: copy.source for copy in self.copies}

@@ -1,0 +1,244 @@
+"""What the tools of ROS 2 refuse in a package.xml: colcon then builds the package as plain Python.
+
+The rules, their order and their words are those of catkin_pkg 1.1, `parse_package` and
+`Package.validate`.
+"""
+
+import re
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+
+from grader.base.text import enumerated
+from grader.ros.xml.parsing import Element
+
+# What is refused, in the words of catkin_pkg, and the element that is meant.
+_Refusal = tuple[str, Element]
+_Children = Mapping[str, Sequence[Element]]
+
+_NAME = re.compile(r"[a-zA-Z0-9][a-zA-Z0-9_-]*\n?")
+_VERSION = re.compile(r"[0-9]+\.[0-9]+\.[0-9]+\n?")
+_EMAIL = re.compile(
+    r"[-a-zA-Z0-9_%+]+(\.[-a-zA-Z0-9_%+]+)*@[-a-zA-Z0-9%]+(\.[-a-zA-Z0-9%]+)*\.[a-zA-Z]{2,}\n?",
+    re.ASCII,
+)
+_VERSIONS = ("version_lt", "version_lte", "version_eq", "version_gte", "version_gt")
+_DEPENDS = ("build_depend", "buildtool_depend", "test_depend", "conflict", "replace")
+_DEPENDS_OF_FORMAT = {
+    1: ("run_depend",),
+    2: ("build_export_depend", "buildtool_export_depend", "depend", "exec_depend", "doc_depend"),
+}
+# The kinds of dependencies that <depend> and <run_depend> stand for.
+_STANDS_FOR = {
+    "depend": ("build_depend", "build_export_depend", "exec_depend"),
+    "run_depend": ("build_export_depend", "exec_depend"),
+}
+
+
+def find_refusals(root: Element) -> Iterator[_Refusal]:
+    """Yield why the tools of ROS 2 refuse a package.xml with this root, and where; nothing if they
+    accept it.
+    """
+    children: dict[str, list[Element]] = defaultdict(list)
+    for element in root.iterchildren("*"):
+        children[tag_of(element)].append(element)
+    version = _format_of(root)
+    if version is None:
+        yield f"Unable to handle package.xml format version '{root.get('format')}'", root
+        version = 3
+    for tag in ("name", "version", "description"):
+        if len(children.get(tag, ())) != 1:
+            yield (
+                f'The manifest must contain exactly one "{tag}" tag',
+                (children.get(tag) or [root])[-1],
+            )
+    if len(children.get("export", ())) > 1:
+        yield 'The manifest must not contain more than one "export" tags', children["export"][1]
+    yield from _redundant_dependencies(children, version)
+    yield from _unknown_parts(root, children, version)
+    yield from _invalid_texts(root, children)
+    yield from _own_dependencies(children, version)
+
+
+def tag_of(element: Element) -> str:
+    """Return the tag of an element as it is written: catkin_pkg ignores namespaces."""
+    name = str(element.tag).rpartition("}")[2]
+    return f"{element.prefix}:{name}" if element.prefix else name
+
+
+def text_of(element: Element) -> str:
+    """Return the text directly in an element."""
+    pieces = [element.text, *(child.tail for child in element)]
+    return "".join(piece for piece in pieces if piece).strip(" \n\r\t")
+
+
+def email_of(person: Element) -> str:
+    """Return the email of a maintainer or author, without the quotes that a quoted git
+    configuration puts around it.
+    """
+    return (person.get("email") or "").strip("\"'")
+
+
+def _format_of(root: Element) -> int | None:
+    try:
+        number = int(root.get("format", "1"))
+    except ValueError:
+        return None
+    return number if number in (1, 2, 3) else None
+
+
+def _tags_of_dependencies(version: int) -> tuple[str, ...]:
+    return (*_DEPENDS, *_DEPENDS_OF_FORMAT[min(version, 2)])
+
+
+def _key_of(dependency: Element) -> tuple[str | None, ...]:
+    """Return what makes two dependencies equal."""
+    return (text_of(dependency), *(dependency.get(name) for name in (*_VERSIONS, "condition")))
+
+
+def _redundant_dependencies(children: _Children, version: int) -> Iterator[_Refusal]:
+    general, tags, words = (
+        "depend",
+        _STANDS_FOR["depend"],
+        "The generic dependency on '{}' is redundant with: {}",
+    )
+    if version == 1:
+        general, tags = "test_depend", ("build_depend", "run_depend")
+        words = 'The test dependency on "{}" is redundant with: {}'
+    counts = {tag: Counter(map(_key_of, children.get(tag, ()))) for tag in tags}
+    for dependency in children.get(general, ()):
+        same = [tag for tag in tags if counts[tag][_key_of(dependency)]]
+        if same:
+            yield words.format(text_of(dependency), ", ".join(same)), dependency
+        if version != 1:
+            for tag in tags:
+                counts[tag][_key_of(dependency)] += 1
+
+
+def _known_attributes(version: int) -> dict[str, tuple[str, ...]]:
+    """Return the tags that a package.xml of a format may have, each with its attributes."""
+    of_condition = ("condition",) if version == 3 else ()  # since REP 149
+    known: dict[str, tuple[str, ...]] = {
+        "name": (),
+        "version": ("compatibility",),
+        "description": (),
+        "maintainer": ("email",),
+        "license": ("file",) if of_condition else (),
+        "url": ("type",),
+        "author": ("email",),
+        "export": (),
+    }
+    known |= dict.fromkeys(_tags_of_dependencies(version), (*_VERSIONS, *of_condition))
+    if of_condition:
+        known |= dict.fromkeys(("group_depend", "member_of_group"), of_condition)
+    return known
+
+
+def _unknown_parts(root: Element, children: _Children, version: int) -> Iterator[_Refusal]:
+    """Yield what has no place in a package.xml: tags, attributes, and elements in others."""
+    known = _known_attributes(version)
+    yield from _unknown_attributes(root, ("format",))
+    for tag, elements in children.items():
+        if tag not in known:
+            yield (
+                (
+                    f"The manifest (with format version {version}) must not contain the "
+                    f"following tags: {tag}"
+                ),
+                elements[0],
+            )
+            continue
+        for element in elements:
+            yield from _unknown_attributes(element, known[tag])
+            inner = [tag_of(child) for child in element.iterchildren("*")]
+            if inner and tag not in ("description", "export"):
+                yield (
+                    f'The "{tag}" tag must not contain the following children: {enumerated(inner)}',
+                    element,
+                )
+
+
+def _unknown_attributes(element: Element, known: Sequence[str]) -> Iterator[_Refusal]:
+    unknown = [name for name in map(str, element.attrib) if name not in known and "}" not in name]
+    if unknown:
+        words = (
+            f'The "{tag_of(element)}" tag must not have the following attributes: '
+            f"{enumerated(unknown)}"
+        )
+        yield words, element
+
+
+def _invalid_texts(root: Element, children: _Children) -> Iterator[_Refusal]:
+    """Yield what `Package.validate` refuses: an invalid name, version or email, a text or element
+    that is missing.
+    """
+    for element in children.get("name", ()):
+        yield from _invalid_names(element)
+    for element in children.get("version", ()):
+        yield from _invalid_versions(element)
+    for element in children.get("description", ()):
+        if not text_of(element) and not len(element):
+            yield "Package description must not be empty", element
+    for element in children.get("license", ()):
+        if not text_of(element).strip():
+            yield "The license tag must neither be empty nor only contain whitespaces", element
+    for element in (*children.get("maintainer", ()), *children.get("author", ())):
+        yield from _invalid_emails(element)
+    if "maintainer" not in children:
+        yield "The package must declare at least one maintainer", root
+    if "license" not in children:
+        yield 'The package node must contain at least one "license" tag', root
+
+
+def _invalid_names(element: Element) -> Iterator[_Refusal]:
+    if not _NAME.fullmatch(text_of(element)):
+        yield f'Package name "{text_of(element)}" does not follow naming conventions', element
+
+
+def _invalid_versions(element: Element) -> Iterator[_Refusal]:
+    version, compatibility = text_of(element), element.get("compatibility")
+    if not version:
+        yield "Package version must not be empty", element
+    elif not _VERSION.fullmatch(version):
+        yield (
+            (
+                f'Package version "{version}" does not follow version conventions: write three '
+                "numbers, as 0.1.0"
+            ),
+            element,
+        )
+    if compatibility and not _VERSION.fullmatch(compatibility):
+        yield (
+            f"Package compatibility version '{compatibility}' does not follow version conventions",
+            element,
+        )
+
+
+def _invalid_emails(person: Element) -> Iterator[_Refusal]:
+    email, tag = person.get("email"), tag_of(person)
+    if email is None and tag == "maintainer":
+        yield 'The "maintainer" tag must have the attribute "email"', person
+    elif email is not None and not _EMAIL.fullmatch(email_of(person)):
+        yield f'Invalid email "{email}" for person "{text_of(person)}"', person
+
+
+def _own_dependencies(children: _Children, version: int) -> Iterator[_Refusal]:
+    """Yield the dependencies of a package on itself, and on a group that it is a member of."""
+    names = {text_of(element) for element in children.get("name", ())}
+    for tag in _tags_of_dependencies(version):
+        if tag in ("conflict", "replace"):
+            continue
+        for element in children.get(tag, ()):
+            if text_of(element) in names:
+                kinds = enumerated([f'"{kind}"' for kind in _STANDS_FOR.get(tag, (tag,))])
+                yield (
+                    f"The package must not {kinds} on a package with the same name as this package",
+                    element,
+                )
+    groups = {text_of(element) for element in children.get("member_of_group", ())}
+    for element in children.get("group_depend", ()):
+        if text_of(element) in groups:
+            words = (
+                "The package must not 'group_depend' on a package which it also declares to be "
+                "a member of"
+            )
+            yield words, element

@@ -1,0 +1,269 @@
+"""YAML with the location of each value, read by event: neither depth nor aliases use unlimited time
+or memory.
+"""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import yaml
+
+from grader.base.source import Location, Source
+
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_MAX_EVENTS = 25_000
+_LIKE_AN_ALIAS = re.compile(r"(?<![\w/*])\*\w")  # not the key /**
+_MAX_ALIASES = 1000
+_MAX_DEPTH = 200  # the parser gets slower with each open bracket
+_TAGS = frozenset(
+    f"tag:yaml.org,2002:{name}"
+    for name in (
+        "null",
+        "bool",
+        "int",
+        "float",
+        "str",
+        "seq",
+        "map",
+        "binary",
+        "timestamp",
+        "omap",
+        "pairs",
+        "set",
+    )
+)
+_DEEP = "the file is too deeply nested"
+# of newer versions of libyaml, which look ahead of the events
+_TOO_DEEP = "exceeded maximum nesting depth"
+
+
+class YamlFault(Exception):
+    """A text that is not YAML, with the location of the error."""
+
+    def __init__(self, message: str, location: Location) -> None:
+        super().__init__(message)
+        self.location = location
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class YamlNode:
+    """A value with its location: a text, a list or a mapping. An alias is the same object as its
+    anchor.
+    """
+
+    source: Source
+    mark: Any  # PyYAML's; a Location is made only on demand
+    value: "str | list[YamlNode] | dict[str, YamlNode]"
+    quoted: bool = False  # a text in quotes, which is a string even if it is true or 1
+    end_mark: Any = None  # of a text
+    key_marks: dict[str, Any] = field(default_factory=dict)  # of a mapping
+    replaced: list[tuple[str, "YamlNode"]] = field(
+        default_factory=list
+    )  # values of keys that are written again
+
+    @property
+    def location(self) -> Location:
+        """Where it begins."""
+        return _location_of(self.source, self.mark)
+
+    @property
+    def span(self) -> tuple[int, int]:
+        """The offsets of the start and the end of a text, with its quotes."""
+        shift = int(self.source.text.startswith("\ufeff"))
+        return self.mark.index + shift, self.end_mark.index + shift
+
+    def get(self, *keys: str) -> "YamlNode | None":
+        """Return the node at a path of keys, None where there is none."""
+        node: YamlNode | None = self
+        for key in keys:
+            node = (
+                node.value.get(key) if node is not None and isinstance(node.value, dict) else None
+            )
+        return node
+
+    def key_location(self, *keys: str) -> Location:
+        """Return where the last of some keys, which are there, begins."""
+        mapping = self.mapping_of(keys)
+        assert mapping is not None
+        return _location_of(mapping.source, mapping.key_marks[keys[-1]])
+
+    def mapping_of(self, keys: "tuple[str, ...]") -> "YamlNode | None":
+        """Return the mapping that has the last of some keys."""
+        if len(keys) == 1:
+            return self if keys[0] in self.key_marks else None
+        found = (inner.mapping_of(keys[1:]) for key, inner in self.pairs if key == keys[0])
+        return next((it for it in found if it is not None), None)
+
+    @property
+    def text(self) -> str | None:
+        """The text of a scalar; None for lists and mappings."""
+        return self.value if isinstance(self.value, str) else None
+
+    @property
+    def pairs(self) -> "list[tuple[str, YamlNode]]":
+        """The keys of a mapping with their values, also those that are written again, as rcl reads
+        them.
+        """
+        return [*self.replaced, *self.value.items()] if isinstance(self.value, dict) else []
+
+    @property
+    def items(self) -> "list[YamlNode]":
+        """The entries of a list; no entries for other values."""
+        return self.value if isinstance(self.value, list) else []
+
+
+def yaml_value(text: str) -> Any:
+    """Return the value of a short YAML text: a number, a text, a list. Raises ValueError if it has
+    none.
+    """
+    try:
+        return yaml.load(text, Loader=_LOADER)  # noqa: S506  a safe loader
+    except (yaml.YAMLError, RecursionError) as error:
+        raise ValueError(str(error)) from None
+
+
+def check_one_document(text: str, path: str) -> None:
+    """Raise YamlFault for what yaml.safe_load refuses besides: a second document, and a tag that it
+    does not know.
+    """
+    source, documents, depth = Source(path, text), 0, 0
+    try:
+        for count, event in enumerate(yaml.parse(text, Loader=_LOADER)):
+            documents += isinstance(event, yaml.DocumentStartEvent)
+            depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(
+                event, yaml.CollectionEndEvent
+            )
+            tag = getattr(event, "tag", None)
+            if count > _MAX_EVENTS or depth > _MAX_DEPTH:
+                return
+            if documents > 1:
+                raise YamlFault("a second document begins", _location_of(source, event.start_mark))
+            if tag not in (None, "!") and tag not in _TAGS:
+                raise YamlFault(
+                    f"the tag {tag[:40]} is not known", _location_of(source, event.start_mark)
+                )
+    except yaml.YAMLError:
+        return  # which is reported where the nodes are read
+
+
+def read_yaml(data: bytes, path: str) -> YamlNode:
+    """Return the first document of a YAML text; an empty text is an empty mapping. Raises
+    YamlFault.
+    """
+    is_wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
+    text = data.decode("utf-16" if is_wide else "utf-8", "replace")
+    source = Source(path, text)
+    try:
+        return _compose_nodes(yaml.parse(text.removeprefix("\ufeff"), Loader=_LOADER), source)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        location = _location_of(source, mark) if mark else Location(path, 1, 1)
+        if error.problem == _TOO_DEEP:
+            raise YamlFault(_DEEP, Location(path, 1, 1)) from None
+        message = f"{error.context or ''} {error.problem or ''}".strip()
+        raise YamlFault(message or "this is not YAML", location) from None
+    except yaml.YAMLError as error:  # such as characters that YAML forbids
+        raise YamlFault(" ".join(str(error).split())[:200], Location(path, 1, 1)) from None
+    except RecursionError:
+        raise YamlFault(_DEEP, Location(path, 1, 1)) from None
+
+
+def first_alias(source: Source) -> tuple[str, Location] | None:
+    """Return the name and the place of the first alias in a text that is YAML; None without one."""
+    may_have_one = _LIKE_AN_ALIAS.search(source.text) is not None
+    for event in (
+        yaml.parse(source.text.removeprefix("\ufeff"), Loader=_LOADER) if may_have_one else ()
+    ):
+        if isinstance(event, yaml.AliasEvent):
+            return event.anchor or "", _location_of(source, event.start_mark)
+    return None
+
+
+def _location_of(source: Source, mark: Any) -> Location:
+    """Return the location of a mark by its offset: the lines of YAML also end at separators of
+    Unicode.
+    """
+    return source.at(min(mark.index + source.text.startswith("\ufeff"), len(source.text)))
+
+
+def _compose_nodes(events: Iterator[yaml.Event], source: Source) -> YamlNode:
+    root = YamlNode(source, next(events).start_mark, {})
+    open_nodes: list[
+        tuple[YamlNode, list[YamlNode]]
+    ] = []  # each with the key in it whose value follows
+    anchors = _Anchors(source)
+    first = True
+    for count, event in enumerate(events, 1):
+        if count > _MAX_EVENTS:
+            raise YamlFault(f"the file has more than {_MAX_EVENTS} values", root.location)
+        if not isinstance(event, yaml.NodeEvent):
+            if isinstance(event, yaml.CollectionEndEvent):
+                open_nodes.pop()
+            elif isinstance(event, yaml.DocumentEndEvent):
+                break
+            continue
+        node = anchors.node(event)
+        if open_nodes:
+            _attach_node(*open_nodes[-1], node)
+        elif first:
+            root, first = node, False
+        if isinstance(event, yaml.CollectionStartEvent):
+            open_nodes.append((node, []))
+            if len(open_nodes) > _MAX_DEPTH:
+                raise YamlFault(_DEEP, Location(source.path, 1, 1))
+    return root
+
+
+class _Anchors:
+    """The nodes that aliases stand for, by the names of their anchors."""
+
+    def __init__(self, source: Source) -> None:
+        self._source, self._nodes, self._aliases = source, dict[str, YamlNode](), 0
+
+    def node(self, event: yaml.NodeEvent) -> YamlNode:
+        """Return the node of an event. Raises YamlFault for an alias without an anchor, and for too
+        many.
+        """
+        if isinstance(event, yaml.AliasEvent):
+            return self._node_of(event.anchor or "", _location_of(self._source, event.start_mark))
+        if isinstance(event, yaml.ScalarEvent):
+            node = YamlNode(
+                self._source,
+                event.start_mark,
+                event.value,
+                event.style in ("'", '"'),
+                event.end_mark,
+            )
+        else:
+            node = YamlNode(
+                self._source,
+                event.start_mark,
+                [] if isinstance(event, yaml.SequenceStartEvent) else {},
+            )
+        if event.anchor:
+            self._nodes[event.anchor] = node
+        return node
+
+    def _node_of(self, anchor: str, location: Location) -> YamlNode:
+        self._aliases += 1
+        found = self._nodes.get(anchor)
+        if found is None:
+            raise YamlFault(f"there is no anchor for the alias {anchor}", location)
+        if self._aliases > _MAX_ALIASES:
+            raise YamlFault(f"the file has more than {_MAX_ALIASES} aliases", location)
+        return found
+
+
+def _attach_node(parent: YamlNode, key: list[YamlNode], node: YamlNode) -> None:
+    if isinstance(parent.value, list):
+        parent.value.append(node)
+    elif not key:
+        key.append(node)
+    elif isinstance(parent.value, dict):
+        named = key.pop()
+        name = named.text if named.text is not None else f"\0{len(parent.value)}"
+        if name in parent.value:
+            parent.replaced.append((name, parent.value[name]))
+        parent.value[name] = node  # the last key counts, in PyYAML as in RViz
+        parent.key_marks[name] = named.mark

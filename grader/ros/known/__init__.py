@@ -1,0 +1,1 @@
+"""What ROS 2 has: data with its source, and one reader."""

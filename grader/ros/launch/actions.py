@@ -1,0 +1,555 @@
+"""What the actions of a launch description do as launch executes them, without starting anything.
+
+`ActionVisitor` visits them; the functions below it are what each kind of action does: nodes,
+includes, arguments, timers, events.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from grader.ros.build.places import PREFIX
+from grader.ros.launch.api import CONDITION, ENTITY, SOURCE, class_named, is_a
+from grader.ros.launch.call_arguments import items_in, kind_of
+from grader.ros.launch.launch_model import (
+    ANY,
+    NAMESPACE,
+    Context,
+    Findings,
+    GivenParameters,
+    PassedArguments,
+    Resolved,
+)
+from grader.ros.launch.node_parameters import (
+    TO_ALL,
+    evaluate_dict,
+    evaluate_parameters,
+    file_for_all,
+    set_for_all,
+)
+from grader.ros.launch.started_nodes import (
+    REMAPS,
+    evaluate_node,
+    evaluate_process,
+    namespace_below,
+    start_known_file,
+    start_node,
+    start_process,
+)
+from grader.ros.launch.substitutions import (
+    CONDITIONS,
+    boolean,
+    condition_holds,
+    known_text,
+    resolve,
+)
+from grader.ros.python.parse import START, Position
+from grader.ros.python.values import (
+    Call,
+    EvaluationFails,
+    EvaluationSignal,
+    Function,
+    QualifiedName,
+    Undetermined,
+    Unknown,
+    Value,
+)
+
+_MAX_ACTIONS = 5_000
+_MAX_DEPTH = 40
+_MAX_PERIOD = 60.0  # seconds that a person waits for a timer
+_LATE = (
+    "sigterm_timeout",
+    "sigkill_timeout",
+    "default_value",
+)  # arguments that are not evaluated at once
+_PROCESSES = ("Node", "LifecycleNode", "ExecuteProcess")
+# Takes the path of a launch file below the prefix and the context for it; returns why it is not
+# read, or nothing.
+Include = Callable[[str, Context], str]
+CIRCULAR_INCLUDE = "it includes itself"
+# By which packages, programs and files are found.
+_SEARCHED = ("AMENT_PREFIX_PATH", "PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "HOME")
+
+
+@dataclass(slots=True)
+class ActionVisitor:
+    """A visitor of actions that adds its findings. `when` is whether an action is executed, None
+    if this is unknown.
+    """
+
+    findings: Findings
+    include: Include
+    call_function: Callable[[Function, Position, Sequence[Value] | None, Context], Value]
+    visited: set[Call] = field(default_factory=set)  # what is part of the description
+    executed: dict[Call, bool | None] = field(
+        default_factory=dict
+    )  # the processes: each is executed once
+    # What timers and events execute, and the process whose start does.
+    later: list[tuple[Value, Call, Context, bool | None, Value]] = field(default_factory=list)
+    steps: int = 0
+    depth: int = 0
+
+    def launch(self, description: Value, context: Context, at: Position) -> None:
+        """Execute a description, and then what its timers and the start of its processes
+        execute.
+        """
+        self.visit(description, context, context.when, at)
+        for _ in range(_MAX_DEPTH):
+            later, self.later = self.later, []
+            for actions, call, own, when, target in later:
+                is_started = self.executed.get(target, False) if isinstance(target, Call) else when
+                self.visit_all(
+                    actions,
+                    call,
+                    replace(own, arguments=context.arguments),
+                    is_started if when else None,
+                )
+
+    def visit(self, value: Value, context: Context, when: bool | None, at: Position) -> None:
+        """Visit an action."""
+        self.steps += 1
+        if self.depth > _MAX_DEPTH or self.steps > _MAX_ACTIONS:
+            self.add_form(
+                Undetermined("a launch file with so many actions is not evaluated"), START, when
+            )
+            return
+        self.depth += 1
+        try:
+            if isinstance(value, Unknown):
+                raise Undetermined(value.reason, value.at)
+            if isinstance(value, Call) and class_named(value.name) is None:
+                raise Undetermined(f"the result of {value.name} is not evaluated", value.at)
+            if not isinstance(value, Call) or not is_a(value.name, ENTITY):
+                hint = ": write * before it" if isinstance(value, list | tuple) else ""
+                raise EvaluationFails(f"expected an action, found {kind_of(value)}{hint}", at)
+        except EvaluationSignal as signal:
+            self.add_form(signal, at, when)
+        else:
+            self.visited.add(value)
+            self._execute(value, context, self._holds(value, context, when))
+        self.depth -= 1
+
+    def add_form(self, signal: EvaluationSignal, at: Position, when: bool | None) -> None:
+        """Add an error in the form of a description: launch looks at all of it before it
+        executes any of it.
+        """
+        at, is_silent = signal.at or at, self.findings.is_silent
+        if not isinstance(signal, EvaluationFails):
+            self.findings.add_unknown(str(signal), at)
+            if not is_silent:
+                self.findings.add_doubt(str(signal), at)
+        elif when and not is_silent:
+            self.findings.add_fault(str(signal), at)
+        else:
+            self.findings.add_doubt(str(signal), at)
+
+    def _holds(self, call: Call, context: Context, when: bool | None) -> bool | None:
+        """Return whether an action is executed: if `when`, and if its condition holds."""
+        given = call.kwargs.get("condition")
+        try:
+            holds = _condition_holds(given, context, call.at) if given is not None else True
+        except EvaluationSignal as signal:
+            self.findings.add(signal, call.at, when)
+            holds = None
+        if when is False or holds is False:
+            return False
+        return True if when and holds else None
+
+    def _execute(self, call: Call, context: Context, when: bool | None) -> None:
+        kind, start = call.name.rpartition(".")[2], len(context.reads)
+        self._evaluate_fields(call, context, when)
+        try:
+            _KINDS.get(kind, _refuse_action)(self, call, context, when)
+        except EvaluationSignal as signal:
+            self.findings.add(signal, call.at, when)
+            if (
+                not isinstance(signal, EvaluationFails)
+                and kind not in _PROCESSES
+                and when is not False
+            ):
+                self.findings.add_unknown(str(signal), signal.at or call.at)
+        if when:
+            for contents, at in context.reads[start:]:
+                self.findings.refer("read", contents, Call("", [], {}, at))
+        del context.reads[start:]
+
+    def _evaluate_fields(self, call: Call, context: Context, when: bool | None) -> None:
+        """Evaluate the arguments of an action that may contain substitutions."""
+        cls = class_named(call.name)
+        if cls is None or when is False:
+            return
+        for name, parameter in cls.parameters.items():
+            value, test = call.kwargs.get(name), parameter.check.removesuffix("?")
+            if value is None or name in _LATE or (name == "output" and isinstance(value, dict)):
+                continue
+            try:
+                _evaluate_field(value, test, context, call.at)
+            except EvaluationSignal as signal:
+                self.findings.add(signal, call.at, when)
+
+    def visit_all(self, actions: Value, call: Call, context: Context, when: bool | None) -> None:
+        """Visit the actions of a list."""
+        try:
+            items = items_in(actions)
+        except Undetermined as signal:
+            self.add_form(signal, call.at, when)
+            return
+        if items is None:
+            error = EvaluationFails(f"expected a list of actions, found {kind_of(actions)}")
+            self.findings.add(error, call.at, when)
+        for action in items or ():
+            self.visit(action, context, when, call.at)
+
+    def perhaps(self, actions: Value, call: Call, context: Context, when: bool | None) -> None:
+        """Visit what may never be executed: errors in it do not count, but for what is no
+        action.
+        """
+        silent, self.findings.is_silent, kept, self.executed = (
+            self.findings.is_silent,
+            True,
+            self.executed,
+            {},
+        )
+        items = actions if isinstance(actions, list | tuple) else [actions]
+        inner = replace(
+            context.copy(), to_all={name: [*given] for name, given in context.to_all.items()}
+        )
+        self.visit_all(items, call, inner, False if when is False else None)
+        self.findings.is_silent, self.executed = silent, kept
+
+
+def _refuse_action(_: ActionVisitor, call: Call, __: Context, ___: bool | None) -> None:
+    raise Undetermined(f"what {call.name.rpartition('.')[2]} does is not evaluated")
+
+
+def _condition_holds(given: Value, context: Context, at: Position) -> bool:
+    if isinstance(given, Unknown):
+        raise Undetermined(given.reason, given.at)
+    if not isinstance(given, Call):
+        raise EvaluationFails(
+            f"condition is {kind_of(given)}, not a condition such as IfCondition(...)", at
+        )
+    kind = given.name.rpartition(".")[2]
+    if not is_a(given.name, CONDITION) or kind not in CONDITIONS:
+        raise Undetermined(f"the condition {kind} is not evaluated", given.at)
+    return condition_holds(given, context)
+
+
+def _evaluate_field(value: Value, test: str, context: Context, at: Position) -> None:
+    """Evaluate an argument of an action, which has the check `test`. Raises EvaluationSignal."""
+    match test:
+        case "text":
+            resolve(value, context, at)
+        case "texts" | "mapping":
+            pairs = (
+                value.items()
+                if isinstance(value, dict)
+                else ((item,) for item in items_in(value) or ())
+            )
+            for item in (item for pair in pairs for item in pair):
+                resolve(item, context, at)
+        case "bool" if not isinstance(value, bool):
+            boolean(known_text(value, context, at), at)
+        case "parameters":
+            evaluate_parameters(value, context, at)
+        case "remappings":
+            for name in (name for rule in items_in(value) or () for name in items_in(rule) or ()):
+                resolve(name, context, at)
+
+
+def _visit_description(
+    visitor: ActionVisitor, call: Call, context: Context, when: bool | None
+) -> None:
+    visitor.visit_all(call.kwargs.get("initial_entities") or [], call, context, when)
+    for method in call.method_calls:
+        if method.name.endswith((".add_action", ".add_entity")):
+            visitor.visit_all([*method.args, *method.kwargs.values()], method, context, when)
+
+
+def _declare_argument(
+    visitor: ActionVisitor, call: Call, context: Context, when: bool | None
+) -> None:
+    name, choices, default = (call.kwargs.get(it) for it in ("name", "choices", "default_value"))
+    if not isinstance(name, str):
+        raise Undetermined("the name of this launch argument is not evaluated", call.at)
+    visitor.findings.declared.append(name)
+    if when is False:
+        return
+    is_given = name in context.given or (
+        name in context.arguments and call.kwargs.get("condition") is not None
+    )
+    if default is None and not is_given:
+        raise EvaluationFails(
+            f"the launch argument {name!r} has no default, and no value is given", call.at
+        )
+    if name not in context.arguments:
+        _set_argument(name, default, call, context, when)
+    value = context.arguments[name]
+    if isinstance(value, str):
+        visitor.findings.values.append((name, value))
+    if choices is not None and when:
+        if not isinstance(value, str) or not isinstance(choices, list | tuple):
+            raise Undetermined(f"whether {name!r} is one of its choices is not evaluated", call.at)
+        if value not in choices:
+            raise EvaluationFails(
+                f"the value {value!r} of {name!r} is not one of its choices", call.at
+            )
+
+
+def _assign_argument(
+    visitor: ActionVisitor, call: Call, context: Context, when: bool | None
+) -> None:
+    del visitor
+    if when is not False:
+        _set_argument(
+            known_text(call.kwargs["name"], context, call.at),
+            call.kwargs["value"],
+            call,
+            context,
+            when,
+        )
+
+
+def _set_argument(name: str, value: Value, call: Call, context: Context, when: bool | None) -> None:
+    uncertain = Unknown(f"the launch argument {name!r} is set under a condition", call.at)
+    try:
+        context.arguments[name] = resolve(value, context, call.at) if when else uncertain
+    except EvaluationSignal as signal:
+        context.arguments[name] = Unknown(str(signal), signal.at or call.at)
+        raise
+
+
+def _set_environment(
+    visitor: ActionVisitor, call: Call, context: Context, when: bool | None
+) -> None:
+    del visitor
+    variable = known_text(call.kwargs["name"], context, call.at) if when is not False else "X"
+    if not variable or "=" in variable:
+        raise EvaluationFails(f"an environment variable cannot be called {variable!r}", call.at)
+    if variable in _SEARCHED:
+        raise Undetermined(f"what is found with another {variable} is not evaluated", call.at)
+
+
+def _push_namespace(
+    visitor: ActionVisitor, call: Call, context: Context, when: bool | None
+) -> None:
+    del visitor
+    if when is not False:
+        found = namespace_below(call.kwargs["namespace"], context, call.at)
+        context.arguments[NAMESPACE] = (
+            found if when else Unknown("the namespace is set under a condition", call.at)
+        )
+
+
+def _set_remap(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    del visitor
+    if when is False:
+        return
+    rules = context.to_all.setdefault(REMAPS, [])
+    rules.append(None)  # until it is known
+    rule = tuple(known_text(call.kwargs[name], context, call.at) for name in ("src", "dst"))
+    rules[-1] = rule if when else None
+
+
+def _set_parameter(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    """Give a parameter, or those of a file, to all nodes that follow."""
+    visitor.findings.sets_parameters = True
+    if when is False:
+        return
+    location, given = visitor.findings.locate(call.at), context.to_all.setdefault(TO_ALL, [])
+    given.append(
+        GivenParameters(
+            location, unknown="whether a parameter is set for all nodes is not evaluated"
+        )
+    )
+    if "filename" in call.kwargs:
+        found = file_for_all(call.kwargs["filename"], context, call.at, location)
+        visitor.findings.refer("read" if when else "parameters", found.path, call)
+    else:
+        evaluate_dict({"": call.kwargs["value"]}, context, call.at)
+        found = set_for_all(call.kwargs["name"], call.kwargs["value"], context, call.at, location)
+    given[-1] = found if when else given[-1]
+
+
+def _set_time(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    """Set the clock of launch itself: no node gets the parameter."""
+    del visitor, context
+    if when is not False and not isinstance(call.kwargs["value"], bool):
+        raise Undetermined("the value of SetUseSimTime is not evaluated", call.at)
+
+
+def _do_nothing(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    """Do nothing: its arguments are evaluated."""
+
+
+def _shut_down(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    del context
+    if when is not False and not visitor.findings.is_silent:
+        raise Undetermined("what a shutdown stops is not evaluated", call.at)
+
+
+def _visit_group(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    """Visit a group: what it sets ends with it, unless scoped is False."""
+    inner = context.copy() if call.kwargs.get("scoped", True) else context
+    visitor.visit_all(call.kwargs["actions"], call, inner, when)
+
+
+def _start_timer(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    period = call.kwargs["period"]
+    if not isinstance(period, float) and when is not False:
+        period = _seconds(known_text(period, context, call.at), call.at)
+    if when and period <= _MAX_PERIOD:
+        visitor.later.append((call.kwargs["actions"], call, context, when, None))
+    else:
+        visitor.perhaps(call.kwargs["actions"], call, context, when)
+
+
+def _seconds(text: str, at: Position) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise EvaluationFails(f"the period {text[:40]!r} of a timer is no number", at) from None
+
+
+def _register_handler(
+    visitor: ActionVisitor, call: Call, context: Context, when: bool | None
+) -> None:
+    handler = call.kwargs["event_handler"]
+    kind = handler.name.rpartition(".")[2] if isinstance(handler, Call) else ""
+    if kind not in ("OnProcessExit", "OnProcessStart"):
+        visitor.add_form(Undetermined("this event handler is not evaluated"), call.at, when)
+        return
+    value = handler.kwargs.get("on_exit", handler.kwargs.get("on_start"))
+    actions = (
+        visitor.call_function(value, handler.at, None, context)
+        if isinstance(value, Function)
+        else value
+    )
+    if kind == "OnProcessStart" and value is actions and when is not False:
+        target, executed = (
+            handler.kwargs.get("target_action"),
+            actions if isinstance(actions, list) else [actions],
+        )
+        visitor.later.append((executed, handler, context, when, target))
+    elif not isinstance(actions, QualifiedName | None):
+        visitor.perhaps(actions, handler, context, when)
+
+
+def _call_opaque_function(
+    visitor: ActionVisitor, call: Call, context: Context, when: bool | None
+) -> None:
+    function, args = call.kwargs["function"], call.kwargs.get("args") or []
+    if (
+        not isinstance(function, Function)
+        or not isinstance(args, list | tuple)
+        or call.kwargs.get("kwargs")
+    ):
+        raise Undetermined("the result of this OpaqueFunction is not evaluated", call.at)
+    if when is False:
+        return
+    arguments = (Call("launch.launch_context.LaunchContext", [], {}, call.at), *args)
+    found = visitor.call_function(function, call.at, arguments if when else None, context)
+    if isinstance(found, Unknown):
+        visitor.findings.add(Undetermined(found.reason), found.at, when)
+    elif found is not None:
+        visitor.visit_all(found, call, context, when)
+
+
+def _include_file(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    if when is False:
+        return
+    source = call.kwargs["launch_description_source"]
+    if isinstance(source, Call) and is_a(source.name, SOURCE):
+        source = source.kwargs.get(
+            "launch_file_path", Unknown("this launch description is not evaluated", call.at)
+        )
+    given = _launch_arguments(call.kwargs.get("launch_arguments"), context, call.at)
+    path = known_text(source, context, call.at)
+    values = tuple(
+        (name, value if isinstance(value, str) else None) for name, value in given.items()
+    )
+    at = visitor.findings.locate(call.at)
+    visitor.findings.passed.append(
+        PassedArguments(path.removeprefix(f"{PREFIX}/"), values, at, when)
+    )
+    arguments = {**context.arguments, **given}
+    inner = replace(
+        context, path=path, arguments=arguments, when=when, reads=[], given=frozenset(given)
+    )
+    inner.included_by = (*context.included_by, context.path.removeprefix(f"{PREFIX}/"))
+    reason = visitor.include(path, inner)
+    if reason and not start_known_file(visitor.findings, path, call, inner):
+        visitor.findings.refer("include", path, call)
+        if reason == CIRCULAR_INCLUDE:
+            raise EvaluationFails(reason, call.at)
+        visitor.findings.add_unknown(reason, call.at)
+    elif not reason:
+        visitor.findings.refer("include", path, call)
+    context.arguments.update(
+        inner.arguments
+    )  # an included file shares its arguments with the actions that follow
+    if reason:
+        context.arguments[ANY] = Unknown(reason, call.at)
+
+
+def _launch_arguments(given: Value, context: Context, at: Position) -> dict[str, Resolved]:
+    """Return the launch arguments that an include passes on. Raises EvaluationSignal."""
+    pairs = items_in(given) if given is not None else []
+    found: dict[str, Resolved] = {}
+    for pair in pairs or ():
+        if not isinstance(pair, list | tuple | str) or len(pair) != 2:
+            raise Undetermined("launch_arguments that are no pairs are not evaluated", at)
+        for part in pair:
+            if not isinstance(part, str | Call | Unknown | list | tuple):
+                raise EvaluationFails(
+                    f"the value of a launch argument is {kind_of(part)}, not a string", at
+                )
+        found[known_text(pair[0], context, at)] = resolve(pair[1], context, at)
+    return found
+
+
+def _execute_process(
+    visitor: ActionVisitor, call: Call, context: Context, when: bool | None
+) -> None:
+    """Start a process, which an action can do once only."""
+    before = visitor.executed.get(call, False)
+    visitor.executed[call] = when
+    start, evaluate = (
+        (start_node, evaluate_node)
+        if "executable" in call.kwargs
+        else (start_process, evaluate_process)
+    )
+    start(visitor.findings, call, context, when)
+    if when is not False and before is not False:
+        message = f"the same {call.name.rpartition('.')[2]} is executed twice: make two of them"
+        raise (
+            EvaluationFails(message, call.at) if before and when else Undetermined(message, call.at)
+        )
+    if when is not False:
+        evaluate(call, context)
+    on_exit = call.kwargs.get("on_exit")
+    if isinstance(on_exit, list):
+        visitor.perhaps(on_exit, call, context, when)
+    elif not isinstance(on_exit, Function | Call | Unknown | QualifiedName | None):
+        raise Undetermined("this value of on_exit is not evaluated", call.at)
+
+
+# What each kind of action does, besides the evaluation of its arguments.
+_KINDS: Mapping[str, Callable[[ActionVisitor, Call, Context, bool | None], None]] = {
+    **dict.fromkeys(_PROCESSES, _execute_process),
+    "LogInfo": _do_nothing,
+    "LaunchDescription": _visit_description,
+    "DeclareLaunchArgument": _declare_argument,
+    "SetLaunchConfiguration": _assign_argument,
+    "GroupAction": _visit_group,
+    **dict.fromkeys(("SetEnvironmentVariable", "AppendEnvironmentVariable"), _set_environment),
+    "IncludeLaunchDescription": _include_file,
+    "OpaqueFunction": _call_opaque_function,
+    "TimerAction": _start_timer,
+    "RegisterEventHandler": _register_handler,
+    **dict.fromkeys(("Shutdown", "EmitEvent"), _shut_down),
+    "PushROSNamespace": _push_namespace,
+    "SetRemap": _set_remap,
+    "SetUseSimTime": _set_time,
+    **dict.fromkeys(("SetParameter", "SetParametersFromFile"), _set_parameter),
+}

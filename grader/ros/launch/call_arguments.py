@@ -1,0 +1,531 @@
+"""The constructors of launch's classes, and what they require of their arguments, as they check it
+themselves.
+
+An argument is a text (a string or substitutions), a list of them, a parameter of a node, and so on:
+`_CHECKS` has a check of each kind, which returns what is wrong.
+"""
+
+from ast import expr, unparse
+from collections.abc import Callable, Mapping
+from functools import partial
+from pathlib import PurePosixPath
+from typing import Any
+
+from grader.base.names import did_you_mean
+from grader.ros.launch.api import (
+    ENTITY,
+    JOINED_PATH,
+    PROCESS,
+    SOURCE,
+    SUBSTITUTION,
+    LaunchClass,
+    class_named,
+    exports,
+    is_a,
+)
+from grader.ros.launch.launch_model import UnknownText, not_evaluated
+from grader.ros.launch.substitutions import CONDITIONS, PERFORMS
+from grader.ros.python.evaluation import Evaluation, record
+from grader.ros.python.parse import position_of
+from grader.ros.python.values import (
+    VIEWS,
+    BoundMethod,
+    Call,
+    EvaluationFails,
+    Function,
+    Items,
+    QualifiedName,
+    Undetermined,
+    Unknown,
+    Value,
+    iterate,
+    known,
+)
+
+SCALARS = (bool, int, float, str)
+TYPED = (
+    "launch_ros.parameter_descriptions.ParameterValue",
+    "launch_ros.parameter_descriptions.Parameter",
+)
+FILE = "launch_ros.parameter_descriptions.ParameterFile"
+# What is no text yet: the calls that give it, and what is missing.
+OPENED = {
+    "builtins.open": "an open file: add .read()",
+    "xacro.process_file": "a document, not its text: add .toxml()",
+    "xacro.parse": "a document, not its text: add .toxml()",
+}
+_COLLECTIONS: Any = (list, tuple, dict, set, frozenset, *VIEWS)
+_NAMES = {
+    type(None): "None",
+    bool: "a boolean",
+    int: "a number",
+    float: "a number",
+    dict: "a dict",
+    Function: "a function",
+    BoundMethod: "a method that is not called",
+    UnknownText: "a text",
+}
+_WANTED = {
+    bool: "True, False",
+    float: "a decimal number such as 2.0",
+    int: "an integer",
+    str: "a string",
+}
+_ACTIONS = (
+    "Node",
+    "ExecuteProcess",
+    "LogInfo",
+    "LaunchDescription",
+    "DeclareLaunchArgument",
+    "SetLaunchConfiguration",
+    "GroupAction",
+    "SetEnvironmentVariable",
+    "AppendEnvironmentVariable",
+    "IncludeLaunchDescription",
+    "OpaqueFunction",
+    "TimerAction",
+    "RegisterEventHandler",
+    "OnProcessExit",
+    "OnProcessStart",
+    "Shutdown",
+    "EmitEvent",
+    "LifecycleNode",
+    "PushROSNamespace",
+    "SetParameter",
+    "SetParametersFromFile",
+    "SetRemap",
+    "SetUseSimTime",
+)
+_MAX_DEPTH = 20  # of lists in others
+_OF_ONE_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")
+# The classes that are evaluated, besides the sources of included files; what is wrong with their
+# arguments.
+_EVALUATED = frozenset(
+    {*_ACTIONS, *PERFORMS, *CONDITIONS, "ParameterValue", "ParameterFile", "LaunchContext"}
+)
+# The arguments that are kept as they are: of all others launch makes a copy when the object is
+# made.
+_KEPT_AS_IT_IS = {"GroupAction": "actions", "TimerAction": "actions", "OpaqueFunction": "args"}
+
+
+class LaunchFunctions(dict[str, Any]):
+    """The functions by full name, with every class of launch and its methods."""
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """Return a function; None for one that is not evaluated."""
+        found = super().get(name)
+        return found if found is not None else _function_of(name) or default
+
+    def __contains__(self, name: object) -> bool:
+        return self.get(str(name)) is not None
+
+
+def _function_of(name: str) -> "Callable[[Evaluation, Call], Value] | None":
+    """Return the constructor of a class of launch, or one that fails: of a name that is not
+    there.
+    """
+    owner, _, own = name.rpartition(".")
+    names, cls = exports().get(owner), class_named(owner)
+    if names is not None and own in names:
+        made = class_named(names[own])
+        return partial(_record_constructor, made) if made is not None else None
+    if names is not None or (
+        cls is not None and own not in cls.methods and not own.startswith("_")
+    ):
+        return partial(_fail_missing, f"{cls.short if cls is not None else owner} has no {own!r}")
+    return None
+
+
+def _record_constructor(cls: LaunchClass, evaluation: Evaluation, call: Call) -> Value:
+    call.name = cls.name
+    doubt = check(cls, call)
+    call.is_object = True
+    for name in [name for name in call.kwargs if name != _KEPT_AS_IT_IS.get(cls.short)]:
+        call.kwargs[name] = _copied(call.kwargs[name], evaluation)
+    if doubt is not None:
+        evaluation.doubted(Unknown(not_evaluated(doubt.reason), doubt.at))
+    return record(evaluation, call)
+
+
+def join_path(evaluation: Evaluation, call: Call) -> Value:
+    """Return the PathJoinSubstitution that `path / more` makes of a substitution for a path."""
+    owner, cls = call.owner, class_named(JOINED_PATH)
+    assert owner is not None
+    assert cls is not None
+    before = owner.kwargs.get("substitutions", [owner.kwargs.get("path")])
+    parts = [*before, *call.args] if isinstance(before, list | tuple) else [before, *call.args]
+    return _record_constructor(cls, evaluation, Call("", [parts], {}, call.at))
+
+
+def _copied(value: Value, evaluation: Evaluation, depth: int = 0) -> Value:
+    """Return a copy of the lists and dicts in a value."""
+    if not isinstance(value, _COLLECTIONS) or depth > _MAX_DEPTH:
+        return value
+    evaluation.budget.charge(len(value))
+    if isinstance(value, dict):
+        return {key: _copied(item, evaluation, depth + 1) for key, item in value.items()}
+    copies = [_copied(item, evaluation, depth + 1) for item in value]
+    return copies if isinstance(value, (list, *VIEWS)) else type(value)(copies)
+
+
+def _fail_missing(message: str, *_: object) -> Value:
+    raise EvaluationFails(message)
+
+
+def check(cls: LaunchClass, call: Call) -> Unknown | None:
+    """Name and check the arguments of a constructor; return what is not evaluated. Raises
+    EvaluationFails.
+    """
+    if cls.short not in _EVALUATED and not is_a(cls.name, SOURCE):
+        return Unknown(f"{cls.short} is not evaluated", call.at)
+    _name_arguments(cls, call)
+    doubt: Unknown | None = None
+    for name, value in [*call.kwargs.items(), ("", None)]:
+        try:
+            if message := _wrong_argument(cls, call, name, value):
+                raise EvaluationFails(message, call.at)
+        except Undetermined as error:
+            doubt = doubt or Unknown(str(error), call.at)
+    return doubt
+
+
+def _name_arguments(cls: LaunchClass, call: Call) -> None:
+    """Give the arguments of a constructor their names. Raises EvaluationFails as Python does."""
+    positional = [name for name, it in cls.parameters.items() if it.is_positional]
+    if len(call.args) > len(positional):
+        names = ", ".join(f"{name}=..." for name in cls.parameters if name not in positional)
+        hint = "put [ ] around them" if cls.short in _OF_ONE_LIST else f"write {names[:100]}"
+        raise EvaluationFails(
+            f"{cls.short} takes {len(positional)} argument without a name: {hint}", call.at
+        )
+    given = dict(zip(positional, call.args, strict=False))
+    if twice := given.keys() & call.kwargs.keys():
+        raise EvaluationFails(f"{cls.short} is given {min(twice)!r} twice", call.at)
+    for name in (name for name in call.kwargs if name not in cls.parameters):
+        message = f"{cls.short} has no argument {name!r}{did_you_mean(name, cls.parameters)}"
+        raise EvaluationFails(message, call.at)
+    kwargs = {**given, **call.kwargs}.items()
+    call.args = []
+    call.kwargs = {
+        name: list(iterate(value)) if isinstance(value, Items) else value for name, value in kwargs
+    }
+    missing = [
+        name for name, it in cls.parameters.items() if it.is_required and name not in call.kwargs
+    ]
+    if missing:
+        raise EvaluationFails(f"{cls.short} needs the argument {missing[0]}=...", call.at)
+
+
+def _wrong_argument(cls: LaunchClass, call: Call, name: str, value: Value) -> str:
+    """Return what is wrong with an argument, or, without a name, with all together. Raises
+    Undetermined.
+    """
+    if bound := _find_bound(value):
+        text = unparse(bound)[:60]
+        raise EvaluationFails(f"{text} without (): write {text}()", position_of(bound))
+    if not name:
+        message = _SPECIAL[cls.short](call) if cls.short in _SPECIAL else ""
+        return f"{cls.short}: {message}" if message else ""
+    test = cls.parameters[name].check
+    own = _CHECKS.get(test.removesuffix("?"))
+    wanted = own(value) if own is not None and not (value is None and test.endswith("?")) else ""
+    tail = "" if wanted.startswith("has a") else f", not {kind_of(value)}"
+    return f"{name} of {cls.short} {wanted}{tail}" if wanted else ""
+
+
+def _find_bound(value: Value) -> expr | None:
+    """Return the expression of a method in a value that is not called."""
+    if isinstance(value, list | tuple | dict):
+        items = value.values() if isinstance(value, dict) else value
+        return next(filter(None, map(_find_bound, items)), None)
+    return value.node if isinstance(value, BoundMethod) else None
+
+
+def _is_text(value: Value) -> bool:
+    """Return whether a value is a string or a substitution. Raises Undetermined."""
+    match value:
+        case UnknownText():
+            return True
+        case Unknown():
+            raise Undetermined(value.reason)
+        case QualifiedName():
+            raise Undetermined(f"the value of {value.name}")
+        case Call() if class_named(value.name) is not None:
+            return is_a(value.name, SUBSTITUTION)
+        case Call() if value.name not in OPENED:
+            raise Undetermined(f"the result of {value.name}")
+    return isinstance(value, str)
+
+
+def _is_entity(call: Call) -> bool:
+    """Return whether a call makes an action, or a description of some. Raises Undetermined."""
+    if class_named(call.name) is None:
+        raise Undetermined(f"the result of {call.name}")
+    return is_a(call.name, ENTITY)
+
+
+def items_in(value: Value) -> list[Value] | None:
+    """Return what iterating over a value gives; None where Python cannot. Raises Undetermined."""
+    if isinstance(value, Unknown):
+        raise Undetermined(value.reason)
+    if isinstance(value, Call) and class_named(value.name) is None:
+        raise Undetermined(f"the result of {value.name}")
+    if isinstance(value, Items):
+        return list(iterate(value))
+    kinds: Any = (*_COLLECTIONS, str, range)
+    return list(value) if isinstance(value, kinds) else None
+
+
+def _wrong_text(value: Value) -> str:
+    """Return what is wrong with a value that has to be a text, or nothing. Raises Undetermined."""
+    if isinstance(value, _COLLECTIONS):
+        wrong = next((item for item in value if not _is_text(item)), "")
+        return f"has an item that is {kind_of(wrong)}{_in_quotes(wrong)}" if wrong != "" else ""
+    return "" if _is_text(value) else "takes a string or a substitution"
+
+
+def _in_quotes(value: Value) -> str:
+    """Return how a number is written as a text, as advice."""
+    return f": write '{value}'" if type(value) in (int, float) else ""
+
+
+def kind_of(value: Value) -> str:
+    """Return what a value is, in words."""
+    if isinstance(value, Call):
+        return OPENED.get(value.name, f"{value.name.rpartition('.')[2]}(...)")
+    if isinstance(value, PurePosixPath):
+        return "a path: write str(...) around it"
+    return _NAMES.get(type(value), f"a {type(value).__name__}")
+
+
+def _check_of_type(kind: type) -> Callable[[Value], str]:
+    """Return the check of a value of a type, or of a substitution whose text is read as one."""
+
+    def checked(value: Value) -> str:
+        if isinstance(value, str | int | float):
+            return "" if isinstance(value, kind) else f"takes {_WANTED[kind]} or a substitution"
+        if isinstance(value, list | tuple) and any(
+            isinstance(item, Call | Unknown) for item in value
+        ):
+            return _wrong_text(value)
+        return (
+            ""
+            if not isinstance(value, _COLLECTIONS) and _is_text(value)
+            else f"takes {_WANTED[kind]} or a substitution"
+        )
+
+    return checked
+
+
+def _wrong_parameters(value: Value) -> str:
+    """Return what is wrong with the parameters of a node, or nothing. Raises Undetermined."""
+    if isinstance(value, Unknown):
+        raise Undetermined(value.reason)
+    if not isinstance(value, list):
+        return "has to be a list: put [ ] around it"
+    return next(filter(None, map(_wrong_item, value)), "")
+
+
+def _wrong_item(item: Value) -> str:
+    if isinstance(item, PurePosixPath) or (isinstance(item, Call) and item.name in (*TYPED, FILE)):
+        return ""
+    return _wrong_dict(item) if isinstance(item, dict) else _wrong_text(item)
+
+
+def _wrong_dict(table: dict[Any, Value]) -> str:
+    return next(
+        filter(None, (_wrong_text(key) or _wrong_parameter(value) for key, value in table.items())),
+        "",
+    )
+
+
+def _wrong_parameter(value: Value) -> str:
+    """Return what is wrong with the value of a parameter, or nothing. Raises Undetermined."""
+    match value:
+        case dict():
+            return _wrong_dict(value)
+        case str() | int() | float() | bytes():
+            return ""
+        case Call() if value.name in TYPED:
+            return ""
+        case list() | tuple() | range():
+            items = [item for item in value if not isinstance(item, SCALARS)]
+            return next(filter(None, map(_wrong_text, items)), "")
+    return "" if _is_text(value) else f"has a value that is {kind_of(value)}"
+
+
+def _wrong_typed(call: Call) -> str:
+    """Return what is wrong with the value of ParameterValue, or nothing. Raises Undetermined."""
+    value, kind = call.kwargs["value"], type_of(call)
+    if isinstance(value, UnknownText):
+        return "" if kind in (None, str) else "the value is a text"
+    if isinstance(value, SCALARS):
+        return (
+            ""
+            if kind is None or isinstance(value, kind)
+            else f"the value is {kind_of(value)}, not {kind.__name__}"
+        )
+    if isinstance(value, list | tuple) and not any(isinstance(it, Call | Unknown) for it in value):
+        is_wrong = kind is not None or not all(isinstance(it, SCALARS) for it in value)
+        return f"the value is {kind_of(value)}" if is_wrong else ""
+    return _wrong_text(value)
+
+
+def type_of(call: Call) -> "type | None":
+    """Return the type that ParameterValue is given; None for none. Raises Undetermined for the type
+    of a list.
+    """
+    given = call.kwargs.get("value_type")
+    if given is None:
+        return None
+    name = getattr(given, "name", "").removeprefix("builtins.")
+    found = {kind.__name__: kind for kind in SCALARS}.get(name)
+    if found is None:
+        raise Undetermined(f"the type {name}")
+    return found
+
+
+def _wrong_texts(value: Value) -> str:
+    items = items_in(value)
+    if items is None:
+        return "has to be a list: put [ ] around it"
+    wrong = next(
+        (item for item in items if not isinstance(item, _COLLECTIONS) and not _is_text(item)), ""
+    )
+    if wrong != "":
+        return f"has an item that is {kind_of(wrong)}{_in_quotes(wrong)}"
+    return next(filter(None, map(_wrong_text, items)), "")
+
+
+def _wrong_mapping(value: Value) -> str:
+    if not isinstance(value, dict):
+        return "" if items_in(value) is None and isinstance(value, Unknown) else "has to be a dict"
+    return next(filter(None, (_wrong_text(item) for pair in value.items() for item in pair)), "")
+
+
+def _wrong_period(value: Value) -> str:
+    return (
+        "" if isinstance(value, str) else _check_of_type(float)(value)
+    )  # a string is read as a number
+
+
+def _wrong_actions(value: Value) -> str:
+    return "takes a list of actions: put [ ] around them" if items_in(value) is None else ""
+
+
+def _wrong_remappings(value: Value) -> str:
+    for rule in items_in(value) or []:
+        if isinstance(rule, Unknown):
+            raise Undetermined(rule.reason)
+        if not isinstance(rule, tuple) or len(rule) != 2:
+            return "takes pairs: ('from', 'to')"
+        if wrong := _wrong_text(rule[0]) or _wrong_text(rule[1]):
+            return wrong
+    return "has to be a list: put [ ] around it" if items_in(value) is None else ""
+
+
+_CHECKS: Mapping[str, Callable[[Value], str]] = {
+    "text": _wrong_text,
+    "texts": _wrong_texts,
+    "mapping": _wrong_mapping,
+    "bool": _check_of_type(bool),
+    "float": _wrong_period,
+    "remappings": _wrong_remappings,
+    "actions": _wrong_actions,
+    "parameters": _wrong_parameters,
+    "parameter": _wrong_parameter,
+}
+
+
+def _wrong_declaration(call: Call) -> str:
+    choices, default = call.kwargs.get("choices"), call.kwargs.get("default_value")
+    if choices is not None and not items_in(choices):
+        return "choices is empty, or no list"
+    if isinstance(default, str) and choices is not None and default not in known(choices):
+        return f"the default {default!r} of {call.kwargs['name']!r} is not one of its choices"
+    return ""
+
+
+def _wrong_include(call: Call) -> str:
+    source, given = call.kwargs["launch_description_source"], call.kwargs.get("launch_arguments")
+    if not (isinstance(source, Call) and is_a(source.name, SOURCE)) and (
+        wrong := _wrong_text(source)
+    ):
+        return f"the first argument {wrong}, not {kind_of(source)}"
+    if isinstance(given, dict) and not all(isinstance(key, str) and len(key) == 2 for key in given):
+        # Python takes a key of two letters for a pair
+        return "launch_arguments is given a dict: add .items() to it"
+    return "launch_arguments takes pairs" if given is not None and items_in(given) is None else ""
+
+
+def _wrong_opaque_function(call: Call) -> str:
+    if not isinstance(call.kwargs["function"], Function) or not isinstance(
+        call.kwargs.get("args"), list | tuple | None
+    ):
+        raise Undetermined("this OpaqueFunction")
+    return ""
+
+
+def _wrong_event_handler(call: Call) -> str:
+    value, target = (
+        call.kwargs.get("on_exit", call.kwargs.get("on_start")),
+        call.kwargs.get("target_action"),
+    )
+    items = value if isinstance(value, list) else [value]
+    if not isinstance(value, Function) and not all(
+        isinstance(it, Call) and _is_entity(it) for it in items
+    ):
+        raise Undetermined("what this event handler executes")
+    if isinstance(target, str | list | dict | int | float):
+        return f"target_action is {kind_of(target)}, not an action such as Node(...)"
+    if not isinstance(target, Call | None) or (
+        target is not None and not is_a(target.name, PROCESS)
+    ):
+        raise Undetermined("the target of this event handler")
+    return ""
+
+
+def _wrong_description(call: Call) -> str:
+    actions = call.kwargs.get("initial_entities")
+    return "put [ ] around the actions" if actions is not None and items_in(actions) is None else ""
+
+
+def _wrong_text_substitution(call: Call) -> str:
+    text = call.kwargs["text"]
+    return (
+        ""
+        if isinstance(text, str) or (_is_text(text) and not isinstance(text, Call))
+        else f"text is {kind_of(text)}"
+    )
+
+
+def _wrong_timer(call: Call) -> str:
+    """Return what is wrong with the period: a string is read as a number when the timer is made."""
+    if isinstance(call.kwargs["period"], str):
+        try:
+            call.kwargs["period"] = float(call.kwargs["period"])
+        except ValueError:
+            return f"the period {call.kwargs['period'][:40]!r} is no number"
+    return ""
+
+
+def _wrong_group(call: Call) -> str:
+    if call.kwargs.keys() - {"actions", "scoped", "condition"} or not isinstance(
+        call.kwargs.get("scoped", True), bool
+    ):
+        raise Undetermined("what this group keeps")
+    return ""
+
+
+_SPECIAL: Mapping[str, Callable[[Call], str]] = {
+    "DeclareLaunchArgument": _wrong_declaration,
+    "OpaqueFunction": _wrong_opaque_function,
+    "IncludeLaunchDescription": _wrong_include,
+    "LaunchDescription": _wrong_description,
+    "TextSubstitution": _wrong_text_substitution,
+    "ParameterValue": _wrong_typed,
+    "GroupAction": _wrong_group,
+    "TimerAction": _wrong_timer,
+    "OnProcessExit": _wrong_event_handler,
+    "OnProcessStart": _wrong_event_handler,
+}

@@ -1,0 +1,665 @@
+"""Launch files in XML and YAML: read as entities, which become the actions that a Python launch
+file would create.
+
+Their values are texts with substitutions, by launch's grammar, and texts that are numbers.
+"""
+
+import re
+import shlex
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from grader.base.names import closest, did_you_mean
+from grader.base.source import Location, Source
+from grader.ros.config.yaml_nodes import (
+    YamlFault,
+    YamlNode,
+    check_one_document,
+    read_yaml,
+    yaml_value,
+)
+from grader.ros.launch.api import class_named, front_end
+from grader.ros.launch.call_arguments import TYPED, check
+from grader.ros.launch.launch_model import Findings, LaunchFault
+from grader.ros.python.parse import START, Position
+from grader.ros.python.values import (
+    Call,
+    EvaluationFails,
+    EvaluationSignal,
+    Undetermined,
+    Unknown,
+    Value,
+)
+from grader.ros.xml.parsing import Element, XmlFault, XmlFile
+
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
+_BEFORE_NEXT = {
+    "": " '\"()",
+    "'": " '()",
+    '"': ' "()',
+}  # what ends a value, in no quotes and in each kind of quotes
+# The names of the arguments of each substitution that is evaluated; those in brackets may be
+# missing.
+_SUBSTITUTIONS = {
+    "var": "variable_name [default]",
+    "env": "name [default_value]",
+    "command": "command [on_stderr]",
+    "find-pkg-share": "package",
+    "find-exec": "name",
+    "eval": "expression [python_modules]",
+    "dirname": "",
+    "filename": "",
+    "file-content": "path",
+    "exec-in-pkg": "executable package",
+    "if": "condition if_value [else_value]",
+    "not": "value",
+    **dict.fromkeys(("and", "or", "equals", "not-equals"), "left right"),
+}
+_ON_STDERR = (["fail"], ["ignore"], ["warn"], ["capture"])
+_MAX_DEPTH = 40
+_MAX_ENTITIES = 5_000
+_MAX_PLACES = 40  # attributes of an element in XML that are looked for
+_PROCESS = (
+    "cwd name on_exit launch-prefix output respawn shell:bool emulate_tty:bool"
+    " -respawn_max_retries -respawn_delay -sigkill_timeout -sigterm_timeout -env"
+)
+# The attributes of each element that is evaluated: ! is required, : precedes a type that is not
+# text, [] are elements in it; what launch accepts, but is not evaluated, begins with -.
+_ACTIONS: Mapping[str, str] = {
+    "arg": "name! default description choice[]",
+    "executable": f"cmd! {_PROCESS}",
+    "group": "scoped:bool -forwarding -keep children",
+    "include": "file! arg[]",
+    "log": "message!",
+    "set_env": "name! value!",
+    "let": "name! value!",
+    "timer": "period!:float -cancel_on_shutdown children",
+    "node": f"exec! pkg args ros_args -node-name -exec_name namespace remap[] param[] {_PROCESS}",
+    **dict.fromkeys(("push_ros_namespace", "push-ros-namespace"), "namespace!"),
+    "set_parameter": "name! value!",
+    "set_remap": "from! to!",
+    "set_parameters_from_file": "filename!",
+}
+_NESTED: Mapping[str, str] = {
+    "arg": "name! value!",
+    "choice": "value!",
+    "remap": "from! to!",
+    "param": "name from value:any value-sep type:any -allow_substs param[]",
+}
+_TYPES: Mapping[str, type | None] = {"float": float, "bool": bool, "any": None}
+_VALUE_TYPES = (
+    "str",
+    "bool",
+    "float",
+    "int",
+    "list_of_str",
+    "list_of_bool",
+    "list_of_float",
+    "list_of_int",
+    "yaml",
+)
+# The argument of the constructor, where it has another name than the attribute.
+_ARGUMENTS = {
+    "pkg": "package",
+    "exec": "executable",
+    "default": "default_value",
+    "message": "msg",
+    "launch-prefix": "prefix",
+    "file": "launch_description_source",
+    "args": "arguments",
+    "from": "src",
+    "to": "dst",
+    "ros_args": "ros_arguments",
+}
+_ROS1 = (
+    "this is a launch file of ROS 1; in ROS 2 write exec= for type=, $(find-pkg-share ...) "
+    "for $(find ...),"
+    " $(var ...) for $(arg ...), and <param> inside of <node>"
+)
+_RAW = ("shell", "emulate_tty", "scoped")
+
+
+@dataclass(slots=True)
+class _Entity:
+    """One element of a launch file: <node pkg="..."/>, or `- node: {pkg: ...}`.
+
+    `attributes` are texts in XML, values in YAML. `nested` has the elements in it by their names,
+    `actions` those that are actions of a group.
+    """
+
+    kind: str
+    at: Position
+    attributes: dict[str, Any] = field(default_factory=dict)
+    nested: "dict[str, list[_Entity]]" = field(default_factory=dict)
+    actions: "list[_Entity]" = field(default_factory=list)
+    is_yaml: bool = False
+    has_actions: bool = True  # in YAML: whether it is a list, or has the key children
+    error: str = ""  # what is wrong with its form
+    places: dict[str, Position] = field(default_factory=dict)  # of its attributes
+
+    def place(self, name: str) -> Position:
+        """Return where an attribute is."""
+        return self.places.get(name, self.at)
+
+
+def read_frontend(data: bytes, source: Source, *, is_yaml: bool) -> _Entity | LaunchFault:
+    """Return the root entity of a launch file in XML or YAML, or why it cannot be read. Never
+    raises.
+    """
+    try:
+        data.decode()  # as open does, whatever the file itself says of its encoding
+        root = (
+            _YamlReader().root(data, source.path) if is_yaml else _xml_root(XmlFile(data, source))
+        )
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        return LaunchFault(
+            "the file is not UTF-8 text: save it as UTF-8", Location(source.path, line, 1)
+        )
+    except (YamlFault, XmlFault) as fault:
+        return LaunchFault(
+            f"not readable as {'YAML' if is_yaml else 'XML'}: {fault}", fault.location
+        )
+    except EvaluationFails as error:
+        line, column = error.at or START
+        return LaunchFault(str(error), Location(source.path, line, column))
+    if root is not None and root.kind == "launch":
+        if not is_yaml and _is_of_ros1(root):
+            root.error = _ROS1
+        return root
+    what = (
+        "the file is not a list of actions below launch:"
+        if is_yaml
+        else "the root of the file is not <launch>"
+    )
+    return LaunchFault(f"{what}; ros2 launch starts nothing", Location(source.path, 1, 1))
+
+
+def _is_of_ros1(root: _Entity) -> bool:
+    """Return whether a launch file is one of ROS 1: its nodes have a type."""
+    pending = [root]
+    while pending:
+        entity = pending.pop()
+        pending += entity.actions
+        if (
+            entity.kind == "node"
+            and "type" in entity.attributes
+            and "exec" not in entity.attributes
+        ):
+            return True
+    return False
+
+
+def _xml_root(file: XmlFile) -> _Entity:
+    def entity(element: Element, depth: int) -> _Entity:
+        location = file.location(element)
+        attributes = {str(name): str(value) for name, value in element.attrib.items()}
+        found = _Entity(str(element.tag), Position(location.line, location.column), attributes)
+        placed = [*attributes][:_MAX_PLACES]
+        found.places = {name: _position_at(file.location(element, name)) for name in placed}
+        found.actions = [
+            entity(it, depth + 1) for it in element.iterchildren("*") if depth < _MAX_DEPTH
+        ]
+        for inner in found.actions:
+            found.nested.setdefault(inner.kind, []).append(inner)
+        return found
+
+    return entity(file.root, 0)
+
+
+@dataclass(slots=True)
+class _YamlReader:
+    """A reader of entities from YAML's lists and mappings; aliases can multiply them, so they are
+    counted.
+    """
+
+    count: int = 0
+
+    def root(self, data: bytes, path: str) -> _Entity | None:
+        """Return the entity of the whole file; None where its only key is not launch."""
+        check_one_document(data.decode(), path)
+        root = read_yaml(data, path)
+        node = root.get("launch")
+        if node is None or not isinstance(root.value, dict) or len(root.value) > 1:
+            return None
+        return self.entity("launch", node, 0)
+
+    def entries(self, listed: YamlNode, depth: int) -> list[_Entity]:
+        """Return the actions of a list, each below its own key. Raises EvaluationFails."""
+        found: list[_Entity] = []
+        for item in listed.items:
+            table = item.value if isinstance(item.value, dict) else {}
+            if len(table) != 1:
+                names = ", ".join(list(table)[:4]) or "nothing"
+                message = (
+                    f"expected one action below one key, found {names}. Is it indented far enough?"
+                )
+                raise EvaluationFails(message, _position_of(item))
+            found += [self.entity(kind, value, depth + 1) for kind, value in table.items()]
+        return found
+
+    def entity(self, kind: str, node: YamlNode, depth: int) -> _Entity:
+        """Return one action or element."""
+        entity = _Entity(kind, _position_of(node), is_yaml=True)
+        self.count += 1
+        if depth > _MAX_DEPTH or self.count > _MAX_ENTITIES:
+            raise EvaluationFails("the launch file has too many elements", _position_of(node))
+        if isinstance(node.value, list):
+            entity.actions = self.entries(node, depth)
+        elif not isinstance(node.value, dict):
+            entity.error = f"{kind} has no attributes: write them below it"
+        else:
+            entity.has_actions = "children" in node.value
+            for key, value in node.value.items():
+                if key == "children":
+                    entity.actions = self.entries(value, depth)
+                elif value.items and isinstance(value.items[0].value, dict):
+                    entity.nested[key] = [self.entity(key, item, depth + 1) for item in value.items]
+                else:
+                    entity.attributes[key] = _plain_value(value)
+                    entity.places[key] = _position_at(node.key_location(key))
+        return entity
+
+
+def _plain_value(node: YamlNode) -> Any:
+    """Return the value of a scalar, or of a list of scalars; None of anything else."""
+    if isinstance(node.value, list):
+        return [_plain_value(item) for item in node.items]
+    text = node.text
+    if text is None or node.quoted:
+        return text
+    try:
+        found = yaml_value(text) if len(text) < 50 else text  # longer ones are no numbers
+    except ValueError:
+        return text
+    return (
+        text
+        if isinstance(found, dict | list) or (isinstance(found, str) and found != text)
+        else found
+    )
+
+
+def _position_of(node: YamlNode) -> Position:
+    return _position_at(node.location)
+
+
+def _position_at(location: Location) -> Position:
+    return Position(location.line, location.column)
+
+
+def actions_of(parent: _Entity, findings: Findings) -> list[Value]:
+    """Return the actions in an entity; errors, which stop the launch, are added to the findings."""
+    found: list[Value] = []
+    for entity in parent.actions:
+        try:
+            found.append(_action_of(entity, findings))
+        except EvaluationFails as error:
+            findings.add_fault(str(error), error.at or entity.at)
+        except EvaluationSignal as signal:
+            found.append(Unknown(str(signal), signal.at or entity.at))
+    return found
+
+
+def _action_of(entity: _Entity, findings: Findings) -> Call:
+    kind = entity.kind
+    if kind not in _ACTIONS:
+        if kind in front_end("action"):
+            raise Undetermined(f"the action {kind} is not evaluated", entity.at)
+        raise EvaluationFails(
+            f"there is no action {kind!r}{did_you_mean(kind, _ACTIONS)}", entity.at
+        )
+    given = _attributes_of(entity, f"if unless {_ACTIONS[kind]}")
+    condition = _condition_of(given, entity)
+    kwargs = {
+        _ARGUMENTS.get(name, name): _argument_value(entity, name, value)
+        for name, value in given.items()
+    }
+    if condition is not None:
+        kwargs["condition"] = condition
+    _add_elements(entity, kwargs)
+    if "children" in _ACTIONS[kind]:
+        kwargs["actions"] = actions_of(entity, findings)
+    return _checked_call(Call(front_end("action")[kind], [], kwargs, entity.at))
+
+
+def _attributes_of(entity: _Entity, known: str) -> dict[str, Any]:
+    """Return the attributes of an entity, of their types. Raises EvaluationSignal."""
+    if entity.error:
+        raise EvaluationFails(entity.error, entity.at)
+    if entity.is_yaml and entity.has_actions != ("children" in known):
+        what = "needs the key children" if "children" in known else "has no list of actions"
+        raise EvaluationFails(f"{entity.kind} {what}", entity.at)
+    names = {word.partition(":")[0].strip("-![]"): word for word in f"{known} -<<".split()}
+    lists = {name for name, word in names.items() if word.endswith("[]")}
+    inner = [*entity.nested, *(it.kind for it in entity.actions)]
+    for name in [*inner, *entity.attributes]:
+        if (
+            name == "<<"
+            or names.get(name, "").startswith("-")
+            or (
+                name.endswith("-sep")
+                and name[:-4] in names
+                and (name not in names or entity.is_yaml)
+            )
+        ):
+            raise Undetermined(f"{name} of <{entity.kind}> is not evaluated", entity.at)
+    for name in inner:
+        if "children" not in names and name not in lists:
+            raise EvaluationFails(
+                f"<{entity.kind}> contains no <{name}>{did_you_mean(name, lists)}", entity.at
+            )
+    for name in entity.attributes:
+        if name not in names or name in lists or name == "children":
+            message = f"<{entity.kind}> has no attribute {name!r}{did_you_mean(name, names)}"
+            raise EvaluationFails(message, entity.place(name))
+    missing = [
+        name
+        for name, word in names.items()
+        if "!" in word and name not in {*entity.attributes, *entity.nested}
+    ]
+    if missing:
+        raise EvaluationFails(f"<{entity.kind}> needs the attribute {missing[0]!r}", entity.at)
+    return {
+        name: _typed_attribute(entity, name, value, names[name].partition(":")[2])
+        for name, value in entity.attributes.items()
+    }
+
+
+def _typed_attribute(entity: _Entity, name: str, value: Any, kind: str) -> Any:
+    wanted = _TYPES[kind] if kind else str
+    if not entity.is_yaml:
+        return value if wanted is str else _typed_text(value, wanted, entity.place(name))
+    if not _is_typed(value, wanted, entity.place(name)):
+        what = f"{name} of {entity.kind} is {value!r}, which YAML reads as {type(value).__name__}"
+        todo = "put quotes around it" if wanted is str else f"write a {kind}"
+        raise EvaluationFails(f"{what}: {todo}", entity.place(name))
+    return value
+
+
+def _checked_call(call: Call) -> Call:
+    """Return a call whose arguments its constructor accepts. Raises EvaluationSignal."""
+    cls = class_named(call.name)
+    doubt = check(cls, call) if cls is not None else None
+    if doubt is not None:
+        raise Undetermined(doubt.reason, doubt.at)
+    return call
+
+
+def _condition_of(given: dict[str, Any], entity: _Entity) -> Call | None:
+    """Take the condition out of the attributes."""
+    own = {name: given.pop(name) for name in ("if", "unless") if name in given}
+    if len(own) > 1:
+        raise EvaluationFails("if and unless cannot be used together", entity.at)
+    for name, text in own.items():
+        kind = "if_condition.IfCondition" if name == "if" else "unless_condition.UnlessCondition"
+        kwargs = {"predicate_expression": _parse_value(text, entity.place(name))}
+        return Call(f"launch.conditions.{kind}", [], kwargs, entity.at)
+    return None
+
+
+def _argument_value(entity: _Entity, name: str, value: Any) -> Value:
+    at = entity.place(name)
+    if entity.kind == "arg" and name in ("name", "description"):
+        return value  # without substitutions
+    if name in ("cmd", "args", "ros_args"):
+        return _command_line(value, at)
+    if name == "on_exit":
+        if value != "shutdown":
+            raise EvaluationFails(f"on_exit is 'shutdown', not {value!r}", at)
+        return [Call(front_end("action")["shutdown"], [], {}, at)]
+    if name == "respawn" or entity.kind == "set_parameter":
+        text = "launch.substitutions.text_substitution.TextSubstitution"
+        parts = _parse_value(value, at)
+        return [Call(text, [], {"text": it}, at) if isinstance(it, str) else it for it in parts]
+    if name == "period":
+        return _parse_if_text(value, at)
+    return _parse_value(value, at) if isinstance(value, str) and name not in _RAW else value
+
+
+def _add_elements(entity: _Entity, kwargs: dict[str, Value]) -> None:
+    """Add the arguments that the elements in an entity stand for."""
+    if "children" in _ACTIONS[entity.kind]:
+        return
+    for name, inner in entity.nested.items():
+        match name:
+            case "param":
+                kwargs["parameters"] = [_parameter_of(it) for it in inner]
+            case "remap" | "arg":
+                pair = ("from", "to") if name == "remap" else ("name", "value")
+                given = [(it, _attributes_of(it, _NESTED[name])) for it in inner]
+                found = [
+                    tuple(_parse_value(values[key], it.place(key)) for key in pair)
+                    for it, values in given
+                ]
+                kwargs["remappings" if name == "remap" else "launch_arguments"] = found
+            case "choice":
+                kwargs["choices"] = [_attributes_of(it, _NESTED[name])["value"] for it in inner]
+
+
+def _parameter_of(entity: _Entity) -> Value:
+    """Return an item of the parameters of a node. Raises EvaluationSignal."""
+    given = _attributes_of(entity, _NESTED["param"])
+    if ("from" in given) == ("name" in given):
+        raise EvaluationFails("a <param> has either name or from", entity.at)
+    if "from" in given:
+        return _parse_value(str(given["from"]), entity.place("from"))
+    parts = _parse_value(given["name"], entity.place("name"))
+    inner, kind = entity.nested.get("param"), given.get("type")
+    name: Value = parts[0] if len(parts) == 1 and isinstance(parts[0], str) else tuple(parts)
+    if inner:
+        if "value" in given or "type" in given:
+            raise EvaluationFails("a <param> has either a value or other <param> in it", entity.at)
+        tables = (_parameter_of(it) for it in inner)
+        return {
+            name: {
+                key: value
+                for table in tables
+                if isinstance(table, dict)
+                for key, value in table.items()
+            }
+        }
+    if "value" not in given:
+        raise EvaluationFails("a <param> needs a value", entity.at)
+    if kind is not None and kind not in _VALUE_TYPES:
+        raise EvaluationFails(
+            f"a <param> has the type {kind!r}, which is none of {', '.join(_VALUE_TYPES)}",
+            entity.at,
+        )
+    if kind not in (None, "str", "yaml"):
+        raise Undetermined(f"a <param> of the type {kind} is not evaluated", entity.at)
+    if "value-sep" in given:
+        return {
+            name: _checked_call(
+                Call(TYPED[0], [], {"value": _separated_values(entity, kind)}, entity.at)
+            )
+        }
+    value = entity.attributes["value"] if not entity.is_yaml and kind == "str" else given["value"]
+    kwargs: dict[str, Value] = {"value": _parse_if_text(value, entity.place("value"))}
+    if kind == "str":
+        kwargs["value_type"] = Call("builtins.str", [], {}, entity.at)
+    return {name: _checked_call(Call(TYPED[0], [], kwargs, entity.at))}
+
+
+def _separated_values(entity: _Entity, kind: str | None) -> list[Value]:
+    """Return the list that a value in XML is with the attribute value-sep, as launch_xml's
+    entity.py splits it.
+    """
+    text, separator = str(entity.attributes["value"]), str(entity.attributes["value-sep"])
+    if not separator:
+        raise EvaluationFails("value-sep is empty", entity.at)
+    found: list[Value] = [_typed_text(part, None, entity.at) for part in text.split(separator)]
+    if kind is not None or "$(" in text or len({type(it) for it in found}) > 1:
+        raise Undetermined("this list in a <param> is not evaluated", entity.at)
+    return [_parse_value(it, entity.at)[0] if isinstance(it, str) else it for it in found]
+
+
+def _parse_value(text: str, at: Position) -> list[Value]:
+    """Return a value as a list of strings and substitutions. Raises EvaluationFails."""
+    parser = _ValueParser(text, at)
+    found = parser.template("", 0)
+    return found or [""]
+
+
+def _parse_if_text(value: Any, at: Position) -> Any:
+    """Return a value; a text is parsed. Raises EvaluationFails."""
+    parts = _parse_value(value, at) if isinstance(value, str) else [value]
+    return parts[0] if len(parts) == 1 and not isinstance(parts[0], Call) else parts
+
+
+def _command_line(text: str, at: Position) -> list[list[Value]]:
+    """Return the words of a line as launch splits it: strings are split, the values of
+    substitutions are not.
+    """
+    words: list[list[Value]] = [[]]
+    for piece in _parse_value(text, at):
+        if not isinstance(piece, str):
+            words[-1].append(piece)
+            continue
+        try:
+            found = shlex.split(piece)
+        except ValueError:
+            raise EvaluationFails(
+                "quotes cannot enclose a substitution in a line of arguments: remove them", at
+            ) from None
+        if piece[:1].isspace() or not found:
+            words.append([])
+        words[-1] += found[:1]
+        words += [[word] for word in found[1:]]
+        if piece[-1:].isspace():
+            words.append([])
+    return [word for word in words if word]
+
+
+def _typed_text(text: str, kind: type | None, at: Position) -> Any:
+    """Return the value of a text in XML as a type, by default any scalar; a text that is none of it
+    stays a text.
+    """
+    if kind is float:
+        try:
+            return float(text)
+        except ValueError:
+            return text
+    text = {"1": "true", "0": "false"}.get(text, text) if kind is bool else text
+    try:
+        found = yaml_value(text) if text else text
+    except ValueError:
+        return text
+    if not _is_typed(found, kind, at):
+        raise EvaluationFails(
+            f"{text[:40]!r} is of no type that is accepted here: put quotes in it", at
+        )
+    return found
+
+
+def _is_typed(value: Any, kind: type | None, at: Position) -> bool:
+    """Return whether a value is a text or of a type; with None, whether it is a scalar. Raises
+    Undetermined.
+    """
+    if isinstance(value, list) and kind is None:
+        raise Undetermined("a list in this place is not evaluated", at)
+    return isinstance(value, str | (kind or float) | (kind or int))
+
+
+@dataclass(slots=True)
+class _ValueParser:
+    """Parses a value from its beginning to its end."""
+
+    text: str
+    at: Position
+    position: int = 0
+
+    @property
+    def next(self) -> str:
+        return self.text[self.position : self.position + 1]
+
+    def template(self, quote: str, depth: int) -> list[Value]:
+        """Return strings and substitutions, up to the closing quote or the end."""
+        found: list[Value] = []
+        while self.position < len(self.text) and (not quote or self.next != quote):
+            found.append(self.part(quote, quote, depth))
+        if quote and self.position >= len(self.text):
+            raise EvaluationFails(f"a quote is not closed in {self.text[:60]!r}", self.at)
+        self.position += len(quote)
+        return found
+
+    def part(self, ends: str, quote: str, depth: int) -> Value:
+        """Return a substitution, or a string up to the next one or an end."""
+        if self.text.startswith("$(", self.position):
+            self.position += 2
+            return self.substitution(quote, depth + 1)
+        start = self.position
+        while (
+            self.position < len(self.text)
+            and not self.text.startswith("$(", self.position)
+            and self.next not in ends
+        ):
+            is_escape = self.next == "\\" and self.text[
+                self.position + 1 : self.position + 2
+            ] not in ("", " ", "\n")
+            self.position += 2 if is_escape else 1
+        return re.sub(r"\\(.)", r"\1", self.text[start : self.position])
+
+    def substitution(self, quote: str, depth: int) -> Call:
+        """Return the substitution in brackets: a name, and values separated by one space each."""
+        name = _NAME.match(self.text, self.position)
+        if name is None or depth > _MAX_DEPTH:
+            raise EvaluationFails(
+                f"there is no name of a substitution after $( in {self.text[:60]!r}", self.at
+            )
+        self.position, values = name.end(), list[list[Value]]()
+        while self.next == " ":
+            self.position += 1
+            values.append(self.value(quote, depth))
+        if self.next != ")":
+            what = (
+                "is not closed"
+                if not self.next
+                else f"has {self.next!r} in an argument without quotes"
+            )
+            raise EvaluationFails(f"the bracket of $({name[0][:40]} {what}", self.at)
+        self.position += 1
+        return self.call(name[0], values)
+
+    def value(self, quote: str, depth: int) -> list[Value]:
+        if not quote and self.next in ("'", '"'):
+            own = self.next
+            self.position += 1
+            return self.template(own, depth)
+        found: list[Value] = []
+        while self.next and self.next not in _BEFORE_NEXT[quote]:
+            found.append(self.part(_BEFORE_NEXT[quote], quote, depth))
+        if not found:
+            raise EvaluationFails(
+                f"an argument is missing in {self.text[:60]!r}: write one space between arguments",
+                self.at,
+            )
+        return found
+
+    def call(self, name: str, values: list[list[Value]]) -> Call:
+        """Return a substitution as the call that it is in Python. Raises EvaluationFails."""
+        if name == "command" and len(values) > 1 and values[1] not in _ON_STDERR:
+            raise EvaluationFails(
+                "$(command ...) needs quotes around its command: $(command 'xacro ...')", self.at
+            )
+        if name not in _SUBSTITUTIONS:
+            if name in front_end("substitution"):
+                raise Undetermined(f"the substitution $({name} ...) is not evaluated", self.at)
+            similar = closest(name, _SUBSTITUTIONS)
+            raise EvaluationFails(
+                (
+                    f"there is no substitution $({name} "
+                    f"...){f'; did you mean $({similar} ...)?' if similar else ''}"
+                ),
+                self.at,
+            )
+        names = _SUBSTITUTIONS[name].split()
+        if not len([it for it in names if it[0] != "["]) <= len(values) <= len(names):
+            count = "1 argument" if len(names) == 1 else f"{len(names) or 'no'} arguments"
+            raise EvaluationFails(f"$({name} ...) takes {count}", self.at)
+        plain = (
+            "".join(value) if all(isinstance(it, str) for it in value) else value
+            for value in values
+        )
+        kwargs: dict[str, Value] = dict(zip((it.strip("[]") for it in names), plain, strict=False))
+        return Call(front_end("substitution")[name], [], kwargs, self.at)

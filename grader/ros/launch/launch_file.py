@@ -1,0 +1,558 @@
+"""Read a launch file in any of its languages, and the launch files that it includes.
+
+One in Python is evaluated without running it: `_PythonLaunchFile` gives what the functions that it
+calls return.
+"""
+
+import posixpath
+import re
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from operator import attrgetter, methodcaller
+from pathlib import PurePosixPath
+
+from grader.base.merge_conflicts import resolve_conflicts
+from grader.base.source import Location, Source
+from grader.ros.build.places import HOME, PREFIX, SHARE, WORKING_FOLDER
+from grader.ros.launch.actions import CIRCULAR_INCLUDE, ActionVisitor, Include
+from grader.ros.launch.api import (
+    DESCRIPTION,
+    JOINED_PATH,
+    PATH,
+    SUBSTITUTION,
+    class_named,
+    exports,
+    is_a,
+)
+from grader.ros.launch.call_arguments import LaunchFunctions, join_path, kind_of
+from grader.ros.launch.launch_model import (
+    Contents,
+    Context,
+    FileText,
+    Findings,
+    Installation,
+    Launch,
+    LaunchFault,
+    StartedNode,
+    UnknownText,
+)
+from grader.ros.launch.substitutions import resolve
+from grader.ros.python.evaluation import Evaluation, record
+from grader.ros.python.interpreter import Interpreter
+from grader.ros.python.library import standard_functions
+from grader.ros.python.parse import START, Code, Position, SyntaxFault, location_in, parse
+from grader.ros.python.values import (
+    Call,
+    EvaluationFails,
+    Function,
+    FunctionTable,
+    Undetermined,
+    Unknown,
+    Value,
+    known,
+    path_text,
+)
+
+_MODULE_NAME = "python_launch_file"  # the __name__ of a launch file
+_AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")
+_RECORDED = ("builtins.open.close", "builtins.open.__enter__", "xacro.process_doc")
+_TEXTS = [
+    f"{name}.{method}"
+    for name in ("xacro.process_file", "xacro.parse")
+    for method in ("toxml", "toprettyxml")
+]
+_ENTRY = "generate_launch_description"
+_NODE = "launch_ros.actions.node.Node"
+_MOVEIT = "moveit_configs_utils"
+_MAX_INCLUDES = 10
+# What a launch file shares with those that it includes.
+_JOINED = ("nodes", "references", "faults", "unknown", "doubts", "declared", "values", "passed")
+_MAX_KEPT = 4  # launch files
+
+
+class _Recorder:
+    """An installation that records what is asked of it. With the same answers, a launch file is
+    evaluated alike.
+    """
+
+    def __init__(self, installation: Installation) -> None:
+        self._installation = installation
+        self._answers: list[tuple[Callable[[Installation], object], object]] = []
+
+    def open_installed(self, path: str) -> tuple[bytes, str] | None:
+        """Return an installed file."""
+        found = self._installation.open_installed(path)
+        self._answers.append((methodcaller("open_installed", path), found))
+        return found
+
+    def has_package(self, name: str) -> bool:
+        """Return whether a package certainly is on the machine."""
+        found = self._installation.has_package(name)
+        self._answers.append((methodcaller("has_package", name), found))
+        return found
+
+    def files_in(self, folder: str) -> Sequence[str] | None:
+        """Return the names of the installed files in a folder."""
+        found = self._installation.files_in(folder)
+        self._answers.append((methodcaller("files_in", folder), found))
+        return found
+
+    def has_program(self, package: str, name: str) -> bool | None:
+        """Return whether a package has a program."""
+        found = self._installation.has_program(package, name)
+        self._answers.append((methodcaller("has_program", package, name), found))
+        return found
+
+    def is_equal(self, other: Installation) -> bool:
+        """Return whether another installation answers alike."""
+        return all(question(other) == answer for question, answer in self._answers)
+
+
+# The results of the last launch files: those of a handout are read again, and all while hints are
+# searched.
+_KEPT: dict[tuple[bytes, str, str, tuple[tuple[str, str], ...]], tuple[_Recorder, Launch]] = {}
+_NO_ARGUMENTS: Mapping[str, str] = {}
+
+
+def read_launch(
+    data: bytes,
+    path: str,
+    installed: str,
+    installation: Installation,
+    arguments: Mapping[str, str] = _NO_ARGUMENTS,
+) -> Launch:
+    """Read a launch file and evaluate it. Never raises.
+
+    Args:
+        data: The file's contents.
+        path: Its path in the submission.
+        installed: Its path below the prefix after a build.
+        installation: What is installed besides.
+        arguments: The launch arguments that it is given.
+    """
+    key = (data, path, installed, tuple(arguments.items()))
+    if key in _KEPT and _KEPT[key][0].is_equal(installation):
+        return _KEPT[key][1]
+    recorder = _Recorder(installation)
+    context = Context(
+        f"{PREFIX}/{installed}", recorder, dict(arguments), given=frozenset(arguments)
+    )
+    launch = _LaunchReader().read(data, path, installed, context)
+    _KEPT.pop(key, None)
+    if len(_KEPT) >= _MAX_KEPT:
+        del _KEPT[next(iter(_KEPT))]
+    _KEPT[key] = (recorder, launch)
+    return launch
+
+
+@dataclass(slots=True)
+class _LaunchReader:
+    """A reader of a launch file and a limited number of included ones."""
+
+    includes_left: int = _MAX_INCLUDES
+    open: list[str] = field(
+        default_factory=list
+    )  # the files that are being read, each included by the one before
+
+    def read(self, data: bytes, path: str, installed: str, context: Context) -> Launch:
+        """Return a launch file together with those that it includes."""
+        included: list[Launch] = []
+
+        def include(target: str, arguments: Context) -> str:
+            return self.include(
+                posixpath.normpath(target).removeprefix(PREFIX + "/"), arguments, included
+            )
+
+        self.open.append(installed)
+        suffix = PurePosixPath(path).suffix.lower()
+        is_xml = suffix == ".xml" or (suffix in (".launch", "") and data.lstrip().startswith(b"<"))
+        if is_xml or suffix in (".yaml", ".yml"):
+            own = _launch_of_entities(data, path, context, include, is_yaml=not is_xml)
+        else:
+            own = _launch_of_python(data, path, installed, context, include)
+        self.open.pop()
+        for launch in included:
+            joined = {name: getattr(own, name) + getattr(launch, name) for name in _JOINED}
+            own = replace(own, **joined)
+        return own
+
+    def include(self, target: str, context: Context, included: list[Launch]) -> str:
+        """Read an included file; return why it is not read, or nothing."""
+        if target in self.open:
+            return CIRCULAR_INCLUDE
+        found = context.installation.open_installed(target)
+        if found is None:
+            return f"it includes {target}, which the submission does not install"
+        if self.includes_left == 0:
+            return f"it includes more than {_MAX_INCLUDES} launch files"
+        self.includes_left -= 1
+        launch = self.read(*found, target, context)
+        faults = launch.faults if launch.syntax is None else (*launch.faults, launch.syntax)
+        if context.when is not True:  # an error in the file counts only if it is included
+            launch = replace(
+                launch, doubts=(*launch.doubts, *faults), unknown=(*launch.unknown, *faults)
+            )
+            faults = ()
+        included.append(replace(launch, faults=faults))
+        return ""
+
+
+def _launch_of_entities(
+    data: bytes, path: str, context: Context, include: Include, *, is_yaml: bool
+) -> Launch:
+    from grader.ros.launch.frontend import actions_of, read_frontend
+
+    source = Source(path, data.decode("utf-8", "replace"))
+    findings = Findings(lambda position: Location(path, position.line, position.column))
+    resolved = resolve_conflicts(data)
+    if resolved is not None:
+        findings.add_fault(resolved.message, Position(resolved.line, 1))
+        data = resolved.data
+        source = Source(path, data.decode("utf-8", "replace"))
+    root = read_frontend(data, source, is_yaml=is_yaml)
+    if isinstance(root, LaunchFault):
+        return Launch(source, root)
+    if root.error:
+        findings.add_fault(root.error, root.at)
+    actions = actions_of(root, findings)
+    visitor = ActionVisitor(
+        findings, include, lambda _, at, *__: Unknown("a function is not evaluated here", at)
+    )
+    visitor.launch(Call(DESCRIPTION, [], {"initial_entities": actions}, root.at), context, root.at)
+    return _launch_of_findings(source, findings, ())
+
+
+def _launch_of_python(
+    data: bytes, path: str, installed: str, context: Context, include: Include
+) -> Launch:
+    code = parse(data, path)
+    if isinstance(code, SyntaxFault):
+        syntax = LaunchFault(f"Python cannot read the file: {code.message}", code.location)
+        return (
+            Launch(code.source, syntax)
+            if code.sure
+            else Launch(code.source, unknown=(syntax,), doubts=(syntax,))
+        )
+    findings = Findings(lambda position: location_in(code.source, position))
+    file = _PythonLaunchFile(context)
+    entry = file.run(code, installed).get(_ENTRY)
+    visitor = ActionVisitor(findings, include, file.call)
+    interpreter = file.interpreter
+    if isinstance(entry, Function):
+        description = file.call(entry, entry.at, (), context)
+        error = _description_error(description)
+        if error:
+            findings.add_fault(error, entry.at)
+        elif not isinstance(description, Unknown) or interpreter.doubt is None:
+            visitor.launch(description, context, entry.at)
+    elif interpreter.doubt is None and not interpreter.errors:
+        message = f"the file does not define the function {_ENTRY}, which ros2 launch calls"
+        if entry is None:
+            findings.add_fault(message, START)
+        else:
+            findings.add_undecided(
+                f"{_ENTRY}, which the file does not define itself, is not evaluated", START
+            )
+    _add_python(findings, file)
+    if code.conflict is not None:
+        findings.add_fault(*code.conflict)
+    nodes = [
+        call for call in interpreter.calls if call.name == _NODE and call not in visitor.visited
+    ]
+    return _launch_of_findings(
+        code.source, findings, tuple(_forgotten_node(node, findings) for node in nodes)
+    )
+
+
+def _add_python(findings: Findings, file: "_PythonLaunchFile") -> None:
+    """Add what Python raises, what is not evaluated, and what the file reads."""
+    interpreter = file.interpreter
+    if interpreter.doubt is not None:
+        findings.add_undecided(interpreter.doubt.reason, interpreter.doubt.at)
+    if (
+        interpreter.errors
+    ):  # the description is not loaded, so what is wrong with the rest of it does not count
+        findings.faults, findings.doubts = [], []
+    for fault in interpreter.errors:
+        findings.add_fault(fault.message, fault.at)
+    for contents, at in file.reads:
+        findings.refer("read", contents, Call("", [], {}, at))
+
+
+def _description_error(value: Value) -> str:
+    """Return what is wrong with the value of generate_launch_description, or nothing."""
+    match value:
+        case None:
+            return f"{_ENTRY} does not return its LaunchDescription"
+        case Unknown():
+            return ""
+        case Call() if is_a(value.name, DESCRIPTION):
+            return ""
+        case _:
+            return f"{_ENTRY} does not return a LaunchDescription([...]), but {kind_of(value)}"
+
+
+def _forgotten_node(node: Call, findings: Findings) -> StartedNode:
+    given = (node.kwargs.get(name) for name in ("package", "executable"))
+    package, executable = (value if isinstance(value, str) else "" for value in given)
+    return StartedNode(package, executable, False, findings.locate(node.at))
+
+
+def _launch_of_findings(
+    source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]
+) -> Launch:
+    named = {
+        reference.path
+        for reference in findings.references
+        if reference.purpose not in ("read", "parameters")
+    }
+    references = [it for it in findings.references if it.purpose != "read" or it.path not in named]
+    order = attrgetter("location.line", "location.column", "message")
+    return Launch(
+        source=source,
+        nodes=tuple(findings.nodes),
+        references=tuple(dict.fromkeys(references)),
+        faults=tuple(sorted(set(findings.faults), key=order)),
+        unknown=tuple(dict.fromkeys(findings.unknown)),
+        doubts=tuple(dict.fromkeys(findings.doubts)),
+        declared=tuple(dict.fromkeys(findings.declared)),
+        values=tuple(findings.values),
+        passed=tuple(dict.fromkeys(findings.passed)),
+        forgotten=forgotten,
+    )
+
+
+@dataclass(slots=True)
+class _PythonLaunchFile:
+    """The evaluation of a launch file; `context` is that of the action which calls one of its
+    functions.
+    """
+
+    context: Context
+    reads: list[tuple[Contents, Position]] = field(
+        default_factory=list
+    )  # what it certainly reads while it is loaded
+    interpreter: Interpreter = field(init=False)
+    moveit: FunctionTable = field(
+        default_factory=dict
+    )  # the functions of MoveIt's package, if the file uses it
+
+    def run(self, code: Code, installed: str) -> dict[str, Value]:
+        """Evaluate the file, and return its names."""
+        names = {"__file__": f"{PREFIX}/{installed}", "__name__": _MODULE_NAME}
+        known: dict[str, Collection[str]] = {
+            module: own.keys() for module, own in exports().items()
+        }
+        if _MOVEIT in code.source.text:
+            from grader.ros.launch.moveit_configs import (  # late: few files use it
+                MoveItConfigurations,
+                moveit_exports,
+            )
+
+            known = {**moveit_exports(), **known}
+            self.moveit = MoveItConfigurations(lambda: self.context, self.reads).functions()
+        packages_last = sorted(known.items(), key=lambda it: -it[0].count("."))
+        self.interpreter = Interpreter(
+            self._functions(), names, stand_ins=(PREFIX, HOME), exports=dict(packages_last)
+        )
+        return self.interpreter.run(code).names
+
+    def call(
+        self, function: Function, at: Position, args: Sequence[Value] | None, context: Context
+    ) -> Value:
+        """Return the value of a call of one of the file's functions, in the context of an
+        action.
+        """
+        before, self.context = self.context, context
+        try:
+            return self.interpreter.call_from_outside(function, at, args)
+        finally:
+            self.context = before
+
+    def _functions(self) -> FunctionTable:
+        adds = [f"{DESCRIPTION}.{name}" for name in ("add_action", "add_entity")]
+        classes = {full for names in exports().values() for full in names.values() if full}
+        performs = [f"{full}.perform" for full in sorted(classes) if is_a(full, SUBSTITUTION)]
+        return LaunchFunctions(
+            {
+                **standard_functions(WORKING_FOLDER),
+                **self.moveit,
+                **dict.fromkeys(_RECORDED, record),
+                **dict.fromkeys(adds, _add_action),
+                **dict.fromkeys((f"{it}.__truediv__" for it in (JOINED_PATH, PATH)), join_path),
+                **dict.fromkeys(performs, self._perform),
+                **dict.fromkeys(
+                    (f"{it}.get_package_share_directory" for it in _AMENT_INDEX), self._share
+                ),
+                **dict.fromkeys(
+                    (f"{it}.get_package_share_path" for it in _AMENT_INDEX), self._share_path
+                ),
+                "launch_ros.substitutions.find_package.FindPackageShare.find": self._share,
+                "builtins.open": self._open,
+                **dict.fromkeys(("pathlib.Path.read_text", "pathlib.Path.open"), self._open_path),
+                **dict.fromkeys(
+                    ("os.path.exists", "os.path.isfile", "pathlib.Path.exists"), self._exists
+                ),
+                **dict.fromkeys(
+                    ("xacro.process_file", "xacro.process", "xacro.parse"), self._xacro
+                ),
+                **dict.fromkeys(("builtins.open.read", *_TEXTS), self._text),
+                **dict.fromkeys(
+                    ("os.environ.__getitem__", "os.environ.get", "os.getenv"), _read_variable
+                ),
+                "os.path.join": _join_paths,
+                "os.path.expanduser": _expand_user,
+                "pathlib.Path.home": lambda *_: PurePosixPath(HOME),
+            }
+        )
+
+    def _perform(self, _: Evaluation, call: Call) -> Value:
+        """Return the text of a substitution as Python gets it."""
+        try:
+            found = resolve(call.owner, self.context, call.at)
+        except Undetermined as error:  # at this call, not at the substitution
+            raise Undetermined(str(error)) from None
+        reason = "the content of a file is not evaluated"
+        return (
+            FileText(reason=reason, at=call.at, contents=found)
+            if isinstance(found, Contents)
+            else found
+        )
+
+    def _text(self, evaluation: Evaluation, call: Call) -> Value:
+        """Return the text of a file that is expanded, or read for the first time."""
+        opened = call.owner
+        if opened is None or call.args:
+            raise Undetermined("a part of the text of a file is not evaluated")
+        if call.name.endswith(".read"):
+            if any(not before.name.endswith("__enter__") for before in opened.method_calls):
+                raise Undetermined("a file that is closed or read once more is not evaluated")
+            record(evaluation, call)
+        return FileText(
+            reason="the content of a file is not evaluated",
+            at=opened.at,
+            contents=_contents_read(opened),
+        )
+
+    def _package(self, evaluation: Evaluation, call: Call) -> str:
+        name = known(call.argument(0, "package_name", "package"))
+        if not isinstance(name, str):
+            raise EvaluationFails("the name of a package is a string")
+        if not self.context.installation.has_package(name):
+            evaluation.doubted(
+                Unknown(f"whether the package {name!r} is installed is not evaluated", call.at)
+            )
+        return name
+
+    def _share(self, evaluation: Evaluation, call: Call) -> Value:
+        return f"{SHARE}/{self._package(evaluation, call)}"
+
+    def _share_path(self, evaluation: Evaluation, call: Call) -> Value:
+        return PurePosixPath(self._share(evaluation, call))
+
+    def _open(self, evaluation: Evaluation, call: Call) -> Value:
+        file, mode = call.argument(0, "file"), known(call.argument(1, "mode"))
+        path = path_text(
+            file if isinstance(file, Call) and class_named(file.name) is not None else known(file)
+        )
+        if path is None:
+            raise EvaluationFails(
+                "open takes a path, not a substitution: use Command(['cat ', ...])"
+            )
+        encoding = known(call.argument(3, "encoding"))
+        others = call.kwargs.keys() - {"file", "mode", "encoding"}
+        is_utf8 = encoding is None or str(encoding).lower().replace("_", "-") in ("utf-8", "utf8")
+        if mode not in (None, "r", "rt") or not is_utf8 or others or len(call.args) > 2:
+            raise Undetermined("this use of open is not evaluated", call.at, is_final=True)
+        if evaluation.attempts and self.context.text_of(path) is None:
+            raise Undetermined(
+                "whether the file of this try is there is not evaluated", call.at, is_final=True
+            )
+        self.reads.append((Contents(path, "open"), call.at))
+        call.name, call.args, call.kwargs = "builtins.open", [path], {}
+        return record(evaluation, call)
+
+    def _open_path(self, evaluation: Evaluation, call: Call) -> Value:
+        if not call.name.endswith("read_text"):
+            return self._open(evaluation, call)
+        opened = self._open(
+            evaluation, Call("", [call.args[0], "r", *call.args[1:]], call.kwargs, call.at)
+        )
+        return self._text(evaluation, Call("builtins.open.read", [], {}, call.at, opened))
+
+    def _exists(self, _: Evaluation, call: Call) -> Value:
+        path = path_text(known(call.args[0])) or ""
+        is_there = self.context.text_of(path) is not None
+        return (
+            True
+            if is_there
+            else Unknown(f"whether {posixpath.basename(path)} exists is not evaluated", call.at)
+        )
+
+    def _xacro(self, evaluation: Evaluation, call: Call) -> Value:
+        given = call.argument(0, "input_file_name")
+        if isinstance(given, Call) and not given.name.startswith("builtins.open"):
+            raise EvaluationFails(
+                f"{call.name} takes a path, not a substitution: use Command(['xacro ', ...])"
+            )
+        if isinstance(given, Call):
+            given = given.args[0] if given.args else None
+        path = path_text(known(given))
+        if path is None:
+            raise Undetermined("what xacro reads is not evaluated")
+        call.args = [path, *call.args[1:]]
+        self.reads.append((Contents(path, "xacro"), call.at))
+        if call.name == "xacro.process":
+            return FileText(
+                reason="the output of xacro is not evaluated",
+                at=call.at,
+                contents=_contents_read(call),
+            )
+        return record(evaluation, call)
+
+
+def _contents_read(call: Call) -> Contents:
+    """Return what a call of open or xacro reads, as far as this is known."""
+    given = call.kwargs.get("mappings")
+    pairs = given.items() if isinstance(given, dict) else ()
+    arguments = tuple(
+        (str(name), value if isinstance(value, str) else None) for name, value in pairs
+    )
+    return Contents(call.args[0], "xacro" if call.name.startswith("xacro.") else "open", arguments)
+
+
+def _add_action(evaluation: Evaluation, call: Call) -> Value:
+    """Record an action that is added to a description."""
+    if len(call.args) + len(call.kwargs) != 1:
+        raise EvaluationFails(f"{call.name.rpartition('.')[2]} takes one action")
+    record(evaluation, call)
+
+
+def _read_variable(_: Evaluation, call: Call) -> Value:
+    """Return a variable of the environment: whether it is set is not known."""
+    name, default = known(call.argument(0, "key")), known(call.argument(1, "default"))
+    if name == "HOME":
+        return HOME
+    reason = "the environment is not evaluated"
+    if call.name.endswith("__getitem__"):
+        raise Undetermined(reason)
+    return (UnknownText if isinstance(default, str) else Unknown)(reason, call.at)
+
+
+def _join_paths(evaluation: Evaluation, call: Call) -> Value:
+    """Return what os.path.join returns; it fails for substitutions."""
+    if any(isinstance(value, Call) and class_named(value.name) is not None for value in call.args):
+        raise EvaluationFails(
+            "os.path.join takes strings, not substitutions: use PathJoinSubstitution([...])"
+        )
+    return evaluation.call_value(standard_functions(WORKING_FOLDER)["os.path.join"], call)
+
+
+def _expand_user(_: Evaluation, call: Call) -> Value:
+    """Return a path with the home folder in place of ~."""
+    text = path_text(known(call.args[0])) if call.args else None
+    return (
+        re.sub("^~", HOME, text)
+        if text is not None
+        else Unknown("a path is not evaluated", call.at)
+    )

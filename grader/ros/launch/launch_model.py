@@ -1,0 +1,385 @@
+"""The nodes that a launch file starts and the files that it names, and the state while its actions
+are visited.
+"""
+
+import posixpath
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any, Literal, NamedTuple, Protocol
+
+from grader.base.source import Location, Source
+from grader.ros.build.places import PREFIX
+from grader.ros.python.budget import Budget
+from grader.ros.python.parse import Position
+from grader.ros.python.values import Call, EvaluationFails, EvaluationSignal, Unknown, Value
+
+_MAX_STEPS = 50_000
+ANY = "**"
+# the launch configuration that has the namespace of what follows, as in launch_ros
+NAMESPACE = "ros_namespace"
+STATE_PUBLISHER = "robot_state_publisher"
+Purpose = Literal["urdf", "rviz", "include", "read", "parameters"]
+
+
+@dataclass(frozen=True, slots=True)
+class Contents:
+    """The contents of a file, read by open, cat or xacro.
+
+    `arguments` are those of xacro; None for an unknown value.
+    """
+
+    path: str
+    by: str
+    arguments: tuple[tuple[str, str | None], ...] = ()
+    stops_at_stderr: bool = False  # whether launch stops if the program writes a warning
+    is_deprecated: bool = False  # whether xacro has an option of which it warns
+
+
+class UnknownText(Unknown):
+    """A value that is not known, but certainly is a text."""
+
+
+class UnknownTable(UnknownText):
+    """A table of parameters that is not known, whose names are not known either."""
+
+
+class FileText(UnknownText):
+    """The text of a file, as a Python function gives it."""
+
+    def __init__(self, reason: str, at: Position, contents: Contents) -> None:
+        super().__init__(reason, at)
+        self.contents = contents
+
+
+Resolved = str | Contents | Unknown
+
+
+def not_evaluated(reason: str) -> str:
+    """Return a reason with the words that say what it means."""
+    return reason if "evaluated" in reason else f"{reason}, which is not evaluated"
+
+
+class Installation(Protocol):
+    """What is installed on the machine of a launch file: what builds of the submitted packages
+    install, and ROS 2.
+    """
+
+    def open_installed(self, path: str) -> tuple[bytes, str] | None:
+        """Return an installed file by its path below the prefix: its bytes, and its path in the
+        submission.
+        """
+
+    def has_package(self, name: str) -> bool:
+        """Return whether a package certainly is on the machine."""
+
+    def files_in(self, folder: str) -> "Sequence[str] | None":
+        """Return the names of the installed files in a folder below the prefix; None where they are
+        not all known.
+        """
+
+    def has_program(self, package: str, name: str) -> bool | None:
+        """Return whether a package has a program; None where this is not known."""
+
+
+@dataclass(slots=True)
+class Context:
+    """The path of the installed launch file, and what launch knows when it executes an action.
+
+    `arguments` are the launch configurations; one with the name ANY stands for any other one.
+    """
+
+    path: str
+    installation: Installation
+    arguments: dict[str, Resolved] = field(default_factory=dict)
+    when: bool | None = True  # whether the file is launched at all
+    # What SetRemap and SetParameter give to all nodes, by the configurations that launch_ros keeps
+    # them in: lists, which groups share, as there. None is one that is not known.
+    to_all: "dict[str, list[Any]]" = field(default_factory=dict)
+    included_by: tuple[
+        str, ...
+    ] = ()  # the paths of the launch files that include this one, the first one first
+    given: frozenset[str] = frozenset()  # the launch arguments that the file is included with
+    reads: list[tuple[Contents, Position]] = field(
+        default_factory=list
+    )  # that the current action needs
+    budget: Budget = field(
+        default_factory=partial(Budget, _MAX_STEPS)
+    )  # of all files that are launched
+
+    def copy(self) -> "Context":
+        """Return a context whose launch configurations change on their own."""
+        return replace(self, arguments=dict(self.arguments), to_all=dict(self.to_all))
+
+    def text_of(self, path: str) -> str | None:
+        """Return the text of a file; None for one that is not installed below the prefix, or is no
+        text.
+        """
+        if not path.startswith(f"{PREFIX}/"):
+            return None
+        found = self.installation.open_installed(
+            posixpath.normpath(path).removeprefix(f"{PREFIX}/")
+        )
+        try:
+            return found[0].decode().replace("\r\n", "\n") if found is not None else None
+        except UnicodeDecodeError:
+            return None
+
+
+class ParameterValue(NamedTuple):
+    """The value that a parameter is given, a scalar or a list of them or Unknown, and where it is
+    written.
+    """
+
+    value: Any
+    location: Location
+
+
+class GivenParameters(NamedTuple):
+    """Parameters that a node is given at once: those of a file, by the path that launch has of it,
+    or `values`.
+    """
+
+    location: Location
+    path: str = ""
+    values: Mapping[str, ParameterValue] = {}
+    # whether the values are for the node by its full name, not for every node of the process
+    is_named: bool = False
+    node: str = ""  # or for the node of this name only
+    is_plain: bool = True  # whether launch replaces no substitutions in the file
+    unknown: str = ""  # why they are not known
+
+
+@dataclass(frozen=True, slots=True)
+class StartedNode:
+    """A program that is started. `when` is True, False where a condition prevents it, None if known
+    at run time only.
+
+    `frame_prefix` is what robot_state_publisher puts before the name of each link; None where it is
+    known at run time. The same holds for `namespace`, for the `remaps` of names, and for all that
+    follows.
+    """
+
+    package: str
+    executable: str
+    when: bool | None
+    location: Location
+    frame_prefix: str | None = ""
+    namespace: str | None = ""
+    remaps: tuple[tuple[str, ...], ...] | None = ()
+    has_description: bool = False  # whether it is given the robot itself, not only by a topic
+    node_name: str | None = ""  # the one that it is given; empty if it keeps that of its program
+    arguments: tuple[str | None, ...] | None = None  # the words after the program
+    parameters: tuple[GivenParameters, ...] | None = None  # later ones count; see parameters_of
+    included_by: tuple[
+        str, ...
+    ] = ()  # the paths below the prefix of the launch files by which its own is included
+
+    def topic(self, name: str) -> str | None:
+        """Return the topic that the node has for a name in its program; None where it is known at
+        run time.
+        """
+        # A rule for one node of the process, node:name:=other, is not resolved.
+        if (
+            self.namespace is None
+            or self.remaps is None
+            or any(":" in rule[0] for rule in self.remaps)
+        ):
+            return None
+        full = self.full_name(name)
+        rules = (rule[1] for rule in self.remaps if self.full_name(rule[0]) == full)
+        return self.full_name(next(rules, full))
+
+    def full_name(self, name: str) -> str:
+        """Return a name with the namespace; ~ is the name that the node is given, and stays if it
+        is given none.
+        """
+        if name.startswith("~/") and self.node_name:
+            name = f"{self.node_name}{name[1:]}"
+        return (
+            name
+            if name.startswith("/")
+            else f"/{(self.namespace or '').strip('/')}/{name}".replace("//", "/")
+        )
+
+    @property
+    def name(self) -> str:
+        """The package and the program, once where they are called the same."""
+        return (
+            self.executable
+            if self.package == self.executable
+            else f"{self.package}/{self.executable}"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class NamedFile:
+    """A file that the launch file names. `path` begins with a stand-in where a folder depends on
+    the machine.
+    """
+
+    purpose: Purpose
+    path: str | None
+    location: Location
+    reason: str = ""  # why the path is unknown, or what is wrong with it
+    sure: bool = True  # False where it is unknown
+    by: str = ""  # the program that reads it, if there is one: xacro, cat, open or decode
+    arguments: tuple[tuple[str, str | None], ...] = ()  # that xacro gets
+    stops_at_stderr: bool = False  # whether launch stops if xacro writes a warning
+    is_deprecated: bool = False  # whether xacro has an option of which it warns
+
+
+class PassedArguments(NamedTuple):
+    """The launch arguments that an include passes to a launch file, by its path below the prefix.
+
+    The value of one is None where it is not known. `when` is None where it is not known whether the
+    file is included.
+    """
+
+    path: str
+    values: tuple[tuple[str, str | None], ...]
+    location: Location
+    when: bool | None = True
+
+
+@dataclass(frozen=True, slots=True)
+class LaunchFault:
+    """An error that stops the launch or a node, or something unknown, with its location."""
+
+    message: str
+    location: Location
+
+
+@dataclass(frozen=True, slots=True)
+class Launch:
+    """The result of a launch file and of those that it includes."""
+
+    source: Source
+    syntax: LaunchFault | None = None  # set where the file itself cannot be read
+    nodes: tuple[StartedNode, ...] = ()
+    references: tuple[NamedFile, ...] = ()
+    faults: tuple[LaunchFault, ...] = ()
+    unknown: tuple[LaunchFault, ...] = ()  # what may start more
+    doubts: tuple[LaunchFault, ...] = ()  # what may stop the launch
+    declared: tuple[
+        str, ...
+    ] = ()  # the launch arguments that it and the files that it includes declare
+    values: tuple[tuple[str, str], ...] = ()  # of these, as far as they are known
+    passed: tuple[PassedArguments, ...] = ()
+    forgotten: tuple[
+        StartedNode, ...
+    ] = ()  # created in the file, but not part of its LaunchDescription
+    unread: str = ""  # why the file was not read at all: too large, damaged
+
+    def named(self, *purposes: Purpose) -> tuple[NamedFile, ...]:
+        """Return the files that are named for one of these purposes."""
+        return tuple(reference for reference in self.references if reference.purpose in purposes)
+
+    @property
+    def more(self) -> str:
+        """Why it may start more than is known; empty where it does not."""
+        is_read = self.syntax is None and not self.unread
+        return (
+            self.unknown[0].message
+            if self.unknown
+            else ""
+            if is_read
+            else "a launch file cannot be read"
+        )
+
+    def frames_of(self, link: str) -> tuple[str | None, ...]:
+        """Return the frames of a link that robot_state_publisher publishes (a rubric may prefix
+        it); None if unknown.
+
+        tf2 ignores a slash at the start.
+        """
+        publishers = [
+            node
+            for node in self.nodes
+            if node.executable == STATE_PUBLISHER and node.when is not False
+        ]
+        prefixes = dict.fromkeys(node.frame_prefix for node in publishers) or [""]
+        return tuple(
+            it if it is None else (it + link.removeprefix(it)).removeprefix("/") for it in prefixes
+        )
+
+
+@dataclass(slots=True)
+class Findings:
+    """The findings so far in one launch file. `sets_parameters`: an action gives parameters to all
+    nodes.
+    """
+
+    locate: Callable[[Position], Location]
+    nodes: list[StartedNode] = field(default_factory=list)
+    references: list[NamedFile] = field(default_factory=list)
+    faults: list[LaunchFault] = field(default_factory=list)
+    unknown: list[LaunchFault] = field(default_factory=list)
+    doubts: list[LaunchFault] = field(default_factory=list)
+    declared: list[str] = field(default_factory=list)
+    values: list[tuple[str, str]] = field(default_factory=list)
+    passed: list[PassedArguments] = field(default_factory=list)
+    sets_parameters: bool = False
+    is_silent: bool = False  # while what may never be executed is visited
+
+    def add_fault(self, message: str, at: Position) -> None:
+        """Add an error that stops the launch."""
+        self.faults.append(LaunchFault(message, self.locate(at)))
+
+    def add_unknown(self, reason: str, at: Position) -> None:
+        """Add what may start more than is found."""
+        self.unknown.append(LaunchFault(reason, self.locate(at)))
+
+    def add_doubt(self, reason: str, at: Position) -> None:
+        """Add what may stop the launch."""
+        self.doubts.append(LaunchFault(not_evaluated(reason), self.locate(at)))
+
+    def add_undecided(self, reason: str, at: Position) -> None:
+        """Add what may start more, or stop the launch."""
+        self.add_unknown(reason, at)
+        self.add_doubt(reason, at)
+
+    def add(self, signal: EvaluationSignal, at: Position, when: bool | None) -> None:
+        """Add what ends an action: an error only if it certainly is executed. `at` is the position
+        of the action.
+        """
+        if self.is_silent or when is False:
+            return
+        at = signal.at or at
+        if not isinstance(signal, EvaluationFails):
+            self.add_doubt(str(signal), at)
+        elif when:
+            self.add_fault(str(signal), at)
+        else:
+            self.add_doubt(f"whether this is executed is not evaluated: {signal}", at)
+
+    def refer(
+        self,
+        purpose: Purpose,
+        path: Resolved | None,
+        call: Call,
+        value: Value = None,
+        wrong: str = "",
+    ) -> None:
+        """Add the file that an action names, why it is unknown which, or what is wrong with it."""
+        location = self.locate(_position(value, call))
+        match path:
+            case Unknown(reason=reason):
+                self.references.append(NamedFile(purpose, None, location, reason, sure=False))
+            case Contents():
+                found = NamedFile(
+                    purpose, path.path, location, "", by=path.by, arguments=path.arguments
+                )
+                found = replace(
+                    found, stops_at_stderr=path.stops_at_stderr, is_deprecated=path.is_deprecated
+                )
+                self.references.append(found)
+            case _:
+                self.references.append(NamedFile(purpose, path, location, wrong))
+
+
+def _position(value: Value, call: Call) -> Position:
+    """Return the position of the call that gives a value; of open(path).read() that of open."""
+    if isinstance(value, list | tuple):
+        value = next((part for part in value if isinstance(part, Call)), None)
+    return value.at if isinstance(value, Call | FileText) else call.at

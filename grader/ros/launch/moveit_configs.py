@@ -1,0 +1,614 @@
+"""The package moveit_configs_utils of ROS 2 Jazzy: MoveItConfigsBuilder, and the nodes that its
+launch functions start.
+
+The builder reads the files of a MoveIt configuration while the launch file is loaded; one that it
+needs and that is not installed stops it.
+"""
+
+import posixpath
+import re
+import tomllib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache, partial
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from grader.files.limits import SETUP_ASSISTANT
+from grader.ros.build.places import BY_MOVEIT, PREFIX, SHARE
+from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_value
+from grader.ros.launch.api import DESCRIPTION
+from grader.ros.launch.launch_model import Contents, Context, FileText, UnknownTable, UnknownText
+from grader.ros.python.evaluation import Evaluation
+from grader.ros.python.parse import Position
+from grader.ros.python.values import (
+    Call,
+    EvaluationFails,
+    Namespace,
+    PlainFunction,
+    Undetermined,
+    Unknown,
+    Value,
+    known,
+    path_text,
+)
+
+_PACKAGE = "moveit_configs_utils"
+_BUILDER = f"{_PACKAGE}.moveit_configs_builder.MoveItConfigsBuilder"
+_OF_BUILDER = ("MoveItConfigs", "MoveItConfigsBuilder")
+_LAUNCHES = f"{_PACKAGE}.launches"
+_NODE = "launch_ros.actions.node.Node"
+_INCLUDE = "launch.actions.include_launch_description.IncludeLaunchDescription"
+_DECLARED = "launch.actions.declare_launch_argument.DeclareLaunchArgument"
+_CONFIGURATION = "launch.substitutions.launch_configuration.LaunchConfiguration"
+_IF, _UNLESS = (
+    f"launch.conditions.{it}"
+    for it in ("if_condition.IfCondition", "unless_condition.UnlessCondition")
+)
+_MAX_DEPTH, _MAX_NUMBER = 40, 50
+_DEFAULT_PIPELINES = (
+    "chomp",
+    "ompl",
+    "pilz_industrial_motion_planner",
+    "stomp",
+)  # of moveit_configs_utils
+_PILZ = "pilz_industrial_motion_planner"
+_MONITOR = {
+    "publish_planning_scene": True,
+    "publish_geometry_updates": True,
+    "publish_state_updates": True,
+    "publish_transforms_updates": True,
+    "publish_robot_description": False,
+    "publish_robot_description_semantic": False,
+}
+# The parts of a configuration in the order of to_dict. All but the last are made by default.
+_PARTS = (
+    "robot_description",
+    "robot_description_semantic",
+    "robot_description_kinematics",
+    "planning_pipelines",
+    "trajectory_execution",
+    "planning_scene_monitor",
+    "sensors_3d",
+    "joint_limits",
+    "moveit_cpp",
+)
+_BY_DEFAULT = _PARTS[:-1]
+_PARAMETERS: Mapping[str, Sequence[str]] = {
+    "robot_description": ("file_path", "mappings"),
+    "robot_description_semantic": ("file_path", "mappings"),
+    "trajectory_execution": ("file_path", "moveit_manage_controllers"),
+    "planning_scene_monitor": tuple(_MONITOR),
+    "planning_pipelines": ("default_planning_pipeline", "pipelines", "load_all"),
+    **dict.fromkeys(
+        (
+            "robot_description_kinematics",
+            "joint_limits",
+            "moveit_cpp",
+            "sensors_3d",
+            "pilz_cartesian_limits",
+        ),
+        ("file_path",),
+    ),
+}
+# What a part is called in the parameters after the name of the robot's, and the file that it is
+# read from by default.
+_OF_YAML = {
+    "robot_description_kinematics": ("_kinematics", "kinematics"),
+    "joint_limits": ("_planning", "joint_limits"),
+    "pilz_cartesian_limits": ("_planning", "pilz_cartesian_limits"),
+    "moveit_cpp": ("", "moveit_cpp"),
+}
+
+
+def moveit_exports() -> Mapping[str, Sequence[str]]:
+    """Return the names of the modules of moveit_configs_utils."""
+    of_launch = ("DeclareLaunchArgument", "IfCondition", "LaunchConfiguration", "Node")
+    of_utils = (*of_launch, "UnlessCondition", "add_debuggable_node", "DeclareBooleanLaunchArg")
+    of_launches = (
+        *of_utils[:4],
+        *of_utils[5:],
+        "LaunchDescription",
+        "IncludeLaunchDescription",
+        "ParameterValue",
+    )
+    modules = ("launches", "launch_utils", "moveit_configs_builder", "substitutions")
+    return {
+        _PACKAGE: (*_OF_BUILDER, *modules),
+        f"{_PACKAGE}.moveit_configs_builder": (
+            *_OF_BUILDER,
+            "get_pattern_matches",
+            "moveit_configs_utils_path",
+        ),
+        f"{_PACKAGE}.launch_utils": of_utils,
+        _LAUNCHES: (*_launches(), *of_launches, "PythonLaunchDescriptionSource", "SRDF", "os"),
+    }
+
+
+@dataclass(slots=True)
+class _Configuration:
+    """A MoveIt configuration while it is built."""
+
+    robot: str
+    folder: str  # the share folder of its package
+    description: str  # the name of the parameter
+    doubt: Callable[[Unknown], Unknown]
+    parts: dict[str, dict[str, Value]] = field(default_factory=dict)
+
+    def doubted(self, reason: str, at: Position) -> UnknownText:
+        """Return a text that is not known, with the doubt whether MoveIt finds it at all."""
+        found = UnknownText(reason, at)
+        self.doubt(found)
+        return found
+
+
+@dataclass(slots=True)
+class MoveItConfigurations:
+    """The functions of moveit_configs_utils, in a launch file whose context is `context()`;
+    `reads` are its files.
+    """
+
+    context: Callable[[], Context]
+    reads: list[tuple[Contents, Position]]
+    _built: dict[Call, _Configuration] = field(default_factory=dict)
+
+    def functions(self) -> dict[str, Callable[[Evaluation, Call], Value]]:
+        """Return the functions by their full names."""
+        steps = {f"{_BUILDER}.{name}": partial(self._step, name) for name in _PARAMETERS}
+        return {
+            f"{_PACKAGE}.MoveItConfigsBuilder": self._build,
+            _BUILDER: self._build,
+            **steps,
+            f"{_BUILDER}.to_moveit_configs": self._finish,
+            f"{_BUILDER}.to_dict": lambda evaluation, call: (
+                self._finish(evaluation, call).find("to_dict").run()
+            ),
+            **{f"{_LAUNCHES}.{name}": partial(self._start, name) for name in _launches()},
+        }
+
+    def _build(self, evaluation: Evaluation, call: Call) -> Call:
+        given = _named(call, ("robot_name", "robot_description", "package_name"))
+        robot, description = (
+            known(given.get(it, "robot_description")) for it in ("robot_name", "robot_description")
+        )
+        if "robot_name" not in given or not isinstance(robot, str):
+            raise EvaluationFails("MoveItConfigsBuilder needs the name of the robot")
+        package = known(given.get("package_name")) or f"{robot}_moveit_config"
+        for name in (_PACKAGE, package):
+            if not self.context().installation.has_package(name):
+                evaluation.doubted(
+                    Unknown(f"whether the package {name!r} is installed is not evaluated", call.at)
+                )
+        made = Call(_BUILDER, [], {}, call.at)
+        made.is_object = True
+        self._built[made] = _Configuration(
+            robot, f"{SHARE}/{package}", description, evaluation.doubted
+        )
+        return made
+
+    def _step(self, name: str, _: Evaluation, call: Call) -> Call:
+        assert call.owner is not None
+        self._made(self._built[call.owner], name, call.at, _named(call, _PARAMETERS[name]))
+        return call.owner
+
+    def _finish(self, _: Evaluation, call: Call) -> Namespace:
+        """Return the configuration, with what is made by default, as an object with its parts."""
+        assert call.owner is not None
+        own = self._built[call.owner]
+        for name in _BY_DEFAULT:
+            if not own.parts.get(name):
+                self._made(own, name, call.at, {})
+        if _PILZ in own.parts["planning_pipelines"] and "pilz_cartesian_limits" not in own.parts:
+            self._made(own, "pilz_cartesian_limits", call.at, {})
+        parts: dict[str, Value] = {
+            name: own.parts.get(name, {}) for name in (*_PARTS, "pilz_cartesian_limits")
+        }
+        parts["package_path"] = PurePosixPath(own.folder)
+        parts["move_group_capabilities"] = {"capabilities": "", "disable_capabilities": ""}
+        parts["to_dict"] = PlainFunction("to_dict", partial(_as_dict, parts), "holds")
+
+        def find(name: str) -> Value:
+            if name not in parts:
+                raise EvaluationFails(f"MoveItConfigs has no attribute {name!r}", call.at)
+            return parts[name]
+
+        return Namespace("MoveItConfigs", find)
+
+    def _made(
+        self, own: _Configuration, name: str, at: Position, given: Mapping[str, Value]
+    ) -> None:
+        """Make a part of a configuration, as the method of this name does."""
+        if name in _OF_YAML:
+            ending, stem = _OF_YAML[name]
+            table = self._yaml(self._path(own, given, f"config/{stem}.yaml"), at)
+            own.parts[name] = {own.description + ending: table} if ending else _spread(table)
+        else:
+            make = {
+                "robot_description": self._description,
+                "robot_description_semantic": self._semantic,
+                "planning_pipelines": self._pipelines,
+                "trajectory_execution": self._controllers,
+                "sensors_3d": self._sensors,
+                "planning_scene_monitor": self._scene,
+            }
+            own.parts[name] = make[name](own, at, given)
+
+    def _path(self, own: _Configuration, given: Mapping[str, Value], default: str) -> str:
+        """Return the path of a file that is given, or a default, in the package."""
+        value = given.get("file_path")
+        text = path_text(known(value)) if value is not None else default
+        if text is None:
+            raise Undetermined("the path of a file for MoveIt is not evaluated")
+        return posixpath.join(own.folder, text)
+
+    def _names(self, own: _Configuration) -> Sequence[str] | None:
+        """Return the names of the files that are installed in the folder config; None where this
+        is not known.
+        """
+        return self.context().installation.files_in(
+            f"{own.folder}/config".removeprefix(f"{PREFIX}/")
+        )
+
+    def _is_there(self, path: str) -> bool:
+        return self.context().text_of(path) is not None
+
+    def _read(self, path: str, at: Position, by: str, arguments: Any = ()) -> Contents:
+        contents = Contents(path, by, arguments)
+        self.reads.append((contents, at))
+        return contents
+
+    def _yaml(self, path: str, at: Position) -> Value:
+        """Return the table in a file that has to be there."""
+        self._read(path, at, BY_MOVEIT)
+        found = self.context().installation.open_installed(
+            posixpath.normpath(path).removeprefix(f"{PREFIX}/")
+        )
+        if found is None:
+            return UnknownTable("a file for MoveIt is not evaluated", at)
+        try:
+            return _value_of(read_yaml(*found), 0)
+        except (YamlFault, Undetermined, ValueError) as error:
+            raise Undetermined(f"the file {found[1]} is not evaluated: {error}", at) from None
+
+    def _robot_of_assistant(self, own: _Configuration, at: Position) -> str | None:
+        """Return the path of the robot that .setup_assistant names, if it names one."""
+        path = f"{own.folder}/{SETUP_ASSISTANT}"
+        table = self._yaml(path, at) if self._is_there(path) else None
+        config = table.get("moveit_setup_assistant_config") if isinstance(table, dict) else None
+        robot = config.get("urdf", config.get("URDF")) if isinstance(config, dict) else None
+        package, file = (
+            robot.get(key) if isinstance(robot, dict) else None
+            for key in ("package", "relative_path")
+        )
+        return (
+            f"{SHARE}/{package}/{file}"
+            if isinstance(package, str) and isinstance(file, str)
+            else None
+        )
+
+    def _description(
+        self, own: _Configuration, at: Position, given: Mapping[str, Value]
+    ) -> dict[str, Value]:
+        """Return the robot; if its file is not there, MoveIt waits for a topic."""
+        path = self._path(own, given, f"config/{own.robot}.urdf.xacro")
+        if "file_path" not in given:
+            path = self._robot_of_assistant(own, at) or path
+        is_there = self._is_there(path)
+        if not is_there and "file_path" not in given:
+            return {
+                own.description: own.doubted(
+                    "the file of the robot that MoveIt finds is not evaluated", at
+                )
+            }
+        contents = (
+            self._read(path, at, "xacro", _mappings(given)) if is_there else Contents(path, "xacro")
+        )
+        return {own.description: FileText("the output of xacro is not evaluated", at, contents)}
+
+    def _semantic(
+        self, own: _Configuration, at: Position, given: Mapping[str, Value]
+    ) -> dict[str, Value]:
+        path, key = (
+            self._path(own, given, f"config/{own.robot}.srdf"),
+            f"{own.description}_semantic",
+        )
+        is_open = "file_path" not in given and any(
+            name.endswith(".srdf") for name in self._names(own) or ()
+        )
+        if is_open and not self._is_there(path):
+            return {key: own.doubted("the SRDF that MoveIt finds is not evaluated", at)}
+        contents = self._read(path, at, "xacro", _mappings(given))
+        return {key: FileText("the output of xacro is not evaluated", at, contents)}
+
+    def _pipelines(
+        self, own: _Configuration, at: Position, given: Mapping[str, Value]
+    ) -> dict[str, Value]:
+        names = self._names(own)
+        wanted, default = (
+            known(given.get(it)) for it in ("pipelines", "default_planning_pipeline")
+        )
+        found = [
+            name.removesuffix("_planning.yaml")
+            for name in names or ()
+            if name.endswith("_planning.yaml")
+        ]
+        pipelines, with_all = wanted, given.get("load_all", True)
+        if wanted is None:
+            pipelines = [*found, *(it for it in _DEFAULT_PIPELINES if it not in found and with_all)]
+        if not isinstance(pipelines, list | tuple) or (
+            names is None and wanted is None and not with_all
+        ):
+            raise Undetermined("the pipelines of MoveIt are not evaluated", at)
+        if not pipelines:
+            raise EvaluationFails("MoveIt finds no *_planning.yaml", at)
+        default = default or ("ompl" if "ompl" in pipelines else pipelines[0])
+        if default not in pipelines:
+            raise EvaluationFails(
+                f"the default pipeline {default!r} is none of {', '.join(map(str, pipelines))}", at
+            )
+        unordered = (
+            UnknownText("the order in which files are found is not known", at)
+            if wanted is None
+            else None
+        )
+        tables = {
+            it: self._pipeline(own, it, at, is_there=it in found) for it in map(str, pipelines)
+        }
+        return {
+            "planning_pipelines": unordered or [*pipelines],
+            "default_planning_pipeline": default,
+            **tables,
+        }
+
+    def _pipeline(self, own: _Configuration, name: str, at: Position, *, is_there: bool) -> Value:
+        if not is_there and name in _DEFAULT_PIPELINES:
+            return UnknownTable(f"the default configuration of {name} is not evaluated", at)
+        table = self._yaml(f"{own.folder}/config/{name}_planning.yaml", at)
+        is_whole = name != "ompl" or (isinstance(table, dict) and "planner_configs" in table)
+        return (
+            table
+            if is_whole
+            else UnknownTable("the default configuration of ompl is not evaluated", at)
+        )
+
+    def _controllers(
+        self, own: _Configuration, at: Position, given: Mapping[str, Value]
+    ) -> dict[str, Value]:
+        made: dict[str, Value] = {
+            "moveit_manage_controllers": given.get("moveit_manage_controllers", True)
+        }
+        if "file_path" in given:
+            return made | _spread(self._yaml(self._path(own, given, ""), at))
+        ending, names = "_controllers.yaml", self._names(own)
+        usual = [
+            it
+            for it in ("moveit", "moveit2", own.robot)
+            if self._is_there(f"{own.folder}/config/{it}{ending}")
+        ]
+        if names is None and not usual:
+            return made | _spread(
+                UnknownTable("the controllers that MoveIt finds are not evaluated", at)
+            )
+        found = [name.removesuffix(ending) for name in names or () if name.endswith(ending)]
+        if len(found) > 1 and not usual:
+            listed = ", ".join(sorted(name + ending for name in found))
+            raise EvaluationFails(
+                f"MoveIt cannot choose between {listed}: give trajectory_execution a file_path", at
+            )
+        chosen = [*usual, *found][:1]
+        return made | (
+            _spread(self._yaml(f"{own.folder}/config/{chosen[0]}{ending}", at)) if chosen else {}
+        )
+
+    def _sensors(
+        self, own: _Configuration, at: Position, given: Mapping[str, Value]
+    ) -> dict[str, Value]:
+        path = self._path(own, given, "config/sensors_3d.yaml")
+        if not self._is_there(path):
+            return (
+                {}
+                if self._names(own) is not None
+                else _spread(UnknownTable("sensors are not evaluated", at))
+            )
+        table = self._yaml(path, at)
+        sensors = table.get("sensors") if isinstance(table, dict) else None
+        return _spread(table) if isinstance(sensors, list) and sensors and sensors[0] else {}
+
+    def _scene(
+        self, _: _Configuration, __: Position, given: Mapping[str, Value]
+    ) -> dict[str, Value]:
+        return {**_MONITOR, **given}
+
+    def _start(self, name: str, _: Evaluation, call: Call) -> Value:
+        """Return the description that a function of moveit_configs_utils.launches makes."""
+        given, row = _named(call, ("moveit_config", "launch_package_path")), _launches()[name]
+        configs = given.get("moveit_config")
+        if not isinstance(configs, Namespace):
+            raise Undetermined("the configuration of MoveIt is not evaluated", call.at)
+        package, folder = str(configs.find("package_path")), given.get("launch_package_path")
+        make = _Actions(
+            call.at,
+            configs,
+            {"package": package, "folder": str(known(folder)) if folder else package},
+        )
+        rows = [
+            it
+            for it in row["start"]
+            if not it.get("optional") or self._is_there(make.value(it["include"]))
+        ]
+        actions: list[Value] = [
+            make.argument(*pair, is_flag=True) for pair in row.get("flags", {}).items()
+        ]
+        actions += [
+            make.argument(*pair, is_flag=False) for pair in row.get("arguments", {}).items()
+        ]
+        for it in [*rows, *self._found_in(configs, name, call.at)]:
+            actions += [it] if isinstance(it, Unknown) else make.started(it)
+        return Call(DESCRIPTION, [], {"initial_entities": actions}, call.at)
+
+    def _found_in(self, configs: Namespace, name: str, at: Position) -> Iterator[Any]:
+        """Yield the rows of what a function starts for controllers or virtual joints; Unknown
+        for unknown ones.
+        """
+        if name == "generate_spawn_controllers_launch":
+            for it in _controllers_in(configs.find("trajectory_execution"), at):
+                yield (
+                    it
+                    if isinstance(it, Unknown)
+                    else {"node": "controller_manager/spawner", "arguments": [it]}
+                )
+        elif name == "generate_static_virtual_joint_tfs_launch":
+            srdf = next(iter(configs.find("robot_description_semantic").values()))
+            text = (
+                self.context().text_of(srdf.contents.path) if isinstance(srdf, FileText) else None
+            )
+            if text is None or "xacro:" in text:
+                yield Unknown("the virtual joints of the SRDF are not evaluated", at)
+                return
+            for words in _virtual_joints(text):
+                yield {"node": "tf2_ros/static_transform_publisher", "arguments": words}
+
+
+def _named(call: Call, names: Sequence[str]) -> dict[str, Value]:
+    """Return the arguments of a call by their names, but those that are None. Raises
+    EvaluationFails.
+    """
+    wrong = next((name for name in call.kwargs if name not in names), None)
+    if wrong is not None or len(call.args) > len(names):
+        what = f"no argument {wrong!r}" if wrong is not None else f"at most {len(names)} arguments"
+        raise EvaluationFails(f"{call.name.rpartition('.')[2]} takes {what}", call.at)
+    given = {**dict(zip(names, call.args, strict=False)), **call.kwargs}
+    return {name: value for name, value in given.items() if value is not None}
+
+
+def _mappings(given: Mapping[str, Value]) -> tuple[tuple[str, str | None], ...]:
+    """Return the arguments that xacro gets; None for one that is a substitution."""
+    table = given.get("mappings", {})
+    if not isinstance(table, dict):
+        raise Undetermined("the mappings for xacro are not evaluated")
+    return tuple(
+        (str(name), value if isinstance(value, str) else None) for name, value in table.items()
+    )
+
+
+def _value_of(node: YamlNode, depth: int) -> Value:
+    """Return the value of YAML as PyYAML reads it. Raises Undetermined."""
+    if depth > _MAX_DEPTH:
+        raise Undetermined("it is nested too deeply")
+    match node.value:
+        case dict() as table:
+            return {name: _value_of(it, depth + 1) for name, it in table.items()}
+        case list() as items:
+            return [_value_of(it, depth + 1) for it in items]
+        case str() as text:
+            return text if node.quoted or len(text) > _MAX_NUMBER else yaml_value(text)
+
+
+def _spread(table: Value) -> dict[str, Value]:
+    """Return a table that becomes a part of another one; unknown ones have any name."""
+    return dict(table) if isinstance(table, dict) else {"": table}
+
+
+def _as_dict(parts: Mapping[str, Value]) -> dict[str, Value]:
+    found: dict[str, Value] = {}
+    for name in _PARTS:
+        found |= parts[name]
+    for name, table in parts["pilz_cartesian_limits"].items():
+        limits = found.get(name)
+        if isinstance(limits, dict) and isinstance(table, dict):
+            found[name] = {**limits, **table}
+        elif isinstance(table, Unknown):
+            found[name] = table
+    return found
+
+
+@cache
+def _launches() -> Mapping[str, Any]:
+    """Return what each of MoveIt's launch functions starts."""
+    return tomllib.loads(Path(__file__).with_name("moveit_launches.toml").read_text("utf-8"))
+
+
+@dataclass(frozen=True, slots=True)
+class _Actions:
+    """Makes the actions of a description from the rows of the table, as if they were written at
+    a place.
+    """
+
+    at: Position
+    configs: Namespace
+    folders: Mapping[str, str]
+
+    def made(self, kind: str, **kwargs: Value) -> Call:
+        """Return an action, condition or substitution; arguments that are None are left out."""
+        return Call(
+            kind, [], {name: value for name, value in kwargs.items() if value is not None}, self.at
+        )
+
+    def argument(self, name: str, default: str, *, is_flag: bool) -> Call:
+        """Return the declaration of a launch argument."""
+        choices = ["true", "false", "True", "False"] if is_flag else None
+        return self.made(
+            _DECLARED, name=name, default_value=default.format(**self.folders), choices=choices
+        )
+
+    def value(self, value: Any) -> Value:
+        """Return a value; "$name" is that of a launch argument."""
+        if isinstance(value, str) and value.startswith("$"):
+            return self.made(_CONFIGURATION, variable_name=value[1:])
+        return value.format(**self.folders) if isinstance(value, str) else value
+
+    def started(self, row: Mapping[str, Any]) -> list[Value]:
+        """Return the node or include of a row; two nodes if one has a debugger."""
+        condition = self.when(row["if"]) if "if" in row else None
+        if "include" in row:
+            return [
+                self.made(
+                    _INCLUDE,
+                    launch_description_source=self.value(row["include"]),
+                    condition=condition,
+                )
+            ]
+        package, _, executable = row["node"].partition("/")
+        parts = [self.configs.find(name) for name in row.get("parts", ())]
+        table = {name: self.value(value) for name, value in row.get("parameters", {}).items()}
+        given = [it.run() if isinstance(it, PlainFunction) else it for it in parts] + (
+            [table] if table else []
+        )
+        node = partial(
+            self.made,
+            _NODE,
+            package=package,
+            executable=executable,
+            arguments=[*map(self.value, row.get("arguments", ()))],
+            parameters=[*given, *map(self.value, row.get("files", ()))],
+            remappings=[*map(tuple, row.get("remappings", ()))],
+        )
+        if not row.get("debug"):
+            return [node(condition=condition)]
+        debugged = node(condition=self.when("debug"), prefix=["gdb --ex run --args"])
+        return [node(condition=self.when("debug", _UNLESS)), debugged]
+
+    def when(self, name: str, kind: str = _IF) -> Call:
+        """Return the condition that a launch argument is true, or with another kind that it is
+        not.
+        """
+        return self.made(kind, predicate_expression=self.value(f"${name}"))
+
+
+def _controllers_in(table: Mapping[str, Value], at: Position) -> list[Value]:
+    """Return the arguments of the spawners of the controllers that MoveIt uses."""
+    manager = table.get("moveit_simple_controller_manager", {})
+    names = manager.get("controller_names", []) if isinstance(manager, dict) else None
+    if isinstance(names, list) and "" not in table:
+        return names
+    return [Unknown("the controllers of MoveIt are not evaluated", at)]
+
+
+def _virtual_joints(text: str) -> Iterator[list[str]]:
+    """Yield the arguments of the publishers of the virtual joints in an SRDF."""
+    for joint in re.findall(r"<virtual_joint\b[^>]*>", re.sub(r"(?s)<!--.*?-->", "", text)):
+        found = (
+            re.search(rf"\b{name}=[\"']([^\"']*)", joint) for name in ("parent_frame", "child_link")
+        )
+        parent, child = (it[1] if it is not None else "" for it in found)
+        yield ["--frame-id", parent, "--child-frame-id", child]

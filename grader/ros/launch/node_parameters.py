@@ -1,0 +1,653 @@
+"""The parameters of nodes: what launch_ros gives a node, and which value counts in the end.
+
+Launch evaluates them first; rclcpp and rclpy then read the files and rules on the node's command
+line, in order.
+"""
+
+import posixpath
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from math import inf, nan
+from pathlib import PurePosixPath
+from typing import Any, NamedTuple
+
+from grader.base.source import Location
+from grader.ros.build.places import PREFIX
+from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_value
+from grader.ros.launch.call_arguments import FILE, SCALARS, TYPED, items_in, kind_of, type_of
+from grader.ros.launch.launch_model import (
+    Contents,
+    Context,
+    GivenParameters,
+    ParameterValue,
+    Resolved,
+    StartedNode,
+    UnknownTable,
+    UnknownText,
+)
+from grader.ros.launch.substitutions import PART_UNKNOWN, boolean, known_text, resolve
+from grader.ros.python.parse import START, Position
+from grader.ros.python.values import (
+    Call,
+    EvaluationFails,
+    EvaluationSignal,
+    Undetermined,
+    Unknown,
+    Value,
+)
+
+_EVERY_NODE = "/**"
+# the launch configuration that has what SetParameter gives to all nodes, as in launch_ros
+TO_ALL = "global_params"
+_OWN = "?"  # the key of a node whose name is not known
+_MAX_YAML = 200_000  # characters
+_MAX_DEPTH = 40
+_HEAD = '<?xml version="1.0" ?>\n<!-- by xacro -->\n'  # of what xacro writes
+_KEY = "ros__parameters"
+_SUBSTITUTION = "$("
+# As rcl reads a scalar of YAML, which is not what PyYAML makes of it.
+_TRUE = frozenset(["Y", "y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"])
+_FALSE = frozenset(["N", "n", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"])
+_INTEGER = re.compile(r"([+-]?)(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
+_FLOAT = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+_SPECIAL = {".nan": nan, ".inf": inf, "+.inf": inf, "-.inf": -inf}
+# Packages of ROS 2 whose nodes are all written in C++.
+_IN_CPP = re.compile(
+    r"robot_state_publisher|controller_manager|rviz2|slam_toolbox|robot_localization|ros_gz_(bridge|sim|image)"
+    r"|nav2_(?!simple_commander).*|moveit_(ros_)?(move_group|servo|task_constructor.*)|tf2_ros|twist_mux|topic_tools"
+)
+# The options of the spawner of ros2_control (Jazzy) that a value follows; the others are switches.
+_OF_SPAWNER = frozenset(
+    {
+        "-c",
+        "--controller-manager",
+        "-p",
+        "--param-file",
+        "-n",
+        "--namespace",
+        "--controller-manager-timeout",
+        "--switch-timeout",
+        "--service-call-timeout",
+        "--controller-ros-args",
+        "-t",
+        "--controller-type",
+    }
+)
+_PARAM_FILES = ("-p", "--param-file")
+
+
+def evaluate_parameters(parameters: Value, context: Context, at: Position) -> None:
+    """Evaluate the parameters of a node, as launch_ros does first. Raises EvaluationSignal and
+    Undetermined.
+    """
+    for item in items_in(parameters) or ():
+        if isinstance(item, dict):
+            evaluate_dict(item, context, at)
+        elif isinstance(item, Call) and item.name == FILE:
+            _evaluate_file(item, context)
+        elif isinstance(item, Call) and item.name in TYPED:
+            raise Undetermined("a parameter of this kind is not evaluated", item.at)
+        elif not isinstance(item, PurePosixPath):
+            resolve(item, context, at)
+
+
+def _evaluate_file(call: Call, context: Context) -> None:
+    path = _path_of(call, context)
+    text = context.text_of(path) if isinstance(path, str) else None
+    if call.kwargs.get("allow_substs") not in (None, False) and (
+        text is None or _SUBSTITUTION in text
+    ):
+        raise Undetermined("substitutions in a parameter file are not evaluated", call.at)
+
+
+def _path_of(call: Call, context: Context) -> Resolved:
+    """Return the path in a ParameterFile. Raises EvaluationSignal."""
+    given = call.kwargs["param_file"]
+    if isinstance(given, PurePosixPath):
+        return str(given)
+    if not all(
+        isinstance(it, str | Call | Unknown)
+        for it in (given if isinstance(given, list) else [given])
+    ):
+        raise Undetermined("the path of a parameter file is not evaluated", call.at)
+    return resolve(given, context, call.at)
+
+
+def evaluate_dict(table: dict[Any, Value], context: Context, at: Position) -> dict[str, Any]:
+    """Return the values in a dict of parameters, those of dicts in it by dotted names. Raises
+    EvaluationSignal.
+    """
+    found: dict[str, Any] = {}
+    for key, value in table.items():
+        name = resolve(list(key) if isinstance(key, tuple) else key, context, at)
+        shown = name if isinstance(name, str) else "?"
+        if isinstance(value, dict):
+            found |= {
+                f"{shown}.{inner}": it for inner, it in evaluate_dict(value, context, at).items()
+            }
+        else:
+            found[shown] = _evaluate_value(shown, value, context, at)
+    return found
+
+
+def _evaluate_value(name: str, value: Value, context: Context, at: Position) -> Any:
+    match value:
+        case Call() if value.name in TYPED:
+            return _evaluate_typed(value, context)
+        case UnknownText():
+            resolve(value, context, at)
+        case list() | tuple() | range():
+            return _evaluate_list(name, list(value), context, at)
+        case Call() | Unknown():
+            return _read_as_yaml(name, value, context, at)
+    return value
+
+
+def _evaluate_list(name: str, items: list[Value], context: Context, at: Position) -> Any:
+    kinds = {type(item) for item in items if isinstance(item, SCALARS)}
+    if any(isinstance(item, Call) for item in items) and all(
+        isinstance(it, str | Call | Unknown) for it in items
+    ):
+        return _read_as_yaml(name, items, context, at)
+    if not items or not all(isinstance(item, SCALARS) for item in items):
+        raise Undetermined(f"the value of the parameter {name!r} is not evaluated", at)
+    if len(kinds) > 1 and kinds != {int, float}:
+        raise EvaluationFails(f"the parameter {name!r} is a list of values of different types", at)
+    return [*map(float, items)] if len(kinds) > 1 else items
+
+
+def _evaluate_typed(call: Call, context: Context) -> Any:
+    value = call.kwargs["value"]
+    if isinstance(value, UnknownText):
+        resolve(value, context, call.at)
+    if isinstance(value, (*SCALARS, UnknownText)) or (
+        isinstance(value, list | tuple) and not any(isinstance(it, Call) for it in value)
+    ):
+        return value
+    try:
+        kind = type_of(call)
+    except Undetermined as error:
+        raise Undetermined(f"{error} is not evaluated", call.at) from None
+    if kind is None:
+        return _read_as_yaml("value", value, context, call.at)
+    text = resolve(value, context, call.at)
+    if kind is str:
+        return text
+    if not isinstance(text, str):
+        raise Undetermined("the value of a parameter is not evaluated", call.at)
+    try:
+        return boolean(text, call.at) if kind is bool else kind(text)
+    except ValueError:
+        raise EvaluationFails(
+            f"the value {text[:40]!r} of a parameter is not {kind.__name__}", call.at
+        ) from None
+
+
+def _read_as_yaml(name: str, value: Value, context: Context, at: Position) -> Any:
+    found = _value_as_yaml(name, value, context, at)
+    if not (isinstance(found, list) and _is_uniform(found)) and not isinstance(
+        found, (*SCALARS, bytes)
+    ):
+        hint = "write ParameterValue(..., value_type=str)"
+        raise EvaluationFails(
+            f"the parameter {name!r} is read as YAML, and is {kind_of(found)} then: {hint}", at
+        )
+    return found
+
+
+def _value_as_yaml(name: str, value: Value, context: Context, at: Position) -> Any:
+    """Return the value of a text as YAML. Raises EvaluationSignal."""
+    found = resolve(value, context, at)
+    if isinstance(found, Unknown):
+        raise Undetermined(
+            f"the value of the parameter {name!r} is not evaluated: {found.reason}", at
+        )
+    text = context.text_of(found.path) if isinstance(found, Contents) else found
+    if text is None:
+        return ""  # a file that is not there is reported for itself
+    try:
+        if len(text) > _MAX_YAML:
+            raise Undetermined(f"the parameter {name!r} is too long to be read as YAML", at)
+        return yaml_value(text) if text else text
+    except ValueError:
+        if isinstance(found, Contents) and found.by == "xacro" and not _is_never_yaml(text):
+            raise Undetermined(
+                f"whether the output of xacro is YAML, as which {name!r} is read, is not evaluated",
+                at,
+            ) from None
+        hint = "write ParameterValue(..., value_type=str)"
+        raise EvaluationFails(
+            f"the parameter {name!r} is read as YAML, which fails: {hint}", at
+        ) from None
+
+
+def _is_never_yaml(text: str) -> bool:
+    """Return whether a URDF is no YAML after xacro either, which keeps comments, texts and
+    values.
+    """
+    if "xacro:" in text or "${" in text or "$(" in text:
+        return False
+    try:
+        yaml_value(_HEAD + re.sub(r"[ \t]+", " ", text))
+    except ValueError:
+        return True
+    return False
+
+
+def _is_uniform(values: list[Any]) -> bool:
+    kind = type(values[0]) if values else None
+    return kind in SCALARS and all(isinstance(value, kind) for value in values if kind)
+
+
+_OpenFile = Callable[
+    [str], tuple[bytes, str] | None
+]  # returns an installed file, and its path in the submission
+
+
+class _Place(NamedTuple):
+    """Where parameters are written: in which action, and the place of it."""
+
+    context: Context
+    at: Position
+    location: Location
+
+
+def given_parameters(
+    call: Call, words: Sequence[str], context: Context, at: Location
+) -> tuple[GivenParameters, ...]:
+    """Return the parameters that a Node action gives its node, in the order of its command line.
+
+    Args:
+        call: The action.
+        words: Its arguments for ROS, what follows --ros-args.
+        context: What launch knows when it executes the action.
+        at: The place of the action.
+    """
+    place = _Place(context, call.at, at)
+    has_namespace = call.kwargs.get("namespace") is not None or "ros_namespace" in context.arguments
+    is_named = has_namespace and call.kwargs.get("name") is not None
+    given = call.kwargs.get("parameters")
+    items = list(given) if isinstance(given, list | tuple) else [] if given is None else [given]
+    found = (_given_item(item, place, is_named=is_named) for item in items)
+    return (*_of_command_line(words, at), *context.to_all.get(TO_ALL, ()), *found)
+
+
+def set_for_all(
+    name: Value, value: Value, context: Context, at: Position, location: Location
+) -> GivenParameters:
+    """Return what SetParameter gives to all nodes; unknown where it is not evaluated."""
+    found = _given_item(
+        {(name,) if not isinstance(name, list | tuple) else tuple(name): value},
+        _Place(context, at, location),
+    )
+    rules = {key: _as_rule(it) for key, it in found.values.items()}
+    return found._replace(values=rules)
+
+
+def _as_rule(given: ParameterValue) -> ParameterValue:
+    """Return a value as rcl reads its text in the rule name:=value."""
+    value = given.value
+    if isinstance(value, list | bytes | Unknown):
+        return given._replace(value=Unknown("the text of this parameter is not evaluated", START))
+    return given._replace(value=_value_of_text(str(value)))
+
+
+def file_for_all(
+    path: Value, context: Context, at: Position, location: Location
+) -> GivenParameters:
+    """Return the file that SetParametersFromFile gives to all nodes. Raises EvaluationSignal."""
+    return GivenParameters(location, known_text(path, context, at))
+
+
+def _given_item(item: Value, place: _Place, *, is_named: bool = False) -> GivenParameters:
+    context, at, location = place
+    try:
+        if isinstance(item, dict):
+            return GivenParameters(location, values=_values_in(item, place), is_named=is_named)
+        if isinstance(item, Call) and item.name == FILE:
+            is_plain = item.kwargs.get("allow_substs") in (None, False)
+            return GivenParameters(
+                location, known_text(_path_of(item, context), context, at), is_plain=is_plain
+            )
+        if isinstance(item, Call) and item.name in TYPED:
+            raise Undetermined("a parameter of this kind is not evaluated")
+        return GivenParameters(
+            location,
+            str(item) if isinstance(item, PurePosixPath) else known_text(item, context, at),
+        )
+    except EvaluationSignal as signal:
+        return GivenParameters(location, unknown=str(signal))
+
+
+def _values_in(table: dict[Any, Value], place: _Place) -> dict[str, ParameterValue]:
+    """Return the values in a dict of parameters, each unknown for itself. Raises EvaluationSignal
+    for unknown names.
+    """
+    found: dict[str, ParameterValue] = {}
+    for key, value in table.items():
+        name = known_text(list(key) if isinstance(key, tuple) else key, place.context, place.at)
+        location = place.location
+        if isinstance(value, Call) and location.line != value.at.line:
+            location = location._replace(line=value.at.line, column=value.at.column)
+        try:
+            values = evaluate_dict({name: value}, place.context, place.at)
+        except EvaluationSignal as signal:
+            if isinstance(value, dict):
+                raise
+            values = {name: Unknown(str(signal), place.at)}
+        found |= {own: ParameterValue(_plain(it, place.at), location) for own, it in values.items()}
+    return found
+
+
+def _plain(value: Any, at: Position) -> Any:
+    """Return a value without stand-ins; the contents of a file are unknown."""
+    is_plain = isinstance(value, (*SCALARS, list)) and PART_UNKNOWN not in str(value)
+    return (
+        value
+        if is_plain or isinstance(value, Unknown)
+        else Unknown("the contents of a file are not evaluated", at)
+    )
+
+
+def _of_command_line(words: Sequence[str], at: Location) -> Iterator[GivenParameters]:
+    """Yield the parameters of the arguments for ROS: -p name:=value, --params-file path."""
+    for option, word in pairwise(words):
+        if option not in ("-p", "--param", "--params-file"):
+            continue
+        rule, _, text = word.partition(":=")
+        node, _, name = rule.rpartition(":")
+        if PART_UNKNOWN in rule:
+            yield GivenParameters(at, unknown="an argument of the node is not evaluated")
+        elif option == "--params-file":
+            yield GivenParameters(at, word)
+        else:
+            yield GivenParameters(
+                at, values={name: ParameterValue(_value_of_text(text), at)}, node=node
+            )
+
+
+def _value_of_text(text: str) -> Any:
+    try:
+        return (
+            _value_of(read_yaml(text.encode(), ""))
+            if PART_UNKNOWN not in text
+            else Unknown("a text", START)
+        )
+    except YamlFault as fault:
+        return Unknown(str(fault), START)
+
+
+def _value_of(node: YamlNode) -> Any:
+    """Return the value of a parameter as rcl reads it: a scalar or a list of them; else Unknown."""
+    if isinstance(node.value, list):
+        items = [_value_of(item) for item in node.items]
+        kinds = {type(item) for item in items}
+        return (
+            items
+            if len(kinds) == 1 and kinds <= {*SCALARS}
+            else Unknown("a list of different values", START)
+        )
+    text = node.text
+    if text is None or (not text and not node.quoted):
+        return Unknown("no value", START)
+    return text if node.quoted else _scalar(text)
+
+
+def _scalar(text: str) -> "bool | int | float | str":
+    if text in _TRUE or text in _FALSE:
+        return text in _TRUE
+    if found := _INTEGER.fullmatch(text):
+        sign, digits = found.groups()
+        base = 16 if digits[:2].lower() == "0x" else 8 if digits[0] == "0" else 10
+        return int(sign + digits, base)
+    if text.lower() in _SPECIAL:
+        return _SPECIAL[text.lower()]
+    return float(text) if _FLOAT.fullmatch(text) else text
+
+
+class NodeParameters(NamedTuple):
+    """The parameters that a node is given, by their names. If something is `unknown`, there may be
+    more of them.
+
+    The value of one is Unknown where it is not evaluated, or may be replaced by what is unknown.
+    """
+
+    values: Mapping[str, ParameterValue]
+    unknown: str = ""  # why there may be more
+
+
+def parameters_of(
+    node: StartedNode, open_file: _OpenFile, name: str = "", *, is_python: bool | None = None
+) -> NodeParameters:
+    """Return the parameters that a node gets from a launch file, and where each is written.
+
+    Later files and tables replace earlier ones. Of the keys of nodes in them (`/**`, `/ns/node`,
+    `node`), rclcpp lets the one count that it meets last for the first time, rclpy the exact name:
+    where these differ, a value is unknown unless it is known which of them the node uses.
+
+    Args:
+        node: The node, as it is started.
+        open_file: Returns the parameter file at a path below the prefix, and its path in the
+            submission.
+        name: The name that the node has in its program if the launch file gives it none; or the
+            full name of another node of the same process, such as a controller.
+        is_python: Whether it is written in Python, if this is known.
+    """
+    full = _full_name(node, name)
+    is_cpp = (
+        not is_python
+        if is_python is not None
+        else _IN_CPP.fullmatch(node.package) is not None or None
+    )
+    by_key: dict[str, dict[str, ParameterValue]] = {}
+    reasons = []
+    if node.parameters is None:
+        return NodeParameters({}, "the parameters of the node are not evaluated")
+    for given in node.parameters:
+        try:
+            tables = [*_tables_of(given, open_file, _full_name(node, ""))]
+        except Undetermined as error:
+            reasons.append(str(error))
+            doubt = Unknown(str(error), START)
+            by_key = {
+                key: {own: it._replace(value=doubt) for own, it in table.items()}
+                for key, table in by_key.items()
+            }
+            continue
+        for key, values in tables:
+            opened = {
+                name: it.value for name, it in values.items() if isinstance(it.value, UnknownTable)
+            }
+            reasons += [table.reason for table in opened.values()]
+            _forget_below(opened, by_key)
+            by_key.setdefault(key, {}).update(
+                (name, it) for name, it in values.items() if name not in opened
+            )
+    return NodeParameters(_counting(by_key, full, is_cpp), "; ".join(dict.fromkeys(reasons)))
+
+
+def _forget_below(
+    tables: Mapping[str, Unknown], by_key: dict[str, dict[str, ParameterValue]]
+) -> None:
+    """Make the values unknown that parameters in a table that is not known may replace."""
+    for name, doubt in tables.items():
+        for values in by_key.values():
+            below = [it for it in values if not name or f"{it}.".startswith(f"{name}.")]
+            values.update((it, values[it]._replace(value=doubt)) for it in below)
+
+
+def _full_name(node: StartedNode, name: str) -> str | None:
+    """Return the name of a node with its namespace; None where it is not known."""
+    own = name or node.node_name
+    if own and own.startswith("/"):
+        return own
+    return (
+        f"/{node.namespace.strip('/')}/{own}".replace("//", "/")
+        if own and node.namespace is not None
+        else None
+    )
+
+
+def _tables_of(
+    given: GivenParameters, open_file: _OpenFile, own: str | None
+) -> Iterator[tuple[str, Mapping[str, ParameterValue]]]:
+    """Yield the parameters by keys of nodes; `own` is the full name that the launch file gives.
+    Raises Undetermined.
+    """
+    if given.unknown:
+        raise Undetermined(given.unknown)
+    if not given.path:
+        yield _key_of(given, own), given.values
+        return
+    path = posixpath.normpath(given.path)
+    found = open_file(path.removeprefix(f"{PREFIX}/")) if path.startswith(f"{PREFIX}/") else None
+    if found is None:
+        raise Undetermined(
+            f"the file {path.removeprefix(PREFIX)} is not read: the submission does not install it"
+        )
+    try:
+        root = read_yaml(*found)
+    except YamlFault as fault:
+        raise Undetermined(f"the file {found[1]} is not readable as YAML: {fault}") from None
+    yield from _sections(root, "", is_plain=given.is_plain)
+
+
+def _key_of(given: GivenParameters, own: str | None) -> str:
+    """Return for which nodes the parameters of a launch file are."""
+    if given.is_named:
+        return own or _OWN
+    return f"/{given.node.strip('/')}" if given.node else _EVERY_NODE
+
+
+def _sections(
+    node: YamlNode, key: str, *, is_plain: bool
+) -> Iterator[tuple[str, dict[str, ParameterValue]]]:
+    """Yield the sections of a parameter file, each with its key, which begins with a slash."""
+    for name, value in node.pairs if key.count("/") < _MAX_DEPTH else ():
+        if name == _KEY:
+            values = _flat(value, "", 0)
+            yield (
+                key,
+                {
+                    it: value_in_file(own, is_plain=is_plain)
+                    for it, own in values
+                    if isinstance(own.value, str | list)
+                },
+            )
+        else:
+            yield from _sections(value, f"{key}/{name.strip('/')}", is_plain=is_plain)
+
+
+def _flat(node: YamlNode, name: str, depth: int) -> Iterator[tuple[str, YamlNode]]:
+    if not isinstance(node.value, dict) or depth > _MAX_DEPTH:
+        yield name, node
+        return
+    for key, value in node.value.items():
+        yield from _flat(value, f"{name}.{key}" if name else key, depth + 1)
+
+
+def value_in_file(node: YamlNode, *, is_plain: bool = True) -> ParameterValue:
+    """Return the value that a parameter file has for a parameter; of a file that is not plain,
+    launch replaces `$(`.
+    """
+    if not is_plain and _SUBSTITUTION in str(node.text):
+        return ParameterValue(
+            Unknown("substitutions in a parameter file are not evaluated", START), node.location
+        )
+    return ParameterValue(_value_of(node), node.location)
+
+
+def _counting(
+    by_key: Mapping[str, Mapping[str, ParameterValue]], full: str | None, is_cpp: bool | None
+) -> dict[str, ParameterValue]:
+    """Return the values that count for a node, of all sections in the order in which their keys are
+    met first.
+    """
+    if full is None:
+        return _for_unknown_name(by_key)
+    of_cpp = _merged(values for key, values in by_key.items() if _matches(key, full))
+    of_python = _merged(by_key.get(key, {}) for key in (_EVERY_NODE, full))
+    if is_cpp is not None:
+        return of_cpp if is_cpp else of_python
+    doubt = Unknown("rclcpp and rclpy let different values count", START)
+    names = {**of_cpp, **of_python}
+    return {
+        it: own if of_cpp.get(it) == of_python.get(it) else own._replace(value=doubt)
+        for it, own in names.items()
+    }
+
+
+def _for_unknown_name(
+    by_key: Mapping[str, Mapping[str, ParameterValue]],
+) -> dict[str, ParameterValue]:
+    """Return the values of sections for every node; those that another section may replace are
+    unknown.
+    """
+    doubt = Unknown("the name of the node is not known", START)
+    known = _merged(values for key, values in by_key.items() if key in (_EVERY_NODE, _OWN))
+    others = _merged(values for key, values in by_key.items() if key not in (_EVERY_NODE, _OWN))
+    return {**known, **{name: given._replace(value=doubt) for name, given in others.items()}}
+
+
+def _merged(tables: Iterable[Mapping[str, ParameterValue]]) -> dict[str, ParameterValue]:
+    found: dict[str, ParameterValue] = {}
+    for table in tables:
+        found |= table
+    return found
+
+
+def _matches(key: str, full: str) -> bool:
+    """Return whether the key of a section names a node, as rclcpp reads it."""
+    pattern = re.sub(r"/\\\*(\\\*)?", lambda it: r"(/\w+)*" if it[1] else r"(/\w+)", re.escape(key))
+    return re.fullmatch(pattern, full) is not None
+
+
+def remap_rules(words: Sequence[str]) -> list[tuple[str, str, str]]:
+    """Return the remappings among arguments for ROS, each with its separator between the names."""
+    return [word.partition(":=") for option, word in pairwise(words) if option in ("-r", "--remap")]
+
+
+def controllers_of(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
+    """Return the controllers that a spawner starts, as nodes with the files and remappings that it
+    gives them.
+
+    None if not all are known. A controller has the namespace of its controller manager, in whose
+    process it runs: what that is given applies to it as well, and what the spawner gives counts
+    more.
+    """
+    words = spawner.arguments
+    if words is None or None in words or spawner.namespace is None:
+        return None
+    known = [
+        word
+        for word in (words[: words.index("--ros-args")] if "--ros-args" in words else words)
+        if word
+    ]
+    names: list[str] = []
+    given: dict[str, list[str]] = {}
+    rest = iter(known)
+    for word in rest:
+        option, is_joined, value = word.partition("=")
+        if option in _OF_SPAWNER:
+            given.setdefault(option, []).append(value if is_joined else next(rest, ""))
+        elif not word.startswith("-"):
+            names.append(word)
+    files = [path for option in _PARAM_FILES for path in given.get(option, ())]
+    manager = [*given.get("-c", ()), *given.get("--controller-manager", ())][-1:] or [
+        "controller_manager"
+    ]
+    full = (
+        manager[0]
+        if manager[0].startswith("/")
+        else f"/{spawner.namespace.strip('/')}/{manager[0]}"
+    )
+    namespace = full.replace("//", "/").rpartition("/")[0] or "/"
+    parameters = tuple(GivenParameters(spawner.location, path) for path in files)
+    rules = remap_rules(" ".join(given.get("--controller-ros-args", ())).split())
+    remaps = tuple((name, to) for name, _, to in rules)
+    started = replace(
+        spawner, namespace=namespace, parameters=parameters, arguments=(), remaps=remaps
+    )
+    return tuple(replace(started, node_name=name) for name in names)

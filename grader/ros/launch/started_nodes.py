@@ -1,0 +1,494 @@
+"""The nodes that a launch file starts, as launch_ros does: their names, and the files that they are
+given.
+
+These files are the robot and the configuration of RViz. `known_launch_files.toml` lists the nodes
+that launch files of well-known packages start, which submissions include but do not contain.
+"""
+
+import posixpath
+import re
+import shlex
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from grader.ros.build.places import PREFIX, ROS, SHARE
+from grader.ros.launch.call_arguments import OPENED, TYPED, items_in
+from grader.ros.launch.known_programs import is_part_of_ros
+from grader.ros.launch.launch_model import (
+    NAMESPACE,
+    STATE_PUBLISHER,
+    Contents,
+    Context,
+    Findings,
+    NamedFile,
+    Purpose,
+    Resolved,
+    StartedNode,
+)
+from grader.ros.launch.node_parameters import controllers_of, given_parameters, remap_rules
+from grader.ros.launch.substitutions import PART_UNKNOWN, check_program, known_text, resolve
+from grader.ros.python.parse import Position
+from grader.ros.python.values import (
+    Call,
+    EvaluationFails,
+    EvaluationSignal,
+    Undetermined,
+    Unknown,
+    Value,
+)
+
+# the launch configuration that has what SetRemap gives to all nodes, as in launch_ros
+REMAPS = "ros_remaps"
+_RVIZ = "rviz2"
+_GIVEN: Mapping[str, Purpose] = {
+    STATE_PUBLISHER: "urdf",
+    _RVIZ: "rviz",
+}  # the nodes that are given a file
+_OUTPUTS = ("screen", "log", "both", "own_log", "full")
+_STARTS = re.compile(rf"ros2\s+(run|launch)|rviz2|{PART_UNKNOWN}")
+# Debuggers, terminals and other programs that start the program behind them.
+_PREFIXES = frozenset(
+    {
+        "gdb",
+        "gdbserver",
+        "lldb",
+        "valgrind",
+        "xterm",
+        "gnome-terminal",
+        "konsole",
+        "terminator",
+        "nice",
+        "taskset",
+        "sudo",
+        "time",
+        "strace",
+        "ltrace",
+        "perf",
+        "stdbuf",
+        "chrt",
+        "env",
+        "setsid",
+        "rr",
+        "heaptrack",
+        "python3",
+    }
+)
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_NAMESPACE = re.compile(r"|/|/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
+
+
+def start_node(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
+    """Add the node that a Node action starts, and the files that it is given."""
+    package, executable = (
+        _text_if_known(call.kwargs.get(name), context, call.at)
+        for name in ("package", "executable")
+    )
+    if not isinstance(package, str) or not isinstance(executable, str):
+        unknown = next((it.reason for it in (package, executable) if isinstance(it, Unknown)), "")
+        findings.add_unknown(
+            f"the program of a node is not evaluated: {unknown}".removesuffix(": "), call.at
+        )
+        return
+    prefix = _frame_prefix(call, context) if executable == STATE_PUBLISHER else ""
+    node = StartedNode(package, executable, when, findings.locate(call.at), prefix)
+    started = _with_names(node, call, context, findings)
+    findings.nodes.append(started)
+    for controller in (controllers_of(started) if executable == "spawner" else ()) or ():
+        for given in controller.parameters or ():
+            findings.refer("parameters", given.path, call)
+    if when is not False and executable == STATE_PUBLISHER:
+        _find_description(findings, call, context)
+    elif when is not False and executable == _RVIZ:
+        _find_configuration(findings, call, context)
+
+
+def _with_names(node: StartedNode, call: Call, context: Context, findings: Findings) -> StartedNode:
+    """Return a node with its name, arguments, parameters and remappings, and whether it is given
+    the robot itself.
+    """
+    words = _words_of(call.kwargs.get("arguments"), context, call.at)
+    own = words[words.index("--ros-args") + 1 :] if "--ros-args" in words else []
+    own += _words_of(call.kwargs.get("ros_arguments"), context, call.at)
+    rules = remap_rules(own)
+    is_given = any(
+        "robot_description" in table for table in _tables_in(call.kwargs.get("parameters"))
+    )
+    has_description = is_given or (
+        bool(words) and not words[0].startswith("-") and node.executable != _RVIZ
+    )
+    parameters = given_parameters(call, own, context, node.location)
+    for path in (it.path for it in parameters if it.path):
+        findings.refer("parameters", path, call)
+    node = replace(
+        node,
+        has_description=has_description,
+        node_name=_given_name(rules, call, context),
+        arguments=tuple(None if PART_UNKNOWN in word else word for word in words),
+        parameters=parameters,
+        included_by=context.included_by,
+    )
+    return _with_remaps(node, rules, [*words, *own], call, context)
+
+
+def _with_remaps(
+    node: StartedNode,
+    rules: Sequence[tuple[str, str, str]],
+    words: Sequence[str],
+    call: Call,
+    context: Context,
+) -> StartedNode:
+    """Return a node with its namespace and remappings; `rules` are those among the words of its
+    command line.
+    """
+    try:
+        namespace: str | None = namespace_below(
+            call.kwargs.get("namespace") or "", context, call.at
+        )
+        given = [
+            tuple(known_text(it, context, call.at) for it in rule)
+            for rule in call.kwargs.get("remappings") or ()
+        ]
+    except EvaluationSignal:
+        return replace(node, namespace=None, remaps=None)
+    namespace = next((value for name, _, value in rules if name == "__ns"), namespace)
+    remaps = (*((name, to) for name, _, to in rules), *context.to_all.get(REMAPS, ()), *given)
+    is_known = None not in remaps and not any(PART_UNKNOWN in word for word in words)
+    known = tuple(rule for rule in remaps if rule is not None)
+    return replace(node, namespace=namespace, remaps=known if is_known else None)
+
+
+def _given_name(rules: Iterable[tuple[str, str, str]], call: Call, context: Context) -> str | None:
+    """Return the name that a node is given; None where it is not known."""
+    for name, _, value in rules:
+        if name == "__node":
+            return None if PART_UNKNOWN in value else value
+    given = call.kwargs.get("name")
+    found = _text_if_known(given, context, call.at) if given is not None else ""
+    return found if isinstance(found, str) else None
+
+
+def start_process(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
+    """Add the node that a command starts, if it does."""
+    if when is False:
+        return
+    words = _words_of(call.kwargs["cmd"], context, call.at)
+    if call.kwargs.get("shell"):
+        with suppress(ValueError):
+            words = shlex.split(" ".join(words))
+    node = _node_of_command(words, call)
+    if node is not None:
+        start_node(findings, node, context, when)
+    elif _STARTS.search(" ".join(words)):
+        findings.add_unknown("the nodes that a command starts are not evaluated", call.at)
+
+
+def _node_of_command(words: list[str], call: Call) -> Call | None:
+    """Return the Node action that does the same as a command; None for a command that is not
+    known.
+    """
+    is_run = (
+        words[:2] == ["ros2", "run"]
+        and len(words) > 3
+        and not any(it.startswith("-") for it in words[2:4])
+    )
+    if not is_run and words[:1] != [_RVIZ]:
+        return None
+    package, program, *arguments = words[2:] if is_run else [_RVIZ, *words]
+    if PART_UNKNOWN in package + program:
+        return None
+    return Call(
+        call.name, [], {"package": package, "executable": program, "arguments": arguments}, call.at
+    )
+
+
+def evaluate_node(call: Call, context: Context) -> None:
+    """Evaluate what launch_ros does with the arguments of a node besides their texts. Raises
+    EvaluationSignal.
+    """
+    evaluate_process(call, context)
+    name, namespace = call.kwargs.get("name"), call.kwargs.get("namespace")
+    if name is not None and _NAME.fullmatch(text := known_text(name, context, call.at)) is None:
+        raise EvaluationFails(
+            f"the name of the node, {text!r}, is not valid: use letters, digits and _", call.at
+        )
+    if namespace is not None or NAMESPACE in context.arguments:
+        namespace_below(namespace or "", context, call.at)
+    package = call.kwargs.get("package")
+    if package is not None:
+        text, program = (
+            known_text(call.kwargs[it], context, call.at) for it in ("package", "executable")
+        )
+        check_program(text, program, context, call.at)
+
+
+def evaluate_process(call: Call, context: Context) -> None:
+    """Evaluate what launch does with the arguments of a process besides their texts. Raises
+    EvaluationSignal.
+    """
+    if "cmd" in call.kwargs and not items_in(call.kwargs["cmd"]):
+        raise EvaluationFails("cmd is empty", call.at)
+    if "cmd" in call.kwargs:
+        words = _words_of(call.kwargs["cmd"], context, call.at)
+        node = _node_of_command(words, call)
+        if node is not None:
+            check_program(node.kwargs["package"], node.kwargs["executable"], context, call.at)
+    try:
+        prefix = shlex.split(known_text(call.kwargs.get("prefix") or "", context, call.at))
+    except ValueError:
+        raise EvaluationFails("the quotes in a prefix are not closed", call.at) from None
+    if prefix and posixpath.basename(prefix[0]) not in _PREFIXES:
+        raise Undetermined(
+            f"whether the prefix {prefix[0][:40]!r} starts the program is not evaluated", call.at
+        )
+    output = call.kwargs.get("output", "log")
+    if (
+        not isinstance(output, dict)
+        and (text := known_text(output, context, call.at)) not in _OUTPUTS
+    ):
+        raise EvaluationFails(f"output={text!r} is not one of {', '.join(_OUTPUTS)}", call.at)
+    if isinstance(output, dict) and not output.keys() <= {"stdout", "stderr", "both"}:
+        raise EvaluationFails("output has the keys stdout, stderr and both only", call.at)
+
+
+def namespace_below(value: Value, context: Context, at: Position) -> str:
+    """Return a namespace below the one that the launch file has set. Raises EvaluationSignal."""
+    text, above = known_text(value, context, at), context.arguments.get(NAMESPACE, "")
+    if re.search(r"[^\w/~{}]|[^\x00-\x7f]", text):
+        raise EvaluationFails(
+            f"the namespace {text[:40]!r} is not valid: use letters, digits, _ and /", at
+        )
+    if _NAMESPACE.fullmatch(text) is None or not isinstance(above, str):
+        raise Undetermined(f"whether the namespace {text[:40]!r} is valid is not evaluated", at)
+    return text if text.startswith("/") else "/".join(filter(None, (above.removesuffix("/"), text)))
+
+
+def _frame_prefix(call: Call, context: Context) -> str | None:
+    """Return the parameter frame_prefix of a node."""
+    given = [
+        table["frame_prefix"]
+        for table in _tables_in(call.kwargs.get("parameters"))
+        if "frame_prefix" in table
+    ]
+    words = _words_of(call.kwargs.get("arguments"), context, call.at)
+    given += [word.partition(":=")[2] for word in words if word.startswith("frame_prefix:=")]
+    found = _text_if_known(_inner_value(given[-1]), context, call.at) if given else ""
+    return found if isinstance(found, str) and PART_UNKNOWN not in found else None
+
+
+def _find_description(findings: Findings, call: Call, context: Context) -> None:
+    """Add the file that robot_state_publisher gets the robot from."""
+    given = call.kwargs.get("parameters") or []
+    parameters = given if isinstance(given, list | tuple) else [given]
+    descriptions = [
+        table["robot_description"]
+        for table in _tables_in(parameters)
+        if "robot_description" in table
+    ]
+    if descriptions:
+        _refer_description(findings, descriptions[-1], call, context)
+        return
+    unknown = next((it for it in parameters if isinstance(it, Unknown)), None)
+    is_clear = all(
+        isinstance(it, dict) and not any(isinstance(own, dict) for own in it.values())
+        for it in parameters
+    )
+    words = _words_of(call.kwargs.get("arguments"), context, call.at)
+    end = words.index("--ros-args") if "--ros-args" in words else len(words)
+    files = [word for word in words[:end] if not word.startswith("-")]
+    if unknown is not None:
+        findings.refer("urdf", unknown, call)
+    elif files and files[0] != PART_UNKNOWN:
+        findings.refer("urdf", files[0], call)
+    elif words or not is_clear or "ros_arguments" in call.kwargs or findings.sets_parameters:
+        findings.refer("urdf", Unknown("its parameters are known only at run time", call.at), call)
+    else:
+        message = (
+            "robot_state_publisher is started without robot_description: it has no robot to publish"
+        )
+        findings.refer("urdf", None, call, wrong=message)
+
+
+def _refer_description(findings: Findings, value: Value, call: Call, context: Context) -> None:
+    value = _inner_value(value)
+    if isinstance(value, Call) and value.name in OPENED:
+        findings.refer(
+            "urdf", None, call, value, wrong=f"robot_description is given {OPENED[value.name]}"
+        )
+        return
+    if isinstance(value, list | tuple) and not any(isinstance(it, Call) for it in value):
+        findings.add_doubt("a robot_description that is a list is not evaluated", call.at)
+        findings.refer("urdf", Unknown("robot_description is a list", call.at), call)
+        return
+    match found := _text_if_known(value, context, call.at):
+        case Contents(path=path, by=by) if (
+            by != "xacro" and path.endswith(".xacro") and _may_be_xacro(path, context)
+        ):
+            name = path.rpartition("/")[2]
+            message = (
+                f"{name} is read without xacro; if it uses xacro, write Command(['xacro ', ...])"
+            )
+            findings.references.append(
+                NamedFile("urdf", path, findings.locate(call.at), message, sure=False, by=by)
+            )
+        case str() if "<robot" in found or not found.strip():
+            reason = "a robot that the launch file contains is not evaluated"
+            findings.refer("urdf", Unknown(reason, call.at), call, value)
+        case str():
+            message = (
+                "robot_description is given the path of the URDF, not its contents: read the "
+                "file first"
+            )
+            if re.fullmatch(r"\w+", found):
+                message = (
+                    f"robot_description is given the text {found[:40]!r}: write the variable "
+                    "without quotes"
+                )
+            findings.refer("urdf", None, call, value, wrong=message)
+        case _:
+            findings.refer("urdf", found, call, value)
+
+
+def _may_be_xacro(path: str, context: Context) -> bool:
+    """Return whether a file may use xacro: it has a tag or an expression of it, or is not known."""
+    text = context.text_of(path)
+    return text is None or "xacro:" in text or "$" in text
+
+
+def _find_configuration(findings: Findings, call: Call, context: Context) -> None:
+    """Add the configuration that RViz opens."""
+    arguments = call.kwargs.get("arguments")
+    if isinstance(arguments, Unknown):
+        findings.refer("rviz", arguments, call)
+        return
+    words = _words_of(arguments, context, call.at)
+    path = _display_config(words)
+    if path is None and PART_UNKNOWN not in words:
+        message = (
+            "rviz2 is started without -d and a file, so it opens its own default instead of the "
+            "lab's configuration"
+        )
+        findings.refer("rviz", None, call, wrong=message)
+    elif path is None or PART_UNKNOWN in path:
+        pieces = arguments if isinstance(arguments, list | tuple) else []
+        found = (_text_if_known(piece, context, call.at) for piece in pieces)
+        unnamed = Unknown("which file rviz2 opens is not evaluated", call.at)
+        findings.refer("rviz", next((it for it in found if isinstance(it, Unknown)), unnamed), call)
+    elif path != path.lstrip():
+        findings.refer(
+            "rviz",
+            None,
+            call,
+            wrong="'-d' and the path have to be two items of arguments: ['-d', path]",
+        )
+    elif path:
+        findings.refer("rviz", path, call)
+    else:
+        findings.refer("rviz", None, call, wrong="rviz2 is given -d without the path of a file")
+
+
+def _display_config(words: list[str]) -> str | None:
+    """Return what follows -d; of several, the last counts, as for Qt's parser."""
+    found: str | None = None
+    for index, word in enumerate(words):
+        if word in ("-d", "--display-config"):
+            found = "".join(words[index + 1 : index + 2])
+        elif word.startswith("--display-config="):
+            found = word.removeprefix("--display-config=")
+        elif word.startswith("-d"):
+            found = word.removeprefix("-d") if word[2:3].isspace() else PART_UNKNOWN
+    return found
+
+
+def _text_if_known(value: Value, context: Context, at: Position) -> Resolved:
+    """Return the text of a value; Unknown where launch may fail, which is added elsewhere."""
+    try:
+        return resolve(value, context, at) if value is not None else Unknown("there is none", at)
+    except EvaluationSignal as signal:
+        return Unknown(str(signal), signal.at or at)
+
+
+def _words_of(value: Value, context: Context, at: Position) -> list[str]:
+    """Return the words of a command, of which each item of a list is one."""
+    items = value
+    if not isinstance(value, list | tuple | str):
+        items = [] if value is None else [value]
+    texts = [_text_if_known(item, context, at) for item in items]
+    return [text if isinstance(text, str) else PART_UNKNOWN for text in texts]
+
+
+def _inner_value(value: Value) -> Value:
+    """Return the value in ParameterValue; another value as it is."""
+    return value.kwargs["value"] if isinstance(value, Call) and value.name in TYPED else value
+
+
+def _tables_in(parameters: Value) -> Iterator[dict[Any, Value]]:
+    """Yield the dicts among the parameters of a node."""
+    if isinstance(parameters, list):
+        yield from (table for table in parameters if isinstance(table, dict))
+
+
+def is_of_ros(package: str) -> bool:
+    """Return whether a package is on every machine that runs ROS 2 in a lab."""
+    return is_part_of_ros(package) or package in _started_by()
+
+
+def start_known_file(findings: Findings, path: str, call: Call, context: Context) -> bool:
+    """Add what an included launch file of a well-known package starts; return whether the path is
+    that of one.
+    """
+    prefix, _, name = path.rpartition("/share/")
+    package, _, file = name.partition("/launch/")
+    nodes = _started_by().get(package, {}).get(file) if prefix.startswith((PREFIX, ROS)) else None
+    if nodes is None:
+        return False
+    above = context.arguments.get(NAMESPACE, "")
+    namespace = above if isinstance(above, str) else None
+    findings.nodes += [
+        StartedNode(node, node, context.when, findings.locate(call.at), namespace=namespace)
+        for node in nodes
+    ]
+    for node in nodes:
+        if node in _GIVEN and package != "urdf_launch":
+            findings.refer(
+                _GIVEN[node], Unknown(f"{name} decides which file {node} gets", call.at), call
+            )
+    if package == "urdf_launch":
+        _refer_known_files(findings, call, context, is_shown=_RVIZ in nodes)
+    return True
+
+
+def _refer_known_files(findings: Findings, call: Call, context: Context, *, is_shown: bool) -> None:
+    """Add the files that the arguments of urdf_launch name."""
+    given = [context.arguments.get(key) for key in ("urdf_package", "urdf_package_path")]
+    match given:
+        case [str() as package, str() as urdf]:
+            findings.refer("urdf", Contents(f"{SHARE}/{package}/{urdf}", "xacro"), call)
+        case _:
+            unknown = next(value for value in given if not isinstance(value, str))
+            is_missing = None in given or isinstance(unknown, Contents)
+            message = "urdf_launch needs the arguments urdf_package and urdf_package_path"
+            findings.refer("urdf", None if is_missing else unknown, call, wrong=message)
+    opened = context.arguments.get("rviz_config")
+    if is_shown and opened is None:
+        message = (
+            "urdf_launch is included without rviz_config, so it opens its own configuration, "
+            "not the lab's"
+        )
+        findings.refer("rviz", None, call, wrong=message)
+    elif is_shown:
+        findings.refer("rviz", opened, call)
+
+
+@cache
+def _started_by() -> Mapping[str, Mapping[str, Sequence[str]]]:
+    """Return the nodes that the launch files of well-known packages start, by package and name of
+    the file.
+    """
+    text = Path(__file__).with_name("known_launch_files.toml").read_text("utf-8")
+    table: dict[str, dict[str, list[str]]] = tomllib.loads(text)
+    return table

@@ -1,0 +1,407 @@
+"""The texts of substitutions, as launch evaluates them, and the files that their commands print."""
+
+import builtins
+import posixpath
+import re
+import shlex
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from math import isclose
+
+from grader.base.text import enumerated
+from grader.ros.build.places import HOME, PREFIX, SHARE
+from grader.ros.config.yaml_nodes import yaml_value
+from grader.ros.launch.known_programs import is_part_of_ros, programs_of
+from grader.ros.launch.launch_model import ANY, Contents, Context, FileText, Resolved
+from grader.ros.python.budget import Budget, OutOfBudget
+from grader.ros.python.builtins import BUILTINS, MATH
+from grader.ros.python.expressions import evaluate
+from grader.ros.python.parse import Position
+from grader.ros.python.values import (
+    MAX_TEXT,
+    Call,
+    EvaluationFails,
+    Namespace,
+    Undetermined,
+    Unknown,
+    Value,
+    str_of,
+)
+
+_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
+_MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression
+PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown
+_PROGRAMS = frozenset({"xacro", "cat", "ros2", "python3", "bash", "sh", "echo", "env", "rviz2"})
+
+
+def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Resolved:
+    """Return the text of a value, or the contents of a file; Unknown where it certainly is a text,
+    but not known.
+
+    Raises EvaluationFails where launch certainly raises an error, Undetermined where it may.
+    """
+    context.budget.left -= 1
+    if depth > _MAX_DEPTH or context.budget.left < 0:
+        raise Undetermined("a substitution that is nested so deeply is not evaluated", at)
+    match value:
+        case FileText(contents=contents):
+            context.reads.append((contents, value.at))
+            return contents
+        case str() | Contents() | Unknown():
+            return value
+        case Call():
+            return _Substitution(value, context, depth).value()
+        case list() | tuple() | dict() | set():
+            return _joined_text([resolve(part, context, at, depth + 1) for part in value], at)
+    raise Undetermined("the text of this value is not evaluated", at)
+
+
+def _joined_text(parts: list[Resolved], at: Position) -> Resolved:
+    if len(parts) == 1:
+        return parts[0]
+    texts = [part for part in parts if isinstance(part, str)]
+    if len(texts) < len(parts):
+        unknown = (part for part in parts if isinstance(part, Unknown))
+        return next(unknown, Unknown("the content of a file is part of a string", at))
+    if sum(map(len, texts)) > MAX_TEXT:
+        raise Undetermined("a string grows too long", at)
+    return "".join(texts)
+
+
+def known_text(value: Value, context: Context, at: Position) -> str:
+    """Return the text of a value. Raises Undetermined where it is not known."""
+    found = resolve(value, context, at)
+    if isinstance(found, str):
+        return found
+    raise Undetermined(
+        found.reason if isinstance(found, Unknown) else "the content of a file is used as a text",
+        at,
+    )
+
+
+def boolean(text: str, at: Position) -> bool:
+    """Return the value of a text as launch reads it where it wants a boolean, by the rules of
+    YAML.
+    """
+    found: object = _BOOLEANS[text] if text in ("0", "1") else None
+    if found is None and len(text) < 20:
+        with suppress(ValueError):
+            found = yaml_value(text)
+    if not isinstance(found, bool):
+        raise EvaluationFails(f"{text[:40]!r} is neither true nor false", at)
+    return found
+
+
+def condition_holds(given: Call, context: Context) -> bool:
+    """Return whether a condition of `CONDITIONS` holds. Raises EvaluationSignal."""
+    kind = given.name.rpartition(".")[2]
+    if kind in ("IfCondition", "UnlessCondition"):
+        text = known_text(given.kwargs["predicate_expression"], context, given.at)
+        holds = _BOOLEANS.get(text.strip().lower())
+        if holds is None:
+            raise EvaluationFails(f"a condition is {text[:40]!r}, expected true or false", given.at)
+        return holds == (kind == "IfCondition")
+    name, wanted = given.kwargs["launch_configuration_name"], given.kwargs["expected_value"]
+    expected = known_text(wanted, context, given.at) if wanted is not None else None
+    found = (
+        context.arguments.get(name) if isinstance(name, str) else None
+    )  # no other object is the key of one
+    if (
+        isinstance(name, Unknown)
+        or (found is None and ANY in context.arguments)
+        or not isinstance(found, str | None)
+    ):
+        raise Undetermined("the launch configuration of this condition is not evaluated", given.at)
+    return (found == expected) == (kind == "LaunchConfigurationEquals")
+
+
+@dataclass(slots=True)
+class _Substitution:
+    call: Call
+    context: Context
+    depth: int
+
+    def value(self) -> Resolved:
+        perform = PERFORMS.get(self.call.name.rpartition(".")[2])
+        if perform is None:
+            raise Undetermined(
+                f"{self.call.name.rpartition('.')[2]} is not evaluated", self.call.at
+            )
+        return perform(self)
+
+    def resolve(self, value: Value) -> Resolved:
+        return resolve(value, self.context, self.call.at, self.depth + 1)
+
+    def argument(self, name: str, default: Value = "") -> Resolved:
+        return self.resolve(self.call.kwargs.get(name, default))
+
+    def texts(self, *values: Value) -> list[str] | Unknown:
+        """Return the texts of some values; Unknown if one of them is."""
+        found = [self.resolve(value) for value in values]
+        unknown = next((it for it in found if isinstance(it, Unknown)), None)
+        texts = [it for it in found if isinstance(it, str)]
+        return (
+            texts
+            if len(texts) == len(found)
+            else unknown or Unknown("the content of a file is used", self.call.at)
+        )
+
+    def configuration(self) -> Resolved:
+        name, arguments = self.argument("variable_name"), self.context.arguments
+        if not isinstance(name, str):
+            raise Undetermined("the name of a launch configuration is not evaluated", self.call.at)
+        if name in arguments:
+            return arguments[name]
+        default = self.call.kwargs.get("default")
+        if ANY in arguments:
+            raise Undetermined(
+                f"whether {name!r} is declared in a file that is not submitted is not evaluated",
+                self.call.at,
+            )
+        if default is not None:
+            items = default if isinstance(default, list | tuple) else [default]
+            return self.resolve(
+                [item if isinstance(item, str | Call | Unknown) else str(item) for item in items]
+            )
+        message = (
+            f"the launch argument {name!r} is used, but DeclareLaunchArgument does not declare "
+            "it before"
+        )
+        raise EvaluationFails(message, self.call.at)
+
+    def variable(self) -> Resolved:
+        name, default = self.argument("name"), self.call.kwargs.get("default_value")
+        if name == "HOME":
+            return HOME
+        if default is None:
+            raise Undetermined(
+                f"whether the environment variable {name!r} is set is not evaluated", self.call.at
+            )
+        self.resolve(default)
+        return Unknown("the environment is not evaluated", self.call.at)
+
+    def path(self) -> Resolved:
+        given = self.call.kwargs
+        parts = (
+            given["substitutions"] if "substitutions" in given else [given["path"]]
+        )  # of a PathSubstitution
+        texts = self.texts(*(parts if isinstance(parts, list | tuple) else [parts]))
+        if isinstance(texts, Unknown):
+            return texts
+        if not texts:
+            raise EvaluationFails("PathJoinSubstitution is given no path", self.call.at)
+        return posixpath.join(*texts)
+
+    def package_folder(self) -> Resolved:
+        package = self.argument("package")
+        if isinstance(package, Unknown):
+            return package
+        if not isinstance(package, str) or not self.context.installation.has_package(package):
+            shown = repr(package) if isinstance(package, str) else "that is read from a file"
+            raise Undetermined(
+                f"whether the package {shown} is installed is not evaluated", self.call.at
+            )
+        return f"{SHARE}/{package}"
+
+    def program(self) -> Resolved:
+        name = self.argument("name")
+        if isinstance(name, str) and name not in _PROGRAMS:
+            raise Undetermined(
+                f"whether the program {name!r} is installed is not evaluated", self.call.at
+            )
+        return name
+
+    def command(self) -> Resolved:
+        mode = self.argument("on_stderr", "fail")
+        if isinstance(mode, str) and mode not in ("fail", "ignore", "warn", "capture"):
+            raise EvaluationFails("on_stderr is one of fail, ignore, warn, capture", self.call.at)
+        parts = self.call.kwargs["command"]
+        texts = [
+            self.resolve(piece) for piece in (parts if isinstance(parts, list | tuple) else [parts])
+        ]
+        contents = _command_output(texts, self.call.at, stops_at_stderr=mode == "fail")
+        self.context.reads.append((contents, self.call.at))
+        return contents
+
+    def expression(self) -> Resolved:
+        texts = self.texts(self.call.kwargs["expression"])
+        if isinstance(texts, Unknown):
+            raise Undetermined(f"this expression is not evaluated: {texts.reason}", self.call.at)
+        if "python_modules" in self.call.kwargs:
+            raise Undetermined("the modules of this expression are not evaluated", self.call.at)
+        return _expression_text(texts[0], self.call.at, self.context)
+
+    def is_true(self, name: str) -> bool:
+        """Return an argument that is read as a boolean."""
+        return boolean(known_text(self.call.kwargs[name], self.context, self.call.at), self.call.at)
+
+    def both(self) -> str:
+        left, right = self.is_true("left"), self.is_true("right")
+        return str(left and right).lower()
+
+    def either(self) -> str:
+        left, right = self.is_true("left"), self.is_true("right")
+        return str(left or right).lower()
+
+    def choice(self) -> Resolved:
+        return self.argument("if_value" if self.is_true("condition") else "else_value")
+
+    def equals(self) -> str:
+        """Return whether two texts are equal: as booleans, as numbers, or as they are."""
+        left, right = (self.compared(name) for name in ("left", "right"))
+        if left.lower() in _BOOLEANS and right.lower() in _BOOLEANS:
+            return str(_BOOLEANS[left.lower()] == _BOOLEANS[right.lower()]).lower()
+        with suppress(ValueError):
+            return str(isclose(float(left), float(right))).lower()
+        return str(left == right).lower()
+
+    def compared(self, name: str) -> str:
+        value = self.call.kwargs[name]
+        if value is None:
+            value = ""
+        elif isinstance(value, bool):
+            value = str(value).lower()
+        elif isinstance(value, int | float):
+            value = str(value)
+        elif not all(
+            isinstance(it, str | Call | Unknown)
+            for it in (value if isinstance(value, list) else [value])
+        ):
+            raise Undetermined(
+                "the text of a list in this substitution is not evaluated", self.call.at
+            )
+        return known_text(value, self.context, self.call.at)
+
+    def file_content(self) -> Contents:
+        contents = Contents(
+            known_text(self.call.kwargs["path"], self.context, self.call.at), "open"
+        )
+        self.context.reads.append((contents, self.call.at))
+        return contents
+
+    def executable(self) -> Resolved:
+        """Return the path of a program of a package. Raises EvaluationSignal."""
+        package, name = (
+            known_text(self.call.kwargs[it], self.context, self.call.at)
+            for it in ("package", "executable")
+        )
+        check_program(package, name, self.context, self.call.at)
+        return f"{PREFIX}/lib/{package}/{name}"
+
+
+def check_program(package: str, name: str, context: Context, at: Position) -> None:
+    """Raise EvaluationFails if a package certainly has no such program, Undetermined if this is not
+    known.
+    """
+    if not context.installation.has_package(package):
+        raise Undetermined(f"whether the package {package!r} is installed is not evaluated", at)
+    is_there = context.installation.has_program(package, name)
+    if is_there is None:
+        raise Undetermined(f"whether {package!r} has the program {name!r} is not evaluated", at)
+    if not is_there:
+        others = enumerated(programs_of(package)) or "none"
+        where = (
+            f" in lib/{package}: see console_scripts of setup.py, and install_scripts of setup.cfg"
+        )
+        known = f"; it has {others}" if is_part_of_ros(package) else where
+        raise EvaluationFails(f"the package {package!r} has no program {name!r}{known}", at)
+
+
+# The conditions that are evaluated.
+CONDITIONS = (
+    "IfCondition",
+    "UnlessCondition",
+    "LaunchConfigurationEquals",
+    "LaunchConfigurationNotEquals",
+)
+# The substitutions that are evaluated.
+PERFORMS: Mapping[str, Callable[[_Substitution], Resolved]] = {
+    "TextSubstitution": lambda it: it.argument("text"),
+    "LaunchConfiguration": _Substitution.configuration,
+    "PathJoinSubstitution": _Substitution.path,
+    "PathSubstitution": _Substitution.path,
+    "Command": _Substitution.command,
+    "PythonExpression": _Substitution.expression,
+    "FindPackageShare": _Substitution.package_folder,
+    "FindExecutable": _Substitution.program,
+    "EnvironmentVariable": _Substitution.variable,
+    "ThisLaunchFileDir": lambda it: posixpath.dirname(it.context.path),
+    "ThisLaunchFile": lambda it: it.context.path,
+    "AndSubstitution": _Substitution.both,
+    "OrSubstitution": _Substitution.either,
+    "NotSubstitution": lambda it: str(not it.is_true("value")).lower(),
+    "IfElseSubstitution": _Substitution.choice,
+    "EqualsSubstitution": _Substitution.equals,
+    "FileContent": _Substitution.file_content,
+    "NotEqualsSubstitution": lambda it: "false" if it.equals() == "true" else "true",
+    "ExecutableInPackage": _Substitution.executable,
+}
+
+
+def _expression_text(text: str, at: Position, context: Context) -> str:
+    """Return the value of a PythonExpression as a text. Raises EvaluationSignal."""
+    budget = Budget(_WORK)
+    try:
+        return str_of(evaluate(text, _find_name, budget))
+    except EvaluationFails as error:
+        raise EvaluationFails(f"the expression {text[:60]!r} fails: {error}", at) from None
+    except (Undetermined, OutOfBudget) as error:
+        raise Undetermined(f"this expression is not evaluated: {error}", at) from None
+    finally:
+        context.budget.left -= budget.used
+
+
+def _find_name(name: str) -> Value:
+    if name in BUILTINS or name in MATH:
+        return MATH.get(name, BUILTINS.get(name))
+    if name == "math":
+        return Namespace("math", MATH.__getitem__)
+    if hasattr(builtins, name) or name.startswith("__"):
+        raise Undetermined(f"the name {name!r} is not evaluated")
+    raise EvaluationFails(f"the name {name!r} is not defined")
+
+
+def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr: bool) -> Contents:
+    """Return the contents of the file that a command prints, whose parts have these texts. Raises
+    EvaluationSignal.
+    """
+    command = "".join(text if isinstance(text, str) else PART_UNKNOWN for text in texts).strip()[
+        :MAX_TEXT
+    ]
+    if glued := re.match(r"(xacro|cat)(?=/)", command):
+        raise EvaluationFails(
+            f"a space is missing between {glued[1]} and the path: write '{glued[1]} '", at
+        )
+    try:
+        words = shlex.split(command)
+    except ValueError:
+        raise EvaluationFails("the quotes in this command are not closed", at) from None
+    if not words:
+        raise EvaluationFails("this command is empty", at)
+    found = _printed_file(words[3:] if words[:3] == ["ros2", "run", "xacro"] else words)
+    if found is None:
+        unknown = next((text.reason for text in texts if isinstance(text, Unknown)), "")
+        raise Undetermined(
+            f"the output of this command is not evaluated{unknown and ': ' + unknown}", at
+        )
+    if found.by != "xacro" or not stops_at_stderr:
+        return found
+    return replace(
+        found, stops_at_stderr=True, is_deprecated=not {"-i", "--inorder"}.isdisjoint(words)
+    )
+
+
+def _printed_file(words: list[str]) -> Contents | None:
+    """Return the contents of the one file that xacro or cat prints; None for any other command."""
+    program = words[0].rpartition("/")[2].removesuffix(".py") if words else ""
+    files = [word for word in words[1:] if not word.startswith("-") and ":=" not in word]
+    is_known = len(files) == 1 and files[0] and PART_UNKNOWN not in files[0]
+    if program not in ("xacro", "cat") or "-o" in words or not is_known:
+        return None
+    if program != "xacro":
+        return Contents(files[0], "cat") if words[1:] == files else None
+    given = (word.split(":=", 1) for word in words[1:] if ":=" in word)
+    return Contents(
+        files[0], "xacro", tuple((name, None if PART_UNKNOWN in it else it) for name, it in given)
+    )

@@ -1,0 +1,180 @@
+"""The programs of a Python package: the entry points that its setup.py names, and whether their
+functions exist.
+"""
+
+import ast
+import re
+from typing import NamedTuple
+
+from grader.base.names import closest
+from grader.base.source import Location
+from grader.base.text import enumerated
+from grader.ros.package.package import Package
+from grader.ros.python.budget import PYTHON_LIMIT
+from grader.ros.python.constants import binds_unseen
+from grader.ros.python.parse import Code, bound_in, parse
+
+_ENTRY = re.compile(
+    r"\s*([^=\s]+)\s*=\s*(\w+(?:\.\w+)*)\s*(?::\s*(\w+)(?:\.\w+)*\s*)?(?:\[.*)?", re.ASCII
+)
+_MAX_NAMED = 5  # names in a message
+
+
+class _EntryPoint(NamedTuple):
+    """A program of console_scripts: `average_filter = sensor_hub.average_filter:main`."""
+
+    name: str
+    module: str
+    function: str  # empty if it names none
+    location: Location
+
+
+class EntryFault(NamedTuple):
+    """Why a program certainly does not start, where setup.py names it, and the word in it that
+    may mean another one.
+    """
+
+    message: str
+    location: Location
+    written: str
+    meant: str | None
+
+
+def entry_points(package: Package) -> list[_EntryPoint]:
+    """Return the entry points that are known: those of console_scripts in setup.py that are
+    written as texts.
+    """
+    setup = package.installation
+    groups = setup.entry_points if setup is not None else None
+    scripts = groups.get("console_scripts") if isinstance(groups, dict) else None
+    found = []
+    for script in scripts if isinstance(scripts, list | tuple) else ():
+        parts = _ENTRY.fullmatch(script) if isinstance(script, str) else None
+        if parts is not None:
+            found.append(
+                _EntryPoint(parts[1], parts[2], parts[3] or "", _place_of(package, parts[1]))
+            )
+    return found
+
+
+def _place_of(package: Package, name: str) -> Location:
+    """Return where setup.py writes an entry point; where it calls setup() if the text is
+    computed.
+    """
+    setup = package.installation
+    assert setup is not None
+    written = re.search(rf"""(?<=['"])[ \t]*{re.escape(name)}[ \t]*=""", setup.source.text)
+    return setup.source.at(written.start()) if written else setup.location(setup.called_at)
+
+
+def entry_fault(package: Package, name: str) -> EntryFault | None:
+    """Return why a program certainly does not start; None where that is not known.
+
+    Its module or the function in it is not there. Modules of other packages are not known, nor is
+    what a module does to its own names: a star import, `exec`, `globals()`.
+    """
+    setup, named = package.installation, [it for it in entry_points(package) if it.name == name]
+    if setup is None or len(named) != 1 or package.tree.links or setup.unknown:
+        return None
+    [entry] = named
+    path = _module_path(package, entry.module)
+    if path is None:
+        return _missing_module(package, entry) if _lacks_module(package, entry.module) else None
+    code = read_module(package, path)
+    names = _certain_names(code) if code is not None else None
+    if not entry.function or names is None or entry.function in names:
+        return None
+    parts = (
+        [node for node in code.tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)]
+        if code
+        else []
+    )
+    functions = [node.name for node in parts if isinstance(node, ast.FunctionDef)]
+    only = functions[0] if len(functions) == 1 else ""
+    return _fault(
+        entry,
+        f"{path} has no {entry.function!r}",
+        entry.function,
+        [node.name for node in parts],
+        only,
+    )
+
+
+def read_module(package: Package, path: str) -> Code | None:
+    """Return a parsed Python file of a package; None for one that is not read."""
+    data = package.tree.read(path, PYTHON_LIMIT)
+    code = parse(data, package.path(path)) if data is not None else None
+    return code if isinstance(code, Code) else None
+
+
+def _module_path(package: Package, module: str) -> str | None:
+    """Return the file of a module by its full name; None where the package has none."""
+    stem = module.replace(".", "/")
+    return next(
+        (path for path in (f"{stem}/__init__.py", f"{stem}.py") if path in package.tree.files), None
+    )
+
+
+def _lacks_module(package: Package, module: str) -> bool:
+    """Return whether importing a module certainly fails: its parent packages are here, and none of
+    them has it.
+    """
+    top, stem = module.partition(".")[0], module.replace(".", "/")
+    tree = package.tree
+    names = {path: path.rpartition("/")[2] for path in (*tree.files, *tree.folders, *tree.unseen)}
+    homes = [
+        path for path, name in names.items() if name == top and not path.startswith("resource/")
+    ]
+    if not homes:  # no other package of ROS 2 installs a Python package of this name
+        return top == package.name and not any(
+            name.startswith((f"{top}.py", f"{top}.so")) for name in names.values()
+        )
+    if homes != [top] or any(
+        path == stem or path.startswith((f"{stem}.", f"{stem}/")) for path in names
+    ):
+        return False
+    inits = [
+        path for path in tree.files if path.endswith("/__init__.py") and stem.startswith(path[:-11])
+    ]
+    codes = [read_module(package, path) for path in inits]
+    return all(code is not None and _certain_names(code) is not None for code in codes)
+
+
+def _missing_module(package: Package, entry: _EntryPoint) -> EntryFault:
+    folder = entry.module.rpartition(".")[0].replace(".", "/")
+    others = [
+        path.removeprefix(f"{folder}/").removesuffix(".py")
+        for path in package.tree.files
+        if path.rpartition("/")[0] == folder
+        and path.endswith(".py")
+        and not path.endswith("__init__.py")
+    ]
+    own = entry.name if entry.name in others else ""
+    return _fault(
+        entry, f"there is no module {entry.module}", entry.module.rpartition(".")[2], others, own
+    )
+
+
+def _fault(
+    entry: _EntryPoint, message: str, written: str, known: list[str], own: str = ""
+) -> EntryFault:
+    """Return the fault of an entry point, with the name that may be meant, else the names that
+    there are.
+    """
+    meant = closest(written, known) or own or None
+    if meant is not None:
+        message += f"; did you mean {meant!r}?"
+    elif known:
+        message += f"; there is {enumerated([repr(it) for it in known[:_MAX_NAMED]])}"
+    return EntryFault(message, entry.location, written, meant)
+
+
+def _certain_names(code: Code) -> frozenset[str] | None:
+    """Return the names that a module may bind; None if it may bind others."""
+    nodes = [*ast.walk(code.tree)]
+    if binds_unseen(nodes) or any(
+        isinstance(node, ast.alias) and node.name == "*" for node in nodes
+    ):
+        return None
+    shared = {name for node in nodes if isinstance(node, ast.Global) for name in node.names}
+    return bound_in(code.tree) | shared

@@ -1,0 +1,169 @@
+"""The packages in a file tree, and the files kept of earlier work among them."""
+
+import posixpath
+import re
+from collections.abc import Sequence
+from pathlib import PurePosixPath
+
+from grader.base.errors import InputError
+from grader.base.names import closest, folded
+from grader.base.source import Location, Source
+from grader.files.tree import Tree
+from grader.ros.build.manifest import Manifest, read_manifest
+from grader.ros.package.package import CMAKE, MANIFEST, SETUP, Package
+
+# The files that hide a folder, with all that is below, from colcon.
+_IGNORING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
+_MAX_PACKAGES = 40
+_MAX_MANIFEST_SIZE = 256 * 1024  # bytes
+NAMED, IN_NAMED_FOLDER, SIMILAR, _OTHER = range(4)  # how well a package has a name
+_CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
+_WORD = re.compile(r"[^\W\d_]+")
+_WORDS = frozenset(
+    {
+        "old",
+        "older",
+        "oldest",
+        "backup",
+        "backups",
+        "bak",
+        "copy",
+        "copies",
+        "kopie",
+        "archive",
+        "archived",
+        "previous",
+        "prev",
+        "deprecated",
+        "legacy",
+        "unused",
+        "trash",
+        "draft",
+        "drafts",
+        "broken",
+        "wrong",
+    }
+)
+
+
+def is_backup(path: str) -> bool:
+    """Return whether a file or folder is named like a backup: old_ws, my_robot - Copy,
+    my_robot.urdf.bak.
+    """
+    return not _WORDS.isdisjoint(_WORD.findall(_CAMEL.sub(" ", path).casefold()))
+
+
+def find_packages(tree: Tree, names: Sequence[str]) -> list[str]:
+    """Return the folders of packages: those with a package.xml, and those of these names with only
+    a setup.py.
+    """
+    with_manifest, with_setup = (
+        [path.rpartition("/")[0] for path in tree.files if path.rpartition("/")[2] == file]
+        for file in (MANIFEST, SETUP)
+    )
+    named = [
+        folder
+        for folder in with_setup
+        if folder not in with_manifest and folder.rpartition("/")[2] in names
+    ]
+    if not with_manifest and not named:
+        named = with_setup
+    return sorted([*with_manifest, *named], key=_depth)[:_MAX_PACKAGES]
+
+
+def read_packages(
+    tree: Tree, urdf: str, name: str = "", names: tuple[str, ...] = ()
+) -> tuple[Package, ...]:
+    """Return the packages in a file tree, the one that matches best first.
+
+    Among packages of one name it is one that is no backup, then the one with most of the files that
+    a lab asks for, above all the URDF at its path; then the least deep, then the first in
+    alphabetical order.
+
+    Args:
+        tree: The files.
+        urdf: The path of the URDF in the package.
+        name: The name that the package should have.
+        names: The names of all packages, if there are several.
+    """
+    known: dict[str, Package] = {}
+    wanted = names or (name,)
+    folders = find_packages(tree, wanted)
+    packages = [_read_package(tree, folder, folders, known, name, names) for folder in folders]
+    packages.sort(
+        key=lambda it: (
+            min(name_distance(it, one) for one in wanted),
+            is_backup(it.folder),
+            missing_files(it, urdf),
+            _depth(it.folder),
+        )
+    )
+    for package in packages:
+        known.setdefault(package.name, package)
+    return tuple(packages)
+
+
+def package_around(packages: tuple[Package, ...], path: str | None) -> Package | None:
+    """Return the innermost package that holds a file."""
+    around = [package for package in packages if path is not None and package.holds(path)]
+    return max(around, key=lambda package: len(package.folder), default=None)
+
+
+def _depth(folder: str) -> tuple[int, str]:
+    return folder.count("/") + bool(folder), folder
+
+
+def missing_files(package: Package, urdf: str) -> tuple[int, bool]:
+    """Return how many of its usual files a package lacks, and whether it lacks the URDF at its
+    path.
+    """
+    files = package.tree.files
+    has_urdf = urdf in files and files[urdf].size > 0
+    usual = (has_urdf, MANIFEST in files, SETUP in files, package.launch_files, package.rviz_files)
+    return sum(not present for present in usual), not has_urdf
+
+
+def name_distance(package: Package, name: str) -> int:
+    """Return how well a package has a name; the smallest is best."""
+    if package.manifest is not None and package.manifest.name == name:
+        return NAMED
+    own = package.manifest.name if package.manifest is not None else package.name
+    if package.folder.rpartition("/")[2] == name or (
+        own is not None and folded(own) == folded(name)
+    ):
+        return IN_NAMED_FOLDER
+    return SIMILAR if package.manifest is not None and closest(package.name, [name]) else _OTHER
+
+
+def _read_package(
+    tree: Tree,
+    folder: str,
+    folders: Sequence[str],
+    known: dict[str, Package],
+    name: str,
+    names: tuple[str, ...],
+) -> Package:
+    own = tree.below(folder)
+    prefix = f"{folder}/" if folder else ""
+    nested = (it.removeprefix(prefix) for it in folders if it.startswith(prefix) and it != folder)
+    inner = tuple(
+        f"{it}/"
+        for it in nested
+        if not own.files.keys().isdisjoint((f"{it}/{SETUP}", f"{it}/{CMAKE}"))
+    )
+    if inner:  # what is in a package in this one is that package's; a stray package.xml makes none
+        own = own.only(lambda path: not path.startswith(inner))
+    path = f"{folder}/{MANIFEST}" if folder else MANIFEST
+    start = Location(path, 1, 1)
+    manifest = None
+    try:
+        if MANIFEST in own.files:
+            manifest = read_manifest(own.files[MANIFEST].read(_MAX_MANIFEST_SIZE), path)
+    except InputError as error:
+        manifest = Manifest(Source(path, ""), None, "", (), start, start, unread=str(error))
+    above = [folder, *map(str, PurePosixPath(folder).parents)] if folder else [""]
+    markers = (
+        posixpath.normpath(f"{path}/{marker}").lstrip("/") for path in above for marker in _IGNORING
+    )
+    ignored_by = next((path for path in markers if path in tree.files), "")
+    return Package(folder, own, manifest, known, tree.generated, name, names, ignored_by)

@@ -1,0 +1,131 @@
+"""The problems of a package's files, whatever they are graded on, with their codes and
+locations.
+"""
+
+from collections.abc import Iterable, Iterator
+from fnmatch import fnmatchcase
+
+from grader.base.names import did_you_mean
+from grader.base.problems import Problem
+from grader.base.source import Location
+from grader.base.text import enumerated
+from grader.ros.build import package_problems as kinds
+from grader.ros.build.installation import Installation
+from grader.ros.build.places import is_of_one_machine, one_machine_only
+from grader.ros.launch.launch_model import Launch
+from grader.ros.package.package import MANIFEST, RESOURCE_INDEX, Package
+
+_MAX_FILES = 5  # launch files, and RViz files
+_MAX_NAMED = 3  # files that a message names
+
+
+def package_problems(package: Package) -> tuple[Problem, ...]:
+    """Return the problems of package.xml, setup.py, launch files and RViz files, each file's sorted
+    by location.
+    """
+    found: list[Problem] = []
+    if package.manifest is not None:
+        found += _sort(package.manifest.problems)
+    if package.installation is not None:
+        found += _sort(_setup_problems(package, package.installation))
+    for path in package.launch_files[:_MAX_FILES]:
+        found += _sort(_launch_problems(package.launch(path)))
+    for path in package.rviz_files[:_MAX_FILES]:
+        found += _sort(package.rviz(path).problems)
+    return tuple(found)
+
+
+def _sort(problems: Iterable[Problem]) -> list[Problem]:
+    return sorted(
+        problems, key=lambda it: (it.location.line, it.location.column, it.code, it.message)
+    )
+
+
+def _setup_problems(package: Package, setup: Installation) -> Iterator[Problem]:
+    if fault := setup.fault:
+        kind = kinds.SETUP_SYNTAX if fault.sure else kinds.SETUP_UNKNOWN
+        text = setup.fault_text if fault.sure else f"{setup.file} is not read: {fault.message}"
+        yield Problem(kind, text, fault.location)
+        return
+    for error in setup.faults:
+        yield Problem(kinds.SETUP_NAME, error.message, setup.location(error.at))
+    for stop in setup.stops:
+        yield Problem(kinds.SETUP_STOPS, stop.message + stop.hint, setup.location(stop.at))
+    for empty in setup.empty:
+        message = (
+            f"the pattern {empty.pattern!r} in {setup.file} matches no "
+            f"file{why_no_match(package, empty.pattern)}"
+        )
+        yield Problem(kinds.EMPTY_GLOB, message, setup.location(empty.at))
+    for argument in setup.ignored:
+        yield Problem(kinds.IGNORED_ARGUMENT, argument.message, setup.location(setup.called_at))
+    for unknown in setup.unknown:
+        message = f"cannot be determined statically: {unknown.reason}"
+        yield Problem(kinds.SETUP_UNKNOWN, message, setup.location(unknown.at))
+    if not setup.is_cmake:
+        yield from _naming_problems(package, setup)
+
+
+def _naming_problems(package: Package, setup: Installation) -> Iterator[Problem]:
+    """Yield what is wrong with the package's name in setup.py, and with the entries that register
+    the package.
+    """
+    start, targets = setup.location(setup.called_at), setup.installed()
+    declared = package.manifest.name if package.manifest is not None else None
+    is_known = not (setup.unknown or setup.stops)
+    if declared is not None and setup.name is not None and setup.name != declared:
+        message = f"package.xml names the package {declared!r}, setup.py names it {setup.name!r}"
+        yield Problem(kinds.OTHER_NAME, message, start)
+        is_known = False  # the entries are missing under one of the two names in any case
+    if is_known and RESOURCE_INDEX + package.name not in targets:
+        message = (
+            f"data_files has no entry for the resource index: resource/{package.name} is not "
+            "installed"
+        )
+        yield Problem(kinds.NO_MARKER, message, start)
+    if is_known and f"share/{package.name}/package.xml" not in targets:
+        message = f"data_files does not install package.xml in share/{package.name}"
+        yield Problem(kinds.NO_MANIFEST_ENTRY, message, start)
+    elif not is_known and MANIFEST not in targets.values() and MANIFEST not in setup.source.text:
+        message = (
+            "setup.py does not name package.xml, which data_files should install in "
+            f"share/{package.name}"
+        )
+        yield Problem(kinds.NO_MANIFEST_ENTRY, message, start)
+
+
+def _launch_problems(launch: Launch) -> Iterator[Problem]:
+    if launch.unread:
+        message = f"the launch file is not read: {launch.unread}"
+        yield Problem(kinds.LAUNCH_UNKNOWN, message, Location(launch.source.path, 1, 1))
+    if launch.syntax is not None:
+        yield Problem(kinds.LAUNCH_SYNTAX, launch.syntax.message, launch.syntax.location)
+    for fault in launch.faults:
+        yield Problem(kinds.LAUNCH_FAULT, fault.message, fault.location)
+    for unknown in launch.unknown:
+        yield Problem(kinds.LAUNCH_UNKNOWN, unknown.message, unknown.location)
+    for reference in launch.references:
+        if reference.path is not None and is_of_one_machine(reference.path):
+            yield Problem(kinds.HARD_CODED, one_machine_only(reference.path), reference.location)
+
+
+def why_no_match(package: Package, pattern: str) -> str:
+    """Return the end of a message on a pattern of setup.py that matches no file: why, or which
+    files there are.
+    """
+    if "\\" in pattern:
+        return ": separate the parts of a path with /, not with \\"
+    folder, _, name = pattern.rpartition("/")
+    if folder and folder not in package.tree.folders:
+        return (
+            f", because there is no folder {folder!r}{did_you_mean(folder, package.tree.folders)}"
+        )
+    files = [
+        path
+        for path in package.tree.files
+        if name.strip("*") and fnmatchcase(path.rpartition("/")[2], name)
+    ]
+    files = files or [path for path in package.tree.files if path.rpartition("/")[0] == folder]
+    if not files:
+        return f", because the folder {folder!r} is empty"
+    return f"; there {'are' if len(files) > 1 else 'is'} {enumerated(files, _MAX_NAMED)}"

@@ -1,0 +1,136 @@
+"""What builds install at the paths where files look for others, and what a package has instead."""
+
+import posixpath
+import re
+from typing import Literal, NamedTuple
+
+from grader.base.names import closest
+from grader.ros.build.places import SHARE
+from grader.ros.package.package import CMAKE, Package
+
+_FOR_TESTS = re.compile(r"if\s*\(\s*BUILD_TESTING.*?endif", re.DOTALL)
+_MAX_CMAKE, _MAX_FILE = 128 * 1024, 512 * 1024  # bytes
+
+
+class Lookup(NamedTuple):
+    """What a build installs at a path where a file is looked for, or why nothing, as the end of a
+    sentence.
+    """
+
+    state: Literal["installed", "unknown", "no build", "elsewhere", "not installed", "absent"]
+    # the file of the package; elsewhere: where a build installs it, below the prefix
+    path: str = ""
+    text: str = ""
+
+
+def share_parts(path: str) -> tuple[str, str]:
+    """Return the package in whose share folder a path is, and the path in it; of another path,
+    empty texts.
+    """
+    inside = posixpath.normpath(path)
+    owner, _, rest = inside.removeprefix(f"{SHARE}/").partition("/")
+    return (owner, rest) if inside.startswith(f"{SHARE}/") else ("", "")
+
+
+def look_up(owner: Package, target: str) -> Lookup:
+    """Return what a build of a package installs at a path below the prefix, or what the package has
+    instead.
+    """
+    setup = owner.installation
+    if setup is None:
+        return Lookup("no build", text=f"its package has no {owner.missing_build_file}")
+    if setup.fault is not None:
+        return (
+            Lookup("unknown", text=setup.unread)
+            if setup.unread
+            else Lookup("no build", text=setup.fault_text)
+        )
+    if target in owner.installed:
+        return Lookup("installed", owner.installed[target])
+    if setup.unknown:
+        return Lookup("unknown", text=f"cannot determine statically what {setup.file} installs")
+    return _instead(owner, target)
+
+
+def _instead(owner: Package, target: str) -> Lookup:
+    """Return what a package, or a build of it, has instead of a file at a path below the prefix."""
+    name, sources = posixpath.basename(target), _meant_by(owner, target)
+    elsewhere = next((path for path, source in owner.installed.items() if source in sources), "")
+    if not sources:  # builds may install a file under another name
+        elsewhere = next((path for path in owner.installed if posixpath.basename(path) == name), "")
+    if elsewhere:
+        return Lookup("elsewhere", elsewhere, f"a build installs it as {elsewhere}")
+    if not sources:
+        return Lookup("absent", text=f"the package has no file {name!r}")
+    text = f"a build does not install {sources[0]}"
+    for path, source in owner.installed.items():
+        if posixpath.basename(source) == name:
+            return Lookup("not installed", sources[0], f"{text}; it installs {source} as {path}")
+    return Lookup("not installed", sources[0], text)
+
+
+def _meant_by(owner: Package, target: str) -> list[str]:
+    """Return the file of a package that is at the same place in its folder, else all with the same
+    name.
+    """
+    inside, name = target.removeprefix(owner.share), posixpath.basename(target)
+    return (
+        [inside]
+        if inside in owner.tree.files
+        else [it for it in owner.tree.files if posixpath.basename(it) == name]
+    )
+
+
+def is_surely_absent(package: Package, target: str) -> bool:
+    """Return whether a file that the package does not have is surely not installed at a path below
+    the prefix.
+
+    What a program writes is in a folder of its own, and like no other, or a folder itself.
+    """
+    names = map(posixpath.basename, package.tree.files)
+    folder, _, name = target.rpartition("/")
+    folders = {posixpath.dirname(it) for it in package.installed}
+    return closest(name, names) is not None or (folder in folders and "." in name)
+
+
+def are_installs_known(package: Package) -> bool:
+    """Return whether it is known what a build of a package installs."""
+    setup = package.installation
+    is_known = setup is not None and setup.fault is None and not setup.unknown
+    return is_known and not _installs_for_tests(package)
+
+
+def open_meant(
+    package: Package, path: str, *, absent_are_empty: bool = False
+) -> tuple[bytes, str] | None:
+    """Return what builds install at a path below the prefix, else the only file of its name in the
+    package of the path.
+
+    With `absent_are_empty`, a file that surely is not there is empty.
+    """
+    found, parts = package.open_installed(path), path.split("/")
+    owner = package.find(parts[1]) if found is None and len(parts) > 2 else None
+    if owner is None:
+        return found
+    named = _meant_by(owner, path)
+    if (
+        not named
+        and absent_are_empty
+        and are_installs_known(owner)
+        and is_surely_absent(owner, path)
+    ):
+        return b"", path
+    data = owner.tree.read(named[0], _MAX_FILE) if len(named) == 1 else None
+    return (data, owner.path(named[0])) if data is not None else None
+
+
+def _installs_for_tests(package: Package) -> bool:
+    """Return whether CMakeLists.txt installs something only if BUILD_TESTING is on, as it is by
+    default.
+    """
+    text = (
+        package.tree.files[CMAKE].read(_MAX_CMAKE).decode("utf-8", "replace")
+        if package.is_cmake
+        else ""
+    )
+    return any("install(" in block.lower() for block in _FOR_TESTS.findall(text))

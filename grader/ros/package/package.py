@@ -1,0 +1,447 @@
+"""A ROS 2 package of a submission: its files are read one by one when they are needed, each
+once, and never run.
+"""
+
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
+
+from grader.base.errors import InputError, MissingElement, NotDecided
+from grader.base.names import closest
+from grader.base.source import Location, Source
+from grader.base.text import enumerated, was_not_committed
+from grader.files.tree import IS_LINK, Tree
+from grader.ros.build.places import (
+    ENDINGS,
+    PREFIX,
+    SHARE,
+    is_in_launch_folder,
+    is_launch_named,
+    launch_stem,
+)
+from grader.ros.python.budget import PYTHON_LIMIT, Budget
+
+# The readers are imported when they are needed: a URDF on its own needs none of them.
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from grader.ros.build.installation import Installation
+    from grader.ros.build.manifest import Manifest
+    from grader.ros.config.rviz import RvizFile
+    from grader.ros.launch.launch_model import Launch, NamedFile
+
+MANIFEST, SETUP, CMAKE = "package.xml", "setup.py", "CMakeLists.txt"
+RESOURCE_INDEX = "share/ament_index/resource_index/packages/"
+NO_PACKAGE = "the submission has no ROS 2 package: there is no package.xml"
+_RVIZ_LIMIT = 512 * 1024  # bytes
+_MAX_LAUNCHES = 10
+# What ros2 launch imports: an installed folder of this name is found before it, on the PYTHONPATH
+# of a workspace.
+_OF_ROS_IN_PYTHON = (
+    "launch",
+    "launch_ros",
+    "launch_xml",
+    "launch_yaml",
+    "rclpy",
+    "ament_index_python",
+    "ros2launch",
+    "ros2cli",
+    "osrf_pycommon",
+    "yaml",
+)
+# What a file of a kind is called in messages, and how its name ends.
+_KINDS = {
+    "urdf": ("URDF", (".urdf", ".xacro")),
+    "rviz": ("RViz file", (".rviz",)),
+    "launch": ("launch file", ENDINGS),
+}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Package:
+    """One ROS 2 package of a submission, whose files are read and never run.
+
+    `finding.py` finds the packages of a file tree.
+    Checks ask it what a build installs, what its launch files start, and what RViz shows; launch
+    files and xacro ask it for the files around them. Each file is evaluated when it is first
+    needed, and once.
+
+    >>> from grader.files.tree import make_tree, overlaid
+    >>> from grader.ros.package.finding import read_packages
+    >>> manifest = b"<package format='3'><name>arm</name></package>"
+    >>> setup = b"from setuptools import setup; setup(data_files=[('share/arm', ['package.xml'])])"
+    >>> files = {"src/arm/package.xml": manifest, "src/arm/setup.py": setup}
+    >>> [package] = read_packages(overlaid(make_tree("ash", (), ()), files), "urdf/arm.urdf")
+    >>> package.name, package.folder, package.installed
+    ('arm', 'src/arm', {'share/arm/package.xml': 'package.xml'})
+    """
+
+    folder: str  # its path in the submission
+    tree: Tree  # its files, by their paths in the package
+    manifest: "Manifest | None"
+    packages: dict[str, "Package"]  # all of the submission, by their names
+    generated: tuple[str, ...] = ()  # paths in the submission that a build has copied
+    lab_name: str = ""  # the name that the lab gives it
+    lab_packages: tuple[str, ...] = ()  # the names of all packages of the lab, if there are several
+    ignored_by: str = ""  # the path of a file for which colcon ignores it
+    arguments: "Mapping[str, str]" = field(default_factory=dict)  # that its launch files are given
+    budget: Budget = field(default_factory=Budget, init=False)  # of the evaluation of its files
+    _launches: "dict[str, Launch]" = field(default_factory=dict, init=False)
+    _rviz_files: "dict[str, RvizFile]" = field(default_factory=dict, init=False)
+
+    def path(self, path: str) -> str:
+        """Return a path of the package as one of the submission."""
+        return f"{self.folder}/{path}" if self.folder else path
+
+    def holds(self, path: str) -> bool:
+        """Return whether a path of the submission is in the package."""
+        return path.startswith(self.path(""))
+
+    def under(self, arguments: "Mapping[str, str]") -> "Package":
+        """Return the package with its launch files under these arguments; the rest is not read
+        again.
+        """
+        found = replace(self, arguments=arguments)
+        found.__dict__.update(
+            (name, value) for name, value in vars(self).items() if name not in vars(found)
+        )
+        return found
+
+    @property
+    def name(self) -> str:
+        """The name that ROS 2 finds it by; without a package.xml, that of setup.py or of the
+        folder.
+        """
+        if self.manifest is not None and self.manifest.name is not None:
+            return self.manifest.name
+        return (self.installation and self.installation.name) or PurePosixPath(
+            self.folder or self.tree.name
+        ).name
+
+    def find(self, name: str) -> "Package | None":
+        """Return the package of the submission that ROS 2 finds by a name: this one, if it has
+        the name.
+        """
+        if name == self.name:
+            return self
+        return self.packages.get(name) or next(
+            (it for it in self.packages.values() if name in it.names), None
+        )
+
+    def depends_on(self, name: str) -> bool:
+        """Return whether its package.xml depends on a package of this name."""
+        return self.manifest is not None and name in self.manifest.dependencies
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The names that ROS 2 finds it by: its own, and those that setup.py installs in the
+        resource index.
+        """
+        return tuple(dict.fromkeys([self.name, *self.registered]))
+
+    @cached_property
+    def registered(self) -> tuple[str, ...]:
+        """The names that setup.py registers it by: those of its files in the resource index."""
+        return tuple(
+            path.removeprefix(RESOURCE_INDEX)
+            for path in self.installed
+            if path.startswith(RESOURCE_INDEX)
+        )
+
+    @cached_property
+    def share(self) -> str:
+        """The folder below the prefix where ros2 looks for its files: by the lab's name if it
+        has it, else its own.
+        """
+        return f"share/{self.lab_name if self.lab_name in self.names else self.name}/"
+
+    @property
+    def is_cmake(self) -> bool:
+        """Return whether CMake, not setup.py, installs the package."""
+        return CMAKE in self.tree.files and (
+            SETUP not in self.tree.files or self.build_file == CMAKE
+        )
+
+    @property
+    def build_file(self) -> str:
+        """Return the file that should install the package, by its package.xml: setup.py or
+        CMakeLists.txt.
+        """
+        return SETUP if self._build_type in ("ament_python", "") else CMAKE
+
+    @property
+    def missing_build_file(self) -> str:
+        """What a package without a build file lacks, in words: that of its build type, or
+        either.
+        """
+        return f"{SETUP} or {CMAKE}" if self._build_type in ("catkin", "") else self.build_file
+
+    @property
+    def _build_type(self) -> str:
+        return self.manifest.build_type if self.manifest is not None else ""
+
+    @cached_property
+    def installation(self) -> "Installation | None":
+        """Return what its setup.py or CMakeLists.txt installs; None without either."""
+        name = CMAKE if self.is_cmake else SETUP
+        file = self.tree.files.get(name)
+        if file is None:
+            return None
+        from grader.ros.build.installation import Installation
+        from grader.ros.python.parse import SyntaxFault
+
+        own = self.path(name)
+        try:
+            data = file.read(PYTHON_LIMIT)
+        except InputError as error:
+            source = Source(own, "")
+            return Installation(
+                source, SyntaxFault(source, str(error), Location(own, 1, 1), sure=False)
+            )
+        if self.is_cmake:
+            from grader.ros.build.cmake.cmake_lists import read_cmake
+
+            declared = (self.manifest.name if self.manifest is not None else None) or ""
+            return read_cmake(
+                data.decode("utf-8", "replace"), own, self.tree, declared, self.budget
+            )
+        from grader.ros.build.setup_py import read_setup
+
+        return read_setup(data, own, self.tree, self.budget)
+
+    @cached_property
+    def installed(self) -> dict[str, str]:
+        """Each installed file's path in the package, by its path below the prefix."""
+        return self.installation.installed() if self.installation is not None else {}
+
+    @cached_property
+    def shadows_ros(self) -> str:
+        """The name of a Python package that a build installs and that ros2 launch imports in place
+        of its own.
+        """
+        packages = (
+            self.installation.packages
+            if self.installation is not None and not self.installation.unknown
+            else ()
+        )
+        return next((name for name in packages if name in _OF_ROS_IN_PYTHON), "")
+
+    @cached_property
+    def launch_files(self) -> tuple[str, ...]:
+        """The paths of its launch files: by their names, or because they are in a folder named
+        launch.
+        """
+        return tuple(
+            path for path in self.tree.files if path.endswith(ENDINGS) or is_in_launch_folder(path)
+        )
+
+    @cached_property
+    def rviz_files(self) -> tuple[str, ...]:
+        """The paths of its RViz files."""
+        return tuple(path for path in self.tree.files if path.lower().endswith(".rviz"))
+
+    def built(self, kind: str, name: str = "") -> str:
+        """Return the end of a message on a missing file if a build has one of that kind, or the one
+        of that name.
+        """
+        shares = [f"/{folder}/{self.name}/" for folder in ("build", "install", "share")]
+        copied = (path for path in self.generated if any(share in f"/{path}" for share in shares))
+        endings = (f"/{name}",) if name else _KINDS[kind][1]
+        return next(
+            (
+                was_not_committed(path)
+                for path in copied
+                if (path if name else path.lower()).endswith(endings)
+            ),
+            "",
+        )
+
+    def missing(self, kind: str) -> MissingElement | NotDecided:
+        """Return the error for a package without a file of a kind: urdf, launch or rviz."""
+        word, endings = _KINDS[kind]
+        if self.tree.links:
+            return NotDecided(f"the {word} may be in {self.tree.links[0]}, which {IS_LINK}")
+        has_folder = kind != "launch" or any(
+            it.rpartition("/")[2] == kind for it in self.tree.folders
+        )
+        folder = "" if has_folder else ", and there is no folder launch"
+        message = (
+            f"the package has no {word}: no file ends in "
+            f"{enumerated(endings[:3], word='or')}{folder}"
+        )
+        return MissingElement(
+            f"{word} in the package", "", message=message, detail=self.built(kind), absent=word
+        )
+
+    def without_data_files(self, message: str) -> MissingElement:
+        """Return the error for a setup.py that gives setup() no data_files, because of this
+        mistake.
+        """
+        setup = self.installation
+        at = setup.location(setup.called_at) if setup is not None else None
+        return MissingElement(
+            "data_files",
+            self.folder,
+            message=message,
+            location=at,
+            problem=message,
+            costs_once=True,
+        )
+
+    def launch_file(self, name: str) -> str | None:
+        """Return the launch file of this name, if need be in another language; else the closest
+        name's; else any.
+        """
+        files = sorted(
+            self.launch_files,
+            key=lambda path: (path.rpartition("/")[2] != name, path.count("/"), path),
+        )
+        named = [path for path in files if is_launch_named(path, name)]
+        if named:
+            return named[0]
+        names = {path.rpartition("/")[2]: path for path in reversed(files)}
+        stem = launch_stem(name)
+        similar = closest(name, names) or next(
+            (other for other in names if launch_stem(other) == stem), None
+        )
+        if similar:
+            return names[similar]
+        return files[0] if files else None
+
+    def launch(self, path: str, text: bytes | None = None) -> "Launch":
+        """Return a launch file, evaluated: as it is, or with another text."""
+        if path in self._launches and text is None:
+            return self._launches[path]
+        from grader.ros.launch.launch_file import read_launch
+        from grader.ros.launch.launch_model import Launch
+
+        own = self.path(path)
+        try:
+            data = self.tree.files[path].read(PYTHON_LIMIT) if text is None else text
+            installed = next(
+                (it for it, source in self.installed.items() if source == path),
+                f"share/{self.name}/{path}",
+            )
+            launch = read_launch(data, own, installed, self, self.arguments)
+        except InputError as error:
+            launch = Launch(Source(own, ""), unread=str(error))
+        return self._launches.setdefault(path, launch) if text is None else launch
+
+    def rviz(self, path: str) -> "RvizFile":
+        """Return an RViz file."""
+        if path in self._rviz_files:
+            return self._rviz_files[path]
+        from grader.ros.config.rviz import RvizFile, read_rviz
+
+        own = self.path(path)
+        try:
+            rviz = read_rviz(self.tree.files[path].read(_RVIZ_LIMIT), own)
+        except InputError as error:
+            rviz = RvizFile(Source(own, ""), None, None, Location(own, 1, 1), (), unread=str(error))
+        return self._rviz_files.setdefault(path, rviz)
+
+    @property
+    def launches(self) -> "list[Launch]":
+        """What its launch files do."""
+        return [self.launch(path) for path in self.launch_files[:_MAX_LAUNCHES]]
+
+    def robot_references(self, name: str = "") -> "list[NamedFile]":
+        """Return where its launch files read the robot in a file of this name, or in any file."""
+        found = (it for launch in self.launches for it in launch.named("urdf") if it.path)
+        return [it for it in found if not name or f"/{it.path}".endswith(f"/{name}")]
+
+    def rviz_file(self, name: str, launch: "Launch | None") -> str | None:
+        """Return the RViz file that the launch file opens; else the one of this name; else any."""
+        wanted = min(
+            self.rviz_files,
+            key=lambda it: (it.rpartition("/")[2] != name, it.count("/"), it),
+            default=None,
+        )
+        return (self.rviz_opened(launch) if launch is not None else None) or wanted
+
+    def rviz_opened(self, launch: "Launch") -> str | None:
+        """Return the RViz file that a launch file opens, also by a wrong folder: that is another
+        error.
+        """
+        paths = [reference.path for reference in launch.named("rviz") if reference.path is not None]
+        installed = [
+            source for path in paths if (source := self.source_of(path)) in self.rviz_files
+        ]
+        names = {path.rpartition("/")[2] for path in paths}
+        return next(
+            iter([*installed, *(it for it in self.rviz_files if it.rpartition("/")[2] in names)]),
+            None,
+        )
+
+    def source_of(self, path: str) -> str | None:
+        """Return the file of the package that a build installs at a path, which begins with the
+        prefix's stand-in.
+        """
+        shares = tuple(f"{SHARE}/{name}/" for name in self.names)
+        return (
+            self.installed.get(path.removeprefix(f"{PREFIX}/")) if path.startswith(shares) else None
+        )
+
+    @property
+    def _all(self) -> "tuple[Package, ...]":
+        return self, *self.packages.values()
+
+    def has_package(self, name: str) -> bool:
+        """Return whether a package certainly is on the machine: submitted, declared as needed, or
+        part of ROS 2.
+        """
+        from grader.ros.launch.started_nodes import (
+            is_of_ros,  # late: as the readers of launch files
+        )
+
+        # rosdep installs what any package of a workspace needs.
+        return (
+            self.find(name) is not None
+            or any(it.depends_on(name) for it in self._all)
+            or is_of_ros(name)
+        )
+
+    def has_program(self, package: str, name: str) -> bool | None:
+        """Return whether a package has a program, as far as its setup.py tells; one that is not
+        known has it.
+        """
+        from grader.ros.launch.known_programs import (
+            lacks_program,  # late: as the readers of launch files
+        )
+
+        owner = self.find(package)
+        if owner is None:
+            return not lacks_program(package, name)
+        return (
+            owner.installation.has_program(name, package)
+            if owner.installation is not None
+            else None
+        )
+
+    def files_in(self, folder: str) -> "Sequence[str] | None":
+        """Return the names of the files that builds install in a folder below the prefix; None if
+        not all are known.
+        """
+        owner = self.find(folder.removeprefix("share/").partition("/")[0])
+        if (
+            owner is None
+            or owner.installation is None
+            or owner.installation.fault
+            or owner.installation.unknown
+        ):
+            return None
+        return tuple(
+            path.rpartition("/")[2] for path in owner.installed if path.rpartition("/")[0] == folder
+        )
+
+    def open_installed(self, path: str) -> tuple[bytes, str] | None:
+        """Return what a build of any submitted package installs at a path below the prefix, with
+        the file's path.
+        """
+        for package in (package for package in self.packages.values() if path in package.installed):
+            with suppress(InputError):
+                source = package.installed[path]
+                return package.tree.files[source].read(PYTHON_LIMIT), package.path(source)
+        return None

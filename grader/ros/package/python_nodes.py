@@ -1,0 +1,563 @@
+"""The nodes of a package that are written in Python: what they declare and open, read from the text
+and never run.
+
+Only what is written as a text, number or constant is known.
+What is opened under a condition is listed as well; actions and the topics of tf2 are not.
+"""
+
+import ast
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Literal, NamedTuple
+
+from grader.base.errors import InputError
+from grader.base.source import Location
+from grader.ros.build.installation import InstalledFile
+from grader.ros.package.entry_points import entry_points, read_module
+from grader.ros.package.package import Package
+from grader.ros.python.constants import Constants, constant_in, dotted, offset_of
+from grader.ros.python.evaluation import record
+from grader.ros.python.parse import START, Code, location_in, own_nodes, position_of
+from grader.ros.python.values import SCALARS, Call, QualifiedName, Scope, Unknown, Value
+
+_MAX_MODULES = 100
+_MAX_FIRST_LINE = 100  # bytes
+_NODES = frozenset(
+    f"rclpy.{name}"
+    for name in (
+        "node.Node",
+        "Node",
+        "lifecycle.Node",
+        "lifecycle.LifecycleNode",
+        "lifecycle.node.Node",
+    )
+)
+_CREATES = frozenset({"rclpy.create_node", *_NODES})
+_Kind = Literal["publisher", "subscription", "service", "client", "action client"]
+_KINDS: dict[str, _Kind] = {
+    "create_publisher": "publisher",
+    "create_lifecycle_publisher": "publisher",
+    "create_subscription": "subscription",
+    "create_service": "service",
+    "create_client": "client",
+}
+_READS = ("get_parameter", "get_parameter_or", "has_parameter")
+_METHODS = frozenset({*_KINDS, *_READS, "declare_parameter", "declare_parameters", "create_timer"})
+# What may be given a node, and declares and opens nothing but actions and the topics of tf2.
+_HARMLESS = frozenset(
+    {
+        "spin",
+        "spin_once",
+        "spin_until_future_complete",
+        "add_node",
+        "remove_node",
+        "super",
+        "isinstance",
+        "print",
+        "hasattr",
+        "getattr",
+        "ActionServer",
+        "TransformListener",
+        "TransformBroadcaster",
+        "StaticTransformBroadcaster",
+    }
+)
+# Makes a node in the same process by itself, for which launch gives parameters: moveit_py of
+# moveit2.
+_MAKES_A_NODE = ("moveit.planning.MoveItPy", "moveit.MoveItPy")
+# By rclpy/qos.py of Jazzy, as qos_profile_NAME and as QoSPresetProfiles.NAME.value: depth,
+# reliability, durability.
+_PROFILES = {
+    "sensor_data": (5, "best_effort", "volatile"),
+    "services_default": (10, "reliable", "volatile"),
+    "parameters": (1000, "reliable", "volatile"),
+    "system_default": (None, "system_default", "system_default"),
+}
+# The policies that are told apart, by the group that older names begin with.
+_GROUPS = {
+    "reliable": "reliability",
+    "best_effort": "reliability",
+    "transient_local": "durability",
+    "volatile": "durability",
+}
+# Arguments of Node that let it accept other parameters, or change its names; None is for **.
+_OPTIONS = (
+    None,
+    "namespace",
+    "cli_args",
+    "parameter_overrides",
+    "allow_undeclared_parameters",
+    "automatically_declare_parameters_from_overrides",
+)
+
+
+class _Qos(NamedTuple):
+    """A quality of service; None for what is not known."""
+
+    depth: int | None = None
+    reliability: str | None = None
+    durability: str | None = None
+
+
+class Endpoint(NamedTuple):
+    """A publisher, subscription, service or client, also of an action. `type` is a full name:
+    std_msgs.msg.Float32.
+    """
+
+    kind: _Kind
+    type: str | None
+    name: str | None  # of the topic or service, as it is written
+    location: Location
+    qos: _Qos = _Qos()
+
+
+class NodeParameter(NamedTuple):
+    """A parameter that a node declares, with its default, or that it reads."""
+
+    name: str | None
+    default: Value  # Unknown where it is computed, None where there is none
+    location: Location
+    is_declared: bool = True
+    is_plain: bool = True  # without a descriptor, which may allow values of other types
+
+
+class Timer(NamedTuple):
+    """A timer, with its period in seconds."""
+
+    period: float | None
+    location: Location
+
+
+class _Doubt(NamedTuple):
+    """What may declare or open more, and where."""
+
+    reason: str
+    location: Location
+
+
+class _Name(NamedTuple):
+    """The name that a node is given."""
+
+    name: str | None
+
+
+_Fact = Endpoint | NodeParameter | Timer | _Doubt | _Name
+
+
+@dataclass(frozen=True, slots=True)
+class PythonNode:
+    """A node: a subclass of rclpy's Node, or what rclpy.create_node makes; then `class_name` is
+    empty.
+
+    With `doubts`, it may declare or open more than is listed.
+    """
+
+    class_name: str  # in full: sensor_hub.alarm.Alarm
+    name: str | None
+    location: Location
+    endpoints: tuple[Endpoint, ...]
+    parameters: tuple[NodeParameter, ...]
+    timers: tuple[Timer, ...]
+    doubts: tuple[_Doubt, ...]
+
+
+class _Program(NamedTuple):
+    """A program, and the nodes that its function creates, as far as they are known."""
+
+    name: str
+    nodes: tuple[PythonNode, ...]
+    location: Location
+
+
+class PythonNodes(NamedTuple):
+    """The nodes of a package, and its programs. With `doubts`, a node may declare or open more,
+    or be missing.
+    """
+
+    nodes: tuple[PythonNode, ...]
+    programs: tuple[_Program, ...]
+    doubts: tuple[_Doubt, ...]
+
+
+def read_nodes(package: Package) -> PythonNodes:
+    """Return the nodes in the Python modules that a build of a package installs. Never raises."""
+    modules: dict[str, _Module] = {}
+    doubts: list[_Doubt] = []
+    for name, path in _module_paths(package).items():
+        code = read_module(package, path)
+        if code is None:
+            doubts.append(_Doubt("the file is not read", Location(package.path(path), 1, 1)))
+        else:
+            modules[name] = _Module(code, name, is_package=path.endswith("/__init__.py"))
+    bases = {full: found for module in modules.values() for full, found in module.bases.items()}
+    kinds = set(_NODES)
+    while more := {
+        full for full, found in bases.items() if full not in kinds and kinds.intersection(found)
+    }:
+        kinds |= more
+    nodes = [node for module in modules.values() for node in module.read_nodes(kinds)]
+    doubts += (doubt for module in modules.values() for doubt in module.doubts)
+    return PythonNodes(tuple(nodes), tuple(_programs(package, modules, nodes)), tuple(doubts))
+
+
+def _module_paths(package: Package) -> dict[str, str]:
+    """Return the files of the installed modules by their full names; those of installed programs
+    by their paths.
+    """
+    setup = package.installation
+    if setup is None:
+        return {}
+    files = [path for path in package.tree.files if path.endswith(".py")]
+    folders = {path.rpartition("/")[0] for path in files if path.endswith("/__init__.py")}
+    packages = {name.replace(".", "/") for name in setup.packages} or folders
+    found = {
+        path.removesuffix(".py").removesuffix("/__init__").replace("/", "."): path
+        for path in files
+        if path.rpartition("/")[0] in packages
+    }
+    return dict(
+        [*found.items(), *((it.source, it.source) for it in _scripts(package))][:_MAX_MODULES]
+    )
+
+
+def _scripts(package: Package) -> list[InstalledFile]:
+    """Return the Python files that a build installs as programs."""
+    copies = package.installation.copies if package.installation is not None else ()
+    lib = f"lib/{package.name}/"
+    return [
+        copy for copy in copies if copy.target.startswith(lib) and _is_python(package, copy.source)
+    ]
+
+
+def _is_python(package: Package, path: str) -> bool:
+    """Return whether a file is a Python program, by its ending or its first line."""
+    try:
+        start = package.tree.files[path].read(_MAX_FIRST_LINE, first=True)
+    except InputError:
+        return False
+    return path.endswith(".py") or (
+        start.startswith(b"#!") and b"python" in start.partition(b"\n")[0]
+    )
+
+
+def _programs(
+    package: Package, modules: "dict[str, _Module]", nodes: Sequence[PythonNode]
+) -> Iterator[_Program]:
+    """Yield the entry points, and the files that are programs, with the nodes that they create."""
+    for entry in entry_points(package):
+        yield _Program(
+            entry.name, _created_by(modules, nodes, entry.module, entry.function), entry.location
+        )
+    for copy in _scripts(package):
+        at = Location(package.path(copy.source), 1, 1)
+        yield _Program(
+            copy.target.rpartition("/")[2], _created_by(modules, nodes, copy.source, ""), at
+        )
+
+
+def _created_by(
+    modules: "dict[str, _Module]", nodes: Sequence[PythonNode], module: str, function: str
+) -> tuple[PythonNode, ...]:
+    """Return the nodes that a function creates, also in those that it calls; without a name, the
+    module's body.
+    """
+    found: dict[Location, PythonNode] = {}
+    pending, seen = [f"{module}.{function}"], set[str]()
+    while pending:
+        name = pending.pop(0)
+        owner = next((modules[it] for it in (name.rpartition(".")[0], name) if it in modules), None)
+        if name in seen or owner is None:
+            continue
+        seen.add(name)
+        for called, at in owner.calls_in(name.rpartition(".")[2]):
+            found |= {
+                it.location: it for it in nodes if at == it.location or called == it.class_name
+            }
+            pending.append(called)
+    return tuple(found.values())
+
+
+def _calls_of(nodes: Sequence[ast.AST]) -> list[ast.Call]:
+    return sorted((it for it in nodes if isinstance(it, ast.Call)), key=offset_of)
+
+
+class _Part(NamedTuple):
+    """A function or method, or the module without these: its calls, its scope and the place of
+    its class.
+    """
+
+    name: str
+    calls: Sequence[ast.Call]
+    scope: Scope
+    of: Location | None = None
+
+
+class _Module:
+    """A module: first its scopes and the bases of its classes, then, once all nodes are known,
+    their calls.
+    """
+
+    def __init__(self, code: Code, name: str, *, is_package: bool) -> None:
+        self._code, self._name = code, name
+        functions = dict.fromkeys(("rclpy.qos.QoSProfile", *_CREATES), record)
+        self._constants = Constants([*ast.walk(code.tree)], name, functions, is_package=is_package)
+        self.bases: dict[str, list[str]] = {}  # of the classes, by full names
+        self.doubts: list[_Doubt] = []
+        self._classes: dict[Location, str] = {}
+        self._facts: dict[Location, list[_Fact]] = {}  # of each node
+        self._parts: list[_Part] = []
+        body = own_nodes(code.tree)
+        scope = self._constants.bound(body, Scope({}))
+        for part in body:
+            if (
+                isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
+                and part.name in scope.names
+            ):
+                scope.names[part.name] = QualifiedName(f"{name}.{part.name}")
+        self._parts.append(_Part("", _calls_of(body), scope))
+        for part in body:
+            if isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef):
+                inner = [*ast.walk(part)]
+                self._parts.append(
+                    _Part(
+                        part.name, _calls_of(inner), self._constants.bound(inner, Scope({}, scope))
+                    )
+                )
+            elif isinstance(part, ast.ClassDef):
+                self._add_class(part, scope)
+
+    def _at(self, node: ast.expr | ast.stmt) -> Location:
+        return location_in(self._code.source, position_of(node))
+
+    def _add_class(self, node: ast.ClassDef, scope: Scope) -> None:
+        """Keep a class and its methods, which reach its constants as attributes of self."""
+        at, full = self._at(node), f"{self._name}.{node.name}"
+        bases = [self._constants.value_of(base, scope) for base in node.bases]
+        self.bases[full] = [base.name if isinstance(base, QualifiedName) else "?" for base in bases]
+        self._classes[at] = full
+        own = own_nodes(node)
+        constants = self._constants.bound(own, Scope({}, scope)).names
+        attributes = Scope({f"self.{name}": value for name, value in constants.items()}, scope)
+        for method in own:
+            if not isinstance(method, ast.FunctionDef | ast.AsyncFunctionDef):
+                continue
+            nodes = [*ast.walk(method)]
+            local = self._constants.bound(nodes, Scope({}, attributes))
+            for name in [name for name in local.names if name.startswith("self.")]:
+                value = local.names.pop(name)
+                is_first = name not in attributes.names
+                attributes.names[name] = (
+                    value if is_first else Unknown("it is not bound once", START)
+                )
+            self._parts.append(_Part(method.name, _calls_of(nodes), local, at))
+
+    def read_nodes(self, kinds: Collection[str]) -> list[PythonNode]:
+        """Return the nodes, once the full names of all classes of nodes are known."""
+        for at, full in self._classes.items():
+            if full in kinds:
+                is_own = _NODES.issuperset(self.bases[full])
+                self._facts[at] = (
+                    [] if is_own else [_Doubt("what another base class does is not added", at)]
+                )
+        calls = [(part, call) for part in self._parts for call in part.calls]
+        for part, call in calls:
+            if self._called(part, call) in _CREATES:
+                self._facts[self._at(call)] = [
+                    _Name(_text(self._argument(part, call, 0, "node_name")))
+                ]
+        for part, call in calls:
+            self._read_call(part, call)
+            if self._called(part, call) in _MAKES_A_NODE:
+                for facts in self._facts.values():
+                    facts.append(
+                        _Doubt("another node takes the parameters of the process", self._at(call))
+                    )
+        if self._constants.budget.left < 0:
+            self.doubts.append(
+                _Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1))
+            )
+        return [self._node(at, facts) for at, facts in self._facts.items()]
+
+    def _node(self, at: Location, facts: "Sequence[_Fact]") -> PythonNode:
+        names = {it.name for it in facts if isinstance(it, _Name)}
+        return PythonNode(
+            class_name=self._classes.get(at, ""),
+            name=names.pop() if len(names) == 1 else None,
+            location=at,
+            endpoints=tuple(it for it in facts if isinstance(it, Endpoint)),
+            parameters=tuple(it for it in facts if isinstance(it, NodeParameter)),
+            timers=tuple(it for it in facts if isinstance(it, Timer)),
+            doubts=tuple(it for it in facts if isinstance(it, _Doubt)),
+        )
+
+    def calls_in(self, function: str) -> Iterator[tuple[str, Location]]:
+        """Yield the full name and place of each call in a function of the module, or in its
+        body.
+        """
+        for part in self._parts:
+            if part.name == function and part.of is None:
+                yield from ((self._called(part, call), self._at(call)) for call in part.calls)
+
+    def _called(self, part: _Part, call: ast.Call) -> str:
+        first, dot, rest = dotted(call.func).partition(".")
+        found = constant_in(part.scope, first)
+        return f"{found.name}{dot}{rest}" if isinstance(found, QualifiedName) else ""
+
+    def _argument(self, part: _Part, call: ast.Call, position: int, name: str) -> Value:
+        """Return an argument of a call; None where it is missing, Unknown where * or ** may give
+        it.
+        """
+        given: list[ast.expr | None] = [it.value for it in call.keywords if it.arg == name]
+        if any(isinstance(it, ast.Starred) for it in call.args[: position + 1]):
+            return Unknown("it is unpacked", position_of(call))
+        given += call.args[position : position + 1]
+        if not given and any(it.arg is None for it in call.keywords):
+            return Unknown("it is unpacked", position_of(call))
+        return self._constants.value_of(given[0] if given else None, part.scope)
+
+    def _receiver(self, part: _Part, node: ast.expr) -> Location | None:
+        """Return the place of the node that an expression is; None where that is not known."""
+        name = dotted(node)
+        if name == "self":
+            return part.of if part.of in self._facts else None
+        value = constant_in(part.scope, name)
+        at = (
+            location_in(self._code.source, value.at)
+            if isinstance(value, Call) and value.name in _CREATES
+            else None
+        )
+        return at if at in self._facts else None
+
+    def _read_call(self, part: _Part, call: ast.Call) -> None:
+        """Add what a call declares or opens to the facts of its node."""
+        match call.func:
+            case ast.Attribute(value=owner, attr="__init__") if (
+                part.name == "__init__" and part.of in self._facts
+            ):
+                self._facts[part.of] += self._read_init(part, call, owner)
+            case ast.Attribute(value=owner, attr=method) if method in _METHODS:
+                at = self._receiver(part, owner)
+                facts = self._facts.get(at) if at is not None else None
+                if facts is None:
+                    self.doubts.append(
+                        _Doubt(f"the node of this {method}() is not known", self._at(call))
+                    )
+                else:
+                    facts += self._read_method(part, call, method)
+            case function:
+                for argument in (*call.args, *(keyword.value for keyword in call.keywords)):
+                    at = self._receiver(part, argument) if isinstance(argument, ast.Name) else None
+                    name = (dotted(function) or "this call").rpartition(".")[2]
+                    if at is not None and name == "ActionClient":
+                        self._facts[at].append(self._action_client(part, call))
+                    elif at is not None and name not in _HARMLESS:
+                        self._facts[at].append(_Doubt(f"{name} is given the node", self._at(call)))
+
+    def _action_client(self, part: _Part, call: ast.Call) -> Endpoint:
+        made = self._argument(part, call, 1, "action_type")
+        name = _text(self._argument(part, call, 2, "action_name"))
+        return Endpoint(
+            "action client",
+            made.name if isinstance(made, QualifiedName) else None,
+            name,
+            self._at(call),
+        )
+
+    def _read_init(self, part: _Part, call: ast.Call, owner: ast.expr) -> "Iterator[_Fact]":
+        """Yield the name that a class gives its node, if its base is rclpy's Node itself."""
+        assert part.of is not None
+        is_super = isinstance(owner, ast.Call) and dotted(owner.func) == "super"
+        base = self._constants.value_of(owner, part.scope)
+        is_base = isinstance(base, QualifiedName) and base.name in _NODES
+        if (is_super or is_base) and _NODES.intersection(self.bases[self._classes[part.of]]):
+            name = self._argument(part, call, 0 if is_super else 1, "node_name")
+            yield _Name(_text(name))
+            for keyword in call.keywords:
+                if keyword.arg in _OPTIONS:
+                    yield _Doubt(f"{keyword.arg or 'more arguments'} of its Node", self._at(call))
+
+    def _read_method(self, part: _Part, call: ast.Call, method: str) -> "Iterator[_Fact]":
+        """Yield what a method of a node declares, opens or reads."""
+        at, argument = self._at(call), partial(self._argument, part, call)
+        if method in _KINDS:
+            kind = _KINDS[method]
+            is_topic = kind in ("publisher", "subscription")
+            made = argument(0, "msg_type" if is_topic else "srv_type")
+            name = _text(argument(1, "topic" if is_topic else "srv_name"))
+            qos = argument(2 if kind == "publisher" else 3, "qos_profile") if is_topic else None
+            yield Endpoint(
+                kind, made.name if isinstance(made, QualifiedName) else None, name, at, _qos(qos)
+            )
+        elif method == "create_timer":
+            period = argument(0, "timer_period_sec")
+            yield Timer(float(period) if isinstance(period, int | float) else None, at)
+        elif method == "declare_parameters":
+            yield from _declared(argument(0, "namespace"), argument(1, "parameters"), at)
+        else:
+            is_declared = method == "declare_parameter"
+            default = argument(1, "value") if is_declared else None
+            is_plain = argument(2, "descriptor") is None
+            yield NodeParameter(
+                _text(argument(0, "name")), _default(default), at, is_declared, is_plain
+            )
+
+
+def _text(value: Value) -> str | None:
+    return value if isinstance(value, str) else None
+
+
+def _default(value: Value) -> Value:
+    """Return the default of a parameter; a type in its place, as Parameter.Type.DOUBLE, is none."""
+    if isinstance(value, QualifiedName) and value.name.startswith("rclpy."):
+        return None
+    items = value if isinstance(value, list | tuple) else [value]
+    is_known = all(isinstance(it, SCALARS) or it is None for it in items)
+    return value if is_known else Unknown("the default is computed", getattr(value, "at", START))
+
+
+def _declared(namespace: Value, parameters: Value, at: Location) -> Iterator[NodeParameter]:
+    """Yield the parameters of declare_parameters: tuples of a name, a default and a descriptor."""
+    before = "" if namespace in (None, "") else f"{namespace}."
+    for item in parameters if isinstance(parameters, list | tuple) else (parameters,):
+        name, default = (*item, None)[:2] if isinstance(item, tuple) and item else (None, item)
+        is_known = isinstance(name, str) and isinstance(namespace, str | None)
+        is_plain = isinstance(item, tuple) and len(item) < 3
+        yield NodeParameter(
+            f"{before}{name}" if is_known else None, _default(default), at, is_plain=is_plain
+        )
+
+
+def _qos(value: Value) -> _Qos:
+    """Return a quality of service: a depth, a QoSProfile, or one of the profiles of rclpy."""
+    match value:
+        case bool():
+            return _Qos()
+        case int():
+            return _Qos(value, "reliable", "volatile")
+        case QualifiedName(name=name) if name.startswith("rclpy.qos."):
+            profile = (
+                name.removesuffix(".value").rpartition(".")[2].lower().removeprefix("qos_profile_")
+            )
+            return _Qos(*_PROFILES.get(profile, ()))
+        case Call(name="rclpy.qos.QoSProfile", kwargs=given):
+            depth = given.get("depth")
+            reliability, durability = (
+                _policy(given[name]) if name in given else default
+                for name, default in (("reliability", "reliable"), ("durability", "volatile"))
+            )
+            return _Qos(depth if isinstance(depth, int) else None, reliability, durability)
+    return _Qos()
+
+
+def _policy(value: Value) -> str | None:
+    """Return a policy by its name in rclpy.qos, as ReliabilityPolicy.BEST_EFFORT; None where it is
+    not known.
+    """
+    name = value.name.rpartition(".")[2].lower() if isinstance(value, QualifiedName) else ""
+    names = (
+        policy
+        for policy, group in _GROUPS.items()
+        if name in (policy, f"rmw_qos_policy_{group}_{policy}")
+    )
+    return next(names, None)

@@ -1,0 +1,382 @@
+"""The URDF of a submission, as one of three states, and what ROS 2 makes of it with the files
+around.
+"""
+
+import re
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
+from functools import partial
+from itertools import islice
+from typing import TYPE_CHECKING, NamedTuple, cast
+
+from grader.base.errors import InputError, NotDecided
+from grader.base.names import closest
+from grader.base.problems import Problem, causes, in_order
+from grader.base.source import Source
+from grader.files.reading import URDF_LIMIT
+from grader.files.tree import Tree, make_tree, parents
+from grader.ros.package.package import Package
+from grader.ros.python.budget import Budget
+from grader.ros.python.values import Undetermined
+from grader.ros.urdf.model import Robot
+from grader.ros.urdf.reader import Reading, find_xacro, read_robot, read_urdf
+from grader.ros.urdf.urdf_problems import RAW_XACRO
+from grader.ros.xml.xml_problems import DOCTYPE, NOT_WELL_FORMED
+
+if TYPE_CHECKING:
+    from grader.ros.launch.launch_model import NamedFile
+    from grader.ros.xacro.expansion import ExpandedSource
+    from grader.ros.xacro.texts import OtherArguments
+
+_MAX_COMPARED = 50  # links whose names are compared
+_MAX_FOLDERS = 40  # whose launch files are read
+_NO_FILES = make_tree("", (), ())
+
+
+class OtherCandidate(NamedTuple):
+    """A file that could have been graded, and why another one is."""
+
+    path: str
+    reason: str
+    is_part: bool = False  # of a robot: another file includes it, or it has no name or only macros
+
+
+# These are no dataclasses: making each one takes 1 ms of the start of every command.
+
+
+class Absent:
+    """No file of the submission is a URDF."""
+
+    __slots__ = ()
+
+
+class Unreadable(NamedTuple):
+    """The URDF is too large or damaged; `reason` is a sentence that names the file."""
+
+    path: str
+    reason: str
+
+
+class Read(NamedTuple):
+    """The URDF was read, even if ROS 2 rejects it; `reading` is of the expanded text if it is
+    xacro.
+
+    Of xacro that is loaded without xacro, `as_it_stands` is what ROS 2 makes of the text: whether
+    it loads, and the verdict. The robot is that of `reading`, so that everything else is graded as
+    if it had been expanded.
+    """
+
+    path: str
+    data: bytes
+    reading: Reading
+    is_expanded: bool = False
+    has_xacro: bool = False  # so that it is read as the files around say
+    as_it_stands: Reading | None = None
+
+    @property
+    def loaded(self) -> Reading:
+        """What ROS 2 loads."""
+        return self.as_it_stands or self.reading
+
+    @property
+    def source(self) -> Source:
+        """The text that the student wrote."""
+        return (
+            Source(self.path, self.data.decode("utf-8", "replace"))
+            if self.is_expanded
+            else self.reading.source
+        )
+
+    @property
+    def problems(self) -> tuple[Problem, ...]:
+        """Every problem of the file; of xacro that is loaded without xacro, those of the expanded
+        text.
+        """
+        if self.as_it_stands is None:
+            return self.reading.problems
+        raw = [problem for problem in self.as_it_stands.problems if problem.kind is RAW_XACRO]
+        return (*raw, *self.reading.problems)
+
+
+Urdf = Absent | Unreadable | Read
+
+
+class Surroundings(NamedTuple):
+    """The files and packages around a URDF, as launch files and xacro find them: the Workspace of
+    xacro.
+    """
+
+    budget: Budget  # of what is expanded and evaluated
+    tree: Tree = _NO_FILES
+    graded: Package | None = None
+    packages: tuple[Package, ...] = ()
+    arguments: Mapping[str, str] = {}  # that the user gives xacro
+    launch_arguments: Mapping[
+        str, str
+    ] = {}  # that a criterion gives launch files, and xacro if these do not
+    is_single: bool = False  # whether the files are those around a single file
+    ask: Callable[[str], object] = lambda _: (
+        None
+    )  # is called with the name of each other file that xacro reads
+
+    def robot_references(self, path: str) -> "list[NamedFile]":
+        """Return where launch files of the graded package, else of others, read a URDF; or those in
+        a folder around.
+        """
+        around = self._launched_packages(path)
+        return [
+            found
+            for package in around
+            for found in package.robot_references(path.rpartition("/")[2])
+        ]
+
+    def other_arguments(self, path: str, references: "Sequence[NamedFile]") -> "OtherArguments":
+        """Return what is known of arguments of xacro that neither the user nor the launch file
+        gives.
+        """
+        launches = [
+            launch for package in self._launched_packages(path) for launch in package.launches
+        ]
+        if any(launch.unknown or launch.syntax for launch in launches):
+            return "default" if references else "unknown"
+        return "none" if references and not self.arguments else "default"
+
+    def _launched_packages(self, path: str) -> list[Package]:
+        if self.graded is None:
+            loose = launch_folders(self.tree, self.packages, [path] if not self.is_single else [])
+            return [it.under(self.launch_arguments) for it in loose]
+        name = path.rpartition("/")[2]
+        if self.graded.robot_references(name):
+            return [self.graded]
+        own = next((it for it in self.packages if it.holds(path)), self.graded)
+        others = [it for it in self.packages if it is own or it.name != own.name]
+        launched = (
+            it
+            for it in others
+            if any(own.source_of(at.path or "") for at in it.robot_references(name))
+        )
+        return [*launched] or [self.graded]
+
+    @property
+    def paths(self) -> Collection[str]:
+        """The paths of the files."""
+        return self.tree.files
+
+    @property
+    def is_part(self) -> bool:
+        """Whether the files may be a part of any package, because there is none among them."""
+        return bool(self.tree.files) and not self.packages
+
+    def package(self, name: str) -> str | None:
+        """Return the folder of a package."""
+        return next((package.folder for package in self._named(name)), None)
+
+    def _named(self, name: str) -> list[Package]:
+        """Return the packages of a name, of several that of the URDF first."""
+        return sorted(
+            (it for it in self.packages if it.name == name), key=lambda it: it is not self.graded
+        )
+
+    def read(self, path: str) -> bytes:
+        """Return the bytes of a file. Raises InputError, NotDecided."""
+        file = self.tree.files.get(path)
+        ignored = next((other for other in self.tree.ignored if other.path == path), None)
+        if file is None and ignored is not None:
+            raise NotDecided(str(ignored))
+        if file is None and not self.tree.files:
+            raise NotDecided(
+                f"the included file {path} is not read with a single file: give the folder "
+                "with both"
+            )
+        if file is None and self.is_single and not self.packages:
+            raise NotDecided(
+                f"there is no file {path} in the folder of this single file: give the "
+                "folder with both"
+            )
+        if file is None:
+            raise InputError(f"there is no file {path} in the submission")
+        try:
+            return file.read(URDF_LIMIT)
+        except InputError as error:
+            raise NotDecided(str(error)) from None
+
+    def installed(self, package: str, inside: str) -> str | None:
+        """Return the file at a path in a package once it is built; without any package, the most
+        similar path.
+        """
+        for own in self._named(package):
+            similar = any(f"/{path}".endswith(f"/{inside}") for path in own.tree.files)
+            source, setup = own.installed.get(f"share/{package}/{inside}"), own.installation
+            if (
+                source is None
+                and similar
+                and setup is not None
+                and setup.is_cmake
+                and setup.unknown
+            ):
+                raise Undetermined(
+                    f"cannot determine statically whether CMakeLists.txt installs {inside}"
+                )
+            return own.path(source) if source is not None else None
+        if self.packages:
+            return None
+        steps = inside.split("/")
+        for count in range(len(steps), 0, -1):
+            end = "/" + "/".join(steps[-count:])
+            found = [path for path in self.tree.files if f"/{path}".endswith(end)]
+            if len(found) == 1:
+                return found[0]
+        return None
+
+
+def launch_folders(tree: Tree, packages: Sequence[Package], paths: Iterable[str]) -> list[Package]:
+    """Return the nearest folders around these files that have launch files outside of packages, as
+    packages.
+    """
+    packaged = tuple(package.path("") for package in packages)
+    loose = tree.only(lambda path: not path.startswith(packaged)) if packaged else tree
+    files = Package("", loose, None, {}).launch_files
+    folders = {folder for path in files for folder in (*parents(path), "")}
+    around = {
+        folder
+        for path in paths
+        for folder in [it for it in (*parents(path), "") if it in folders][:1]
+    }
+    return [
+        Package(folder, loose.below(folder), None, {}) for folder in sorted(around)[:_MAX_FOLDERS]
+    ]
+
+
+def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None) -> Read:
+    """Read a URDF as ROS 2 gets it: expanded if a launch file runs xacro on it, or else if its name
+    says xacro.
+
+    Other xacro is loaded as it stands; unless that makes no difference, everything but that is
+    graded on its expansion.
+    """
+    if not _needs_xacro(data):
+        reading = read_urdf(data, path)
+        if not any(problem.kind in (DOCTYPE, NOT_WELL_FORMED) for problem in reading.problems):
+            return Read(path, data, reading)
+    name = path.rpartition("/")[2].lower()
+    surroundings = surroundings or Surroundings(Budget())
+    launched = surroundings.robot_references(path)
+    programs = {reference.by for reference in launched}
+    if programs == {"xacro"} if programs else _says_xacro(name):
+        return Read(
+            path,
+            data,
+            _expand_xacro(data, path, surroundings, launched),
+            is_expanded=True,
+            has_xacro=True,
+        )
+    reading = read_urdf(data, path)
+    if not any(problem.kind is RAW_XACRO for problem in reading.problems):
+        return Read(path, data, reading, has_xacro=True)
+    expanded = _expand_xacro(data, path, surroundings, [])
+    if expanded.robot is None:
+        return Read(path, data, reading, has_xacro=True)
+    if reading.verdict == "clean":
+        if _loaded_model(reading) == _loaded_model(expanded):
+            return Read(path, data, reading, has_xacro=True)
+        reading = reading._replace(
+            verdict="degraded"
+        )  # ROS 2 ignores the tags of xacro, and what they stand for
+    return Read(path, data, expanded, is_expanded=True, has_xacro=True, as_it_stands=reading)
+
+
+def known_links(robot: Robot, wanted: Collection[str]) -> int:
+    """Return how many of the wanted links a robot has, also under a similar name."""
+    names = {link.name for link in robot.links}
+    missing = set(wanted) - names
+    others = islice(sorted(names.difference(wanted)), _MAX_COMPARED)
+    similar = {closest(name, missing) for name in others} - {None} if missing else ()
+    return len(wanted) - len(missing) + len(similar)
+
+
+def is_another_robot(robot: Robot | None, wanted: Collection[str]) -> bool:
+    """Return whether a completely known robot has fewer than half of the wanted links."""
+    if robot is None or robot.incomplete or 2 * sum(map(robot.has_link, wanted)) >= len(wanted):
+        return False  # without comparing names, which takes long
+    return 2 * known_links(robot, wanted) < len(wanted)
+
+
+def is_foreign_robot(robot: Robot | None, wanted: Collection[str]) -> bool:
+    """Return whether a robot is another one, and not only unfinished: most of its links are not
+    wanted.
+    """
+    if robot is None or not is_another_robot(robot, wanted):
+        return False
+    return 2 * sum(link.name not in wanted for link in robot.links) > len(robot.links)
+
+
+def _says_xacro(name: str) -> bool:
+    """Return whether xacro in a file of this name, in lower case, is meant to be expanded; standard
+    input is a URDF.
+    """
+    return not name.endswith(".urdf") if ".xacro" in name else ".urdf" not in name and name != "-"
+
+
+def _loaded_model(reading: Reading) -> tuple[object, ...]:
+    """Return the links, shapes and joints that ROS 2 loads, without the masses: RViz needs none."""
+    robot = reading.robot
+    if robot is None:
+        return ()
+    links = {link.name: (link.visuals, link.collisions) for link in robot.links}
+    return links, {joint.name: joint for joint in robot.joints}
+
+
+def _needs_xacro(data: bytes) -> bool:
+    """Return whether there is xacro in a text, outside of comments."""
+    return (b"$" in data or b"xacro:" in data) and find_xacro(
+        data.decode("utf-8", "replace")
+    ) is not None
+
+
+def _expand_xacro(
+    data: bytes, path: str, surroundings: Surroundings, references: "Sequence[NamedFile]"
+) -> Reading:
+    """Return the robot that xacro makes of a file; where it cannot be expanded at all, what can be
+    read of the text.
+
+    The folder that a build installs a package in is called differently in launch files and in
+    xacro. A file that the launch file names there and that no build certainly installs stays as it
+    is: what is in it cannot be determined.
+    """
+    from grader.ros.build.places import SHARE  # late: most URDFs are no xacro
+    from grader.ros.xacro.expansion import expand
+    from grader.ros.xacro.texts import INSTALLED
+
+    launched = dict(references[0].arguments) if references else {}
+    given = dict(launched)
+    for name, text in launched.items():
+        shared = re.fullmatch(rf"{SHARE}/([^/]+)/?(.*)", text or "")
+        if shared is None:
+            continue
+        package, inside = shared.groups()
+        is_known = not inside or surroundings.package(package) is None
+        with suppress(Undetermined):
+            is_known = is_known or surroundings.installed(package, inside) is not None
+        if is_known:
+            given[name] = f"{INSTALLED}/{package}/share/{package}/{inside}".rstrip("/")
+    arguments = {**surroundings.launch_arguments, **given, **surroundings.arguments}
+    others = surroundings.other_arguments(path, references)
+    read = partial(expand, data, path, surroundings, arguments, others)
+    expansion = read()
+    if expansion.root is None and expansion.recovered is None and expansion.problems:
+        raw = read_urdf(data, path)
+        problems = [
+            problem for problem in raw.problems if problem.kind not in (RAW_XACRO, NOT_WELL_FORMED)
+        ]
+        return Reading("rejected", raw.robot, (*expansion.problems, *problems), raw.source)
+    reading = read_robot(expansion.document)
+    if reading.verdict == "rejected" and expansion.meant is None and expansion.source.is_expanded:
+        unmarked = cast("ExpandedSource", expansion.source).unmarked
+        changed = read(unmarked) if unmarked else expansion
+        if changed.meant is not None and read_robot(changed.meant.document).verdict != "rejected":
+            expansion = changed
+    if expansion.meant is None:
+        return reading
+    meant = read_robot(expansion.meant.document)
+    found = dict.fromkeys([*causes(reading.problems), *expansion.assumed, *meant.problems])
+    return meant._replace(verdict="rejected", problems=in_order(found))

@@ -1,0 +1,195 @@
+"""Files that hold a robot: recognised by their content, whatever they are called. Nothing is
+parsed.
+"""
+
+import re
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from grader.base.errors import InputError
+from grader.files.reading import URDF_LIMIT
+from grader.files.tree import File, Tree
+
+START = 4096  # bytes that are read of a file
+_LONG_START = 64 * 1024  # bytes that are read if these are comments only
+_MAX_READ = 2000  # files
+_MAX_ROBOTS = 400  # found by their content alone
+
+# What may come before the first element of XML, also where a declaration ends in > instead of ?>.
+# Possessive: always linear.
+_PROLOG = re.compile(
+    rb"""
+    (?:\xef\xbb\xbf)?                             # the byte-order mark that Windows editors write
+    (?>
+        \s+
+      | <\?[^>]*>                                 # <?xml version="1.0"?>, <?xml version="1.0">
+      | <!--.*?-->
+      | <!DOCTYPE[^<>\[]*(?>\[.*?\]\s*)?>         # <!DOCTYPE robot>, <!DOCTYPE robot [ ... ]>
+    )*+
+    """,
+    re.DOTALL | re.IGNORECASE | re.VERBOSE,
+)
+_ROBOT = re.compile(rb"<\s*robot(?=[\s/>])([^>]*)")
+_NAME = re.compile(rb"(?<![\w:])name\s*=\s*[\"']([^\"']*)")
+_COMMENT = re.compile(rb"<!--.*?(?:-->|\Z)", re.DOTALL)
+_INCLUDE = re.compile(rb"<xacro:include\s[^<>]*filename\s*=\s*[\"'](?:[^\"']*/)?([^\"'/]+)[\"']")
+_LIKELY = re.compile("urdf|xacro|robot")  # in names of files that are read first
+# Files that are no text, and need not be read.
+_BINARY = frozenset(
+    {
+        ".png",
+        ".jpg",
+        ".jpeg",
+        ".gif",
+        ".webp",
+        ".bmp",
+        ".tif",
+        ".tiff",
+        ".heic",
+        ".svg",
+        ".ico",
+        ".pdf",
+        ".doc",
+        ".docx",
+        ".odt",
+        ".pages",
+        ".xls",
+        ".xlsx",
+        ".ppt",
+        ".pptx",
+        ".mp3",
+        ".mp4",
+        ".mov",
+        ".webm",
+        ".mkv",
+        ".avi",
+        ".zip",
+        ".tar",
+        ".gz",
+        ".tgz",
+        ".bz2",
+        ".xz",
+        ".7z",
+        ".rar",
+        ".stl",
+        ".dae",
+        ".obj",
+        ".ply",
+        ".glb",
+        ".blend",
+        ".pyc",
+        ".so",
+        ".a",
+        ".o",
+        ".exe",
+        ".dll",
+        ".bin",
+        ".db",
+        ".db3",
+    }
+)
+
+
+class RobotFile(NamedTuple):
+    """A file that may be graded as the URDF: it is called .urdf, or its first element is <robot>.
+
+    `robot` is the name of the robot, and `includes` are the names of the files that it includes, as
+    far as its beginning tells.
+    """
+
+    path: str
+    size: int
+    is_urdf: bool  # by its name
+    robot: str = ""
+    includes: frozenset[str] = frozenset()
+
+    @property
+    def name(self) -> str:
+        """The last part of its path."""
+        return self.path.rpartition("/")[2]
+
+
+def find_robots(
+    tree: Tree, urdf_name: str = "", max_size: int = URDF_LIMIT
+) -> tuple[RobotFile, ...]:
+    """Return the files of a tree that may be the URDF; one called `urdf_name` is whatever it
+    contains.
+
+    Of other files only those of at most `max_size` bytes are read, and of these the first bytes.
+    """
+    found: list[RobotFile] = []
+    by_content = read = 0
+    files: Iterable[File] = tree.files.values()
+    if len(tree.files) > _MAX_READ:
+        files = sorted(files, key=lambda file: not _LIKELY.search(file.name.lower()))
+    for file in files:
+        is_urdf = file.suffix == ".urdf" or file.name == urdf_name
+        is_read = read < _MAX_READ and by_content < _MAX_ROBOTS
+        if ".srdf" in file.name:  # MoveIt's description of groups, which is a <robot> as well
+            continue
+        if not is_urdf and (not is_read or file.suffix in _BINARY or not 0 < file.size <= max_size):
+            continue
+        read += 1
+        start = _robot_start(file) if is_read else None
+        if start is not None or is_urdf:
+            by_content += not is_urdf
+            found.append(
+                RobotFile(
+                    file.path, file.size, is_urdf, *(_name_and_includes(start) if start else ())
+                )
+            )
+    return tuple(sorted(found))
+
+
+def is_robot(data: bytes) -> bool:
+    """Return whether a text is a robot: its first element is <robot>."""
+    return _ROBOT.match(data, _end_of_prolog(data)) is not None
+
+
+def parts_of(robots: Sequence[RobotFile]) -> frozenset[str]:
+    """Return the paths of those files that another one includes."""
+    includers: dict[str, list[str]] = {}
+    for robot in robots:
+        for name in robot.includes:
+            includers.setdefault(name, []).append(robot.path)
+    return frozenset(
+        robot.path for robot in robots if set(includers.get(robot.name, ())) - {robot.path}
+    )
+
+
+def _robot_start(file: File) -> bytes | None:
+    """Return the beginning of a file from its <robot> on, a longer one of xacro; None if another
+    element is first.
+    """
+    if not file.size:
+        return None
+    for count in (START, _LONG_START):
+        try:
+            data = file.read(count, first=True)
+        except InputError:
+            return None
+        end = _end_of_prolog(data)
+        if _ROBOT.match(data, end):
+            if count < _LONG_START and len(data) == count and b"xacro:" in data:
+                continue
+            return data[end:]
+        # Only comments so far, the last of which may have been cut.
+        if len(data) < count or (end < len(data) and not data.startswith((b"<!", b"<?"), end)):
+            return None
+    return None
+
+
+def _end_of_prolog(data: bytes) -> int:
+    found = _PROLOG.match(data)
+    return found.end() if found is not None else 0
+
+
+def _name_and_includes(start: bytes) -> tuple[str, frozenset[str]]:
+    tag = _ROBOT.match(start)
+    name = _NAME.search(tag[1]) if tag is not None else None
+    includes = (
+        found.decode("utf-8", "replace") for found in _INCLUDE.findall(_COMMENT.sub(b"", start))
+    )
+    return name[1].decode("utf-8", "replace").strip() if name is not None else "", frozenset(
+        includes
+    )

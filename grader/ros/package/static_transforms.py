@@ -1,0 +1,193 @@
+"""The frames that static_transform_publisher adds to a robot's tree, as the launch files of a
+package start it.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from math import atan2, hypot, isfinite
+from typing import NamedTuple
+
+from grader.base.source import LazyLocation, Source
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.package.package import Package
+from grader.ros.urdf.link_tree import parent_joints
+from grader.ros.urdf.model import Joint, Link, Origin, Robot, UnresolvedPart
+from grader.ros.urdf.transforms import Transform, Vector, rotation_about
+
+STATIC_PUBLISHER = ("tf2_ros", "static_transform_publisher")
+_PLACE, _RPY, _QUATERNION = (
+    ("--x", "--y", "--z"),
+    ("--roll", "--pitch", "--yaw"),
+    ("--qx", "--qy", "--qz", "--qw"),
+)
+_FRAMES = ("--frame-id", "--child-frame-id")
+_BY_POSITION = {  # the words without options: with yaw, pitch and roll, or with a quaternion
+    8: (*_PLACE, *reversed(_RPY), *_FRAMES),
+    9: (*_PLACE, *_QUATERNION, *_FRAMES),
+}
+_NORM_TOLERANCE = 10e-3  # of a quaternion; tf2 ignores others
+
+
+class _Frame(NamedTuple):
+    """A frame that a launch file places. It is `open`, for a reason, where it is not known whether
+    and where.
+    """
+
+    parent: str
+    child: str
+    origin: Origin | None
+    location: LazyLocation
+    open: str = ""
+
+
+def with_transforms(
+    robot: Robot,
+    package: Package,
+    paths: Sequence[str],
+    source_of: Callable[[str], Source | None],
+) -> Robot:
+    """Return a robot with the frames that launch files of a package publish, as links at
+    fixed joints.
+
+    tf2 has one parent of each frame, the one that it was told of last: a frame with two is open.
+    What places the root of the robot in the world is left out.
+
+    Args:
+        robot: The robot in the URDF.
+        package: The package.
+        paths: The launch files, by their paths in the package.
+        source_of: The text of a file, whose path is that of a place; None if it cannot be read.
+    """
+    roots = {link.known.name for link in robot.links} - parent_joints(robot).keys()
+    for path in paths:
+        name = package.launch_file(path)
+        launch = package.launch(name) if name is not None else None
+        if launch is None or launch.syntax is not None or launch.faults:
+            continue  # nothing is published
+        started = [
+            it
+            for it in launch.nodes
+            if (it.package, it.executable) == STATIC_PUBLISHER and it.when is not False
+        ]
+        frames = [_frame_of(node, source_of) for node in started]
+        for frame in (it for it in frames if it is not None and it.child not in roots):
+            robot = _with_frame(robot, frame)
+        reason = launch.unread or next((it.message for it in launch.unknown), "")
+        reason = reason or ("the name of a frame is not evaluated" if None in frames else "")
+        if reason:
+            robot = replace(
+                robot,
+                incomplete=f"cannot determine statically which frames {name} publishes: {reason}",
+            )
+    if any(it.frames_of("") != ("",) for it in package.launches):
+        robot = replace(
+            robot,
+            incomplete=robot.incomplete or "robot_state_publisher gives the frames other names",
+        )
+    return robot
+
+
+def _with_frame(robot: Robot, frame: _Frame) -> Robot:
+    if not frame.child or frame.parent == frame.child:
+        return robot  # the publisher ends with an error
+    part = {"origin": UnresolvedPart(frame.open, frame.location)} if frame.open else {}
+    own = f"static transform of {frame.child}"
+    joint = Joint(
+        own,
+        "fixed",
+        frame.parent,
+        frame.child,
+        frame.origin,
+        location=frame.location,
+        unresolved=part,
+    )
+    before = next((it for it in robot.joints if it.known.child == frame.child), None)
+    if before is None and robot.has_link(frame.child):
+        return robot
+    if before is None:
+        return replace(
+            robot,
+            links=(*robot.links, Link(frame.child, location=frame.location)),
+            joints=(*robot.joints, joint),
+        )
+    if before == joint:
+        return robot
+    reason = (
+        f"the frame {frame.child!r} is placed twice: in {before.known.parent!r} and in "
+        f"{frame.parent!r}"
+    )
+    part = {
+        "origin": UnresolvedPart(f"{reason}, and the one that tf2 gets last counts", frame.location)
+    }
+    both = replace(before.known, origin=None, unresolved={**before.known.unresolved, **part})
+    return replace(robot, joints=tuple(both if it is before else it for it in robot.joints))
+
+
+def _frame_of(node: StartedNode, source_of: Callable[[str], Source | None]) -> _Frame | None:
+    """Return the frame that a static_transform_publisher publishes, its child empty for none; None
+    if it is unknown.
+    """
+    words, names = _words_of(node), frames_named(node)
+    options = _options_of(words)
+    if None in words and not names[1]:
+        return None
+    at = node.location
+    source = source_of(at.path) or Source(at.path, "")
+    location = LazyLocation(Source(at.path, source.text, [source.offset(at.line, at.column)]), 0)
+    if None in words or node.when is None:
+        what = "whether it is published" if node.when is None else "its place"
+        reason = f"{what} is known only at run time ({at.path}, line {at.line})"
+        return _Frame(names[0], names[1], None, location, f"the frame {names[1]!r}: {reason}")
+    origin = _origin_of({name: text or "" for name, text in options.items()}, location)
+    return _Frame(names[0], names[1] if names[0] and origin is not None else "", origin, location)
+
+
+def _words_of(node: StartedNode) -> tuple[str | None, ...]:
+    words = node.arguments if node.arguments is not None else (None,)
+    return words[: words.index("--ros-args")] if "--ros-args" in words else words
+
+
+def frames_named(node: StartedNode) -> tuple[str, str]:
+    """Return the parent and the child that a static_transform_publisher is given, empty where they
+    are not known.
+    """
+    options = _options_of(_words_of(node))
+    parent, child = ((options.get(option) or "").removeprefix("/") for option in _FRAMES)
+    return parent, child
+
+
+def _options_of(words: Sequence[str | None]) -> dict[str, str | None]:
+    """Return the values by their options, also if they are given by their positions."""
+    if words and words[0] is not None and words[0].startswith("--"):
+        return dict(zip(((it or "") for it in words[::2]), words[1::2], strict=False))
+    return dict(zip(_BY_POSITION.get(len(words), ()), words, strict=False))
+
+
+def _origin_of(options: Mapping[str, str], location: LazyLocation) -> Origin | None:
+    """Return where a frame is placed; None where the publisher ends with an error, or tf2 ignores
+    the transform.
+    """
+    known = {*_PLACE, *_RPY, *_QUATERNION, *_FRAMES}
+    try:
+        values = {name: float(text) for name, text in options.items() if name not in _FRAMES}
+    except ValueError:
+        return None
+    turned = [name for name in (*_RPY, *_QUATERNION) if name in values]
+    is_mixed = not set(turned).issubset(_RPY) and not set(turned).issubset(_QUATERNION)
+    if not options.keys() <= known or is_mixed or not all(map(isfinite, values.values())):
+        return None
+    x, y, z = (values.get(name, 0.0) for name in _PLACE)
+    roll, pitch, yaw = (values.get(name, 0.0) for name in _RPY)
+    if not set(turned) & {*_QUATERNION}:
+        return Origin((x, y, z), (roll, pitch, yaw), location)
+    rpy = _rpy_of(*(values.get(name, float(name == "--qw")) for name in _QUATERNION))
+    return Origin((x, y, z), rpy, location) if rpy is not None else None
+
+
+def _rpy_of(x: float, y: float, z: float, w: float) -> Vector | None:
+    length = hypot(x, y, z)
+    if abs(length**2 + w**2 - 1) > _NORM_TOLERANCE:
+        return None
+    if not length:
+        return (0.0, 0.0, 0.0)
+    return Transform(rotation_about((x / length, y / length, z / length), 2 * atan2(length, w))).rpy

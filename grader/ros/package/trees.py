@@ -1,0 +1,224 @@
+"""One tree of names, values and places for the files of a package: YAML, and XML such as SDF, SRDF
+and package.xml.
+
+A path names entries in it. In YAML, dots separate keys, in XML slashes: `a.b`, `world/model/@name`.
+As in parameters of ROS 2, a key may itself have dots: `limits.joint1.max` is found nested, as one
+key, or partly so. A list is looked through, and `rows[key=value].b`, or `model[@name='box']/pose`,
+takes the entries with this value.
+"""
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
+
+from grader.base.errors import InputError, MissingElement, NotDecided
+from grader.base.names import did_you_mean
+from grader.base.source import LazyLocation, Location, Source
+from grader.ros.package.package import Package
+from grader.ros.python.budget import Budget, OutOfBudget
+from grader.ros.xml.elements import attributes_of, matches_value, name_of, readable, text_in
+from grader.ros.xml.parsing import Element, XmlFault, XmlFile
+
+if TYPE_CHECKING:
+    from grader.ros.config.yaml_nodes import YamlNode
+
+_MAX_TREE = 512 * 1024  # bytes
+_YAML = (".yaml", ".yml", ".rviz", ".repos", ".json")  # other files are XML
+_STEP = re.compile(r"""([^\[\]]*)((?:\[[^\[\]=]+=(?:'[^']*'|"[^"]*"|[^\[\]'"]*)\])*)""")
+_CONDITION = re.compile(r"""\[([^\[\]=]+)=(?:'([^']*)'|"([^"]*)"|([^\[\]'"]*))\]""")
+_MAX_LOOKED_AT = 200_000  # entries, by one search
+_EXACT = 1e-6  # of numbers in conditions
+_Place = Location | LazyLocation
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Entry:
+    """An entry of a tree: an element, attribute, key or row, with its text, what it contains, and
+    its place.
+
+    The name of an attribute begins with @, that of the root and of a row of YAML is empty.
+    """
+
+    name: str
+    text: str | None  # None for tables and lists
+    find_children: "Callable[[], list[Entry]]"
+    find_place: Callable[[], _Place]
+    is_xml: bool
+    is_quoted: bool = False  # a text of YAML that is no number and no boolean
+    is_list: bool = False
+    element: Element | None = None  # what it was made of, if it is an element
+
+    @property
+    def children(self) -> "list[Entry]":
+        """The entries in it: of a list its rows."""
+        return self.find_children()
+
+    @property
+    def place(self) -> _Place:
+        """Where it is written."""
+        return self.find_place()
+
+
+class Step(NamedTuple):
+    """A step of a path: a name, and values that the entry contains, by their paths in it."""
+
+    name: str
+    conditions: tuple[tuple[str, str], ...] = ()
+
+
+def is_path(text: str) -> bool:
+    """Return whether a text is a path: its brackets are those of conditions."""
+    return all(_STEP.fullmatch(part) for part in re.split(r"[./](?![^\[]*\])", text))
+
+
+def steps_of(path: str, *, is_xml: bool) -> list[Step]:
+    """Return the steps of a path; an empty path, or a dot, is the entry itself."""
+    parts = re.split(r"/(?![^\[]*\])" if is_xml else r"\.(?![^\[]*\])", path)
+    found = []
+    for part in parts if path not in ("", ".") else ():
+        match = _STEP.fullmatch(part)
+        if match is not None and part not in ("", "."):
+            conditions = (
+                (key, one or two or three) for key, one, two, three in _CONDITION.findall(match[2])
+            )
+            found.append(Step(match[1], tuple(conditions)))
+    return found
+
+
+class Search:
+    """Finds entries by paths, with a limit on the entries that are looked at: those of YAML may
+    have many parents.
+    """
+
+    def __init__(self) -> None:
+        self._budget = Budget(_MAX_LOOKED_AT)
+
+    def find(self, entry: Entry, steps: Sequence[Step]) -> list[Entry]:
+        """Return the entries at a path in an entry, in the order of the file. Raises NotDecided for
+        too many.
+        """
+        try:
+            return [*self._find(entry, steps)]
+        except OutOfBudget:
+            raise NotDecided("the file has too many entries to look through") from None
+
+    def fits(self, entry: Entry, step: Step) -> bool:
+        """Return whether an entry contains the values of a step."""
+        for key, value in step.conditions:
+            found = self.find(entry, steps_of(key, is_xml=entry.is_xml))
+            if not any(
+                it.text is not None and matches_value(readable(it.text), value, _EXACT)
+                for it in found
+            ):
+                return False
+        return True
+
+    def _find(self, entry: Entry, steps: Sequence[Step]) -> Iterator[Entry]:
+        children = entry.children if steps else []
+        self._budget.charge(1 + len(children))
+        if not steps:
+            yield entry
+        elif entry.is_list and steps[0].name:
+            for row in (it for it in children if not it.is_list):
+                yield from self._find(row, steps)
+        for count in range(1, 2 if entry.is_xml else len(steps) + 1):
+            if steps and not any(step.conditions for step in steps[: count - 1]):
+                name = ".".join(step.name for step in steps[:count])
+                yield from self._find_below(
+                    [it for it in children if it.name == name], steps[count - 1 :]
+                )
+
+    def _find_below(self, named: Sequence[Entry], steps: Sequence[Step]) -> Iterator[Entry]:
+        """Yield the entries at the other steps in those that the first step names."""
+        for entry in named:
+            rows = entry.children if entry.is_list and steps[0].conditions else [entry]
+            for row in (it for it in rows if self.fits(it, steps[0])):
+                yield from self._find(row, steps[1:])
+
+
+def xml_entry(element: Element, locate: Callable[[Element, str | None], _Place]) -> Entry:
+    """Return the entry of an element; `locate` returns its place, or that of an attribute of it."""
+    return Entry(
+        name_of(element),
+        text_in(element),
+        partial(_children_of, element, locate),
+        partial(locate, element, None),
+        is_xml=True,
+        element=element,
+    )
+
+
+def _children_of(element: Element, locate: Callable[[Element, str | None], _Place]) -> list[Entry]:
+    attributes = [
+        Entry(f"@{name}", value, list, partial(locate, element, name), is_xml=True)
+        for name, value in attributes_of(element)
+    ]
+    return [*attributes, *(xml_entry(child, locate) for child in element.iterchildren("*"))]
+
+
+def _yaml_entry(node: "YamlNode", name: str = "") -> Entry:
+    """Return the entry of a node of YAML."""
+    return Entry(
+        name,
+        node.text,
+        partial(_entries_of, node),
+        lambda: node.location,
+        is_xml=False,
+        is_quoted=node.quoted,
+        is_list=isinstance(node.value, list),
+    )
+
+
+def _entries_of(node: "YamlNode") -> list[Entry]:
+    match node.value:
+        case list(rows):
+            return [_yaml_entry(row) for row in rows]
+        case dict(table):
+            return [_yaml_entry(value, key) for key, value in table.items()]
+    return []
+
+
+def read_tree(package: Package, file: str) -> Entry:
+    """Return the tree of a file of a package, which is found by the end of its path.
+
+    Raises MissingElement for a file that is not there or is broken, NotDecided for one that cannot
+    be read.
+    """
+    files = package.tree.files
+    found = (
+        [file]
+        if file in files
+        else [path for path in files if path.endswith(f"/{file.strip('/')}")]
+    )
+    if len(found) > 1:
+        raise NotDecided(
+            f"several files are called {file}: {', '.join(found[:3])}",
+            "several files have the name",
+        )
+    if not found:
+        message, meant = f"the package has no file {file!r}", did_you_mean(file, files)
+        raise MissingElement(
+            "file", file, message=message, detail=meant, absent="" if meant else file
+        )
+    from grader.ros.config.yaml_nodes import YamlFault, read_yaml  # late: the robot needs no YAML
+
+    [path], own = found, package.path(found[0])
+    try:
+        data = files[path].read(_MAX_TREE)
+    except InputError as error:
+        raise NotDecided(str(error), "a file cannot be read") from None
+    kind = "YAML" if path.lower().endswith(_YAML) else "XML"
+    try:
+        return _yaml_entry(read_yaml(data, own)) if kind == "YAML" else _read_xml(data, own)
+    except (YamlFault, XmlFault) as fault:
+        message = f"{path} is not readable as {kind}: {fault}"
+        raise MissingElement(
+            "readable file", path, message=message, location=fault.location
+        ) from None
+
+
+def _read_xml(data: bytes, path: str) -> Entry:
+    file = XmlFile(data, Source(path, data.decode("utf-8", "replace")))
+    return xml_entry(file.root, file.location)

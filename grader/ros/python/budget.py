@@ -1,0 +1,126 @@
+"""The budget to which reading a submission is charged: the work of documents, expressions and
+searches.
+"""
+
+from collections.abc import Collection
+from pathlib import PurePosixPath
+
+from grader.ros.python import values as py
+from grader.ros.python.values import parts_of, refuse, too_large
+
+READING = 500_000  # parts that reading one submission may produce or look at: some 0.5 s
+PYTHON_LIMIT = 128 * 1024  # bytes of a file; a syntax tree takes several hundred times as much
+CHARACTERS, _BITS = 16, 256  # that count as one part
+_FOLDER = "the name of a folder on the machine is not known"
+
+
+class OutOfBudget(py.EvaluationSignal):
+    """The budget of a submission is spent: nothing more of it can be expanded or evaluated."""
+
+
+class Budget:
+    """The parts of documents, expressions and values that may still be produced or looked at,
+    whatever comes of it.
+
+    They are charged before the work, and counted, so that a result is the same on every machine.
+    `stand_ins` are the texts that stand for folders that are not known: no value may depend on
+    them.
+    """
+
+    def __init__(self, limit: int = READING, stand_ins: Collection[str] = ()) -> None:
+        self.limit = self.left = limit
+        self.stand_ins = stand_ins
+
+    @property
+    def used(self) -> int:
+        """The parts that were charged."""
+        return self.limit - self.left
+
+    def grow(self, limit: int) -> None:
+        """Set another limit, from which what was charged is taken."""
+        self.limit, self.left = limit, limit - self.used
+
+    def charge(self, parts: int, characters: int = 0) -> None:
+        """Charge parts and characters. Raises OutOfBudget."""
+        self.left -= parts + characters // CHARACTERS
+        if self.left < 0:
+            raise OutOfBudget(
+                f"reading this takes more work than one submission may use ({self.limit:,} parts)"
+            )
+
+    def measure(self, value: py.Value, kind: str = "plain") -> int:
+        """Charge a value and return its size: its parts, each as often as it occurs. Raises
+        Undetermined.
+
+        `kind` is that of the function that is given the value.
+        """
+        if isinstance(value, py.SCALARS):
+            size = 1 + self._size_alone(value, kind)
+            self.charge(size)
+            return size
+        pending, size = [value], 0
+        while pending:
+            part = pending.pop()
+            size += 1 + self._size_alone(part, kind)
+            inside = parts_of(part)
+            if size + len(pending) + len(inside) > py.MAX_PARTS:
+                too_large("value")
+            self.charge(len(inside))
+            pending += inside
+        self.charge(size)
+        return size
+
+    def checked(self, value: py.Value, kind: str = "holds") -> py.Value:
+        """Return a value that was produced, once it is charged. Raises Undetermined for one that
+        is too large.
+        """
+        if type(value) not in (float, bool):
+            self.measure(value, kind)
+        if self.stand_ins and kind == "path":
+            self.rooted(value)
+        return value
+
+    def rooted(self, value: py.Value) -> py.Value:
+        """Return a text or path in which a stand-in is at most the beginning. Raises
+        Undetermined.
+        """
+        for text in map(str, value if isinstance(value, tuple) else [value]):
+            for stand_in in self.stand_ins:
+                rest = text.removeprefix(stand_in)
+                if stand_in.strip("/") in rest or (
+                    rest != text and not rest.startswith("/") and rest
+                ):
+                    raise py.Undetermined(_FOLDER)
+        return value
+
+    def _size_alone(self, part: py.Value, kind: str) -> int:
+        """Return the size of a part beyond one. Raises Undetermined for one that is too large, or
+        not known.
+        """
+        if isinstance(part, str):
+            if len(part) > py.MAX_TEXT:
+                too_large("text")
+            if (
+                self.stand_ins
+                and kind == "plain"
+                and any(stand_in in part for stand_in in self.stand_ins)
+            ):
+                raise py.Undetermined(_FOLDER)
+            return len(part) // CHARACTERS
+        if isinstance(part, int):
+            if part.bit_length() > py.MAX_BITS:
+                too_large("number")
+            return part.bit_length() // _BITS
+        if isinstance(part, PurePosixPath):
+            return self._size_alone(str(part), kind)
+        if (
+            isinstance(part, py.PLAIN)
+            or (kind == "text" and py.is_object(part))
+            or (kind == "holds" and isinstance(part, py.OPAQUE))
+        ):
+            return 0
+        if isinstance(
+            part, py.Items | py.Namespace | py.PlainFunction
+        ):  # a plain function itself refuses these
+            return 0
+        return refuse(part, f"values of the type {type(part).__name__} are not supported")

@@ -1,0 +1,229 @@
+"""Python's built-in functions and those of math, as an expression may call them."""
+
+import builtins
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from typing import Any
+
+from grader.ros.python import values as py
+from grader.ros.python.budget import Budget
+from grader.ros.python.values import (
+    call_plain,
+    checked_key,
+    items_of,
+    iterate,
+    known,
+    reason_of,
+    str_of,
+    too_large,
+)
+
+_MAX_DIGITS = 400  # that round leaves
+_OF_SIGNATURE = re.compile(r"positional argument|keyword argument|required keyword")
+_FAST_GROWING = ("factorial", "comb", "perm", "prod", "lcm")
+
+# Calls a function value with arguments, for the functions that call others: map, filter, sorted.
+_Apply = Callable[[py.Value, list[py.Value]], py.Value]
+
+
+def call(
+    function: py.Value,
+    args: list[py.Value],
+    kwargs: dict[str, py.Value],
+    budget: Budget,
+    apply: _Apply,
+) -> py.Value:
+    """Return what a call of a function of the allow-list returns."""
+    if not isinstance(function, py.PlainFunction):
+        budget.measure([args, list(kwargs.values())], "holds")
+        return (
+            call_plain(function, *args, **kwargs)
+            if not callable(function)
+            else _refuse("this call")
+        )
+    budget.measure(
+        [args, list(kwargs.values())], "holds" if function.kind == "applies" else function.kind
+    )
+    given = (apply, *args) if function.kind == "applies" else args
+    try:
+        return budget.checked(call_plain(function.run, *given, **kwargs), function.kind)
+    except py.EvaluationFails as error:
+        if function.kind != "plain" and _OF_SIGNATURE.search(
+            str(error)
+        ):  # Python's own may take other arguments
+            wrong = _wrong_arguments(function, args, kwargs)
+            raise py.EvaluationFails(f"TypeError: {function.name}() {wrong}") from None
+        raise
+
+
+def _wrong_arguments(
+    function: py.PlainFunction, args: list[py.Value], kwargs: dict[str, py.Value]
+) -> str:
+    """Return what is wrong with the arguments of Python's own function. Raises Undetermined if that
+    is not certain.
+    """
+    from inspect import signature  # late: it takes long to import
+
+    with suppress(ValueError):  # of a function whose signature is not known
+        try:
+            signature(function.own).bind(*args, **kwargs) if function.own is not None else None
+        except TypeError as error:
+            return str(error)
+    return str(_refuse(f"this use of {function.name}"))
+
+
+def _refuse(what: str) -> py.Value:
+    raise py.Undetermined(f"{what} is not supported")
+
+
+def _refuse_function(name: str) -> Callable[..., py.Value]:
+    return lambda *_, **__: _refuse(f"the function {name}")
+
+
+def _taking_items(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
+    """Return a function whose first argument is a loop's items, as list takes it: known or not."""
+    return lambda *args, **kwargs: function(
+        *(list(iterate(value)) for value in args[:1]), *args[1:], **kwargs
+    )
+
+
+def make_dict(*args: py.Value, **kwargs: py.Value) -> py.Value:
+    """Return dict() of values."""
+    if not args or isinstance(args[0], dict):
+        return dict(*args, **kwargs)
+    pairs = [[list(iterate(pair)) for pair in iterate(value)] for value in args]
+    for key, *_ in filter(None, pairs[0]):
+        checked_key(known(key))
+    return dict(*pairs, **kwargs)
+
+
+def _sum(values: py.Value, start: py.Value = 0) -> py.Value:
+    items = items_of(values)
+    if any(isinstance(item, list | tuple) for item in (start, *items)):
+        _refuse("the sum of lists")
+    return sum(items, start)
+
+
+def _round(number: py.Value, ndigits: py.Value = None) -> py.Value:
+    if isinstance(ndigits, int) and abs(ndigits) > _MAX_DIGITS:
+        _refuse("a number of digits of this size")
+    return round(number, ndigits)
+
+
+def _range(*bounds: int) -> range:
+    numbers = range(*bounds)
+    if numbers[py.MAX_PARTS :]:
+        too_large("range")
+    return numbers
+
+
+def _sized(value: py.Value) -> py.Value:
+    return value if isinstance(value, (*py.PLAIN, py.Items)) else known(value)
+
+
+def _next(value: py.Value, *default: py.Value) -> py.Value:
+    try:
+        return next(value.iterator if isinstance(value, py.Items) else known(value), *default)
+    except StopIteration:
+        return _refuse("the end of an iterator")
+
+
+def _map(apply: _Apply, function: py.Value, first: py.Value, *lists: py.Value) -> py.Items:
+    return py.Items(
+        apply(function, list(items)) for items in zip(*map(iterate, (first, *lists)), strict=False)
+    )
+
+
+def _filter(apply: _Apply, function: py.Value, values: py.Value) -> py.Items:
+    return py.Items(_kept(apply, function, iterate(values)))
+
+
+def _kept(apply: _Apply, function: py.Value, items: Iterator[py.Value]) -> Iterator[py.Value]:
+    for item in items:
+        if truth(item if function is None else apply(function, [item])):
+            yield item
+
+
+def truth(value: py.Value) -> bool:
+    """Return whether a value counts as true. Raises Undetermined."""
+    if py.is_object(value):
+        return True
+    if isinstance(value, py.OPAQUE) and reason_of(value):
+        known(value)
+    return bool(call_plain(bool, value))
+
+
+def _taking_known_items(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
+    """Return sorted, min or max: of the items of a value, or of several values."""
+
+    def of_known(*args: py.Value, **named: py.Value) -> py.Value:
+        if "key" in named:
+            _refuse("a key of sorted, min or max")
+        items = items_of(args[0]) if len(args) == 1 else list(args)
+        known([*items, *named.values()])
+        return function(*([items] if len(args) == 1 else items), **named)
+
+    return of_known
+
+
+_HOLDING: dict[str, Callable[..., Any]] = {
+    "list": _taking_items(list),
+    "tuple": _taking_items(tuple),
+    "dict": make_dict,
+    "next": _next,
+    "len": lambda value: len(_sized(value)),
+    "reversed": lambda value: py.Items(reversed(_sized(value))),
+    "bool": lambda *args: truth(*args) if args else False,
+    "iter": lambda value: py.Items(iterate(value)),
+    "enumerate": lambda value, start=0: py.Items(enumerate(iterate(value), known(start))),
+    "zip": lambda *values: py.Items(zip(*map(iterate, values), strict=False)),
+    "sorted": _taking_known_items(sorted),
+    "min": _taking_known_items(min),
+    "max": _taking_known_items(max),
+    "any": lambda items: any(map(truth, iterate(items))),
+    "all": lambda items: all(map(truth, iterate(items))),
+}
+_APPLYING: dict[str, Callable[..., Any]] = {"map": _map, "filter": _filter}
+_FUNCTIONS: dict[str, Callable[..., Any]] = {
+    "float": float,
+    "int": int,
+    "abs": abs,
+    "ord": ord,
+    "round": _round,
+    "range": _range,
+    "sum": _sum,
+    **{
+        name: _refuse_function(name)
+        for name in (
+            "complex",
+            "divmod",
+            "frozenset",
+            "hash",
+            "isinstance",
+            "issubclass",
+            "repr",
+            "set",
+            "slice",
+            "type",
+            "vars",
+        )
+    },
+}
+BUILTINS: Mapping[str, py.PlainFunction] = {
+    **{
+        name: py.PlainFunction(name, function, kind, getattr(builtins, name))
+        for kind, table in (("plain", _FUNCTIONS), ("holds", _HOLDING), ("applies", _APPLYING))
+        for name, function in table.items()
+    },
+    "str": py.PlainFunction("str", lambda *args: str_of(*args) if args else "", "text"),
+}
+MATH: Mapping[str, py.Value] = {
+    **{name: getattr(math, name) for name in ("pi", "e", "tau", "inf", "nan")},
+    **{
+        name: py.PlainFunction(name, _refuse_function(name) if name in _FAST_GROWING else value)
+        for name, value in vars(math).items()
+        if callable(value) and not name.startswith("_")
+    },
+}

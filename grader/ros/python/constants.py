@@ -1,0 +1,205 @@
+"""The constants of a Python module, which is not run: the values of names that a scope binds
+once.
+"""
+
+import ast
+import builtins
+import sys
+from collections import Counter
+from collections.abc import Sequence
+from typing import ClassVar
+
+from grader.ros.python.budget import Budget, OutOfBudget
+from grader.ros.python.interpreter import Interpreter
+from grader.ros.python.library import imported_names
+from grader.ros.python.parse import START, position_of
+from grader.ros.python.values import (
+    EvaluationFails,
+    FunctionTable,
+    QualifiedName,
+    Scope,
+    Undetermined,
+    Unknown,
+    Value,
+)
+
+_MAX_STEPS = 500_000  # of the evaluation of one module
+# What binds names of a module, or finds its submodules, in ways that are not seen.
+_BINDS_UNSEEN = frozenset(
+    {
+        "exec",
+        "eval",
+        "globals",
+        "locals",
+        "vars",
+        "setattr",
+        "modules",
+        "__dict__",
+        "__path__",
+        "__getattr__",
+    }
+)
+
+
+def binds_unseen(nodes: Sequence[ast.AST]) -> bool:
+    """Return whether a module with these nodes may bind names in ways that are not seen."""
+    names = (
+        getattr(it, "id", None) or getattr(it, "attr", None) or getattr(it, "name", None)
+        for it in nodes
+    )
+    return any(name in _BINDS_UNSEEN for name in names)
+
+
+class Constants(Interpreter):
+    """Evaluates expressions of a module whose names are constants. What it cannot evaluate is
+    Unknown.
+    """
+
+    def __init__(
+        self, nodes: Sequence[ast.AST], name: str, functions: FunctionTable, *, is_package: bool
+    ) -> None:
+        """`nodes` are those of the module; of calls, those of the functions are evaluated."""
+        super().__init__(functions, {}, budget=Budget(_MAX_STEPS))
+        self._full_name, self._is_package, self._is_open = name, is_package, binds_unseen(nodes)
+        self._shared = {
+            it for node in nodes if isinstance(node, ast.Global | ast.Nonlocal) for it in node.names
+        }
+
+    def value_of(self, node: ast.expr | None, scope: Scope) -> Value:
+        """Return the value of an expression; None for none."""
+        try:
+            return self.evaluate(node, scope) if node is not None else None
+        except (OutOfBudget, RecursionError) as error:
+            return Unknown(str(error), START)
+
+    def evaluate(self, node: ast.expr, scope: Scope) -> Value:
+        """Return the value of an expression; Unknown where it cannot be determined: nothing else
+        depends on it.
+        """
+        try:
+            return self.value(node, scope)
+        except (Undetermined, EvaluationFails) as error:
+            return Unknown(str(error), position_of(node))
+
+    def bound(self, nodes: Sequence[ast.AST], scope: Scope) -> Scope:
+        """Return a scope with the names that statements bind: constants, and what is not known."""
+        nodes = sorted(nodes, key=offset_of)
+        counts, values = _bindings(nodes)
+        unknown = Unknown("it is not bound once", START)
+        star = max(
+            (it.lineno for it in nodes if isinstance(it, ast.ImportFrom) and _replaces_names(it)),
+            default=0,
+        )
+        names = [name for name in counts if name.partition(".")[0] not in self._shared]
+        scope.names |= dict.fromkeys(names, unknown)
+        for node in nodes:
+            if isinstance(node, ast.Import | ast.ImportFrom):
+                found = {
+                    name: it
+                    for alias in node.names
+                    for name, it in self._imported(node, alias).items()
+                }
+                scope.names |= {name: it for name, it in found.items() if counts[name] == 1}
+        assigned = [
+            it for it in values if it in names and counts[it] == 1 and values[it].lineno > star
+        ]
+        for name in assigned if not self._is_open else ():
+            value = self.value_of(values[name], scope)
+            scope.names[name] = (
+                unknown if isinstance(value, list | dict) else value
+            )  # which may be changed
+        return scope
+
+    def _imported(
+        self, node: ast.Import | ast.ImportFrom, alias: ast.alias
+    ) -> dict[str, QualifiedName]:
+        level = node.level if isinstance(node, ast.ImportFrom) else 0
+        module = (node.module or "") if isinstance(node, ast.ImportFrom) else ""
+        if level:
+            above = self._full_name.split(".")[
+                : None if self._is_package and level == 1 else -level + self._is_package
+            ]
+            module = ".".join(filter(None, (*above, module)))
+        return imported_names(module, alias, {})
+
+    def _constant_name(self, node: ast.Name, scope: Scope) -> Value:
+        unknown = Unknown("it is not a constant", position_of(node))
+        return constant_in(
+            scope, node.id, self._builtin(node.id) if hasattr(builtins, node.id) else unknown
+        )
+
+    def _constant_attribute(self, node: ast.Attribute, scope: Scope) -> Value:
+        found = constant_in(scope, dotted(node), self)
+        return found if found is not self else Interpreter.KINDS[ast.Attribute](self, node, scope)
+
+    KINDS: ClassVar = {
+        **Interpreter.KINDS,
+        ast.Name: _constant_name,
+        ast.Attribute: _constant_attribute,
+    }
+
+
+def constant_in(scope: Scope, name: str, default: Value = None) -> Value:
+    """Return the value of a name with dots in a scope."""
+    try:
+        return scope.find(name)
+    except KeyError:
+        return default
+
+
+def dotted(node: ast.AST) -> str:
+    """Return the text of a name with dots; empty for any other expression."""
+    names: list[str] = []
+    while isinstance(node, ast.Attribute):
+        names.append(node.attr)
+        node = node.value
+    return ".".join([node.id, *reversed(names)]) if isinstance(node, ast.Name) else ""
+
+
+def offset_of(node: ast.AST) -> tuple[int, int]:
+    """Return line and column of a node, by which nodes are in the order of the file."""
+    return getattr(node, "lineno", 0), getattr(node, "col_offset", 0)
+
+
+def _replaces_names(node: ast.ImportFrom) -> bool:
+    """Return whether a star import may bind names of constants: those of messages and of Python
+    itself do not.
+    """
+    *_, last = (node.module or "").split(".")
+    is_known = last in ("msg", "srv", "action") or last in sys.stdlib_module_names
+    return node.names[0].name == "*" and not is_known
+
+
+def _bindings(nodes: Sequence[ast.AST]) -> tuple[Counter[str], dict[str, ast.expr]]:
+    """Return how often statements bind or change each name with dots, and the expressions that are
+    assigned.
+    """
+    counts, values = Counter[str](), dict[str, ast.expr]()
+    for part in nodes:
+        match part:
+            case ast.Name(ctx=ast.Store() | ast.Del()):
+                counts[part.id] += 1
+            case ast.Attribute(ctx=ast.Store() | ast.Del()):
+                counts.update((dotted(part), dotted(part.value)))
+            case ast.Subscript(ctx=ast.Store() | ast.Del()):
+                counts[dotted(part.value)] += 1
+            case (
+                ast.Assign(targets=[target], value=value)
+                | ast.AnnAssign(target=target, value=ast.expr() as value)
+            ):
+                values[dotted(target)] = value
+            case (
+                ast.FunctionDef(name=name)
+                | ast.AsyncFunctionDef(name=name)
+                | ast.ClassDef(name=name)
+            ):
+                counts[name] += 1
+            case (
+                ast.arg(arg=name) | ast.ExceptHandler(name=str(name)) | ast.MatchAs(name=str(name))
+            ):
+                counts[name] += 1
+            case ast.MatchStar(name=str(name)) | ast.MatchMapping(rest=str(name)):
+                counts[name] += 1
+            case ast.alias(name=full, asname=asname):
+                counts[asname or full.partition(".")[0]] += 1
+    return counts, values

@@ -1,0 +1,381 @@
+"""The state of the evaluation of a file, and the calls in it: of its own functions, of the table's,
+and of methods.
+"""
+
+import ast
+import builtins
+from collections.abc import Callable, Collection, Mapping
+from functools import partial
+from pathlib import PurePosixPath
+from typing import ClassVar, NamedTuple
+
+from grader.base.names import closest
+from grader.ros.python import values as py
+from grader.ros.python.budget import Budget
+from grader.ros.python.builtins import BUILTINS, call, truth
+from grader.ros.python.expressions import Expressions
+from grader.ros.python.library import PYTHON_3_12, USUAL_NAMES
+from grader.ros.python.operators import method, operate
+from grader.ros.python.parse import START, Position, position_of
+from grader.ros.python.values import call_plain, iterate, known, reason_of
+
+
+class PythonError(NamedTuple):
+    """An error that certainly stops Python at this position: an undefined name, an import that
+    fails.
+    """
+
+    message: str
+    at: Position
+
+
+NOT_EVALUATED = "is not evaluated"
+MISSING_COMMA = "a {} cannot be called: is there a comma missing before it?"
+FAILED = "Python raises an error before"  # the reason of a value that would follow
+# All parts of such an expression are evaluated before the expression itself; such a part may change
+# something.
+_WHOLE = (
+    ast.Name,
+    ast.Call,
+    ast.BinOp,
+    ast.UnaryOp,
+    ast.Attribute,
+    ast.Subscript,
+    ast.JoinedStr,
+    ast.FormattedValue,
+)
+_CHANGING = (ast.Call, ast.NamedExpr, ast.Await, ast.Yield, ast.YieldFrom)
+_MAX_ERRORS = 200
+_MAX_CALLS = 20_000
+_MAX_DEPTH = 30  # of calls
+_CHANGING_METHODS: Mapping[type, tuple[str, ...]] = {
+    list: ("append", "extend", "insert", "sort", "reverse", "pop"),
+    dict: ("update", "pop", "setdefault"),
+}
+_TEXT_METHODS = frozenset(name for name in dir(str) if not name.startswith("_"))
+
+
+class Evaluation(Expressions):
+    """The state of the evaluation of a file.
+
+    A part of an expression that is not known is Unknown: names, lists and arguments keep it, an
+    operation with it is unknown as well. Only what the table of functions lists is called. Whatever
+    else a file calls may do anything, so the evaluation stops there.
+    """
+
+    def __init__(
+        self, functions: py.FunctionTable, names: Mapping[str, py.Value], budget: Budget
+    ) -> None:
+        """`functions` has every function that is evaluated; `names` are bound from the beginning,
+        such as __file__.
+        """
+        super().__init__(self._builtin, budget)
+        self.functions = functions
+        self.exports: Mapping[str, Collection[str]] = {}
+        self.local_modules: Collection[str] = ()
+        self.module = py.Scope({"__name__": "__main__", **names})
+        self.errors: list[PythonError] = []
+        self.calls: list[py.Call] = []  # what is recorded, in order
+        # the first that may have failed, or stopped the evaluation
+        self.doubt: py.Unknown | None = None
+        self.at = START  # the statement that is evaluated
+        self.attempts = 0  # how many try statements are around the statement
+        self._depth = 0  # of calls of the file's functions
+
+    def doubted(self, unknown: py.Unknown) -> py.Unknown:
+        """Keep that an error may have been raised here, and return the unknown value."""
+        self.doubt = self.doubt or unknown
+        return unknown
+
+    def error(self, message: str, at: Position) -> None:
+        """Record once an error that certainly stops Python."""
+        if len(self.errors) < _MAX_ERRORS and all(
+            message != error.message for error in self.errors
+        ):
+            self.errors.append(PythonError(message, at))
+
+    def evaluate(self, node: ast.expr, scope: py.Scope) -> py.Value:
+        """Return the value of an expression; Unknown, with the reason, where it cannot be
+        determined.
+
+        The evaluation stops if a part of the expression may have changed something and is not
+        evaluated.
+        """
+        try:
+            return self.value(node, scope)
+        except py.Undetermined as error:
+            unknown = py.Unknown(str(error), error.at or position_of(node))
+            if unknown.reason == FAILED and not error.is_final:
+                return unknown
+            may_change = not isinstance(node, _WHOLE) and any(
+                isinstance(part, _CHANGING) for part in ast.walk(node)
+            )
+            if error.is_final or may_change:
+                raise py.Undetermined(unknown.reason, unknown.at, is_final=True) from None
+            return self.doubted(unknown)
+        except py.EvaluationFails as error:
+            self.error(str(error), error.at or position_of(node))
+            return py.Unknown(FAILED, position_of(node))
+
+    def _name(self, node: ast.Name, scope: py.Scope) -> py.Value:
+        """Return the value of a name. An undefined name is an error; its value is the most likely
+        intended one.
+        """
+        try:
+            return scope.find(node.id)
+        except KeyError:
+            pass
+        if hasattr(builtins, node.id) and node.id not in PYTHON_3_12:
+            return self._builtin(node.id)
+        if node.id.startswith("__"):
+            raise py.Undetermined(f"the name {node.id!r} {NOT_EVALUATED}")
+        self.error(f"the name {node.id!r} is not defined or imported", position_of(node))
+        texts = (name for name, value in self.module.names.items() if isinstance(value, str))
+        meant = closest(node.id, texts) if node.id not in USUAL_NAMES else None
+        if meant is not None:
+            return self.module.names[meant]
+        return py.QualifiedName(USUAL_NAMES.get(node.id, f"?.{node.id}"))
+
+    def _builtin(self, name: str) -> py.Value:
+        full = f"builtins.{name}"
+        return (
+            BUILTINS[name]
+            if name in BUILTINS and full not in self.functions
+            else py.QualifiedName(full)
+        )
+
+    def test(self, value: py.Value, branches: Collection[ast.expr]) -> bool:
+        """Return whether a condition holds; stop if that is unknown and a branch may change
+        something.
+        """
+        if isinstance(
+            value, py.Unknown | py.Call | py.QualifiedName | py.BoundMethod
+        ) and not py.is_object(value):
+            nodes = (node for branch in branches for node in ast.walk(branch))
+            if any(isinstance(node, _CHANGING) for node in nodes):
+                reason = f"a condition {NOT_EVALUATED}: {reason_of(value)}"
+                raise py.Undetermined(reason, getattr(value, "at", self.at), is_final=True)
+        return truth(value)
+
+    def function(
+        self,
+        parameters: ast.arguments,
+        scope: py.Scope,
+        at: Position,
+        body: Callable[[py.Scope], py.Value],
+        local: frozenset[str] = frozenset(),
+    ) -> py.Function:
+        """Return a function as it is defined: its defaults are evaluated now."""
+        positional = reversed([*parameters.posonlyargs, *parameters.args])
+        pairs = list(zip(positional, reversed(parameters.defaults), strict=False))[::-1]
+        named = zip(parameters.kwonlyargs, parameters.kw_defaults, strict=True)
+        pairs += [(parameter, default) for parameter, default in named if default is not None]
+        defaults = {parameter.arg: self.evaluate(default, scope) for parameter, default in pairs}
+        return py.Function(parameters, scope, defaults, body, at, local)
+
+    def unpack(self, kwargs: dict[str, py.Value], value: py.Value, node: ast.expr) -> None:
+        """Add the arguments that ** unpacks."""
+        if not isinstance(value, dict):
+            reason = reason_of(value) or f"this use of ** {NOT_EVALUATED}"
+            raise py.Undetermined(reason, position_of(node), is_final=True)
+        for key, item in value.items():
+            if not isinstance(key, str) or key in kwargs:
+                raise py.EvaluationFails(
+                    f"TypeError: ** unpacks the key {key!r}, which is no text or given twice"
+                )
+            kwargs[key] = item
+
+    def called(
+        self, function: py.Value, args: list[py.Value], kwargs: dict[str, py.Value], node: ast.expr
+    ) -> py.Value:
+        """Return the value of a call of any value."""
+        return self.call_value(function, py.Call("", args, kwargs, position_of(node)))
+
+    def call_value(self, function: py.Value, made: py.Call) -> py.Value:
+        """Return the value of a call; the call gets its name here."""
+        self.budget.charge(1 + len(made.args) + len(made.kwargs))
+        found: py.Value = None
+        match function:
+            case py.Function():
+                found = self.call_function(function, made)
+            case py.QualifiedName(name=name):
+                if name == "glob":
+                    self.error(
+                        "glob is a module here and cannot be called: write glob.glob(...)", made.at
+                    )
+                made.name = "glob.glob" if name in ("glob", "?glob") else name
+                found = self._by_name(made)
+            case py.BoundMethod(owner=py.Call() as owner, name=name):
+                made.name, made.owner = f"{owner.name}.{name}", owner
+                found = self._by_name(made)
+            case py.BoundMethod(owner=owner, name=name):
+                found = self._method(owner, name, made)
+            case py.PlainFunction():
+                found = self._plain(function, made)
+            case py.Unknown(reason=reason) if reason == FAILED:
+                found = function
+            case _ if isinstance(function, py.PLAIN):
+                kind = type(function).__name__
+                raise py.EvaluationFails(MISSING_COMMA.format(kind))
+            case _:
+                reason = f"this call {NOT_EVALUATED}: {reason_of(function)}".rstrip(": ")
+                raise py.Undetermined(reason, made.at, is_final=True)
+        return found
+
+    def _plain(self, function: py.PlainFunction, made: py.Call) -> py.Value:
+        """Return the value of Python's own function; stop where it would call others, or use up an
+        iterator.
+        """
+        try:
+            return call(
+                function, made.args, made.kwargs, self.budget, partial(self._apply, made.at)
+            )
+        except py.Undetermined as error:
+            given = (*made.args, *made.kwargs.values())
+            if any(
+                isinstance(value, py.Function | py.BoundMethod | py.QualifiedName | py.Items)
+                for value in given
+            ):
+                raise py.Undetermined(str(error), error.at or made.at, is_final=True) from None
+            raise
+
+    def _apply(self, at: Position, function: py.Value, args: list[py.Value]) -> py.Value:
+        return self.call_value(function, py.Call("", args, {}, at))
+
+    def _by_name(self, made: py.Call) -> py.Value:
+        """Return the value of a call of something outside of the file, by the table."""
+        function = self.functions.get(made.name)
+        if function is None and made.name.startswith(
+            "?."
+        ):  # an undefined name, which is an error already
+            return py.Unknown(FAILED, made.at)
+        if function is None:
+            reason = f"{made.name.removeprefix('builtins.')} {NOT_EVALUATED}"
+            raise py.Undetermined(reason, made.at, is_final=True)
+        return (
+            self.call_value(function, made)
+            if isinstance(function, py.PlainFunction)
+            else function(self, made)
+        )
+
+    def _method(self, owner: py.Value, name: str, made: py.Call) -> py.Value:
+        """Return the value of a method. Of what is not known, only a method of texts is known to
+        change nothing.
+        """
+        if isinstance(owner, PurePosixPath) and f"pathlib.Path.{name}" in self.functions:
+            made.name, made.args = f"pathlib.Path.{name}", [owner, *made.args]
+            return self._by_name(made)
+        if any(
+            isinstance(owner, kind) and name in names for kind, names in _CHANGING_METHODS.items()
+        ):
+            return self._change(owner, name, made)
+        found = method(owner, name, self.budget)
+        if found is not None:
+            return self.call_value(found, made)
+        if isinstance(owner, py.Unknown) and (name in _TEXT_METHODS or owner.reason == FAILED):
+            raise py.Undetermined(owner.reason, owner.at)
+        raise py.Undetermined(
+            f"the method {name} of this value {NOT_EVALUATED}", made.at, is_final=True
+        )
+
+    def _change(self, owner: py.Value, name: str, made: py.Call) -> py.Value:
+        """Run a method that changes a list or dict: Python's own."""
+        try:
+            self.budget.measure([made.args, [*made.kwargs.values()]], "holds")
+            self.budget.charge(len(owner) // 16 if name != "append" else 0)
+            args, kwargs = made.args, made.kwargs
+            if name == "sort":
+                arguments = [owner, *args]
+                owner[:] = call(
+                    BUILTINS["sorted"],
+                    arguments,
+                    kwargs,
+                    self.budget,
+                    partial(self._apply, made.at),
+                )
+                return None
+            if name in ("extend", "update"):
+                args = [
+                    value if isinstance(value, dict) else list(iterate(value)) for value in args
+                ]
+            elif name != "append":
+                known(args if name not in ("insert", "setdefault") else args[:1])
+            return self.budget.checked(call_plain(getattr(owner, name), *args, **kwargs))
+        except py.Undetermined as error:
+            if error.is_final:
+                raise
+            reason = f"the method {name} {NOT_EVALUATED} here: {error}"
+            raise py.Undetermined(reason, made.at, is_final=True) from None
+
+    def call_function(self, function: py.Function, made: py.Call) -> py.Value:
+        """Return the value of a call of a function of the file."""
+        if self._depth == _MAX_DEPTH:
+            raise py.Undetermined(
+                f"a function that calls others so deeply {NOT_EVALUATED}", made.at, is_final=True
+            )
+        scope = py.Scope(self._bound_parameters(function, made), function.scope, function.local)
+        self._depth += 1
+        try:
+            return function.body(scope)
+        finally:
+            self._depth -= 1
+
+    def _bound_parameters(self, function: py.Function, made: py.Call) -> dict[str, py.Value]:
+        """Return the values of a function's parameters by their names."""
+        parameters = function.parameters
+        positional = [parameter.arg for parameter in (*parameters.posonlyargs, *parameters.args)]
+        names = {*positional, *(parameter.arg for parameter in parameters.kwonlyargs)}
+        given = dict(zip(positional, made.args, strict=False))
+        others = {
+            name: value for name, value in made.kwargs.items() if name not in names or name in given
+        }
+        missing = sorted(names - given.keys() - made.kwargs.keys() - function.defaults.keys())
+        if (
+            missing
+            or (len(made.args) > len(positional) and not parameters.vararg)
+            or (others and not parameters.kwarg)
+        ):
+            what = (
+                f"the argument {missing[0]!r} is missing"
+                if missing
+                else "there is one argument too many"
+            )
+            self.error(f"{what} in this call", made.at)
+        bound = {
+            **dict.fromkeys(names, py.Unknown("an argument is missing", made.at)),
+            **function.defaults,
+            **given,
+        }
+        bound |= {name: value for name, value in made.kwargs.items() if name in names}
+        if parameters.vararg:
+            bound[parameters.vararg.arg] = tuple(made.args[len(positional) :])
+        if parameters.kwarg:
+            bound[parameters.kwarg.arg] = others
+        return bound
+
+    def _binary(self, node: ast.BinOp, scope: py.Scope) -> py.Value:
+        """Return the value of a binary operator; of an object in the table it is its method for
+        division.
+        """
+        left, right = self.evaluate(node.left, scope), self.evaluate(node.right, scope)
+        if (
+            isinstance(node.op, ast.Div)
+            and isinstance(left, py.Call)
+            and f"{left.name}.__truediv__" in self.functions
+        ):
+            made = py.Call("", [right], {}, position_of(node))
+            return self.call_value(py.BoundMethod(left, "__truediv__"), made)
+        return operate(node.op, left, right, self.budget)
+
+    KINDS: ClassVar = {**Expressions.KINDS, ast.Name: _name, ast.BinOp: _binary}
+
+
+def record(evaluation: Evaluation, made: py.Call) -> py.Call:
+    """Record a call that is not evaluated further, and return it as its result: a function for the
+    table.
+    """
+    if len(evaluation.calls) < _MAX_CALLS:
+        evaluation.calls.append(made)
+        if made.owner is not None:
+            made.owner.method_calls.append(made)
+    return made

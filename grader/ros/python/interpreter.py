@@ -1,0 +1,538 @@
+"""Evaluate a whole Python file without running it: its functions, branches, loops, assignments and
+imports.
+
+A statement of any other kind, such as `try` or `while`, ends the evaluation: what follows is not
+known.
+"""
+
+import ast
+import builtins
+from collections.abc import Callable, Collection, Mapping, Sequence
+from copy import copy
+from functools import partial
+from io import StringIO
+from itertools import chain
+from operator import setitem
+from pathlib import PurePosixPath
+from typing import Any, ClassVar
+
+from grader.base.names import closest
+from grader.ros.python import values as py
+from grader.ros.python.budget import Budget
+from grader.ros.python.builtins import truth
+from grader.ros.python.evaluation import FAILED, MISSING_COMMA, NOT_EVALUATED, Evaluation
+from grader.ros.python.library import (
+    CONSTANTS,
+    UNCERTAIN,
+    USUAL_NAMES,
+    attribute_error,
+    import_error,
+    imported_names,
+)
+from grader.ros.python.operators import has_attribute, operate
+from grader.ros.python.parse import Code, Position, bound_in, own_nodes, position_of
+from grader.ros.python.values import call_plain, iterate, known, refuse, str_of
+
+_PARTS = ("name", "stem", "suffix", "parent", "parents", "parts")  # of a path
+_STEPS = 100_000  # what the evaluation of one file may use
+_IN_ANNOTATIONS = (
+    ast.Attribute,
+    ast.Subscript,
+    ast.Constant,
+    ast.BinOp,
+    ast.BitOr,
+    ast.Tuple,
+    ast.List,
+    ast.expr_context,
+    ast.Index,
+)
+
+
+_OF_IMPORTS = (
+    "ImportError",
+    "ModuleNotFoundError",
+    "Exception",
+)  # what catches an import that fails
+
+
+class _ReturnFlow(py.EvaluationSignal):
+    """A return statement, with its value."""
+
+    def __init__(self, value: py.Value) -> None:
+        super().__init__()
+        self.value = value
+
+
+class Interpreter(Evaluation):
+    """Adds the statements of a file to its expressions."""
+
+    def __init__(
+        self,
+        functions: py.FunctionTable,
+        names: Mapping[str, py.Value],
+        *,
+        stand_ins: Collection[str] = (),
+        budget: Budget | None = None,
+        exports: Mapping[str, Collection[str]] | None = None,
+        local_modules: Collection[str] = (),
+    ) -> None:
+        """`functions` may be called, by full name; `names` are bound from the beginning, such as
+        __file__.
+
+        `stand_ins` are texts that stand for folders that are not known; `exports` has the names of
+        modules, besides those of Python itself; `local_modules` are beside the file, and imported
+        before any other.
+        """
+        super().__init__(functions, names, budget or Budget(_STEPS))
+        self.budget.stand_ins = stand_ins
+        self.exports = exports or {}
+        self.local_modules = local_modules
+
+    def run(self, code: Code) -> py.Scope:
+        """Evaluate a whole file and return the scope of its names. Never raises."""
+        try:
+            self._block(code.tree.body, self.module)
+        except (py.EvaluationSignal, RecursionError) as error:
+            self._stop(error)
+        return self.module
+
+    def call_from_outside(
+        self, function: py.Function, at: Position, args: Sequence[py.Value] | None = ()
+    ) -> py.Value:
+        """Return the value of a call of one of the file's functions. Never raises.
+
+        With `args` None, the arguments are unknown, and no error or doubt in the call counts: it
+        may never happen.
+        """
+        given = function.parameters
+        count = len([*given.posonlyargs, *given.args]) - len(given.defaults)
+        event: list[py.Value] = [py.Unknown("an event is known only at run time", at)] * count
+        recorded, doubt = list(self.errors), self.doubt
+        try:
+            return self.call_function(
+                function, py.Call("", event if args is None else list(args), {}, at)
+            )
+        except (py.EvaluationSignal, RecursionError) as error:
+            return self._stop(error, at)
+        finally:
+            if args is None:
+                self.errors, self.doubt = recorded, doubt
+
+    def _stop(
+        self, error: py.EvaluationSignal | RecursionError, at: Position | None = None
+    ) -> py.Unknown:
+        if isinstance(error, RecursionError):
+            error = py.Undetermined("the file is too deeply nested, which is not evaluated")
+        return self.doubted(py.Unknown(str(error), error.at or at or self.at))
+
+    def _block(self, body: list[ast.stmt], scope: py.Scope) -> None:
+        for node in body:
+            self.budget.charge(1)
+            self.at = position_of(node)
+            kind = self._STATEMENTS.get(type(node))
+            if kind is None:
+                raise py.Undetermined(
+                    f"a statement of the kind {type(node).__name__} is not evaluated",
+                    self.at,
+                    is_final=True,
+                )
+            try:
+                kind(self, node, scope)
+            except py.EvaluationFails as error:  # of the statement itself, such as an assignment
+                self.error(str(error), position_of(node))
+            except py.Undetermined as error:
+                if error.is_final:
+                    raise
+                reason = f"this statement is not evaluated: {error}"
+                raise py.Undetermined(
+                    reason, error.at or position_of(node), is_final=True
+                ) from None
+
+    def _functiondef(self, node: ast.FunctionDef, scope: py.Scope) -> None:
+        at = position_of(node)
+        if node.decorator_list or getattr(node, "type_params", []):
+            raise py.Undetermined(
+                "a function with a decorator or type parameters is not evaluated", at, is_final=True
+            )
+        parameters = node.args
+        every = (
+            *parameters.posonlyargs,
+            *parameters.args,
+            *parameters.kwonlyargs,
+            parameters.vararg,
+            parameters.kwarg,
+        )
+        function: py.Value = self.function(
+            parameters, scope, at, partial(self._function_body, node), bound_in(node)
+        )
+        for annotation in (
+            *(parameter.annotation for parameter in every if parameter),
+            node.returns,
+        ):
+            self._annotation(annotation, scope)
+        scope.names[node.name] = function
+
+    def _function_body(self, node: ast.FunctionDef, scope: py.Scope) -> py.Value:
+        if any(isinstance(inner, ast.Yield | ast.YieldFrom) for inner in own_nodes(node)):
+            raise py.Undetermined(
+                "a generator function is not evaluated", position_of(node), is_final=True
+            )
+        try:
+            self._block(node.body, scope)
+        except _ReturnFlow as flow:
+            return flow.value
+        return None
+
+    def _return(self, node: ast.Return, scope: py.Scope) -> None:
+        raise _ReturnFlow(self.evaluate(node.value, scope) if node.value is not None else None)
+
+    def _annotation(self, node: ast.expr | None, scope: py.Scope) -> None:
+        """Find the names of an annotation, and stop where it calls something."""
+        if node is None:
+            return
+        for part in ast.walk(node):
+            if isinstance(part, ast.Name):
+                self._name(part, scope)
+            elif not isinstance(part, _IN_ANNOTATIONS):
+                raise py.Undetermined("this annotation is not evaluated", self.at, is_final=True)
+
+    def _if(self, node: ast.If, scope: py.Scope) -> None:
+        self._block(node.body if truth(self.evaluate(node.test, scope)) else node.orelse, scope)
+
+    def _for(self, node: ast.For, scope: py.Scope) -> None:
+        items = self.evaluate(node.iter, scope)
+        if (
+            isinstance(items, py.Unknown) and items.reason == FAILED
+        ):  # how often it runs once that is fixed is not known
+            self.doubted(items)
+            items = []
+        for item in iterate(items):
+            self.bind(node.target, item, scope)
+            self._block(node.body, scope)
+        self._block(node.orelse, scope)
+
+    def _with(self, node: ast.With, scope: py.Scope) -> None:
+        value, target = (
+            self.evaluate(node.items[0].context_expr, scope),
+            node.items[0].optional_vars,
+        )
+        has_failed = (
+            isinstance(value, py.Unknown) and value.reason == FAILED
+        )  # of a file that does not exist
+        if isinstance(value, py.Call):
+            self.call_value(py.BoundMethod(value, "__enter__"), py.Call("", [], {}, self.at))
+        if len(node.items) > 1 or not (isinstance(value, py.Call | StringIO) or has_failed):
+            raise py.Undetermined("this use of with is not evaluated", self.at, is_final=True)
+        if target is not None:
+            self.bind(target, value, scope)
+        try:
+            self._block(node.body, scope)
+        finally:
+            if isinstance(value, StringIO):
+                value.close()
+            elif isinstance(value, py.Call):
+                value.method_calls.append(py.Call(f"{value.name}.__exit__", [], {}, self.at, value))
+
+    def _annassign(self, node: ast.AnnAssign, scope: py.Scope) -> None:
+        if node.value is not None:
+            self.bind(node.target, self.evaluate(node.value, scope), scope)
+        if scope is self.module:
+            self._annotation(node.annotation, scope)
+
+    def _expr(self, node: ast.Expr, scope: py.Scope) -> None:
+        self.evaluate(node.value, scope)
+
+    def _pass(self, node: ast.Pass, scope: py.Scope) -> None:
+        pass
+
+    def _import(self, node: ast.Import | ast.ImportFrom, scope: py.Scope) -> None:
+        module = ""
+        if isinstance(node, ast.ImportFrom):
+            module = "." * node.level + (node.module or "")
+        for alias in node.names:
+            if (module or alias.name).split(".")[0] in self.local_modules:
+                raise py.Undetermined(
+                    f"the file's own module {module or alias.name} is not evaluated",
+                    self.at,
+                    is_final=True,
+                )
+            error = import_error(module, alias.name, self.exports)
+            bound = imported_names(module, alias, self.exports)
+            if error == UNCERTAIN:
+                reason = (
+                    f"whether {module or alias.name} is installed is not known; it is not evaluated"
+                )
+                self.doubted(py.Unknown(reason, self.at))
+            elif error is not None:
+                self.error(error, self.at)
+                bound = dict.fromkeys(
+                    bound, py.QualifiedName(USUAL_NAMES.get(alias.name, f"?.{alias.name}"))
+                )
+            if bound.pop("*", None) is not None:
+                raise py.Undetermined(
+                    f"the names of {module} are not evaluated", self.at, is_final=True
+                )
+            scope.names.update(bound)
+
+    def _try(self, node: ast.Try, scope: py.Scope) -> None:
+        """Run a body that raises nothing, or whose import certainly fails; stop at any other."""
+        if node.finalbody:
+            raise py.Undetermined("a try with finally is not evaluated", self.at, is_final=True)
+        errors, doubt, self.doubt, after = list(self.errors), self.doubt, None, node.orelse
+        self.attempts += 1
+        try:
+            for statement in node.body:
+                self._block([statement], scope)
+                if len(self.errors) > len(errors):
+                    self.errors, after = errors, []
+                    self._handle(statement, node.handlers, scope)
+                    break
+        except py.Undetermined:
+            self.errors = errors  # a handler may have caught what was raised before
+            raise
+        finally:
+            self.attempts -= 1
+        if self.doubt is not None:
+            raise py.Undetermined(self.doubt.reason, self.doubt.at, is_final=True)
+        self.doubt = doubt
+        self._block(after, scope)
+
+    def _handle(
+        self, statement: ast.stmt, handlers: Sequence[ast.ExceptHandler], scope: py.Scope
+    ) -> None:
+        """Run the handler of an import that fails; stop at what another statement raises."""
+        for handler in handlers if isinstance(statement, ast.Import | ast.ImportFrom) else ():
+            if handler.type is None or (
+                isinstance(handler.type, ast.Name) and handler.type.id in _OF_IMPORTS
+            ):
+                if handler.name:
+                    scope.names[handler.name] = py.Unknown(
+                        "an error is not evaluated", position_of(handler)
+                    )
+                self._block(handler.body, scope)
+                return
+        raise py.Undetermined(
+            "which error is raised in this try is not evaluated", self.at, is_final=True
+        )
+
+    def _assert(self, node: ast.Assert, scope: py.Scope) -> None:
+        if not truth(self.evaluate(node.test, scope)):
+            self.error("this assertion fails", self.at)
+
+    def _raise(self, node: ast.Raise, _: py.Scope) -> None:
+        raised = node.exc.func if isinstance(node.exc, ast.Call) else node.exc
+        kind = getattr(builtins, raised.id, None) if isinstance(raised, ast.Name) else None
+        if isinstance(kind, type) and issubclass(kind, Exception):
+            self.error(f"the file raises {kind.__name__} here", self.at)
+        raise py.Undetermined("which error is raised here is not evaluated", self.at, is_final=True)
+
+    def _attribute(self, node: ast.Attribute, scope: py.Scope) -> py.Value:
+        owner, name = self.evaluate(node.value, scope), node.attr
+        match owner:
+            case py.QualifiedName(
+                name="?glob"
+            ):  # used without an import: an attribute shows that the module is meant
+                return py.QualifiedName(f"glob.{name}")
+            case py.QualifiedName(name="glob.glob") if name in ("glob", "iglob"):
+                message = f"glob is a function here, so glob.{name} is not defined: write glob(...)"
+                self.error(message, position_of(node))
+                return owner
+            case py.QualifiedName(name=module):
+                full = f"{module}.{name}"
+                error = attribute_error(module, name) if full not in self.functions else None
+                if error is not None:
+                    meant = closest(
+                        full, (it for it in self.functions if it.rpartition(".")[0] == module)
+                    )
+                    if meant is None:
+                        raise py.EvaluationFails(error)
+                    self.error(error, position_of(node))
+                    full = meant
+                return CONSTANTS.get(full, py.QualifiedName(full))
+            case PurePosixPath() if name in _PARTS:
+                value = getattr(owner, name)
+                return self.budget.checked(list(value) if name == "parents" else value, "path")
+            case py.Namespace():
+                return owner.find(name)
+        if isinstance(owner, py.PLAIN) and not has_attribute(owner, name):
+            raise py.EvaluationFails(f"{type(owner).__name__!r} has no attribute {name!r}")
+        return py.BoundMethod(owner, name, node)
+
+    def item(self, owner: py.Value, key: py.Value, node: ast.expr) -> py.Value:
+        """Return the value of owner[key]; of something outside of the file, by the table."""
+        if not isinstance(owner, py.QualifiedName | py.Call):
+            return super().item(owner, key, node)
+        made = py.Call(f"{owner.name}.__getitem__", [key], {}, position_of(node))
+        function = self.functions.get(made.name)
+        if (
+            function is None
+            and isinstance(owner, py.QualifiedName)
+            and owner.name in self.functions
+        ):
+            self.error(
+                f"{owner.name} is a function: write ( ) around its arguments, not [ ]",
+                position_of(node),
+            )
+            return self.call_value(owner, py.Call("", [key], {}, position_of(node)))
+        if function is None or isinstance(function, py.PlainFunction):
+            raise py.Undetermined(f"{owner.name}[...] {NOT_EVALUATED}")
+        return function(self, made)
+
+    def elements(self, nodes: Sequence[ast.expr], scope: py.Scope) -> list[py.Value]:
+        """Return the values of the elements of a list, or of the arguments of a call."""
+        values: list[py.Value] = []
+        for node in chain.from_iterable(map(self._separated, nodes)):
+            if not isinstance(node, ast.Starred):
+                values.append(self.evaluate(node, scope))
+                continue
+            try:
+                values += iterate(self.evaluate(node.value, scope))
+            except py.Undetermined as error:
+                raise py.Undetermined(
+                    str(error), error.at or position_of(node), is_final=True
+                ) from None
+        return values
+
+    def _separated(self, node: ast.expr) -> list[ast.expr]:
+        """Return an element; the two elements that a call of a tuple or list means, where a comma
+        is missing.
+        """
+        match node:
+            case ast.Call(
+                func=ast.Tuple() | ast.List() | ast.Call() as first,
+                args=[start, *_] as args,
+                keywords=[],
+            ):
+                before = self._separated(first)
+                if isinstance(before[-1], ast.Tuple | ast.List):
+                    kind = type(before[-1]).__name__.lower()
+                    self.error(MISSING_COMMA.format(kind), position_of(node))
+                    return [*before, ast.copy_location(ast.Tuple(elts=args, ctx=ast.Load()), start)]
+        return [node]
+
+    def _dict(self, node: ast.Dict, scope: py.Scope) -> py.Value:
+        table: dict[Any, py.Value] = {}
+        for key, value in zip(node.keys, node.values, strict=True):
+            found = self.evaluate(value, scope)
+            if key is not None:
+                call_plain(table.__setitem__, known(self.evaluate(key, scope)), found)
+            elif isinstance(found, dict):
+                table |= found
+            else:
+                refuse(found, "this dict is not supported")
+        return table
+
+    def _joinedstr(self, node: ast.JoinedStr, scope: py.Scope) -> py.Value:
+        pieces = [self.evaluate(piece, scope) for piece in node.values]
+        self.budget.measure(pieces, "text")
+        return self.budget.checked("".join(pieces), "text")
+
+    def _formattedvalue(self, node: ast.FormattedValue, scope: py.Scope) -> py.Value:
+        value = self.evaluate(node.value, scope)
+        self.budget.measure(value, "text")
+        if node.format_spec is not None or node.conversion not in (-1, ord("s")):
+            raise py.Undetermined("a format of this kind is not supported")
+        return str_of(value)
+
+    def _generatorexp(self, node: ast.GeneratorExp, scope: py.Scope) -> py.Value:
+        """Return a generator: the items of its first loop are evaluated now, the rest when it is
+        iterated.
+        """
+        first = iterate(self.evaluate(node.generators[0].iter, scope))
+        rounds = self.rounds(node.generators, py.Scope({}, scope), first)
+        return py.Items(self.evaluate(node.elt, inner) for inner in rounds)
+
+    def _dictcomp(self, node: ast.DictComp, scope: py.Scope) -> py.Value:
+        return {
+            known(self.evaluate(node.key, inner)): self.evaluate(node.value, inner)
+            for inner in self.rounds(node.generators, py.Scope({}, scope))
+        }
+
+    def _lambda(self, node: ast.Lambda, scope: py.Scope) -> py.Value:
+        return self.function(
+            node.args, scope, position_of(node), lambda inner: self.evaluate(node.body, inner)
+        )
+
+    def bind(self, target: ast.expr, value: py.Value, scope: py.Scope) -> None:
+        """Bind the names of a target to a value, or change an item."""
+        match target:
+            case ast.Subscript(value=owner, slice=key):
+                self._store(
+                    self.evaluate(owner, scope),
+                    known(self.key(key, scope)),
+                    value,
+                    position_of(target),
+                )
+            case ast.Attribute(value=owner, attr=name):
+                changed = self.evaluate(owner, scope)
+                if isinstance(changed, py.PLAIN):
+                    raise py.EvaluationFails(
+                        f"{type(changed).__name__!r} has no attribute {name!r}"
+                    )
+                reason = f"a change of the attribute {name} is not evaluated"
+                raise py.Undetermined(reason, position_of(target), is_final=True)
+            case _:
+                super().bind(target, value, scope)
+
+    def _store(self, owner: py.Value, key: py.Value, value: py.Value, at: Position) -> None:
+        """Set an item of a list or dict."""
+        if isinstance(owner, py.QualifiedName | py.Call):
+            made = py.Call(f"{owner.name}.__setitem__", [key, value], {}, at)
+            self.call_value(py.QualifiedName(made.name), made)
+            return
+        if not isinstance(owner, py.PLAIN) or isinstance(key, slice):
+            refuse(owner, "this assignment to an item is not supported")
+        call_plain(setitem, owner, key, value)
+        self.budget.charge(len(owner))
+
+    def _assign(self, node: ast.Assign, scope: py.Scope) -> None:
+        value = self.evaluate(node.value, scope)
+        for target in node.targets:
+            self.bind(target, value, scope)
+
+    def _augassign(self, node: ast.AugAssign, scope: py.Scope) -> None:
+        target = node.target
+        if any(isinstance(part, ast.Call | ast.NamedExpr) for part in ast.walk(target)):
+            raise py.Undetermined("this target is not supported")
+        load = copy(target)
+        load.ctx = ast.Load()
+        before, value = self.evaluate(load, scope), self.evaluate(node.value, scope)
+        if not isinstance(before, py.PLAIN):
+            refuse(before, "this value is not supported")
+        if isinstance(before, list) and isinstance(node.op, ast.Add):
+            before.extend(list(iterate(value)))
+            self.budget.measure(before, "holds")
+        elif isinstance(before, list | dict):
+            raise py.Undetermined("this operator is not supported")
+        else:
+            self.bind(target, operate(node.op, before, value, self.budget), scope)
+
+    KINDS: ClassVar = {
+        **Evaluation.KINDS,
+        ast.Attribute: _attribute,
+        ast.Dict: _dict,
+        ast.JoinedStr: _joinedstr,
+        ast.FormattedValue: _formattedvalue,
+        ast.GeneratorExp: _generatorexp,
+        ast.DictComp: _dictcomp,
+        ast.Lambda: _lambda,
+    }
+
+    # The statements that are evaluated.
+    _STATEMENTS: ClassVar[Mapping[type[ast.stmt], Callable[[Any, Any, py.Scope], None]]] = {
+        ast.FunctionDef: _functiondef,
+        ast.Return: _return,
+        ast.If: _if,
+        ast.For: _for,
+        ast.With: _with,
+        ast.Assign: _assign,
+        ast.AugAssign: _augassign,
+        ast.AnnAssign: _annassign,
+        ast.Expr: _expr,
+        ast.Pass: _pass,
+        ast.Import: _import,
+        ast.ImportFrom: _import,
+        ast.Try: _try,
+        ast.Assert: _assert,
+        ast.Raise: _raise,
+    }

@@ -1,0 +1,367 @@
+"""Python's library and ROS 2's modules: what an import binds, when it fails, and the functions that
+are evaluated.
+
+None of the functions reads a file.
+"""
+
+import ast
+import posixpath
+import sys
+from collections.abc import Callable, Collection, Mapping
+from functools import cache, lru_cache
+from importlib import import_module
+from itertools import chain
+from pathlib import PurePosixPath
+
+from grader.base.names import closest, did_you_mean
+from grader.ros.python import values as py
+from grader.ros.python.values import iterate
+
+MAX_PATH = 4_096  # characters
+# stands for the name of the package's folder, which the submission does not determine
+PACKAGE_FOLDER = "<package>"
+_OWN = ("dirname", "basename", "normpath", "split", "splitext", "isabs")
+_SETUPTOOLS_PUBLIC = (
+    "setup",
+    "find_packages",
+    "find_namespace_packages",
+    "Command",
+    "Distribution",
+    "Extension",
+)
+_SETUPTOOLS = frozenset(
+    {
+        "setup",
+        "find_packages",
+        "find_namespace_packages",
+        "Command",
+        "Distribution",
+        "Extension",
+        "Require",
+        "depends",
+        "dist",
+        "command",
+        "errors",
+        "extension",
+        "PackageFinder",
+        "PEP420PackageFinder",
+        "sic",
+        "SetuptoolsDeprecationWarning",
+        "build_meta",
+        "glob",
+        "msvc",
+        "monkey",
+        "namespaces",
+        "sandbox",
+        "unicode_utils",
+        "wheel",
+        "windows_support",
+        "version",
+        "archive_util",
+        "dep_util",
+        "discovery",
+        "config",
+        "installer",
+        "launch",
+        "logging",
+        "package_index",
+        "convert_path",
+        "findall",
+        "distutils",
+        "warnings",
+        "modified",
+    }
+)
+# Modules of the standard library that students' setup files import; their names are read from the
+# modules themselves.
+_INSPECTED = frozenset(
+    {
+        "os",
+        "os.path",
+        "glob",
+        "pathlib",
+        "sys",
+        "shutil",
+        "itertools",
+        "re",
+        "io",
+        "typing",
+        "datetime",
+        "collections",
+        "functools",
+        "json",
+        "math",
+        "platform",
+        "subprocess",
+        "time",
+        "random",
+        "tempfile",
+        "textwrap",
+        "warnings",
+        "contextlib",
+        "fnmatch",
+        "string",
+        "operator",
+        "configparser",
+        "codecs",
+        "logging",
+        "errno",
+        "stat",
+    }
+)
+_INSTALLED_WITH_ROS = (
+    "pkg_resources",
+    "wheel",
+    "launch",
+    "launch_ros",
+    "xacro",
+    "yaml",
+    "ament_index_python",
+)
+# What Python 3.12 has no more, or an older one that runs the grader has not yet.
+_REMOVED = ("asynchat", "asyncore", "imp", "smtpd")
+_ADDED = {
+    "batched",
+    "override",
+    "TypeAliasType",
+    "isjunction",
+    "splitroot",
+    "sumprod",
+    "monitoring",
+}
+PYTHON_3_12 = ("PythonFinalizationError",)  # built-in names that only a newer Python has
+UNCERTAIN = "?"  # in place of a message: whether an import fails is not known
+# The names of ROS 2's launch that files use most (ros2/launch and ros2/launch_ros, Jazzy), by their
+# modules.
+_LAUNCH_NAMES: dict[str, tuple[str, ...]] = {
+    "launch": ("LaunchDescription",),
+    "launch.actions": (
+        "DeclareLaunchArgument",
+        "ExecuteProcess",
+        "GroupAction",
+        "IncludeLaunchDescription",
+        "LogInfo",
+        "OpaqueFunction",
+        "RegisterEventHandler",
+        "SetEnvironmentVariable",
+        "SetLaunchConfiguration",
+        "TimerAction",
+    ),
+    "launch.conditions": ("IfCondition", "UnlessCondition"),
+    "launch.event_handlers": ("OnProcessExit", "OnProcessStart"),
+    "launch.launch_description_sources": (
+        "PythonLaunchDescriptionSource",
+        "AnyLaunchDescriptionSource",
+    ),
+    "launch.substitutions": (
+        "Command",
+        "EnvironmentVariable",
+        "FindExecutable",
+        "LaunchConfiguration",
+        "PathJoinSubstitution",
+        "PythonExpression",
+        "TextSubstitution",
+        "ThisLaunchFileDir",
+    ),
+    "launch_ros.actions": ("Node", "PushRosNamespace", "SetParameter"),
+    "launch_ros.parameter_descriptions": ("ParameterValue", "ParameterFile"),
+    "launch_ros.substitutions": ("FindPackageShare",),
+    "ament_index_python.packages": (
+        "get_package_share_directory",
+        "get_package_share_path",
+        "get_package_prefix",
+    ),
+}
+# The usual meaning of a name that is used without its import.
+USUAL_NAMES = {
+    "os": "os",
+    "glob": "?glob",  # the module or its function; its use decides
+    "path": "os.path",
+    "join": "os.path.join",
+    "Path": "pathlib.Path",
+    "pathlib": "pathlib",
+    "setuptools": "setuptools",
+    "setup": "setuptools.setup",
+    "find_packages": "setuptools.find_packages",
+    "xacro": "xacro",
+    **{name: f"{module}.{name}" for module, names in _LAUNCH_NAMES.items() for name in names},
+}
+# The attributes of modules whose values are known.
+CONSTANTS = {
+    "os.sep": "/",
+    "os.path.sep": "/",
+    "os.linesep": "\n",
+    "os.curdir": ".",
+    "os.pardir": "..",
+    "os.name": "posix",
+    "sys.platform": "linux",
+}
+
+
+def import_error(module: str, name: str, exports: Mapping[str, Collection[str]]) -> str | None:
+    """Return what is wrong with `import name` or `from module import name`: None where it works,
+    UNCERTAIN, or why.
+    """
+    if module.startswith("."):
+        return (
+            "the file is in no package, so it cannot import "
+            f"{module}{'' if module.strip('.') else name}"
+        )
+    if module in exports:
+        if name in exports[module] or name == "*":
+            return None
+        homes = [home for home, names in exports.items() if name in names]
+        return f"{module} has no {name!r}" + (
+            f": import it from {homes[-1]}" if homes else did_you_mean(name, exports[module])
+        )
+    return _import_error(module, name)
+
+
+@lru_cache(maxsize=256)
+def _import_error(module: str, name: str) -> str | None:
+    top, full = (module or name).split(".")[0], module or name
+    if top in _REMOVED:
+        return f"there is no module {top!r} in Python 3.12"
+    if name != "*" and (module in _INSPECTED or module == "setuptools"):
+        return _missing_name(module, name)
+    is_there = (
+        top in _INSTALLED_WITH_ROS
+        or full in ("setuptools", "distutils", *_INSPECTED)
+        or (module, name) == ("distutils.core", "setup")
+        or (top in sys.stdlib_module_names and full == top and not module)
+    )
+    guess = (
+        closest(top, ("os", "glob", "pathlib", "setuptools", "sys", "shutil"))
+        if top != "psutil"
+        else None
+    )
+    if (
+        is_there
+        or not guess
+        or top.startswith(guess)
+        or top in sys.stdlib_module_names
+        or top == "setuptools"
+    ):
+        return None if is_there else UNCERTAIN
+    return f"there is no module {top!r}; did you mean {guess!r}?"
+
+
+def _missing_name(module: str, name: str) -> str | None:
+    if module == "setuptools":
+        missing, guess = name not in _SETUPTOOLS, did_you_mean(name, _SETUPTOOLS_PUBLIC[:3])
+    else:
+        found = import_module(module)  # one of the few above, never a student's choice
+        missing, guess = not hasattr(found, name), did_you_mean(name, dir(found))
+    if name in _ADDED:
+        return UNCERTAIN
+    return f"{module} has no {name!r}{guess}" if missing else None
+
+
+def attribute_error(module: str, name: str) -> str | None:
+    """Return what is wrong with `module.name`; None where it works or this is unknown."""
+    if module not in _INSPECTED and module != "setuptools":
+        return None
+    error = _import_error(module, name)
+    return error if error != UNCERTAIN else None
+
+
+def imported_names(
+    module: str, alias: ast.alias, exports: Mapping[str, Collection[str]]
+) -> dict[str, py.QualifiedName]:
+    """Return what `import name` or `from module import name` binds; the name * represents unknown
+    names.
+    """
+    if alias.name == "*":
+        return {
+            name or "*": py.QualifiedName(f"{module}.{name}") for name in exports.get(module, [""])
+        }
+    if module:
+        return {alias.asname or alias.name: py.QualifiedName(f"{module}.{alias.name}")}
+    top = alias.name.split(".")[0]
+    return (
+        {alias.asname: py.QualifiedName(alias.name)}
+        if alias.asname
+        else {top: py.QualifiedName(top)}
+    )
+
+
+@cache
+def standard_functions(working_folder: str) -> py.FunctionTable:
+    """Return the functions by full name; `working_folder` is where Python runs, as an absolute
+    path.
+    """
+
+    def absolute(path: py.Value) -> str:
+        return posixpath.normpath(posixpath.join(working_folder, path))
+
+    def relative(path: py.Value, start: py.Value = ".") -> str:
+        return posixpath.relpath(absolute(path) if path else path, absolute(start))
+
+    own: dict[str, Callable[..., py.Value]] = {
+        "abspath": absolute,
+        "realpath": absolute,
+        "relpath": relative,
+        "join": _join,
+        **{name: getattr(posixpath, name) for name in _OWN},
+    }
+    of_paths: dict[str, Callable[..., py.Value]] = {
+        **{f"os.path.{name}": function for name, function in own.items()},
+        **{f"pathlib.{name}": _path for name in ("Path", "PurePath", "PosixPath", "PurePosixPath")},
+        **{
+            f"pathlib.Path.{name}": lambda path: PurePosixPath(absolute(path))
+            for name in ("resolve", "absolute")
+        },
+        "os.getcwd": lambda: working_folder,
+        "pathlib.Path.cwd": lambda: PurePosixPath(working_folder),
+    }
+    return {
+        **_FUNCTIONS,
+        **{name: py.PlainFunction(name, run, "path") for name, run in of_paths.items()},
+    }
+
+
+def _of_path(value: py.Value) -> py.Value:
+    if not isinstance(value, str | PurePosixPath):
+        raise py.EvaluationFails(
+            f"a path is a string, and this is of the type {type(value).__name__}"
+        )
+    return value
+
+
+def _join(first: py.Value, *parts: py.Value) -> str:
+    if not all(isinstance(value, str | PurePosixPath) for value in (first, *parts)):
+        message = (
+            "os.path.join takes strings, and one argument is not a string: is a bracket misplaced?"
+        )
+        raise py.EvaluationFails(message)
+    return _bounded(posixpath.join(first, *parts))
+
+
+def _path(*parts: py.Value) -> PurePosixPath:
+    return PurePosixPath(_bounded(str(PurePosixPath(*map(_of_path, parts)))))
+
+
+def _bounded(path: str) -> str:
+    if len(path) > MAX_PATH:
+        raise py.Undetermined("a path grows too long")
+    return path
+
+
+def _no_print(
+    *_: py.Value, sep: str = "", end: str = "", file: py.Value = None, flush: bool = False
+) -> None:
+    """Print nothing."""
+    del sep, end, file, flush
+
+
+_FUNCTIONS: py.FunctionTable = {
+    "builtins.print": py.PlainFunction("print", _no_print, "holds"),
+    "itertools.chain": py.PlainFunction(
+        "chain", lambda *lists: py.Items(chain(*map(iterate, lists))), "holds"
+    ),
+    "itertools.chain.from_iterable": py.PlainFunction(
+        "chain.from_iterable",
+        lambda lists: py.Items(chain.from_iterable(map(iterate, iterate(lists)))),
+        "holds",
+    ),
+}

@@ -1,0 +1,315 @@
+"""Operators, subscripts, attributes and methods: Python's own, from an allow-list, on values of
+bounded size.
+"""
+
+import ast
+import operator
+import re
+from collections.abc import Callable, Mapping
+from io import StringIO
+from pathlib import PosixPath, PurePosixPath
+
+from grader.ros.python import values as py
+from grader.ros.python.budget import CHARACTERS, Budget
+from grader.ros.python.values import call_plain, items_of, known, refuse, str_of, too_large
+
+_WIDE = re.compile(r"\*|\d{3}")
+_FIELD = re.compile(r"\{(?:\w*)\}")
+_PYTHON_3_12 = ("walk", "with_segments", "is_junction")  # what paths have since then
+_NUMBERS = (float, int)
+
+
+def attribute(owner: py.Value, name: str, budget: Budget) -> py.Value:
+    """Return the value of an attribute: of a namespace, of a dict from YAML, or a method of a plain
+    value.
+    """
+    if name.startswith("__"):
+        raise py.EvaluationFails(f"names that begin with two underscores are not allowed: {name}")
+    if isinstance(owner, py.Namespace):
+        if hasattr(dict, name):  # a namespace of xacro is a dict
+            raise py.Undetermined(f"the method {name} of a namespace is not supported")
+        return owner.find(name)
+    found = method(owner, name, budget)
+    if found is not None:
+        return found
+    if has_attribute(owner, name):
+        raise py.Undetermined(f"the attribute {name} is not supported")
+    if isinstance(owner, py.DottedDict) and name in owner:
+        return owner[name]
+    if isinstance(owner, py.PLAIN):
+        raise py.EvaluationFails(f"{type(owner).__name__!r} has no attribute {name!r}")
+    raise py.Undetermined(f"the attribute {name} of this value is not supported")
+
+
+def has_attribute(owner: py.Value, name: str) -> bool:
+    """Return whether a plain value has an attribute in Python 3.12."""
+    if isinstance(owner, PurePosixPath):
+        return hasattr(PosixPath, name) or name in _PYTHON_3_12
+    return isinstance(owner, py.PLAIN) and hasattr(owner, name)
+
+
+def method(owner: py.Value, name: str, budget: Budget) -> py.PlainFunction | None:
+    """Return a method of a plain value that changes nothing, whose work is charged; None for any
+    other.
+    """
+    run = next(
+        (table.get(name) for kind, table in _METHODS.items() if isinstance(owner, kind)), None
+    )
+    if run is None:
+        return None
+    kind = "holds" if isinstance(owner, list | tuple | dict) else _KINDS.get(name, "plain")
+
+    def charged(*args: py.Value, **kwargs: py.Value) -> py.Value:
+        if run is not _get:
+            budget.charge(
+                budget.measure(owner, kind), sum(_search_cost(owner, value) for value in args)
+            )
+        return call_plain(run, owner, *args, **kwargs)
+
+    return py.PlainFunction(name, charged, kind, getattr(owner, name))
+
+
+def _search_cost(text: py.Value, part: py.Value) -> int:
+    """Return how many characters a search for one text in another looks at, at most."""
+    return len(text) * len(part) // 16 if isinstance(text, str) and isinstance(part, str) else 0
+
+
+def _percent_format(template: str, value: py.Value) -> str:
+    """Return template % value."""
+    if _WIDE.search(template):
+        raise py.Undetermined("this format is not supported")
+    str_of(value)
+    return str(template % value)
+
+
+def _format(text: str, *args: py.Value, **kwargs: py.Value) -> str:
+    """Return text.format(...), for fields that are names or numbers."""
+    if re.search(r"[{}]", _FIELD.sub("", text)):
+        raise py.Undetermined("a format of this kind is not supported")
+    size = sum(len(str_of(value)) for value in (*args, *kwargs.values()))
+    if len(text) + size * text.count("{") > py.MAX_TEXT:
+        too_large("text")
+    return text.format(*args, **kwargs)
+
+
+def _replace(text: str, old: str, new: str, *count: int) -> str:
+    if len(text) + (text.count(old) if old else len(text) + 1) * len(new) > py.MAX_TEXT:
+        too_large("text")
+    return text.replace(old, new, *count)
+
+
+def _join(separator: str, items: py.Value) -> str:
+    parts = items_of(items)
+    if sum(len(part) + len(separator) for part in parts if isinstance(part, str)) > py.MAX_TEXT:
+        too_large("text")
+    return separator.join(parts)
+
+
+def _get(table: dict[py.Value, py.Value], key: py.Value, default: py.Value = None) -> py.Value:
+    return table.get(known(key), default)
+
+
+def _named(kind: type, *names: str) -> dict[str, Callable[..., py.Value]]:
+    return {name: getattr(kind, name) for name in names}
+
+
+_OF_PATHS = (
+    "joinpath",
+    "as_posix",
+    "with_name",
+    "with_suffix",
+    "with_stem",
+    "relative_to",
+    "read",
+    "close",
+    "replace",
+)
+_KINDS = {**dict.fromkeys(_OF_PATHS, "path"), "format": "text", "join": "text"}
+_METHODS: Mapping[type, Mapping[str, Callable[..., py.Value]]] = {
+    str: {
+        "replace": _replace,
+        "join": _join,
+        "format": _format,
+        **_named(
+            str,
+            "capitalize",
+            "count",
+            "endswith",
+            "find",
+            "index",
+            "isdigit",
+            "lower",
+            "lstrip",
+            "partition",
+            "removeprefix",
+            "removesuffix",
+            "rfind",
+            "rpartition",
+            "rsplit",
+            "rstrip",
+            "split",
+            "splitlines",
+            "startswith",
+            "strip",
+            "title",
+            "upper",
+        ),
+    },
+    dict: {"get": _get, **_named(dict, "keys", "values", "items", "copy")},
+    list: _named(list, "copy"),
+    PurePosixPath: _named(PurePosixPath, *_OF_PATHS[:6]),
+    StringIO: _named(StringIO, "read", "readline", "readlines", "close"),
+}
+
+
+def operate(op: ast.operator, left: py.Value, right: py.Value, budget: Budget) -> py.Value:
+    """Return the value of a binary operator."""
+    operation = _OPERATORS.get(type(op))
+    _refuse_object(op, left, right)
+    if type(left) in _NUMBERS and type(right) in _NUMBERS:
+        if (
+            isinstance(op, ast.Pow)
+            and type(left) is type(right) is int
+            and left.bit_length() * right > py.MAX_BITS
+        ):
+            too_large("number")
+        kind = "plain"
+    else:
+        kind = _kind(op, left, right)
+        for value in (left, right):
+            if not isinstance(
+                value, (*py.PLAIN, py.Items)
+            ):  # an iterator has no operators, as Python says itself
+                refuse(value, "this operation is not supported")
+        size = budget.measure(left, kind) + budget.measure(right, kind)
+        made = 0
+        match op, left, right:
+            case ast.Mod(), str(), _:
+                operation, made = _percent_format, size * left.count("%")
+            case (ast.Mult(), str() as text, int() as times) | (
+                ast.Mult(),
+                int() as times,
+                str() as text,
+            ):
+                made = len(text) * times // CHARACTERS
+            case (ast.Mult(), list() | tuple(), int() as times) | (
+                ast.Mult(),
+                int() as times,
+                list() | tuple(),
+            ):
+                made = size * times
+        if made > py.MAX_PARTS:
+            too_large("value")
+        budget.charge(max(made, 0))
+    if operation is None:
+        raise py.Undetermined("this operation is not supported")
+    return budget.checked(_run(operation, left, right), kind)
+
+
+def _refuse_object(op: ast.operator, left: py.Value, right: py.Value) -> None:
+    """Raise EvaluationFails for an operator of an object that has none, as Python does."""
+    found = next(filter(py.is_object, (left, right)), None)
+    other = right if found is left else left
+    if found is None or (isinstance(op, ast.Mod) and isinstance(left, str)):
+        return
+    if isinstance(other, py.PLAIN) or py.is_object(other):
+        raise py.EvaluationFails(
+            f"TypeError: {found.short}(...) is an object, not a text: use "
+            "PathJoinSubstitution([...])"
+        )
+
+
+def _kind(op: ast.operator, left: py.Value, right: py.Value) -> str:
+    """Return what the operands may contain: an operator of two lists passes their items on."""
+    if isinstance(left, _CONTAINERS) or (
+        isinstance(right, _CONTAINERS) and not isinstance(left, str)
+    ):
+        return "holds"
+    return "text" if isinstance(op, ast.Add | ast.Div | ast.Mod) else "plain"
+
+
+def _run(
+    operation: Callable[[py.Value, py.Value], py.Value], left: py.Value, right: py.Value
+) -> py.Value:
+    try:
+        return call_plain(operation, left, right)
+    except py.Undetermined:
+        if (
+            isinstance(left, py.PLAIN)
+            and isinstance(right, py.PLAIN)
+            and type(left) is not type(right)
+        ):
+            kinds = f"{type(left).__name__} and {type(right).__name__}"
+            raise py.EvaluationFails(f"TypeError: no such operator for {kinds}") from None
+        raise
+
+
+def compare(op: ast.cmpop, left: py.Value, right: py.Value, budget: Budget) -> bool:
+    """Return the value of one comparison."""
+    are_plain = all(isinstance(value, py.PLAIN) or py.is_object(value) for value in (left, right))
+    if are_plain and any(map(py.is_object, (left, right))) and isinstance(op, _OF_IDENTITY):
+        return (left is right) == isinstance(op, ast.Eq | ast.Is)
+    if isinstance(op, ast.Is | ast.IsNot) and not any(
+        value is None or isinstance(value, bool) for value in (left, right)
+    ):
+        raise py.Undetermined("which values are one object is not defined")
+    for value in (left, right):
+        if not isinstance(value, py.PLAIN) and not (
+            isinstance(value, py.Items) and isinstance(op, ast.Eq | ast.NotEq)
+        ):
+            refuse(value, "this comparison is not supported")
+    if type(left) not in _NUMBERS or type(right) not in _NUMBERS:
+        budget.charge(budget.measure(left) + budget.measure(right), _search_cost(right, left))
+    return bool(call_plain(_COMPARISONS[type(op)], left, right))
+
+
+def subscript(owner: py.Value, key: py.Value, budget: Budget) -> py.Value:
+    """Return the value of owner[key]."""
+    if isinstance(owner, py.Namespace) and isinstance(key, str):
+        return owner.find(key)
+    if not isinstance(owner, (*py.PLAIN, py.Items)):
+        refuse(owner, "this index is not supported")
+    if isinstance(owner, str):
+        budget.measure(owner)
+    if not isinstance(key, slice):
+        budget.measure(key)  # it is hashed, and shown where it is missing
+    elif isinstance(owner, str | list | tuple):
+        budget.charge(len(owner))
+    return budget.checked(call_plain(operator.getitem, owner, key))
+
+
+def _exclusive_or(left: py.Value, right: py.Value) -> py.Value:
+    """Return left ^ right, which Python has for integers only."""
+    if isinstance(left, int) and isinstance(right, int):
+        return left ^ right
+    if isinstance(left, (*_NUMBERS, str)) and isinstance(right, (*_NUMBERS, str)):
+        kinds = f"{type(left).__name__} and {type(right).__name__}"
+        raise py.EvaluationFails(f"TypeError: no exclusive or (^) of {kinds}; power is **")
+    raise py.Undetermined("this operation is not supported")
+
+
+_CONTAINERS = (list, tuple, dict)
+_OF_IDENTITY = (ast.Eq, ast.NotEq, ast.Is, ast.IsNot)
+_OPERATORS: dict[type[ast.operator], Callable[[py.Value, py.Value], py.Value]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.FloorDiv: operator.floordiv,
+    ast.Mod: operator.mod,
+    ast.Pow: operator.pow,
+    ast.BitOr: operator.or_,
+    ast.BitXor: _exclusive_or,
+}
+_COMPARISONS: dict[type[ast.cmpop], Callable[[py.Value, py.Value], py.Value]] = {
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+    ast.Is: operator.is_,
+    ast.IsNot: operator.is_not,
+    ast.In: lambda left, right: left in right,
+    ast.NotIn: lambda left, right: left not in right,
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+}

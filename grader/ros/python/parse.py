@@ -1,0 +1,218 @@
+"""Parses Python text with Python's own parser; whatever it refuses is data, not an exception."""
+
+import ast
+import re
+import sys
+import tokenize
+import warnings
+from codecs import lookup
+from dataclasses import dataclass, replace
+from io import BytesIO
+from typing import NamedTuple
+
+from grader.base.merge_conflicts import resolve_conflicts
+from grader.base.reuse import reuse
+from grader.base.source import Location, Source
+
+_SLOW_ENCODINGS = (
+    "idna",
+    "punycode",
+)  # encodings of domain names; their time grows with the square of the length
+_JAZZY = (3, 12)  # the Python version of ROS 2 Jazzy
+# What Python 3.12 added: type parameters and the statement type (PEP 695), and in a line, an
+# f-string whose braces are still open at its quote or at the end of the line (PEP 701).
+_TYPES = re.compile(
+    r"^[ \t]*(?:type[ \t]+\w+[ \t]*[=\[]|(?:async[ \t]+)?(?:def|class)[ \t]+\w+[ \t]*\[)",
+    re.MULTILINE,
+)
+_OPEN_BRACES = re.compile(
+    r"""\b[rR]?[fF][rR]?(['"])(?:(?!\1).)*?(?<!\{)\{(?:(?!\1)[^{}])*(?:\1|$)"""
+)
+_MAX_SEARCHED = 1_000  # characters of a line
+
+
+class Position(NamedTuple):
+    """A place in a Python file; line and column count from 1."""
+
+    line: int
+    column: int
+
+
+START = Position(1, 1)
+
+
+def position_of(node: ast.expr | ast.stmt | ast.excepthandler) -> Position:
+    """Return the position of a node."""
+    return Position(node.lineno, node.col_offset + 1)
+
+
+_TOO_DEEP = "too deeply nested for Python to read"
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """A parsed file with its text."""
+
+    source: Source
+    tree: ast.Module
+    conflict: tuple[str, Position] | None = None  # of git, without which it was parsed
+
+
+@dataclass(frozen=True, slots=True)
+class SyntaxFault:
+    """A file that Python cannot parse, with Python's message; `sure` is False where a newer
+    Python may parse it.
+    """
+
+    source: Source
+    message: str
+    location: Location
+    sure: bool = True
+
+
+def location_in(source: Source, position: Position) -> Location:
+    """Return the location of a position that Python gives: it counts columns in bytes, a
+    location in characters.
+    """
+    line = source.line(position.line)
+    column = len(
+        line.encode("utf-8", "surrogateescape")[: position.column - 1].decode("utf-8", "ignore")
+    )
+    return Location(source.path, position.line, column + 1)
+
+
+def parse(data: bytes, path: str) -> Code | SyntaxFault:
+    """Parse the bytes of a Python file. Never raises: what Python refuses, also for its depth,
+    is a SyntaxFault.
+    """
+    resolved = resolve_conflicts(data)
+    try:
+        found = _parse(resolved.data if resolved is not None else data, path)
+        if resolved is None:
+            return found
+        if isinstance(found, Code):
+            return replace(found, conflict=(resolved.message, Position(resolved.line, 1)))
+        return replace(found, message=resolved.message, location=Location(path, resolved.line, 1))
+    except (RecursionError, MemoryError):  # these depend on the process, so they are not kept
+        return SyntaxFault(
+            Source(path, data.decode("utf-8", "replace")), _TOO_DEEP, Location(path, 1, 1)
+        )
+
+
+@reuse
+def _parse(data: bytes, path: str) -> Code | SyntaxFault:
+    try:
+        encoding, _ = tokenize.detect_encoding(BytesIO(data).readline)
+        if lookup(encoding).name in _SLOW_ENCODINGS:
+            location = Location(path, 1, 1)
+            return SyntaxFault(
+                Source(path, ""), f"the encoding {encoding} is not supported", location, sure=False
+            )
+        text = data.decode(encoding)
+    except (SyntaxError, ValueError, LookupError) as error:
+        source = Source(path, data.decode("utf-8", "replace"))
+        return SyntaxFault(source, f"not readable as text: {error}", Location(path, 1, 1))
+    text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
+    source = Source(path, text)
+    if "\0" in text:
+        line = text.count("\n", 0, text.index("\0")) + 1
+        return SyntaxFault(source, "source code cannot contain null bytes", Location(path, line, 1))
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter(
+                "ignore"
+            )  # such as an invalid escape sequence, which Python accepts
+            try:
+                tree = ast.parse(text, feature_version=_JAZZY)
+            except SystemError:
+                # CPython 3.11 miscounts its depth if its garbage collector runs meanwhile: try
+                # again
+                tree = ast.parse(text, feature_version=_JAZZY)
+            # Never run: the compiler finds errors that the grammar allows.
+            compile(tree, path, "exec", dont_inherit=True)
+            return Code(source, tree)
+    except SyntaxError as error:
+        location = Location(path, max(error.lineno or 1, 1), max(error.offset or 1, 1))
+        return SyntaxFault(source, error.msg, location, sure=not _is_of_newer_python(error, text))
+    except (ValueError, OverflowError):
+        return SyntaxFault(source, _TOO_DEEP, Location(path, 1, 1))
+
+
+def _is_of_newer_python(error: SyntaxError, text: str) -> bool:
+    """Return whether the Python of ROS 2 Jazzy may accept what this older Python refuses."""
+    if sys.version_info >= _JAZZY:
+        return False
+    in_f_string = error.msg.startswith("f-string") or _OPEN_BRACES.search(
+        (error.text or "")[:_MAX_SEARCHED].rstrip()
+    )
+    return bool(in_f_string or _TYPES.search(text))
+
+
+def parse_expression(text: str) -> ast.expr | str | None:
+    """Return an expression, or Python's message on why it is none; None if it is nested too
+    deeply.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return ast.parse(text, mode="eval").body
+    except SyntaxError as error:
+        return f"SyntaxError: {error.msg}"
+    except (
+        RecursionError,
+        MemoryError,
+        SystemError,
+    ):  # how deep differs between versions; CPython 3.11 may miscount
+        return None
+    except (ValueError, OverflowError) as error:
+        return f"{type(error).__name__}: {error}"
+
+
+def own_nodes(node: ast.AST) -> list[ast.AST]:
+    """Return the nodes of a function, class or statement, without those of the functions and
+    classes in it.
+    """
+    found: list[ast.AST] = []
+    pending = (
+        list(ast.iter_child_nodes(node))
+        if isinstance(node, ast.FunctionDef | ast.ClassDef)
+        else [node]
+    )
+    while pending:
+        part = pending.pop()
+        found.append(part)
+        if not isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda):
+            pending += ast.iter_child_nodes(part)
+    return found
+
+
+def bound_in(node: ast.FunctionDef | ast.Module) -> frozenset[str]:
+    """Return the names that a function or module binds itself."""
+    nodes = own_nodes(node)
+    declared = {
+        name for part in nodes if isinstance(part, ast.Global | ast.Nonlocal) for name in part.names
+    }
+    loops = [
+        part.target for part in nodes if isinstance(part, ast.comprehension)
+    ]  # they have scopes of their own
+    inner = {id(part) for target in loops for part in ast.walk(target)}
+    names: set[str] = set()
+    for part in nodes:
+        match part:
+            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) if id(part) not in inner:
+                names.add(name)
+            case (
+                ast.FunctionDef(name=name)
+                | ast.AsyncFunctionDef(name=name)
+                | ast.ClassDef(name=name)
+            ):
+                names.add(name)
+            case (
+                ast.ExceptHandler(name=str() as name)
+                | ast.MatchAs(name=str() as name)
+                | ast.MatchStar(name=str() as name)
+            ):
+                names.add(name)
+            case ast.alias(name=full, asname=asname):
+                names.add(asname or full.partition(".")[0])
+    return frozenset(names - declared)

@@ -1,0 +1,373 @@
+"""The values of Python expressions: Python's own, and stand-ins for functions, iterators and what
+is not evaluated.
+
+What is not known raises Undetermined where it is needed: `known`, `iterate` and `str_of` are the
+ways to a value.
+"""
+
+import ast
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from io import StringIO
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING, Any, NoReturn
+
+if TYPE_CHECKING:
+    from grader.ros.python.parse import Position
+
+
+# A plain value is a str, number, bool, None, list, tuple, dict, range, StringIO (a file) or
+# PurePosixPath.
+Value = Any
+
+MAX_TEXT = 100_000  # characters
+MAX_PARTS = 20_000  # of a value, with all that it contains
+MAX_BITS = 4_096  # of an integer
+_MAX_MESSAGE = 1_000  # characters
+_MAX_KEY = 2**31  # keys that are larger could all have one hash
+_EMPTY: dict[str, str] = {}
+VIEWS: tuple[Any, ...] = (type(_EMPTY.keys()), type(_EMPTY.values()), type(_EMPTY.items()))
+SCALARS = (str, int, float)
+PLAIN: tuple[Any, ...] = (
+    *SCALARS,
+    type(None),
+    range,
+    list,
+    tuple,
+    dict,
+    PurePosixPath,
+    StringIO,
+    *VIEWS,
+)
+
+
+OBJECT = " object>"  # ends the text of an object that has no text of its own
+
+
+class EvaluationSignal(Exception):
+    """What ends the evaluation of an expression or action, and is no error of the grader's own.
+
+    `at` is the place that it is about; None for that of the expression.
+    """
+
+    def __init__(self, message: str = "", at: "Position | None" = None) -> None:
+        super().__init__(message[:_MAX_MESSAGE])
+        self.at = at
+
+
+class EvaluationFails(EvaluationSignal):
+    """Python, xacro or launch certainly raises an error here; the text is a sentence without its
+    end.
+    """
+
+
+class Undetermined(EvaluationSignal):
+    """A value, or whether there is an error, cannot be determined statically; the text says why.
+
+    With `is_final`, nothing that follows in the file can be determined either: what is not
+    evaluated may do anything.
+    """
+
+    def __init__(
+        self, message: str, at: "Position | None" = None, *, is_final: bool = False
+    ) -> None:
+        super().__init__(message, at)
+        self.is_final = is_final
+
+
+# These are no dataclasses: making one takes 1 ms of the start of every command.
+
+
+class Unknown:
+    """A value that is not known, and why."""
+
+    def __init__(self, reason: str, at: "Position") -> None:
+        self.reason, self.at = reason, at
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Unknown) and (self.reason, self.at) == (other.reason, other.at)
+
+    def __hash__(self) -> int:
+        return hash((self.reason, self.at))
+
+
+class QualifiedName:
+    """A module, or something in one, by its full name: os.path.join."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+
+class BoundMethod:
+    """A method of a value, which is not called yet; `node` is the expression in the file that
+    gives it.
+    """
+
+    def __init__(self, owner: Value, name: str, node: ast.expr | None = None) -> None:
+        self.owner, self.name, self.node = owner, name, node
+
+
+class Call:
+    """A call that is recorded, by the full name of what is called; it is its own result."""
+
+    def __init__(
+        self,
+        name: str,
+        args: list[Value],
+        kwargs: dict[str, Value],
+        at: "Position",
+        owner: "Call | None" = None,
+    ) -> None:
+        """`owner` is the call whose result it is a method of."""
+        self.name, self.args, self.kwargs, self.at, self.owner = name, args, kwargs, at, owner
+        self.is_object = False  # whether it makes an object without operators and a text of its own
+        self.method_calls: list[Call] = []  # the recorded ones, of its own result
+
+    @property
+    def short(self) -> str:
+        """The name without its module."""
+        return self.name.rpartition(".")[2]
+
+    def argument(self, position: int, *names: str) -> Value:
+        """Return an argument by its position or by one of its names; None where it is missing."""
+        for name in names:
+            if name in self.kwargs:
+                return self.kwargs[name]
+        return self.args[position] if position < len(self.args) else None
+
+
+class Function:
+    """A function or lambda of the file. `body` evaluates it in a scope; `local` are the names
+    that its body binds.
+    """
+
+    def __init__(
+        self,
+        parameters: ast.arguments,
+        scope: "Scope",
+        defaults: dict[str, Value],
+        body: Callable[["Scope"], Value],
+        at: "Position",
+        local: frozenset[str] = frozenset(),
+    ) -> None:
+        self.parameters, self.scope, self.defaults, self.body = parameters, scope, defaults, body
+        self.at, self.local = at, local
+
+
+class Scope:
+    """The names that are bound in a scope, and the scope around it.
+
+    The names in `local` are bound here sooner or later, and nowhere else until then.
+    """
+
+    def __init__(
+        self,
+        names: dict[str, Value],
+        outer: "Scope | None" = None,
+        local: frozenset[str] = frozenset(),
+    ) -> None:
+        self.names, self.outer, self.local = names, outer, local
+
+    def find(self, name: str) -> Value:
+        """Return the value of a name; raise KeyError, or EvaluationFails for one that is bound
+        later.
+        """
+        scope: Scope | None = self
+        while scope is not None:
+            if name in scope.names:
+                return scope.names[name]
+            if name in scope.local:
+                raise EvaluationFails(f"the name {name!r} is used before it has a value")
+            scope = scope.outer
+        raise KeyError(name)
+
+
+class PlainFunction:
+    """A function that an expression may call. It is Python's own, or takes and returns what
+    Python's own does.
+
+    `kind` is "plain" for one whose arguments are wholly known; "holds" for one that only passes on
+    what a list contains, known or not; "applies" for such a one that calls functions, by the one
+    that it is given first; "path" for one whose result may begin with the stand-in of a folder,
+    "text" for one that may contain it. `own` is Python's own function, where `run` stands for one.
+    """
+
+    __slots__ = ("kind", "name", "own", "run")
+
+    def __init__(
+        self,
+        name: str,
+        run: Callable[..., Value],
+        kind: str = "plain",
+        own: Callable[..., Value] | None = None,
+    ) -> None:
+        self.name, self.run, self.kind, self.own = name, run, kind, own
+
+
+# The functions that are evaluated, by their full names; each of the second kind takes the
+# evaluation and its call.
+FunctionTable = Mapping[str, "PlainFunction | Callable[[Any, Call], Value]"]
+
+
+class Namespace:
+    """Names that are reached with a dot: math.pi. `find` raises EvaluationFails for other names."""
+
+    __slots__ = ("find", "name")
+
+    def __init__(self, name: str, find: Callable[[str], Value]) -> None:
+        self.name, self.find = name, find
+
+
+class Items:
+    """An iterator, such as zip(), map() and a generator: Python's own, so it yields each item
+    once.
+    """
+
+    __slots__ = ("iterator",)
+
+    def __init__(self, items: Iterable[Value]) -> None:
+        self.iterator: Iterator[Value] = iter(items)
+
+
+Items.__name__ = "iterator"  # as Python's messages name it
+
+
+class DottedDict(dict[Value, Value]):
+    """A dict whose items are also attributes, as xacro makes them of YAML."""
+
+
+OPAQUE = (Unknown, QualifiedName, BoundMethod, Call, Function, PlainFunction, Namespace, Items)
+
+
+def parts_of(part: Value) -> Collection[Value]:
+    """Return what a value contains."""
+    if isinstance(part, dict):
+        return [*part.keys(), *part.values()]
+    if isinstance(part, list | tuple | range):
+        return part
+    return [*part] if isinstance(part, VIEWS) else ()
+
+
+def too_large(what: str) -> NoReturn:
+    """Raise Undetermined for a value that grows too large."""
+    raise Undetermined(f"a {what} grows too large")
+
+
+def call_plain(function: Callable[..., Value], *args: Value, **kwargs: Value) -> Value:
+    """Return what a function of plain values returns; what it raises is EvaluationFails."""
+    try:
+        return function(*args, **kwargs)
+    except (EvaluationSignal, RecursionError, MemoryError):
+        raise
+    except Exception as error:  # noqa: BLE001  whatever Python raises here, it raises for the student's expression
+        if not _has_text([*args, *kwargs.values()]):
+            raise Undetermined(
+                "this use of a function, a namespace or an iterator is not supported"
+            ) from None
+        message = error.args[0] if isinstance(error, KeyError) and error.args else error
+        raise EvaluationFails(f"{type(error).__name__}: {message}") from None
+
+
+def iterate(value: Value) -> Iterator[Value]:
+    """Return what a loop over a value yields, one by one."""
+    if isinstance(value, Items):
+        return value.iterator
+    if isinstance(value, PLAIN) or (callable(value) and not isinstance(value, OPAQUE)):
+        found: Iterator[Value] = call_plain(iter, value)
+        return found
+    return refuse(value, "this loop is not supported")
+
+
+def refuse(value: Value, message: str) -> NoReturn:
+    """Raise Undetermined for a value that is not known, or not supported."""
+    raise Undetermined(reason_of(value) or message, getattr(value, "at", None))
+
+
+def items_of(value: Value) -> list[Value]:
+    """Return what a loop over a value yields, all of it known. Raises Undetermined."""
+    items = list(iterate(value))
+    if isinstance(value, Items):
+        for item in items:
+            known(item)
+    return items
+
+
+def known(value: Value) -> Value:
+    """Return a value if all of it is known. Raises Undetermined."""
+    unknown = unknown_in(value)
+    if unknown is not None or isinstance(value, OPAQUE):
+        refuse(unknown or value, "this value is not supported")
+    return value
+
+
+def reason_of(value: Value) -> str:
+    """Return why a value is not known; nothing for a plain one."""
+    match value:
+        case Unknown(reason=reason):
+            return str(reason)
+        case Call(is_object=True):
+            return f"the value of {value.short}(...) is not evaluated"
+        case Call(name=name) | QualifiedName(name=name) | BoundMethod(name=name):
+            return f"the value of {name} is not evaluated"
+        case Function():
+            return "this use of a function is not supported"
+    return ""
+
+
+def unknown_in(value: Value) -> Unknown | None:
+    """Return the first unknown value in a value."""
+    pending, seen = [value], set[int]()
+    while pending:
+        item = pending.pop()
+        if isinstance(item, Unknown):
+            return item
+        if isinstance(item, list | tuple | dict) and id(item) not in seen:
+            seen.add(id(item))
+            pending += reversed([*item.values()] if isinstance(item, dict) else [*item])
+    return None
+
+
+def checked_key(key: Value) -> Value:
+    """Return a key of a dict: a text or a number whose hash no other one has. Raises Undetermined
+    for other keys.
+    """
+    if not isinstance(key, str) and not (isinstance(key, int) and abs(key) < _MAX_KEY):
+        raise Undetermined(
+            "a key of a dict that is neither a text nor a small whole number is not supported"
+        )
+    return key
+
+
+def str_of(value: Value) -> str:
+    """Return str() of a value that is charged; raise Undetermined where it differs between runs,
+    such as an address.
+    """
+    if is_object(value):
+        return f"<{value.short}{OBJECT}"
+    if not isinstance(value, (*SCALARS, PurePosixPath)) and not (
+        isinstance(value, PLAIN) and _has_text(value)
+    ):
+        raise Undetermined("the text of this value differs between runs")
+    return str(value)
+
+
+def is_object(value: Value) -> bool:
+    """Return whether a value is an object that is true, equal to itself alone, and has no
+    operators.
+    """
+    return isinstance(value, Call) and value.is_object
+
+
+def _has_text(value: Value) -> bool:
+    """Return whether the text of a value is the same in every run."""
+    if isinstance(value, dict):
+        value = (*value.keys(), *value.values())
+    if isinstance(value, list | tuple):
+        return all(map(_has_text, value))
+    return isinstance(value, Items) or not isinstance(
+        value, (*OPAQUE, StringIO, PurePosixPath, *VIEWS)
+    )
+
+
+def path_text(value: Value) -> str | None:
+    """Return the text of a path or string; None for other values."""
+    return str(value) if isinstance(value, str | PurePosixPath) else None

@@ -1,0 +1,265 @@
+"""The problems that are found in a URDF while its elements and their values are read, each with its
+location.
+"""
+
+import re
+from collections.abc import Callable, Iterable
+from math import nan
+from typing import TypeVar
+
+from grader.base.names import closest, did_you_mean
+from grader.base.problems import Effect, Kind, Problem
+from grader.base.source import LazyLocation
+from grader.base.text import cut, quoted
+from grader.ros.urdf import urdf_problems
+from grader.ros.urdf.model import Joint, Origin, UnresolvedPart, UnresolvedParts
+from grader.ros.urdf.numbers import NumberError, number, vector
+from grader.ros.urdf.transforms import Vector
+from grader.ros.xml.parsing import Element, XmlDocument
+from grader.ros.xml.urdf_format import TAGS
+from grader.ros.xml.xml_problems import RECOVERED
+
+_FORMAT_DIRECTIVE = re.compile(r"%[-+ #0-9.$*'hlLqjzt]*n")  # %n, %1$n, %hhn
+_MAX_PROBLEMS = 1000
+_MAX_GUESSES = 50  # in one file, because they take long
+_PRINTED = frozenset(
+    {"origin", "box", "cylinder", "sphere", "mass"}
+)  # whose values urdfdom uses as printf's format
+FULL_TURN = 6.2832  # radians
+_OF_MISSING = (
+    urdf_problems.UNKNOWN_LINK,
+    urdf_problems.TWO_ROOTS,
+    urdf_problems.NO_ROOT,
+    urdf_problems.NO_LINKS,
+    urdf_problems.MIMIC_TARGET,
+    urdf_problems.CONTROLLED_JOINT,
+)
+_ZERO: Vector = (0.0, 0.0, 0.0)
+_NOTHING: UnresolvedParts = {}
+
+_Value = TypeVar("_Value")
+
+
+class Problems:
+    """The problems of one file, and the locations of its elements."""
+
+    def __init__(self, document: XmlDocument, root: Element) -> None:
+        self.source = document.source
+        self.root = root
+        self.unresolved = document.unresolved
+        self.listed: list[Problem] = []
+        self.effects: set[Effect] = set()
+        self.unlisted = 0
+        self._guesses = _MAX_GUESSES
+        self._elements = list(root.iter())
+        self._indices = {element: index for index, element in enumerate(self._elements)}
+
+    def location(self, element: Element) -> LazyLocation:
+        """Return the location of an element, to be computed when it is needed."""
+        return LazyLocation(self.source, self._indices[element])
+
+    def parts(self, element: Element) -> UnresolvedParts:
+        """Return what xacro left unresolved of a link, joint or material, by child tag; "@name" for
+        an attribute.
+        """
+        if not self.unresolved:
+            return _NOTHING
+        parts: dict[str, UnresolvedPart] = {}
+        for inner in element.iter():
+            found = self.unresolved.get(inner)
+            if found is None:
+                continue
+            above = inner
+            while (
+                above is not element
+                and (parent := above.getparent()) is not element
+                and parent is not None
+            ):
+                above = parent
+            for name, reason in found.attributes.items():
+                key = f"@{name}" if inner is element else str(above.tag)
+                parts.setdefault(
+                    key, UnresolvedPart(reason, self.location(inner)._replace(attribute=name))
+                )
+            if found.content is not None:
+                key = "" if inner is element else str(above.tag)
+                parts.setdefault(key, UnresolvedPart(found.content, self.location(inner)))
+        return parts
+
+    def is_unresolved(self, element: Element) -> bool:
+        """Return whether xacro left anything in an element unresolved."""
+        return bool(self.unresolved) and any(inner in self.unresolved for inner in element.iter())
+
+    def _explains(self, kind: Kind, element: Element, attribute: str | None) -> bool:
+        """Return whether what xacro left unresolved explains a problem."""
+        found, of_root = self.unresolved.get(element), self.unresolved.get(self.root)
+        if kind in _OF_MISSING and of_root is not None and of_root.content is not None:
+            return True
+        return found is not None and (
+            attribute in found.attributes
+            if attribute and element.get(attribute)
+            else found.content is not None
+        )
+
+    def line(self, element: Element) -> int:
+        """Return the line of an element, counted from 1."""
+        source, start = self.source.element(self._indices[element])
+        return source.at(start).line
+
+    def element(self, joint: Joint) -> Element:
+        """Return the element that a joint was read from."""
+        return self._elements[joint.location.tag] if joint.location is not None else self.root
+
+    def add(
+        self,
+        kind: Kind,
+        message: str,
+        element: Element,
+        attribute: str | None = None,
+        subject: str = "",
+    ) -> None:
+        """Add a problem at an element, or at one of its attributes if it has it, unless xacro left
+        that unresolved.
+        """
+        if self.unresolved and self._explains(kind, element, attribute):
+            return
+        self.effects.add(kind.effect)
+        if len(self.listed) < _MAX_PROBLEMS:
+            location = self.source.tag(self._indices[element], attribute)
+            self.listed.append(Problem(kind, message, location, subject))
+        else:
+            self.unlisted += 1
+
+    def assumed(self, element: Element, attribute: str | None, sentence: str) -> Problem:
+        """Return what is assumed about a tag or an attribute for which ROS 2 rejects the file."""
+        return Problem(RECOVERED, sentence, self.source.tag(self._indices[element], attribute))
+
+    def duplicate(self, kind: Kind, element: Element, first: Element) -> None:
+        """Add that an element has the name of an earlier one of its kind."""
+        name = quoted(element.get("name") or "")
+        message = (
+            f"the {element.tag} {name} is already defined in line {self.line(first)}; ROS 2 "
+            "rejects the file"
+        )
+        self.add(kind, message, element, "name")
+
+    def closest(self, name: str, known: Iterable[str]) -> str | None:
+        """Return the known name that is most like this one, if one is close."""
+        self._guesses -= 1
+        return closest(name, known) if self._guesses >= 0 else None
+
+    def did_you_mean(self, name: str, known: Iterable[str]) -> str:
+        """Return `; did you mean 'x'?` for the end of a message, or nothing if no known name is
+        close.
+        """
+        self._guesses -= 1
+        return did_you_mean(name, known) if self._guesses >= 0 else ""
+
+    def check_printed(self, text: str, element: Element, attribute: str | None = None) -> None:
+        """Add a problem if ROS 2 passes this text to printf and it contains a directive that can
+        crash it.
+        """
+        if "%" in text and _FORMAT_DIRECTIVE.search(text):
+            message = (
+                "ROS 2 passes this value to printf as a format, where %n writes to memory: it "
+                "can crash"
+            )
+            self.add(urdf_problems.FORMAT_DIRECTIVE, message, element, attribute)
+
+
+class ElementReader:
+    """Reads one element that ROS 2 keeps or loses as a whole: every defect in it is a problem of
+    one kind.
+
+    A value that cannot be read is a problem and sets `failed`. A number is NaN then, any other
+    value its default.
+    """
+
+    __slots__ = ("_consequence", "_kind", "_link", "_problems", "failed")
+
+    def __init__(
+        self,
+        problems: Problems,
+        kind: Kind,
+        consequence: str = "ROS 2 rejects the file",
+        link: str = "",
+    ) -> None:
+        """`consequence` says what ROS 2 does about a defect; the name of the `link` is put where it
+        has {}.
+        """
+        self._problems = problems
+        self._kind = kind
+        self._consequence = consequence
+        self._link = link
+        self.failed = False
+
+    def fail(self, reason: str, element: Element, attribute: str | None = None) -> None:
+        """Add a problem: the element is lost."""
+        self.failed = True
+        consequence = self._consequence.format(quoted(self._link))
+        self._problems.add(self._kind, f"{reason}; {consequence}", element, attribute, self._link)
+
+    def number(self, element: Element, attribute: str) -> float:
+        """Return an attribute's number, or its default if it is not given; it is a problem if it
+        has none.
+        """
+        if attribute in element.attrib:
+            return self._value(element, attribute, number, nan)
+        default = TAGS[element.tag].attributes[attribute].default
+        if default is None:
+            self.fail(f"<{element.tag}> has no {attribute}", element)
+        return float(default or nan)
+
+    def vector(self, element: Element, attribute: str, default: Vector = _ZERO) -> Vector:
+        """Return an attribute's three numbers, or the default if it is not given."""
+        return self._value(element, attribute, vector, default)
+
+    def origin(self, element: Element | None) -> Origin:
+        """Return an <origin>: the identity if there is none."""
+        if element is None:
+            return Origin()
+        xyz, rpy = (
+            self._value(element, "xyz", vector, _ZERO),
+            self._value(element, "rpy", vector, _ZERO),
+        )
+        if rpy != _ZERO and max(map(abs, rpy)) > FULL_TURN and not self.failed:
+            angle = next(
+                (angle for angle in rpy if abs(angle) > FULL_TURN and angle % 15 == 0), None
+            )
+            if angle is not None:
+                message = (
+                    f"rpy is in radians, and {angle:g} is more than a full turn: is it in degrees?"
+                )
+                self._problems.add(urdf_problems.DEGREES, message, element, "rpy")
+        return Origin(xyz, rpy, self._problems.location(element))
+
+    def _value(
+        self, element: Element, attribute: str, parse: Callable[[str], _Value], default: _Value
+    ) -> _Value:
+        text = element.get(attribute)
+        if text is None:
+            return default
+        try:
+            return parse(text)
+        except NumberError as error:
+            self.fail(
+                f"cannot read {attribute}={quote_value(text)} of <{element.tag}>: {error}",
+                element,
+                attribute,
+            )
+            if element.tag in _PRINTED:
+                self._problems.check_printed(text, element, attribute)
+            return default
+
+
+def first_children(element: Element) -> dict[str, Element]:
+    """Return the first child of each name: urdfdom reads no other."""
+    first: dict[str, Element] = {}
+    for child in element:
+        first.setdefault(child.tag, child)
+    return first
+
+
+def quote_value(text: str) -> str:
+    """Return a value of the file between double quotes, cut where it is very long."""
+    return f'"{cut(text, 60)}"'

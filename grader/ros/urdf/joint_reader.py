@@ -1,0 +1,298 @@
+"""Joints as urdfdom reads them (`joint.cpp`), where each defect rejects the whole file, and the
+names they refer to.
+"""
+
+from itertools import islice
+
+from grader.base.text import quoted
+from grader.ros.urdf import urdf_problems
+from grader.ros.urdf.diagnostics import FULL_TURN, ElementReader, Problems, first_children
+from grader.ros.urdf.model import (
+    Calibration,
+    Dynamics,
+    Joint,
+    Limit,
+    Mimic,
+    Robot,
+    SafetyController,
+)
+from grader.ros.urdf.transforms import X_AXIS, Vector, unit
+from grader.ros.xml.parsing import Element
+from grader.ros.xml.urdf_format import JOINT_TYPES
+
+MOVING_TYPES = ("continuous", "revolute", "prismatic", "planar", "floating")
+_WITH_LIMIT = ("revolute", "prismatic")
+_REJECTED = "ROS 2 rejects the file"
+_MAX_NAMED = 12  # links in a message
+_MAX_STEPS = 20  # of a loop in a message
+_MAX_DEGREES = 720.0  # more is no range in degrees, but a large number that stands for "no limit"
+
+
+def read_joint(element: Element, problems: Problems) -> Joint:
+    """Read one joint; a value that cannot be read is a problem, and None in the joint."""
+    name, kind = element.get("name", ""), element.get("type", "")
+    label = quoted(name)
+    if element.get("name") is None:
+        problems.add(
+            urdf_problems.JOINT_WITHOUT_NAME, f"this joint has no name; {_REJECTED}", element
+        )
+    _check_type(element, kind, label, problems)
+    inside = first_children(element)
+    parent = _link_name(element, inside, "parent", label, problems)
+    child = _link_name(element, inside, "child", label, problems)
+    reader = ElementReader(problems, urdf_problems.BAD_JOINT_ORIGIN)
+    origin = reader.origin(inside.get("origin"))
+    axis = _read_axis(element, inside.get("axis"), kind, problems)
+    limit = _read_limit(element, inside.get("limit"), kind, problems)
+    if kind in ("floating", "planar"):
+        how = "does not publish it" if kind == "floating" else "treats it as fixed"
+        message = f"joint {label} is {kind}: robot_state_publisher {how}"
+        problems.add(urdf_problems.UNPUBLISHED_JOINT, message, element, "type")
+    axis_at = problems.location(inside["axis"]) if "axis" in inside else None
+    unresolved = problems.parts(element)
+    is_open = "" in unresolved  # then a missing element may be there all the same
+    frame = None if reader.failed or (is_open and "origin" not in inside) else origin
+    axis = None if is_open and "axis" not in inside else axis
+    return Joint(
+        name,
+        kind,
+        parent,
+        child,
+        frame,
+        axis,
+        limit,
+        _read_mimic(inside["mimic"], problems) if "mimic" in inside else None,
+        _read_dynamics(inside["dynamics"], problems) if "dynamics" in inside else None,
+        _read_safety(inside["safety_controller"], problems)
+        if "safety_controller" in inside
+        else None,
+        _read_calibration(inside["calibration"], problems) if "calibration" in inside else None,
+        location=problems.location(element),
+        axis_location=axis_at,
+        unresolved=unresolved,
+    )
+
+
+def _check_type(element: Element, kind: str, label: str, problems: Problems) -> None:
+    if element.get("type") is None:
+        problems.add(urdf_problems.TYPE_MISSING, f"joint {label} has no type; {_REJECTED}", element)
+    elif kind not in JOINT_TYPES:
+        guess = problems.did_you_mean(kind.strip(), JOINT_TYPES)
+        if kind.strip().lower() in JOINT_TYPES:
+            guess = f"; write {kind.strip().lower()!r}, in lower case and without spaces"
+        message = f"joint {label} has the unknown type {quoted(kind)}; {_REJECTED}{guess}"
+        problems.add(urdf_problems.TYPE_UNKNOWN, message, element, "type")
+
+
+def _link_name(
+    element: Element, inside: dict[str, Element], role: str, label: str, problems: Problems
+) -> str:
+    """Return the link that a joint names as its parent or child; empty if it names none."""
+    named = inside.get(role)
+    link = named.get("link") if named is not None else None
+    if not link:
+        message = f'joint {label} has no {role} link (<{role} link="..."/>); {_REJECTED}'
+        problems.add(
+            urdf_problems.NO_PARENT_OR_CHILD, message, element if named is None else named, "link"
+        )
+    return link or ""
+
+
+def _read_axis(
+    element: Element, axis: Element | None, kind: str, problems: Problems
+) -> Vector | None:
+    if kind in ("fixed", "floating"):
+        return X_AXIS  # urdfdom ignores it, well-formed or not
+    if axis is None:
+        if kind in MOVING_TYPES:
+            message = "this joint has no <axis>; ROS 2 uses the x axis, 1 0 0"
+            problems.add(urdf_problems.DEFAULT_AXIS, message, element)
+        return X_AXIS
+    reader = ElementReader(problems, urdf_problems.BAD_AXIS)
+    direction = reader.vector(axis, "xyz")
+    if reader.failed:
+        return None
+    if unit(direction) is None:
+        message = (
+            "this axis has length 0; ROS 2 loads it, but every pose below this joint is undefined"
+        )
+        problems.add(urdf_problems.ZERO_AXIS, message, axis, "xyz")
+    elif (
+        abs(sum(component * component for component in direction) - 1.0) > 0.02
+    ):  # 0.71 0.71 0 is rounded only
+        message = "only the direction of an axis counts: ROS 2 normalizes it"
+        problems.add(urdf_problems.SCALED_AXIS, message, axis, "xyz")
+    return direction
+
+
+def _read_limit(
+    element: Element, limit: Element | None, kind: str, problems: Problems
+) -> Limit | None:
+    if limit is None:
+        if kind in _WITH_LIMIT:
+            message = f"a {kind} joint needs <limit> with effort and velocity; {_REJECTED}"
+            problems.add(urdf_problems.LIMIT_MISSING, message, element, "type")
+        return None
+    reader = ElementReader(problems, urdf_problems.BAD_LIMIT)
+    lower, upper = reader.number(limit, "lower"), reader.number(limit, "upper")
+    effort, velocity = reader.number(limit, "effort"), reader.number(limit, "velocity")
+    if kind in _WITH_LIMIT and lower >= upper and not reader.failed:
+        message = f"lower {lower:g} is not below upper {upper:g}: the joint cannot move"
+        problems.add(
+            urdf_problems.EMPTY_RANGE,
+            message,
+            limit,
+            "lower" if "lower" in limit.attrib else "upper",
+        )
+    if kind == "revolute":
+        _check_degrees(limit, {"lower": lower, "upper": upper}, problems)
+    return Limit(lower, upper, effort, velocity, problems.location(limit))
+
+
+def _check_degrees(limit: Element, ends: dict[str, float], problems: Problems) -> None:
+    for attribute, angle in ends.items():
+        # Degrees are round numbers: 10 and 15 are also taken for degrees, 31.4 (five turns in
+        # radians) is not.
+        if FULL_TURN < abs(angle) <= _MAX_DEGREES and angle % 5 == 0:
+            message = (
+                f"{attribute} is in radians, and {angle:g} is more than a full turn: is it in "
+                "degrees?"
+            )
+            problems.add(urdf_problems.LIMIT_IN_DEGREES, message, limit, attribute)
+            return
+
+
+def _read_mimic(element: Element, problems: Problems) -> Mimic | None:
+    reader = ElementReader(problems, urdf_problems.BAD_MIMIC)
+    joint = element.get("joint")
+    if joint is None:
+        reader.fail("<mimic> has no joint", element)
+    multiplier, offset = reader.number(element, "multiplier"), reader.number(element, "offset")
+    return (
+        None
+        if reader.failed or joint is None
+        else Mimic(joint, multiplier, offset, problems.location(element))
+    )
+
+
+def _read_dynamics(element: Element, problems: Problems) -> Dynamics | None:
+    reader = ElementReader(problems, urdf_problems.BAD_DYNAMICS)
+    if "damping" not in element.attrib and "friction" not in element.attrib:
+        reader.fail("<dynamics> has neither damping nor friction", element)
+        return None
+    return Dynamics(
+        reader.number(element, "damping"),
+        reader.number(element, "friction"),
+        problems.location(element),
+    )
+
+
+def _read_safety(element: Element, problems: Problems) -> SafetyController:
+    reader = ElementReader(problems, urdf_problems.BAD_SAFETY)
+    return SafetyController(
+        reader.number(element, "k_velocity"),
+        reader.number(element, "soft_lower_limit"),
+        reader.number(element, "soft_upper_limit"),
+        reader.number(element, "k_position"),
+        problems.location(element),
+    )
+
+
+def _read_calibration(element: Element, problems: Problems) -> Calibration:
+    reader = ElementReader(problems, urdf_problems.BAD_CALIBRATION)
+    rising, falling = (
+        reader.number(element, name) if name in element.attrib else None
+        for name in ("rising", "falling")
+    )
+    return Calibration(rising, falling, problems.location(element))
+
+
+def check_references(robot: Robot, problems: Problems) -> None:
+    """Report links and joints that do not exist, and mimic joints that follow themselves."""
+    links, joints = [link.name for link in robot.links], [joint.name for joint in robot.joints]
+    is_link_open, is_joint_open = (
+        any("@name" in it.unresolved for it in every) for every in (robot.links, robot.joints)
+    )
+    for joint in robot.joints:
+        for role, name in (("parent", joint.parent), ("child", joint.child)):
+            if name and not robot.has_link(name) and not is_link_open:
+                guess = problems.did_you_mean(name, links)
+                guess = (
+                    guess or f"; the links are: {', '.join(map(quoted, islice(links, _MAX_NAMED)))}"
+                )
+                message = (
+                    f"the {role} link {quoted(name)} of joint {quoted(joint.name)} does not exist"
+                )
+                message += f"; ROS 2 rejects the file{guess}"
+                problems.add(
+                    urdf_problems.UNKNOWN_LINK,
+                    message,
+                    _child_element(joint, role, problems),
+                    "link",
+                )
+        if joint.mimic is not None and not robot.has_joint(joint.mimic.joint) and not is_joint_open:
+            guess = problems.did_you_mean(joint.mimic.joint, joints)
+            message = (
+                f"joint {quoted(joint.name)} mimics {quoted(joint.mimic.joint)}, which does not "
+                f"exist{guess}"
+            )
+            problems.add(
+                urdf_problems.MIMIC_TARGET,
+                message,
+                _child_element(joint, "mimic", problems),
+                "joint",
+            )
+    if not is_joint_open:
+        _check_controlled_joints(robot, joints, problems)
+    for loop in _mimic_loops(robot):
+        message = (
+            f"joint {quoted(loop[0])} mimics itself: "
+            f"{' -> '.join(map(quoted, (*loop[:_MAX_STEPS], loop[0])))}"
+        )
+        problems.add(
+            urdf_problems.MIMIC_TARGET,
+            message,
+            _child_element(robot.joint(loop[0]), "mimic", problems),
+            "joint",
+        )
+
+
+def _check_controlled_joints(robot: Robot, joints: list[str], problems: Problems) -> None:
+    """Report what controller_manager stops at: unknown joints in ros2_control, and hardware without
+    plugin.
+    """
+    for system in problems.root.iterchildren("ros2_control"):
+        for joint in system.iterchildren("joint"):
+            name = joint.get("name")
+            if name is not None and not robot.has_joint(name):
+                message = (
+                    f"ros2_control names the joint {quoted(name)}, which the robot does not have"
+                )
+                message += problems.did_you_mean(name, joints)
+                problems.add(urdf_problems.CONTROLLED_JOINT, message, joint, "name")
+        for hardware in system.iterchildren("hardware"):
+            if hardware.find("plugin") is None:
+                message = "<hardware> has no <plugin>, so controller_manager cannot load it"
+                problems.add(urdf_problems.HARDWARE_PLUGIN, message, hardware)
+
+
+def _child_element(joint: Joint, tag: str, problems: Problems) -> Element:
+    element = problems.element(joint)
+    child = element.find(tag)
+    return element if child is None else child
+
+
+def _mimic_loops(robot: Robot) -> list[list[str]]:
+    targets = {joint.name: joint.mimic.joint for joint in robot.joints if joint.mimic is not None}
+    seen: set[str] = set()
+    loops = []
+    for start in targets:
+        path: list[str] = []
+        name = start
+        while name in targets and name not in seen:
+            seen.add(name)
+            path.append(name)
+            name = targets[name]
+        if name in path:
+            loops.append(path[path.index(name) :])
+    return loops

@@ -1,0 +1,501 @@
+"""Forward kinematics: the pose of every link with the joints at given positions, and why a pose
+is undefined.
+"""
+
+from collections.abc import Collection, Iterable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import takewhile
+from math import isfinite, nan
+from typing import NamedTuple, overload
+
+from grader.base.errors import MissingElement
+from grader.base.text import quoted
+from grader.ros.urdf.joint_reader import MOVING_TYPES
+from grader.ros.urdf.link_tree import parent_joints
+from grader.ros.urdf.model import Joint, Link, Origin, Robot
+from grader.ros.urdf.transforms import (
+    IDENTITY,
+    Transform,
+    Vector,
+    rotation_about,
+    rotation_from_rpy,
+    unit,
+)
+
+SINGLE = ("revolute", "continuous", "prismatic")  # the types of joints that a position moves
+
+
+class _Frame(NamedTuple):
+    """The frame of a link, as a pose in its frame group.
+
+    After a joint with an undefined pose a new group begins: the poses in it are still defined
+    relative to each other, and one defect does not hide another.
+    """
+
+    root: str
+    # the link that poses are relative to: the root, or the child of a joint with an undefined pose
+    group: str
+    pose: Transform  # T_group_link
+    depth: int  # the number of groups above
+
+
+class _Frames:
+    """The frames of a robot's links, with its joints at the `given` positions (rad or m) or at 0.
+
+    Each is computed once, when it is asked for, from the nearest known one above.
+    """
+
+    def __init__(
+        self, robot: Robot, parents: Mapping[str, Joint], given: Mapping[str, float]
+    ) -> None:
+        self._robot, self._parents, self._given = robot, parents, given
+        self._mimicked: dict[str, float] = {}  # the positions of mimic joints
+        self._known: dict[str, _Frame] = {}
+        self._loops: dict[
+            str, str
+        ] = {}  # links on or below a loop of joints, with one link's name for the loop
+
+    def of(self, link: str) -> _Frame:
+        """Return the frame of a link; raises MissingElement where it is not there, or in no
+        tree.
+        """
+        found = self._known.get(link)
+        return found if found is not None else self._solve(link)
+
+    def _solve(self, link: str) -> _Frame:
+        self._robot.link(link)
+        parents, known = self._parents, self._known
+        joints: dict[str, Joint] = {}
+        name = link
+        while name not in known and name in parents:
+            if name in self._loops or name in joints:
+                loop = self._loops.get(name) or min(joints)
+                self._loops.update(dict.fromkeys(joints, loop))
+                message = (
+                    f"link {quoted(link)} is on or below a loop of joints, so it is in no tree"
+                )
+                raise MissingElement(
+                    "connection", loop, message=message, location=self._robot.link(link).location
+                )
+            joints[name] = parents[name]
+            name = parents[name].parent
+        frame = known.get(name) or known.setdefault(name, _Frame(name, name, IDENTITY, 0))
+        for joint in reversed(joints.values()):
+            motion, pose = _motion_of(joint, self.position(joint)), None
+            if joint.origin is not None and motion is not None:
+                pose = placed_by(frame.pose, joint.origin)
+                pose = pose if motion is IDENTITY else pose @ motion
+            if pose is not None and isfinite(sum(pose.translation)):
+                frame = _Frame(frame.root, frame.group, pose, frame.depth)
+            else:
+                frame = _Frame(frame.root, joint.child, IDENTITY, frame.depth + 1)
+            known[joint.child] = frame
+        return frame
+
+    def position(self, joint: Joint) -> float:
+        """Return the position of a joint: its own, that of the joint it mimics, or 0; NaN if xacro
+        leaves it open.
+        """
+        if joint.name in self._given or (joint.mimic is None and "mimic" not in joint.unresolved):
+            return self._given.get(joint.name, 0.0)
+        # It is 0 if the chain of mimics ends at a joint that does not exist, or forms a loop.
+        # The positions of the joints between are kept: long chains are followed once.
+        followers: dict[str, Joint] = {}
+        value = 0.0
+        while joint.name not in followers:
+            own = self._mimicked.get(joint.name, self._given.get(joint.name))
+            if own is None and "mimic" in joint.unresolved:
+                value = nan
+                break
+            if own is not None or joint.mimic is None:
+                value = own or 0.0
+                break
+            followers[joint.name] = joint
+            if not self._robot.has_joint(joint.mimic.joint):
+                break
+            joint = self._robot.joint(joint.mimic.joint)
+        else:
+            self._mimicked.update(dict.fromkeys(followers, 0.0))
+            return 0.0
+        for name, follower in reversed(followers.items()):
+            assert follower.mimic is not None  # no other joint is a follower
+            value = self._mimicked[name] = follower.mimic.multiplier * value + follower.mimic.offset
+        return value
+
+
+def _undefined_pose(joint: Joint, robot: Robot) -> MissingElement:
+    """Return the error for a pose that this joint leaves undefined; raise NotDecided where xacro
+    leaves it open.
+    """
+    for part in ("origin", "axis", ""):
+        if part in joint.unresolved:
+            joint.unresolved[part].check()
+    at = joint.axis_location and joint.axis_location._replace(attribute="xyz")
+    if joint.origin is None:
+        reason, at = (
+            "the joint's origin cannot be read",
+            joint.location and joint.location._replace(inside="origin"),
+        )
+        at = joint.unresolved["origin"].location if "origin" in joint.unresolved else at
+    elif joint.axis is None:
+        reason = "the joint's axis cannot be read"
+    elif unit(joint.axis) is None:
+        reason = "the joint's axis is 0 0 0"
+    else:
+        for leader in _mimic_leaders(joint, robot):
+            if "mimic" in leader.unresolved:
+                leader.unresolved["mimic"].check()
+        reason, at = "the joint's numbers are too large", joint.location
+    message, detail = f"the pose is undefined: {reason}", f" (joint {quoted(joint.name)})"
+    return MissingElement(
+        "pose below joint", joint.name, message=message, detail=detail, location=at
+    )
+
+
+def _mimic_leaders(joint: Joint, robot: Robot) -> Iterable[Joint]:
+    """Return a joint, the joint that it mimics, the one that this mimics, and so on."""
+    found = {joint.name: joint}
+    while (
+        joint.mimic is not None
+        and joint.mimic.joint not in found
+        and robot.has_joint(joint.mimic.joint)
+    ):
+        joint = robot.joint(joint.mimic.joint)
+        found[joint.name] = joint
+    return found.values()
+
+
+def placed_by(T_frame_parent: Transform, origin: Origin) -> Transform:
+    """Return T_frame_child: the frame that an origin places in its parent."""
+    if origin.rpy == (0.0, 0.0, 0.0):
+        return Transform(T_frame_parent.rotation, T_frame_parent.apply(origin.xyz))
+    return T_frame_parent @ Transform(rotation_from_rpy(origin.rpy), origin.xyz)
+
+
+def _motion_of(joint: Joint, position: float) -> Transform | None:
+    """Return T_origin_child; None if it is undefined, as it is for every position about a zero axis
+    (KDL).
+
+    A planar or floating joint stays at its origin: robot_state_publisher does not move it.
+    """
+    if joint.type not in MOVING_TYPES:
+        return IDENTITY
+    if not isfinite(position):
+        return None  # a chain of mimic joints can overflow
+    if joint.type == "floating":
+        return IDENTITY
+    direction = unit(joint.axis) if joint.axis is not None else None
+    if direction is None:
+        # KDL divides by the axis' length before it uses the position. An unreadable axis matters
+        # only if the joint moves.
+        return IDENTITY if joint.axis is None and not position else None
+    return (
+        IDENTITY
+        if joint.type == "planar" or not position
+        else _motion_along(joint, direction, position)
+    )
+
+
+def _motion_along(joint: Joint, direction: Vector, position: float) -> Transform:
+    """Return a motion along the axis of a prismatic joint, or about that of another one."""
+    if joint.type == "prismatic":
+        x, y, z = direction
+        return Transform(translation=(x * position, y * position, z * position))
+    return Transform(rotation_about(direction, position))
+
+
+def _check_position(joint: Joint, position: float) -> None:
+    """Raise ValueError for a position that a joint of this type cannot have."""
+    if joint.type not in SINGLE:
+        raise ValueError(
+            f"joint {quoted(joint.name)} is {joint.type or 'without type'}: it cannot move"
+        )
+    if not isfinite(position):
+        raise ValueError(f"joint {quoted(joint.name)} cannot be at {position}")
+
+
+class _Views(NamedTuple):
+    """What the configurations of a robot share: the robot and its parent joints, as checks read
+    them and as known.
+    """
+
+    robot: Robot
+    parent_joints: Mapping[str, Joint]
+    known_parents: Mapping[str, Joint]
+
+
+def _views_of(known: Robot, *, is_guarded: bool) -> _Views:
+    parents = parent_joints(known)
+    if not is_guarded:
+        return _Views(known, parents, parents)
+    from grader.ros.urdf.open_values import guarded  # late: few robots have open values
+
+    return _Views(*guarded(known, parents), parents)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Configuration:
+    """A robot with its joints at positions: where each link is, relative to any other.
+
+    A position is in radians for a joint that turns, in metres for one that slides; joints without
+    one are at 0. Grading makes one of the robot that was read, with its joints at 0 or where the
+    rubric says, and each check of a robot gets it; `moved` and `at` return the same robot with its
+    joints elsewhere. A mimic joint follows its leader, unless it has a position itself. Planar and
+    floating joints stay at 0. Links without a parent joint are roots, so a forest is solved tree by
+    tree. Every link is solved once: linear in the number of links, without recursion.
+
+    >>> from grader.ros.urdf.model import Joint, Link, Origin, Robot
+    >>> arm = Joint("shoulder", "prismatic", "base", "arm", Origin((0.0, 0.0, 0.5)))
+    >>> robot = Configuration(Robot("r", (Link("base"), Link("arm")), (arm,)))
+    >>> robot.pose("arm", relative_to="base").translation
+    (0.0, 0.0, 0.5)
+    >>> robot.moved("shoulder", 0.25).pose("arm").translation
+    (0.25, 0.0, 0.5)
+
+    Raises MissingElement for a position of a joint that is not there, ValueError for one that it
+    cannot have.
+    """
+
+    known: Robot  # as it was read: its open values can be read
+    positions: Mapping[str, float] = field(
+        default_factory=dict
+    )  # radians or metres; the other joints are at 0
+    is_guarded: bool = field(
+        default=False, kw_only=True
+    )  # reading what is open in `robot` raises NotDecided
+    _relative: dict[tuple[str, str | None], Transform] = field(default_factory=dict, init=False)
+
+    def __post_init__(self) -> None:
+        for name, position in self.positions.items():
+            _check_position(self.known.joint(name), position)
+
+    @cached_property
+    def _views(self) -> _Views:
+        return _views_of(self.known, is_guarded=self.is_guarded)
+
+    @cached_property
+    def _frames(self) -> _Frames:
+        return _Frames(self.known, self.known_parents, self.positions)
+
+    @property
+    def robot(self) -> Robot:
+        """The robot as checks read it."""
+        return self._views.robot
+
+    @property
+    def parent_joints(self) -> Mapping[str, Joint]:
+        """The parent joints of links as checks read them; a root has none."""
+        return self._views.parent_joints
+
+    @property
+    def known_parents(self) -> Mapping[str, Joint]:
+        """The parent joints of links as they are known."""
+        return self._views.known_parents
+
+    def link(self, name: str) -> Link:
+        """Return the link of this name; raises MissingElement."""
+        return self.robot.link(name)
+
+    def joint(self, name: str) -> Joint:
+        """Return the joint of this name; raises MissingElement."""
+        return self.robot.joint(name)
+
+    @property
+    def roots(self) -> tuple[str, ...]:
+        """The links without a parent joint, in file order."""
+        return tuple(link.name for link in self.robot.links if link.name not in self.parent_joints)
+
+    @property
+    def main_tree(self) -> tuple[str, ...]:
+        """The links of the largest tree, its root first; empty if every link is in a loop."""
+        trees: dict[str, list[str]] = {root: [root] for root in self.roots}
+        for name in self.parent_joints:
+            with suppress(MissingElement):
+                trees[self.root_of(name)].append(name)
+        largest = max(trees.values(), key=len, default=[])
+        return tuple(largest)
+
+    def root_of(self, link: str) -> str:
+        """Return the root of the tree that a link is in; raises MissingElement for a link on a loop
+        of joints.
+        """
+        return self._frames.of(link).root
+
+    def pose(self, link: str, *, relative_to: str | None = None) -> Transform:
+        """Return T_root_link, or T_relative_link: the link's frame in another link's frame.
+
+        Raises MissingElement where there is no such link, no chain of joints between the two, or no
+        defined pose (an axis of length zero, an origin that cannot be read).
+        """
+        known = self._relative.get((link, relative_to))
+        if known is None:
+            known = self._relative[link, relative_to] = self._solve_relative(link, relative_to)
+        return known
+
+    def _solve_relative(self, link: str, relative_to: str | None) -> Transform:
+        if relative_to == link:
+            self.link(link)
+            return IDENTITY
+        frame = self._frames.of(link)
+        base = self._frames.of(relative_to if relative_to is not None else frame.root)
+        if frame.root != base.root:
+            self.known.check_complete()
+            roots = " and ".join(sorted((frame.root, base.root)))
+            message = (
+                f"{quoted(link)} is not connected to {quoted(relative_to or base.root)} by joints"
+            )
+            absent = f"joint of {link}" if frame.root == link and self.are_joints_in_place else ""
+            at = self.link(link).location
+            raise MissingElement("connection", roots, message=message, location=at, absent=absent)
+        if frame.group != base.group:
+            deeper = max(
+                frame, base, key=lambda either: either.depth
+            )  # the chain crosses into the deeper group
+            raise _undefined_pose(self.known_parents[deeper.group], self.known)
+        if relative_to is None or relative_to == frame.group:
+            return frame.pose
+        pose = base.pose.inverse() @ frame.pose
+        if not isfinite(sum(pose.translation)):
+            raise _undefined_pose(self.between(relative_to, link)[-1], self.robot)
+        return pose
+
+    @property
+    def are_joints_in_place(self) -> bool:
+        """Whether each joint connects two links that are there: none of them may be meant for
+        another link.
+        """
+        robot = self.known
+        return all(
+            map(
+                robot.has_link,
+                (end for joint in robot.joints for end in (joint.parent, joint.child)),
+            )
+        )
+
+    def axis(self, joint: str | Joint) -> Vector:
+        """Return the unit axis of a joint in its child link's frame; raises MissingElement if it
+        has no direction.
+        """
+        found = self.joint(joint) if isinstance(joint, str) else joint
+        direction = unit(found.axis) if found.axis is not None else None
+        if direction is None:
+            raise _undefined_pose(found, self.robot)
+        return direction
+
+    @overload
+    def chain(self, link: str) -> tuple[Joint, ...]: ...
+
+    @overload
+    def chain(self, link: str, *, above: str | None) -> tuple[Joint, ...] | None: ...
+
+    def chain(self, link: str, *, above: str | None = None) -> tuple[Joint, ...] | None:
+        """Return the joints that lead to a link, top down, from its root or from `above`; None if
+        that is not above it.
+
+        Raises MissingElement for a link that is not there, NotDecided where the type of one of the
+        joints is not known.
+        """
+        self.link(link)
+        joints: list[Joint] = []
+        name = link
+        while (
+            name != above and name in self.parent_joints and len(joints) <= len(self.parent_joints)
+        ):
+            joints.append(self.parent_joints[name])
+            name = self.parent_joints[name].parent
+        if above is not None and name != above:
+            self.link(above)
+            return None
+        if self.robot.rejected:
+            for joint in joints:
+                if "@type" in joint.unresolved:
+                    joint.unresolved["@type"].check()
+        return tuple(reversed(joints))
+
+    def between(self, one: str, other: str) -> tuple[Joint, ...]:
+        """Return the joints on the path from one link to another; raises MissingElement where there
+        is no path.
+        """
+        below = self.chain(other, above=one)
+        if below is not None:
+            return below
+        up, down = self.chain(one), self.chain(other)
+        if self.root_of(one) != self.root_of(other):
+            self.pose(other, relative_to=one)
+        shared = sum(
+            1 for _ in takewhile(lambda pair: pair[0] is pair[1], zip(up, down, strict=False))
+        )
+        return (*reversed(up[shared:]), *down[shared:])
+
+    def moving_joint(self, link: str) -> Joint:
+        """Return the joint that moves a link: the last joint above it that is not fixed.
+
+        Raises MissingElement where nothing above it moves, NotDecided where the type of a joint
+        above it is not known.
+        """
+        path = self.chain(link)
+        types = {joint.type for joint in path} - {"fixed"}
+        if not types:
+            self.known.check_complete()
+        joint = last_moving(
+            path, link, types, f"no joint above {quoted(link)} moves; one should turn or slide"
+        )
+        if joint.type in MOVING_TYPES:
+            return joint
+        kind = f"the type {quoted(joint.type)}, which does not exist" if joint.type else "no type"
+        message, at = f"the joint that moves {quoted(link)} has {kind}", joint.location
+        raise MissingElement(
+            "moving joint", link, message=message, location=at and at._replace(attribute="type")
+        )
+
+    def moved(self, joint: str | Joint, position: float) -> "Configuration":
+        """Return the same robot with one joint elsewhere; raises ValueError for a position that it
+        cannot have.
+        """
+        found = self.joint(joint) if isinstance(joint, str) else joint
+        _check_position(found, position)
+        return self.at({**self.positions, found.name: position})
+
+    def at(self, positions: Mapping[str, float]) -> "Configuration":
+        """Return the same robot with its joints at other positions, which are not validated."""
+        posed = Configuration(self.known, is_guarded=self.is_guarded)
+        object.__setattr__(posed, "positions", positions)
+        object.__setattr__(posed, "_views", self._views)  # which positions do not change
+        return posed
+
+    def displacement(self, link: str, joint: Joint, angle: float, *, relative_to: str) -> Transform:
+        """Return the motion of points on a link when a turning or sliding joint moves by `angle`
+        (rad, m) from here.
+
+        Both the points and the motion are in the frame of `relative_to`.
+        """
+        self.axis(joint)  # raises where it has no direction
+        chain = self.chain(link, above=relative_to) or ()
+        if (
+            joint in chain
+            and not self.positions
+            and all(above.known.mimic is None for above in chain)
+        ):
+            T_relative_joint = self.pose(joint.child, relative_to=relative_to)
+            turn = _motion_of(joint, angle) or IDENTITY  # everything below the joint turns together
+            return T_relative_joint @ turn @ T_relative_joint.inverse()
+        moved = self.moved(joint, self.position(joint) + angle).pose(link, relative_to=relative_to)
+        return moved @ self.pose(link, relative_to=relative_to).inverse()
+
+    def position(self, joint: Joint) -> float:
+        """Return the position of a joint: its own, that of the joint that it mimics, or 0."""
+        return self._frames.position(joint.known)
+
+
+def last_moving(path: tuple[Joint, ...], link: str, types: Collection[str], message: str) -> Joint:
+    """Return the last joint with one of the types on the path to a link; raises MissingElement
+    where there is none.
+    """
+    moving = [joint for joint in path if joint.type in types]
+    if not moving:
+        raise MissingElement(
+            "moving joint", link, message=message, location=path[-1].location if path else None
+        )
+    return moving[-1]

@@ -1,0 +1,286 @@
+"""Links as urdfdom reads them: what is lost with a bad element (`link.cpp`), and the material that
+each visual gets.
+
+Its colour is that of `parseMaterial` in `link.cpp` and of `assignMaterial` in `model.cpp`.
+"""
+
+from grader.base.source import LazyLocation
+from grader.base.text import quoted
+from grader.ros.urdf import urdf_problems
+from grader.ros.urdf.diagnostics import ElementReader, Problems, first_children, quote_value
+from grader.ros.urdf.model import (
+    INERTIA,
+    Box,
+    Collision,
+    Cylinder,
+    Geometry,
+    Inertial,
+    Link,
+    Material,
+    Mesh,
+    Sphere,
+    UnresolvedPart,
+    Visual,
+)
+from grader.ros.urdf.numbers import NumberError, rgba
+from grader.ros.xml.parsing import Element
+
+_BLACK = (0.0, 0.0, 0.0, 1.0)
+_SHAPES = ("box", "cylinder", "sphere", "mesh")
+# What is lost with an element that has a defect.
+_INERTIAL_LOST = "ROS 2 drops all visuals and collisions of link {}"
+_VISUAL_LOST = "ROS 2 drops this visual of link {}, the visuals after it and all collisions"
+_COLLISION_LOST = "ROS 2 drops this collision of link {} and the collisions after it"
+
+
+class Materials:
+    """The materials that are defined so far: first those under <robot>, then those in links, in
+    file order.
+    """
+
+    def __init__(self, problems: Problems) -> None:
+        self._problems = problems
+        # all definitions of the file, once one is missing
+        self._defined: dict[str, Element] | None = None
+        self.known: dict[str, Material] = {}
+
+    def define(self, element: Element) -> None:
+        """Read a material directly under <robot>; without a valid colour it is black."""
+        problems = self._problems
+        name = element.get("name") or ""
+        material, is_reported = self._read_material(element, name, "ROS 2 shows black")
+        if element.get("name") is None:
+            problems.add(
+                urdf_problems.UNNAMED_MATERIAL,
+                "this material has no name; no link can use it",
+                element,
+            )
+        elif material is None:
+            if not is_reported:
+                message = f"material {quoted(name)} has no valid colour; ROS 2 makes it black"
+                problems.add(urdf_problems.COLOURLESS_MATERIAL, message, element)
+            problems.check_printed(name, element, "name")
+        if name in self.known:
+            message = (
+                f"material {quoted(name)} is defined twice under <robot>; ROS 2 rejects the file"
+            )
+            problems.add(urdf_problems.DUPLICATE_MATERIAL, message, element, "name")
+        else:
+            self.known[name] = material or Material(name, location=problems.location(element))
+
+    def assign(self, element: Element, link: str) -> tuple[Material | None, str, bool]:
+        """Return the material of a visual, its name, and whether its colour cannot be read.
+
+        A defined one wins, otherwise the one in place is defined.
+        """
+        name = element.get("name") or ""
+        if not len(element) and name in self.known and name:
+            return self.known[name], name, False
+        fallback = (
+            "the definition above applies"
+            if name in self.known
+            else f"material {quoted(name)} stays undefined"
+        )
+        own, reported = self._read_material(element, name, f"ROS 2 logs an error: {fallback}")
+        found = self.known.get(name) if name else own
+        if own is None:
+            if found is None and name and not reported:
+                self._note_undefined(name, element, link)
+                found = self._find_elsewhere(name)
+        elif found is None:
+            found = self.known[name] = own
+        elif (own.rgba, own.texture) != (found.rgba, found.texture):
+            message = (
+                f"material {quoted(name)} is already defined differently; ROS 2 ignores this "
+                "definition"
+            )
+            self._problems.add(urdf_problems.REDEFINED_MATERIAL, message, element, "name")
+        return found, name, found is None and reported
+
+    def _read_material(
+        self, element: Element, name: str, consequence: str
+    ) -> tuple[Material | None, bool]:
+        """Return the material that an element defines, if it does, and whether its colour is
+        reported as a problem.
+        """
+        inside = first_children(element)
+        colour = inside.get("color")
+        filename = inside["texture"].get("filename") if "texture" in inside else None
+        channels, reported = None, False
+        if colour is not None and (text := colour.get("rgba")) is not None:
+            try:
+                channels = rgba(text)
+                if channels is None:
+                    message = (
+                        f"rgba={quote_value(text)} needs exactly four numbers; ROS 2 silently "
+                        "shows black"
+                    )
+                    self._problems.add(urdf_problems.COLOUR_COUNT, message, colour, "rgba")
+                    channels = _BLACK
+            except NumberError as error:
+                reported = True
+                message = f"cannot read rgba={quote_value(text)}: {error}; {consequence}"
+                self._problems.add(urdf_problems.BAD_COLOUR, message, colour, "rgba")
+                self._problems.check_printed(f"{name} {text}", colour, "rgba")
+        unresolved = self._problems.parts(element)
+        if channels is None and filename is None and not unresolved:
+            return None, reported
+        location = self._problems.location(element if colour is None else colour)
+        return Material(name, channels or _BLACK, filename or "", location, unresolved), reported
+
+    def _find_elsewhere(self, name: str) -> Material | None:
+        """Return a material that may be defined in a part of the robot that xacro leaves open."""
+        root = self._problems.root
+        found = self._problems.unresolved.get(root)
+        if found is None or not found.content:
+            return None
+        return Material(
+            name, unresolved={"": UnresolvedPart(found.content, self._problems.location(root))}
+        )
+
+    def _note_undefined(self, name: str, element: Element, link: str) -> None:
+        problems = self._problems
+        if self._defined is None:
+            every = [other for other in problems.root.iter("material") if len(other)]
+            self._defined = {other.get("name") or "": other for other in reversed(every)}
+            self._defined.pop("", None)
+        if name in self._defined:
+            line = problems.line(self._defined[name])
+            hint = f" before its definition in line {line}; define it directly under <robot>"
+        else:
+            hint = f", which is not defined{problems.did_you_mean(name, self._defined)}"
+        message = (
+            f"link {quoted(link)} uses material {quoted(name)}{hint}; ROS 2 shows it without "
+            "the colour"
+        )
+        problems.add(urdf_problems.UNDEFINED_MATERIAL, message, element, "name")
+
+
+def read_link(element: Element, problems: Problems, materials: Materials) -> Link:
+    """Read one link with what ROS 2 keeps of it: a bad inertial loses all shapes, a bad shape
+    those after it.
+    """
+    name = element.get("name")
+    location = problems.location(element)
+    if name is None:
+        problems.add(
+            urdf_problems.LINK_WITHOUT_NAME,
+            "this link has no name; ROS 2 keeps it as an empty link ''",
+            element,
+        )
+        return Link("", location=location)
+    parts: dict[str, list[Element]] = {"inertial": [], "visual": [], "collision": []}
+    for child in element:
+        parts.get(child.tag, []).append(child)
+    inertial = _read_inertial(parts["inertial"][0], problems, name) if parts["inertial"] else None
+    dropping = (
+        inertial is None
+        and parts["inertial"] != []
+        and not problems.is_unresolved(parts["inertial"][0])
+    )
+    shapes: list[Visual | Collision] = []
+    for child in parts["visual"] + parts["collision"]:
+        shape = _read_shape(child, problems, name, None if dropping else materials)
+        dropping = dropping or (shape is None and not problems.is_unresolved(child))
+        if shape is not None and not dropping:
+            shapes.append(shape)
+    visuals = tuple(shape for shape in shapes if isinstance(shape, Visual))
+    collisions = tuple(shape for shape in shapes if isinstance(shape, Collision))
+    return Link(name, visuals, collisions, inertial, location, problems.parts(element))
+
+
+def _read_inertial(element: Element, problems: Problems, link: str) -> Inertial | None:
+    reader = ElementReader(problems, urdf_problems.BAD_INERTIAL, _INERTIAL_LOST, link)
+    inside = first_children(element)
+    origin = reader.origin(inside.get("origin"))
+    values: list[float] = []
+    for tag, attributes in (("mass", ("value",)), ("inertia", INERTIA)):
+        if tag in inside:
+            values += [reader.number(inside[tag], attribute) for attribute in attributes]
+        else:
+            reader.fail(f"<inertial> has no <{tag}>", element)
+    if reader.failed:
+        return None
+    mass, ixx, ixy, ixz, iyy, iyz, izz = values
+    return Inertial(mass, (ixx, ixy, ixz, iyy, iyz, izz), origin, problems.location(element))
+
+
+def _read_shape(
+    element: Element, problems: Problems, link: str, materials: Materials | None
+) -> Visual | Collision | None:
+    """Read a visual or collision; `materials` is None where it is dropped anyway, and defines
+    none.
+    """
+    is_visual = element.tag == "visual"
+    if is_visual:
+        reader = ElementReader(problems, urdf_problems.BAD_VISUAL, _VISUAL_LOST, link)
+    else:
+        reader = ElementReader(problems, urdf_problems.BAD_COLLISION, _COLLISION_LOST, link)
+    inside = first_children(element)
+    origin = reader.origin(inside.get("origin"))
+    geometry = _read_geometry(element, inside.get("geometry"), reader, problems)
+    material = inside.get("material") if is_visual else None
+    if material is not None and material.get("name") is None:
+        reader.fail("<material> in a visual has no name", material)
+    if reader.failed or geometry is None:
+        return None
+    if not is_visual:
+        return Collision(geometry, origin, problems.location(element))
+    if material is None or materials is None:
+        return Visual(geometry, origin, location=problems.location(element))
+    return Visual(geometry, origin, *materials.assign(material, link), problems.location(element))
+
+
+def _read_geometry(
+    owner: Element, element: Element | None, reader: ElementReader, problems: Problems
+) -> Geometry | None:
+    if element is None:
+        reader.fail(f"<{owner.tag}> has no <geometry>", owner)
+        return None
+    if not len(element):
+        reader.fail("<geometry> is empty", element)
+        return None
+    shape = element[0]
+    if shape.tag not in _SHAPES:
+        guess = problems.did_you_mean(str(shape.tag), _SHAPES)
+        reader.fail(f"<{shape.tag}> is not a shape that ROS 2 knows{guess}", shape)
+        return None
+    needed = {"box": "size", "mesh": "filename"}.get(shape.tag)
+    if needed and shape.get(needed) is None:
+        reader.fail(f"<{shape.tag}> has no {needed}", shape)
+    geometry = _geometry_from(shape, reader, problems.location(shape))
+    for attribute, value in _sizes_by_attribute(geometry):
+        if value < 0:
+            message = (
+                f"{attribute} of <{shape.tag}> is negative ({value:g}), which ROS 2 does not check"
+            )
+            problems.add(urdf_problems.NEGATIVE_SIZE, message, shape, attribute)
+            break
+    return geometry
+
+
+def _geometry_from(shape: Element, reader: ElementReader, location: LazyLocation) -> Geometry:
+    match shape.tag:
+        case "box":
+            return Box(reader.vector(shape, "size"), location)
+        case "cylinder":
+            return Cylinder(
+                reader.number(shape, "radius"), reader.number(shape, "length"), location
+            )
+        case "sphere":
+            return Sphere(reader.number(shape, "radius"), location)
+    return Mesh(
+        shape.get("filename") or "", reader.vector(shape, "scale", (1.0, 1.0, 1.0)), location
+    )
+
+
+def _sizes_by_attribute(geometry: Geometry) -> list[tuple[str, float]]:
+    """Return the attributes with the sizes of a shape that has some."""
+    match geometry:
+        case Box(size=edges):
+            return [("size", edge) for edge in edges]
+        case Cylinder(radius=radius, length=length):
+            return [("radius", radius), ("length", length)]
+        case Sphere(radius=radius):
+            return [("radius", radius)]
+    return []

@@ -1,0 +1,303 @@
+"""The words for which ROS 2 rejects a file and that surely stand for others: what the robot is if
+they are undone.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from itertools import islice
+from typing import NamedTuple
+
+from grader.base.names import near
+from grader.base.problems import Problem
+from grader.base.text import quoted
+from grader.ros.urdf.diagnostics import Problems
+from grader.ros.urdf.model import Robot
+from grader.ros.urdf.numbers import readable_numbers
+from grader.ros.xml.parsing import Element
+from grader.ros.xml.urdf_format import ATTRIBUTES, JOINT_TYPES, PARTS, REQUIRED, TAGS
+
+# one undone word can reveal the next: that of a tag, then its attribute, then its value
+_MAX_ROUNDS = 5
+_MAX_WORDS = 20  # in one file
+_MAX_ATTRIBUTES = 50  # of one element, because lxml searches each name from the first
+_ROOT = re.compile(
+    r"(?i)base|world|map|odom|root"
+)  # how the first link of a robot is usually called
+_OF_JOINT = (
+    "parent",
+    "child",
+    "limit",
+    "mimic",
+    "safety_controller",
+)  # a defect of these rejects the file
+
+
+class Word(NamedTuple):
+    """A word of an element that is read as another one, in a sentence; `tag` and `attributes` are
+    those as read.
+    """
+
+    element: Element
+    attribute: str | None  # where the word is; None: the tag
+    tag: str
+    attributes: dict[str, str]
+    sentence: str
+
+
+class _AsMeant(NamedTuple):
+    """What ROS 2 would read if some words were others; the problems say which."""
+
+    robot: Robot
+    problems: list[Problem]
+    words: list[Word]
+
+
+def read_as_meant(
+    root: Element, robot: Robot, read: Callable[[], tuple[Robot, Problems]]
+) -> _AsMeant | None:
+    """Return what a rejected file means; None if a word can stand for several, or ROS 2 would still
+    reject the file.
+
+    `robot` was read from `root`, and `read` reads it again. The elements are as before at the end.
+    """
+    undone: list[Word] = []
+    before: list[tuple[Element, str, dict[str, str]]] = []
+    try:
+        for _ in range(_MAX_ROUNDS):
+            ways = (
+                _misspelt_format(root),
+                _misspelt_references(root, robot),
+                _repeated_names(root),
+                _readable_vectors(root),
+                _exchanged_ends(root, robot),
+                _pasted_children(root, robot),
+            )
+            words = next(filter(None, ([*islice(way, _MAX_WORDS)] for way in ways)), [])
+            if not words:
+                return None
+            for word in words:
+                before.append((word.element, str(word.element.tag), dict(word.element.attrib)))  # type: ignore[arg-type]
+                _rewrite_element(word.element, word.tag, word.attributes)
+            undone += words
+            robot, problems = read()
+            if "rejects" not in problems.effects:
+                assumed = [
+                    problems.assumed(word.element, word.attribute, word.sentence) for word in undone
+                ]
+                return _AsMeant(robot, [*problems.listed, *assumed], undone)
+        return None
+    finally:
+        for element, tag, attributes in reversed(before):
+            _rewrite_element(element, tag, attributes)
+
+
+def _rewrite_element(element: Element, tag: str, attributes: dict[str, str]) -> None:
+    element.tag = tag
+    element.attrib.clear()
+    for name, value in attributes.items():
+        element.set(name, value)
+
+
+def _word_with_value(element: Element, attribute: str, value: str, what: str) -> Word:
+    given: dict[str, str] = dict(element.attrib)  # type: ignore[arg-type]
+    sentence = f"{what} {quoted(given[attribute])} is read as {quoted(value)}"
+    return Word(element, attribute, str(element.tag), {**given, attribute: value}, sentence)
+
+
+def _misspelt_references(root: Element, robot: Robot) -> Iterator[Word]:
+    """Yield links that joints name and that do not exist, and joint types, each near one that can
+    be meant.
+    """
+    links = [link.name for link in robot.links]
+    uses = Counter(name for joint in robot.joints for name in (joint.parent, joint.child))
+    unknown = [name for name in uses if name and not robot.has_link(name)]
+    if len(unknown) > _MAX_WORDS:
+        return
+    defined = _misspelt_definitions(robot, links, uses, unknown)
+    for element in root.iterchildren("link"):
+        if (meant := defined.get(element.get("name") or "")) is not None:
+            yield _word_with_value(element, "name", meant, "the link")
+    children = {joint.child for joint in robot.joints}
+    misspelt = {name for name in unknown if name not in defined.values()}
+    if sum(uses[name] for name in misspelt) > _MAX_ROUNDS * _MAX_WORDS:
+        misspelt = set()
+    for joint in root.iterchildren("joint"):
+        kind = (
+            near(joint.get("type") or "", JOINT_TYPES)
+            if joint.get("type") not in JOINT_TYPES
+            else None
+        )
+        if kind is not None:
+            yield _word_with_value(joint, "type", kind, "the joint type")
+        yield from _misspelt_ends(joint, misspelt, links, children)
+
+
+def _misspelt_definitions(
+    robot: Robot, links: Collection[str], uses: Mapping[str, int], unknown: Collection[str]
+) -> dict[str, str]:
+    """Return the links whose definitions have the wrong word, each with the unknown name that is
+    meant.
+
+    No joint names the link, and several joints name the other one, or a joint is named after it.
+    """
+    names = "".join(f"_{joint.name}_" for joint in robot.joints)
+    nearest = {
+        near(name, links, "link"): name
+        for name in unknown
+        if uses[name] > 1 or f"_{name}_" in names
+    }
+    return {
+        link: name
+        for link, name in nearest.items()
+        if link and link not in uses and (uses[name] > 1 or f"_{link}_" not in names)
+        if name.endswith("link") or not link.endswith("link")  # the shorter name lacks its end
+    }
+
+
+def _misspelt_ends(
+    joint: Element, misspelt: Collection[str], links: Sequence[str], children: set[str]
+) -> Iterator[Word]:
+    """Yield the misspelt parent and child of a joint; `children` grows by what is meant, which no
+    other joint can.
+    """
+    ends = {role: end for role in ("parent", "child") if (end := joint.find(role)) is not None}
+    for role, end in ends.items():
+        name = end.get("link") or ""
+        if name not in misspelt:
+            continue
+        others = {other.get("link") for other in ends.values()}
+        if role == "child":
+            others |= children
+        meant = near(name, [link for link in links if link not in others], "link")
+        if meant is not None:
+            if role == "child":
+                children.add(meant)
+            yield _word_with_value(end, "link", meant, "the link")
+
+
+def _readable_vectors(root: Element) -> Iterator[Word]:
+    """Yield vectors that ROS 2 cannot read although their numbers are clear."""
+    for element in root.iter("origin", "axis", "box", "mesh", "color"):
+        given = {str(name): str(value) for name, value in element.attrib.items()}
+        for name, text in given.items():
+            count = len(PARTS.get(name, ()))
+            meant = (
+                readable_numbers(text, count)
+                if count > 1 and name in ATTRIBUTES[str(element.tag)]
+                else None
+            )
+            if meant is None:
+                continue
+            changed = {**given, name: " ".join(meant[:count])}
+            if len(meant) > count and name == "xyz" and "rpy" not in given:
+                changed["rpy"] = " ".join(meant[count:])
+            sentence = f"{name} is read as {quoted(changed[name])}"
+            yield Word(element, name, str(element.tag), changed, sentence)
+
+
+def _exchanged_ends(root: Element, robot: Robot) -> Iterator[Word]:
+    """Yield the parent and child of the one joint that are exchanged, so that one link has two
+    parents.
+    """
+    parents = [(joint.parent, joint.child) for joint in robot.joints]
+    counts = Counter(child for _, child in parents)
+    doubled = [child for child, count in counts.items() if count > 1]
+    if len(doubled) != 1 or counts[doubled[0]] > _MAX_ROUNDS:
+        return
+    found: dict[int, str] = {}  # the root that the robot has if a joint is exchanged
+    for index, (parent, child) in enumerate(parents):
+        if child == doubled[0] and parent not in counts:
+            others = {*counts, parent} - ({child} if counts[child] == 1 else set())
+            roots = [link.name for link in robot.links if link.name not in others]
+            if len(roots) == 1:
+                found[index] = roots[0]
+    usual = [index for index, name in found.items() if _ROOT.match(name)]
+    only = usual if len(found) > 1 else [*found]
+    elements = [*root.iterchildren("joint")]
+    if len(only) == 1 and len(elements) == len(parents):
+        parent, child = parents[only[0]]
+        ends = {role: elements[only[0]].find(role) for role in ("parent", "child")}
+        for role, link in (("parent", child), ("child", parent)):
+            end = ends[role]
+            if end is not None and end.get("link"):
+                yield _word_with_value(end, "link", link, f"the {role}")
+
+
+def _pasted_children(root: Element, robot: Robot) -> Iterator[Word]:
+    """Yield the child that a second joint has by mistake: the one link that no joint names should
+    be there.
+    """
+    named = {name for joint in robot.joints for name in (joint.parent, joint.child)}
+    lonely = [link.name for link in robot.links if link.name not in named]
+    counts = Counter(joint.child for joint in robot.joints)
+    doubled = [child for child, count in counts.items() if count == 2]
+    if len(lonely) != 1 or len(doubled) != 1:
+        return
+    ends = [(joint, joint.find("child")) for joint in root.iterchildren("joint")]
+    own = [(joint, end) for joint, end in ends if end is not None and end.get("link") == doubled[0]]
+    named_after = [end for joint, end in own if lonely[0] in (joint.get("name") or "")]
+    for end in (named_after if len(named_after) == 1 else [end for _, end in own])[-1:]:
+        yield _word_with_value(end, "link", lonely[0], "the child")
+
+
+def _repeated_names(root: Element) -> Iterator[Word]:
+    """Yield a name that is given twice, where one other name is used and not given: the later one
+    should have it.
+    """
+    used = {
+        "link": [
+            end.get("link") for end in root.iterfind("joint/*") if end.tag in ("parent", "child")
+        ],
+        "joint": [mimic.get("joint") for mimic in root.iterfind("joint/mimic")],
+    }
+    for tag, names in used.items():
+        given = Counter(element.get("name") for element in root.iterchildren(tag))
+        repeated = [name for name, count in given.items() if name is not None and count > 1]
+        missing = [name for name in dict.fromkeys(names) if name and name not in given]
+        if len(repeated) == len(missing) == 1 and given[repeated[0]] == 2:
+            *_, later = (
+                element for element in root.iterchildren(tag) if element.get("name") == repeated[0]
+            )
+            yield _word_with_value(later, "name", missing[0], f"the second {tag}")
+
+
+def _misspelt_format(root: Element) -> Iterator[Word]:
+    """Yield tags and attributes that the format does not have there, each near one that it needs
+    and that is absent.
+    """
+    yield from _misspelt_tags(root, ("link", "joint"))
+    yield from _misspelt_attributes(root)
+    for element in (it for tag in ("link", "joint") for it in root.iterchildren(tag)):
+        yield from _misspelt_attributes(element)
+        if element.tag == "joint":
+            needed = ["parent", "child"]
+            if element.get("type") in ("revolute", "prismatic"):
+                needed.append("limit")
+            yield from _misspelt_tags(element, [tag for tag in needed if element.find(tag) is None])
+            for child in element:
+                if child.tag in _OF_JOINT:
+                    yield from _misspelt_attributes(child)
+
+
+def _misspelt_tags(parent: Element, needed: Collection[str]) -> Iterator[Word]:
+    for child in parent:
+        tag = str(child.tag)
+        meant = near(tag, needed) if tag not in TAGS and not tag.startswith("{") else None
+        if meant is not None and len(child.attrib) <= _MAX_ATTRIBUTES:
+            yield Word(child, None, meant, dict(child.attrib), f"<{tag}> is read as <{meant}>")  # type: ignore[arg-type]
+
+
+def _misspelt_attributes(element: Element) -> Iterator[Word]:
+    tag = str(element.tag)
+    absent = [name for name in REQUIRED[tag] if element.get(name) is None]
+    if not absent or len(element.attrib) > _MAX_ATTRIBUTES:
+        return
+    given = {str(name): str(value) for name, value in element.attrib.items()}
+    for name in given:
+        meant = near(name, absent) if name not in ATTRIBUTES[tag] else None
+        if meant is not None:
+            renamed = {meant if key == name else key: value for key, value in given.items()}
+            yield Word(
+                element, name, tag, renamed, f"the attribute {name} of <{tag}> is read as {meant}"
+            )

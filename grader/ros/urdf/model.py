@@ -1,0 +1,327 @@
+"""A robot as plain values: the content of a URDF as ROS 2 keeps it, and what xacro leaves open of
+it.
+
+Lengths are metres, angles radians about fixed axes x, y, z (REP 103). `None` is a value that the
+file gives but that cannot be read; a value that the file does not give has ROS 2's default.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple, NoReturn
+
+from grader.base.errors import MissingElement, NotDecided
+from grader.base.names import did_you_mean
+from grader.base.source import LazyLocation
+from grader.base.text import quoted
+from grader.ros.urdf.transforms import Vector
+
+INERTIA = (
+    "ixx",
+    "ixy",
+    "ixz",
+    "iyy",
+    "iyz",
+    "izz",
+)  # the components, in the order of Inertial.inertia
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """The pose of a child frame in its parent: `xyz` in metres, `rpy` in radians about fixed
+    axes.
+    """
+
+    xyz: Vector = (0.0, 0.0, 0.0)
+    rpy: Vector = (0.0, 0.0, 0.0)
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+
+
+_SAME_FRAME = Origin()
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """A box about its centre; `size` is the full edge lengths along x, y, z in metres."""
+
+    size: Vector
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Cylinder:
+    """A cylinder about its centre, its axis along z; lengths in metres."""
+
+    radius: float
+    length: float
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Sphere:
+    """A sphere about its centre; its radius in metres."""
+
+    radius: float
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """A mesh file. It is never opened, so its extent is unknown."""
+
+    filename: str
+    scale: Vector = (1.0, 1.0, 1.0)
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+
+
+Geometry = Box | Cylinder | Sphere | Mesh
+
+
+class UnresolvedPart(NamedTuple):
+    """A part of a link, joint or material that xacro leaves open: the reason, which is empty where
+    xacro refuses it.
+    """
+
+    reason: str
+    location: LazyLocation
+
+    def check(self) -> None:
+        """Raise NotDecided if the part cannot be determined."""
+        if self.reason:
+            raise NotDecided(self.reason)
+
+
+# The parts of an element that are unresolved: "@name" for its attribute, "visual" for something in
+# a <visual>, "" for more children than are known. Empty for a plain URDF.
+UnresolvedParts = Mapping[str, UnresolvedPart]
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """A colour with channels in 0..1, red, green, blue, alpha; `texture` is a file name, never
+    opened.
+    """
+
+    name: str
+    rgba: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
+    texture: str = ""
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Visual:
+    """One shape that a link shows. `material` is resolved; None if ROS 2 has no colour for it, or
+    cannot read it.
+    """
+
+    geometry: Geometry
+    origin: Origin = _SAME_FRAME
+    material: Material | None = None
+    material_name: str = ""
+    has_unreadable_colour: bool = False
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Collision:
+    """One shape that a link collides with."""
+
+    geometry: Geometry
+    origin: Origin = _SAME_FRAME
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Inertial:
+    """Mass in kilograms, centre of mass, and ixx, ixy, ixz, iyy, iyz, izz in kg m^2."""
+
+    mass: float
+    inertia: tuple[float, float, float, float, float, float]
+    origin: Origin = _SAME_FRAME
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A rigid body, whose frame all of its shapes and its centre of mass are placed in.
+
+    >>> visual = Visual(Cylinder(0.1, 0.05), Origin((0.0, 0.0, 0.025)))
+    >>> Link("lidar", visuals=(visual,)).visuals[0].geometry
+    Cylinder(radius=0.1, length=0.05)
+    """
+
+    name: str
+    visuals: tuple[Visual, ...] = ()
+    collisions: tuple[Collision, ...] = ()
+    inertial: Inertial | None = None
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def known(self) -> "Link":
+        """The link as it is known, for code that decides itself what is open."""
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """A joint's range (rad or m), maximum effort (N m or N) and maximum velocity (rad/s or m/s).
+
+    Here and in the other elements of a joint, a number that cannot be read is NaN.
+    """
+
+    lower: float
+    upper: float
+    effort: float
+    velocity: float
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Mimic:
+    """This joint's position is `multiplier` times the named joint's, plus `offset`."""
+
+    joint: str
+    multiplier: float = 1.0
+    offset: float = 0.0
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Dynamics:
+    """Damping (N m s/rad or N s/m) and static friction (N m or N)."""
+
+    damping: float = 0.0
+    friction: float = 0.0
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class SafetyController:
+    """The range (rad or m) in which a safety controller keeps a joint, and its gains for position
+    and velocity.
+    """
+
+    k_velocity: float
+    soft_lower_limit: float = 0.0
+    soft_upper_limit: float = 0.0
+    k_position: float = 0.0
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """The positions (rad or m) at which a joint's reference switch has a rising or falling edge;
+    None if not given.
+    """
+
+    rising: float | None = None
+    falling: float | None = None
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """A joint between two links; its frame is the child link's frame.
+
+    `origin` places that frame in the parent's, with the joint at 0; `axis` is a direction in the
+    child's frame. `type` is the file's text, so a misspelt one can be quoted. `origin` and `axis`
+    are None if they are given but cannot be read. `parent` and `child` are empty if the file does
+    not name them.
+
+    >>> origin = Origin((0.0, 0.2, 0.0))
+    >>> axis = (0.0, 1.0, 0.0)
+    >>> wheel = Joint("wheel_joint", "continuous", "base_link", "wheel", origin, axis=axis)
+    >>> wheel.origin.xyz, wheel.axis
+    ((0.0, 0.2, 0.0), (0.0, 1.0, 0.0))
+    """
+
+    name: str
+    type: str
+    parent: str
+    child: str
+    origin: Origin | None = _SAME_FRAME
+    axis: Vector | None = (1.0, 0.0, 0.0)
+    limit: Limit | None = None
+    mimic: Mimic | None = None
+    dynamics: Dynamics | None = None
+    safety_controller: SafetyController | None = None
+    calibration: Calibration | None = None
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    axis_location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def known(self) -> "Joint":
+        """The joint as it is known, for code that decides itself what is open."""
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """The links and joints of a URDF, as plain values that know nothing of poses.
+
+    The reader makes it; `Configuration` puts its joints at positions and computes poses. Checks
+    read it through that, where a value that xacro leaves open raises NotDecided (see
+    `open_values`). Two robots are equal if their values are; where these are in a file does not
+    count.
+
+    >>> shoulder = Joint("shoulder", "fixed", "base", "arm")
+    >>> robot = Robot("r", (Link("base"), Link("arm")), (shoulder,))
+    >>> robot.joint("shoulder").child
+    'arm'
+    >>> robot.link("amr")
+    Traceback (most recent call last):
+    grader.base.errors.MissingElement: there is no link 'amr'; did you mean 'arm'?
+    """
+
+    name: str
+    links: tuple[Link, ...] = ()  # in file order; of two with the same name the first is looked up
+    joints: tuple[Joint, ...] = ()  # likewise
+    materials: tuple[Material, ...] = ()  # those under <robot> and those that visuals define
+    rejected: bool = field(
+        default=False, compare=False
+    )  # ROS 2 rejects the file: this is what could be read of it
+    incomplete: str = field(
+        default="", compare=False
+    )  # why there may be more links and joints; empty if there are not
+    _links: dict[str, Link] = field(init=False, compare=False, repr=False, hash=False)
+    _joints: dict[str, Joint] = field(init=False, compare=False, repr=False, hash=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_links", {link.known.name: link for link in reversed(self.links)})
+        object.__setattr__(
+            self, "_joints", {joint.known.name: joint for joint in reversed(self.joints)}
+        )
+
+    def link(self, name: str) -> Link:
+        """Return the link of this name; raises MissingElement, which lists the existing names."""
+        return self._links.get(name) or self._raise_missing("link", name, self.links)
+
+    def joint(self, name: str) -> Joint:
+        """Return the joint of this name; raises MissingElement, which lists the existing names."""
+        return self._joints.get(name) or self._raise_missing("joint", name, self.joints)
+
+    def has_joint(self, name: str) -> bool:
+        """Return whether there is a joint of this name."""
+        return name in self._joints
+
+    def has_link(self, name: str) -> bool:
+        """Return whether there is a link of this name."""
+        return name in self._links
+
+    def check_complete(self) -> None:
+        """Raise NotDecided if there may be more links and joints than are known."""
+        if self.incomplete:
+            raise NotDecided(self.incomplete)
+
+    def _raise_missing(self, kind: str, name: str, existing: Iterable[Link | Joint]) -> NoReturn:
+        self.check_complete()
+        known = tuple(element.known.name for element in existing)
+        guess = (
+            did_you_mean(name, known)
+            or f"; the file has: {', '.join(map(quoted, known[:20])) or 'none'}"
+        )
+        raise MissingElement(
+            kind, name, known, message=f"there is no {kind} {quoted(name)}", detail=guess
+        )

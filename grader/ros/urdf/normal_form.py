@@ -1,0 +1,204 @@
+"""The normal form of a robot: equal for files that differ only in what nobody can see, and what a
+copy can change.
+
+What counts: every pose, shape, colour, mass, axis, limit, mimic and dynamics, the tree, and every
+name that something refers to. What does not: comments, white space, the order of elements, the way
+in which numbers are written, defaults written out, rotations of a cylinder or sphere within its
+symmetry, shapes without size, the length of an axis, and axes and limits that ROS 2 does not use
+for a type of joint.
+"""
+
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import fields, is_dataclass
+from hashlib import sha256
+from typing import Any, NamedTuple
+
+from grader.ros.urdf.kinematics import placed_by
+from grader.ros.urdf.model import (
+    Collision,
+    Cylinder,
+    Dynamics,
+    Geometry,
+    Joint,
+    Link,
+    Origin,
+    Robot,
+    Sphere,
+    Visual,
+)
+from grader.ros.urdf.reader import Reading
+from grader.ros.urdf.shapes import is_empty
+from grader.ros.urdf.transforms import AXES, IDENTITY, unit
+from grader.ros.xml.parsing import Element
+
+_MODEL = ("link", "joint", "material")
+_DIGITS, _DECIMALS = (
+    6,
+    12,
+)  # significant digits, of which rounding leaves those after the 12th decimal open
+_TURNING = ("continuous", "revolute", "prismatic", "planar")
+_LIMITED = ("revolute", "prismatic")
+_UNLIMITED = ("fixed", "floating")
+
+
+def normal_form(
+    robot: Robot, kept: Collection[str] = (), *, decimals: int = _DIGITS
+) -> tuple[list[str], list[str]]:
+    """Return the links and joints of a robot as texts, sorted.
+
+    Names that nothing refers to do not count: those of the robot, of materials, of joints that no
+    joint mimics, and of links without a joint. `kept` are names that something outside of the file
+    refers to. Directions are rounded to `decimals`: with 2, half a turn that is written 3.14 is the
+    same in both directions.
+    """
+    mimicked = {joint.mimic.joint for joint in robot.joints if joint.mimic is not None}
+    connected = {name for joint in robot.joints for name in (joint.parent, joint.child)}
+    forms = _Forms(decimals)
+    links = (forms.of_link(link, {*kept, *connected}) for link in robot.links)
+    return _sorted(links), _sorted(
+        forms.of_joint(joint, {*kept, *mimicked}) for joint in robot.joints
+    )
+
+
+def robot_hash(reading: Reading) -> str:
+    """Return the hash of a robot's normal form, with the problems of its file; empty without a
+    robot that has links.
+
+    The problems count because ROS 2 ignores what is wrong: without them, different mistakes could
+    give the same robot.
+    """
+    if reading.robot is None or not reading.robot.links:
+        return ""
+    problems = sorted((problem.code, problem.message) for problem in reading.problems)
+    return _hash((problems, normal_form(reading.robot), _extensions(reading.elements)))
+
+
+def written_form(root: Element | None, *, is_handed_out: bool = False) -> str:
+    """Return the hash of the links, joints and materials as they are written.
+
+    Comments and white space do not count; names, order and the spelling of numbers do. Without
+    other elements, such as `<gazebo>`, the hash is empty: `robot_hash` says who has the same.
+    """
+    children = list(root) if root is not None else []
+    model = [child for child in children if child.tag in _MODEL]
+    return (
+        _hash([*map(_content, model)])
+        if model and (is_handed_out or len(model) < len(children))
+        else ""
+    )
+
+
+def _hash(content: object) -> str:
+    return sha256(repr(content).encode("utf-8", "backslashreplace")).hexdigest()
+
+
+def _extensions(root: Element | None) -> list[tuple[Any, ...]]:
+    """Return what the robot has besides links, joints and materials, such as <gazebo>, sorted."""
+    others = (child for child in root if child.tag not in _MODEL) if root is not None else ()
+    return sorted(map(_content, others), key=repr)
+
+
+def _content(element: Element) -> tuple[Any, ...]:
+    """Return an element and all in it, in document order; the numbers of children tell the levels
+    apart.
+    """
+    return tuple(
+        (
+            str(inner.tag),
+            sorted(inner.attrib.items()),
+            " ".join((inner.text or "").split()),
+            len(inner),
+        )
+        for inner in element.iter()
+    )
+
+
+def _sorted(forms: Iterable[object]) -> list[str]:
+    """Return forms as texts, each once."""
+    return sorted(set(map(repr, forms)))
+
+
+class _Forms(NamedTuple):
+    """The forms of the parts of a robot; directions are rounded to a number of decimals."""
+
+    decimals: int
+
+    def of_link(self, link: Link, kept: Collection[str]) -> object:
+        inertial = link.inertial
+        mass = (
+            (inertial.mass, inertial.inertia, *self._of_pose(inertial.origin)) if inertial else ()
+        )
+        shapes = _sorted(self._of_shapes(link.visuals)), _sorted(self._of_shapes(link.collisions))
+        return link.name if link.name in kept else "", *shapes, _rounded(mass)
+
+    def of_joint(self, joint: Joint, kept: Collection[str]) -> object:
+        kind, limit = joint.type, joint.limit if joint.type not in _UNLIMITED else None
+        moving = (
+            joint.mimic,
+            joint.dynamics or Dynamics(),
+            joint.safety_controller,
+            joint.calibration,
+        )
+        return (
+            joint.parent,
+            joint.child,
+            joint.name if joint.name in kept else "",
+            kind,
+            self._of_pose(joint.origin) if joint.origin is not None else None,
+            self._of_axis(joint),
+            _rounded((limit.lower, limit.upper)) if limit is not None and kind in _LIMITED else (),
+            _rounded((limit.effort, limit.velocity)) if limit is not None else (),
+            _rounded(moving) if kind != "fixed" else (),
+        )
+
+    def _of_shapes(self, shapes: tuple[Visual, ...] | tuple[Collision, ...]) -> Iterator[object]:
+        for shape in shapes:
+            if not is_empty(shape.geometry):
+                material = shape.material if isinstance(shape, Visual) else None
+                colour = (*material.rgba, material.texture) if material is not None else ()
+                position, rotation = self._of_pose(shape.origin, shape.geometry)
+                yield position, _rounded(shape.geometry), rotation, colour
+
+    def _of_pose(
+        self, origin: Origin, geometry: Geometry | None = None
+    ) -> tuple[Any, tuple[float, ...]]:
+        """Return a position and a rotation, without what the symmetry of a shape hides: a cylinder
+        has a line.
+        """
+        pose = placed_by(IDENTITY, origin)
+        rotation = self._of_direction(pose.rotation)
+        match geometry:
+            case Cylinder():
+                line = self._of_direction(pose.rotate(AXES[2]))
+                rotation = max(line, tuple(-value + 0.0 for value in line))  # either way
+            case Sphere():
+                rotation = ()
+        return _rounded(pose.translation), rotation
+
+    def _of_axis(self, joint: Joint) -> object:
+        """Return the direction of an axis; of one without a direction what the file gives, and
+        nothing without use.
+        """
+        if joint.type not in _TURNING:
+            return ()
+        axis = unit(joint.axis) if joint.axis is not None else None
+        return self._of_direction(axis) if axis is not None else joint.axis
+
+    def _of_direction(self, values: tuple[float, ...]) -> tuple[float, ...]:
+        return tuple(round(value, self.decimals) + 0.0 for value in values)
+
+
+def _rounded(value: Any) -> Any:
+    """Return numbers, also those in tuples and elements, without what computing with them may
+    change.
+    """
+    if is_dataclass(value):
+        return tuple(
+            _rounded(getattr(value, field.name)) if field.compare else None
+            for field in fields(value)
+        )
+    if isinstance(value, tuple):
+        return tuple(map(_rounded, value))
+    if isinstance(value, float):
+        return float(f"{round(value, _DECIMALS):.{_DIGITS}g}") + 0.0
+    return value

@@ -1,0 +1,149 @@
+"""The depth to which two shapes overlap.
+
+Boxes, cylinders and spheres are convex and symmetric about their centres. Along a unit direction u
+two of them overlap by `half_width(a, u) + half_width(b, u) - |u . c|`, c being the vector between
+their centres. If no overlap is negative the shapes intersect, and the smallest one is the distance
+that b must move to separate them: the separating axis test (Ericson, Real-Time Collision Detection,
+2004, section 5.2.1). Everything is computed in a's frame.
+"""
+
+from collections.abc import Iterator
+from itertools import product
+from math import copysign, hypot, inf
+
+from grader.ros.urdf.model import Box, Cylinder, Sphere
+from grader.ros.urdf.shapes import Shape, bounding_radius, half_width, shrunk, straight_edges
+from grader.ros.urdf.transforms import Transform, Vector, cross, dot, minus, unit
+
+# metres that sums of coordinates may lose, so that shapes set side by side count as touching
+_ROUNDING = 1e-9
+_LEAN = 1e-5  # metres; cylinders that lean by less along their length count as parallel
+# metres; longer lengths are scaled down, for products of four of them could overflow
+_MAX_LENGTH = 1e6
+
+
+def penetration(
+    a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, allowed: float = 0.0
+) -> float:
+    """Return the penetration depth of two shapes in metres if it is more than `allowed`; otherwise
+    0.0.
+
+    Shapes that touch are separate. Off by less than 0.1 mm, or 1e-4 of the largest length where
+    that is more than 10 m. Raises UnknownShape for a mesh.
+    """
+    limit = allowed + _ROUNDING
+    reach = bounding_radius(a) + bounding_radius(b)
+    if reach - hypot(*minus(T_w_b.translation, T_w_a.translation)) <= limit:
+        return 0.0
+    scale = 1.0
+    if reach > _MAX_LENGTH:
+        scale = min(reach / _MAX_LENGTH, 1e308)
+        a, b, T_w_a, T_w_b = (
+            shrunk(a, scale),
+            shrunk(b, scale),
+            _scale_pose(T_w_a, scale),
+            _scale_pose(T_w_b, scale),
+        )
+    T_a_b = T_w_a.inverse() @ T_w_b
+    depth = _overlap(a, b, T_a_b, least_overlap(a, b, T_a_b, limit / scale)) * scale
+    return depth if depth > limit else 0.0
+
+
+def least_overlap(a: Shape, b: Shape, T_a_b: Transform, limit: float = _ROUNDING) -> Vector:
+    """Return the unit direction along which two shapes overlap least, or one of an overlap up to
+    the limit.
+
+    A few directions are enough for parts that are side by side, and most are.
+    """
+
+    def overlap(direction: Vector) -> float:
+        return _overlap(a, b, T_a_b, direction)
+
+    best, least = (0.0, 0.0, 1.0), inf
+    for direction in _likely_directions(a, b, T_a_b):
+        found = overlap(direction)
+        if found < least:
+            best, least = direction, found
+        if least <= limit:
+            return best
+    if not isinstance(a, Sphere) and not isinstance(b, Sphere) and _rims_matter(a, b, T_a_b):
+        from grader.ros.urdf.edge_overlap import least_edge_overlap  # late: it loads numpy
+
+        best = min(best, least_edge_overlap(a, b, T_a_b), key=overlap)
+    return best
+
+
+def _scale_pose(pose: Transform, scale: float) -> Transform:
+    x, y, z = pose.translation
+    return Transform(pose.rotation, (x / scale, y / scale, z / scale))
+
+
+def _overlap(a: Shape, b: Shape, T_a_b: Transform, direction: Vector) -> float:
+    """Return the length that two shapes share along a unit direction; a negative one is a gap."""
+    centres = abs(dot(direction, T_a_b.translation))
+    return half_width(a, direction) + half_width(b, T_a_b.unrotate(direction)) - centres
+
+
+def _likely_directions(a: Shape, b: Shape, T_a_b: Transform) -> Iterator[Vector]:
+    """Yield unit directions, one of which shows for most separate shapes that they are separate.
+
+    If no rim matters, the least overlap of intersecting shapes is along one of these.
+    """
+    c = T_a_b.translation
+    edges_a = straight_edges(a)
+    edges_b = [T_a_b.rotate(edge) for edge in straight_edges(b)]
+    yield from edges_a
+    yield from edges_b
+    yield unit(c) or (0.0, 0.0, 1.0)
+    if isinstance(a, Cylinder):
+        x, y, _ = T_a_b.rotate(_vector_from_nearest(b, T_a_b.unrotate(c)))
+        yield unit((x, y, 0.0)) or (1.0, 0.0, 0.0)
+    if isinstance(b, Cylinder):
+        x, y, _ = T_a_b.unrotate(_vector_from_nearest(a, c))
+        yield T_a_b.rotate(unit((x, y, 0.0)) or (1.0, 0.0, 0.0))
+    if isinstance(b, Sphere):
+        yield unit(_outside(a, c)) or (1.0, 0.0, 0.0)
+    if isinstance(a, Sphere):
+        yield T_a_b.rotate(unit(_outside(b, T_a_b.unrotate(c))) or (1.0, 0.0, 0.0))
+    for p, q in product(edges_a, edges_b):
+        normal = cross(p, q)
+        length = hypot(*normal)
+        if length > _ROUNDING:
+            yield (normal[0] / length, normal[1] / length, normal[2] / length)
+
+
+def _vector_from_nearest(shape: Shape, point: Vector) -> Vector:
+    """Return the vector to a point from the nearest point of a box, or from the centre of a round
+    shape.
+    """
+    if not isinstance(shape, Box):
+        return point
+    x, y, z = (
+        copysign(max(abs(p) - abs(size) / 2.0, 0.0), p)
+        for p, size in zip(point, shape.size, strict=True)
+    )
+    return (x, y, z)
+
+
+def _outside(shape: Shape, point: Vector) -> Vector:
+    """Return the vector to a point from the nearest point of a shape; zero for a point in a box or
+    cylinder.
+    """
+    if not isinstance(shape, Cylinder):
+        return _vector_from_nearest(shape, point)
+    x, y, z = point
+    out = max(1.0 - abs(shape.radius) / hypot(x, y), 0.0) if hypot(x, y) else 0.0
+    return (x * out, y * out, copysign(max(abs(z) - abs(shape.length) / 2.0, 0.0), z))
+
+
+def _rims_matter(a: Shape, b: Shape, T_a_b: Transform) -> bool:
+    """Return whether a cylinder leans against all edges of the other shape by more than `_LEAN`.
+
+    The overlap with a cylinder parallel to an edge, as most are, is a problem in the plane, without
+    rims.
+    """
+    if isinstance(a, Box) and isinstance(b, Box):
+        return False
+    edges = product(straight_edges(a), map(T_a_b.rotate, straight_edges(b)))
+    tilt = min((hypot(*cross(p, q)) for p, q in edges), default=0.0)
+    return tilt * (bounding_radius(a) + bounding_radius(b)) > _LEAN

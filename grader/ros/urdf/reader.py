@@ -1,0 +1,451 @@
+"""Read a URDF as ROS 2 (Jazzy) does, and report everything that is wrong with it, also names
+that look misspelt.
+"""
+
+import os
+import re
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+from grader.base.problems import Effect, Problem, causes, in_order
+from grader.base.source import Source
+from grader.base.text import enumerated, quoted
+from grader.files.limits import ROBOT_ENDINGS
+from grader.files.reading import read_capped
+from grader.ros.urdf import urdf_problems
+from grader.ros.urdf.diagnostics import Problems
+from grader.ros.urdf.joint_reader import check_references, read_joint
+from grader.ros.urdf.kinematics import SINGLE
+from grader.ros.urdf.link_reader import Materials, read_link
+from grader.ros.urdf.link_tree import check_tree
+from grader.ros.urdf.model import Joint, Link, Robot
+from grader.ros.urdf.numbers import is_version_one
+from grader.ros.xml.parsing import Element, Unresolved, XmlDocument, read_document
+from grader.ros.xml.python_xml import python_xml_error
+from grader.ros.xml.urdf_format import (
+    ATTRIBUTES,
+    CHILDREN,
+    ELSEWHERE,
+    OWNERS,
+    PARTS,
+    TAGS,
+    numbers_in,
+)
+from grader.ros.xml.xml_problems import NOT_WELL_FORMED
+
+if TYPE_CHECKING:
+    from grader.ros.urdf.meant import Word
+
+
+Verdict = Literal["clean", "degraded", "rejected"]
+
+# for which ROS 2 rejects a file: with more of them, no word is read as another one
+_MAX_CAUSES = 300
+_FATAL: frozenset[Effect] = frozenset({"rejects", "undetermined"})
+_XACRO = re.compile(r"<xacro:|\$\{|\$\(")
+# Correct names that urdfdom does not read: they are not misspellings.
+_EXTENSIONS = frozenset(
+    {"gazebo", "transmission", "hardwareInterface", "ros2_control", "sensor", "plugin"}
+    | {"drake", "mujoco", "capsule", "verbose"}
+)
+
+
+class Reading(NamedTuple):
+    """A URDF as ROS 2 (Jazzy) reads it: the verdict, the robot, and everything that is wrong with
+    the file.
+
+    `read_urdf` makes it of any text, and never raises; xacro is expanded before, in
+    `grader.ros.xacro`. A submission holds the reading of its URDF; checks get it as `urdf`, reports
+    list its problems, and hints edit what it was read from.
+
+    >>> text = '<robot name="r"><link name="base"/><joint name="j" type="fixed"/></robot>'
+    >>> reading = read_urdf(text)
+    >>> reading.verdict
+    'rejected'
+    >>> [link.name for link in reading.robot.links]
+    ['base']
+    >>> reading.problems[0].code, reading.problems[0].location.column
+    ('URDF070', 36)
+    """
+
+    verdict: Verdict
+    robot: Robot | None  # as much as could be read, also of a rejected file; None if nothing could
+    problems: tuple[Problem, ...]  # in the order of the file
+    source: Source  # the text that the places of problems and elements are in
+    root: Element | None = None  # the <robot> that was read; None where the text is not XML
+    unresolved: Mapping[Element, Unresolved] = {}  # what xacro leaves open
+    recovered: Element | None = None  # the <robot> that was read where the text is not XML
+    # whether ROS 2 would load the robot, which is read with the words in `undone` undone
+    is_meant: bool = False
+    # the tags and words for which ROS 2 rejects the file, and that surely are others
+    undone: "tuple[Word, ...]" = ()
+
+    @property
+    def elements(self) -> Element | None:
+        """The element that the robot was read from, also where the text is not XML."""
+        return self.root if self.root is not None else self.recovered
+
+    @property
+    def is_certain(self) -> bool:
+        """Return whether the verdict is certain, although a part of the file may be unknown."""
+        return not self.undetermined or any(
+            problem.kind.effect == "rejects" for problem in self.problems
+        )
+
+    @property
+    def undetermined(self) -> str:
+        """Why the robot is not known completely; empty if it is."""
+        return next(
+            (problem.message for problem in self.problems if problem.kind.effect == "undetermined"),
+            "",
+        )
+
+
+def read_urdf(source: bytes | str | os.PathLike[str], path: str = "robot.urdf") -> Reading:
+    """Read a URDF as ROS 2 Jazzy does (urdfdom on TinyXML2).
+
+    The verdict is `clean`; `degraded`, if content is dropped or links are omitted of the tree; or
+    `rejected`. Every problem is reported, sorted by location.
+
+    Args:
+        source: The path of a file, or the text or bytes of one. A str that ends in `.urdf`,
+            `.xacro` or `.xml` is a path. Xacro is not expanded.
+        path: The name of the file in locations; default: that of `source`.
+
+    Raises:
+        GraderError: There is no file at the path, or it cannot be read. No text raises.
+
+    >>> [link.name for link in read_urdf("rubrics/arm/arm.urdf").robot.links][:2]
+    ['world', 'base_link']
+    >>> read_urdf("<robot").verdict
+    'rejected'
+    """
+    if isinstance(source, os.PathLike) or (
+        isinstance(source, str) and source.endswith((*ROBOT_ENDINGS, ".xml"))
+    ):
+        path = os.fspath(source)
+        source = read_capped(path)
+    given = source.encode("utf-8", "surrogatepass") if isinstance(source, str) else source
+    return read_robot(read_document(given, path))
+
+
+def read_robot(document: XmlDocument) -> Reading:
+    """Read a document as `read_urdf` does; its list of problems is extended."""
+    root, source, listed = document.root, document.source, document.problems
+    for content in (root, document.recovered):
+        if content is not None and content.tag == "robot":
+            return _read_content(document, content)
+    effects = {problem.kind.effect for problem in listed}
+    if effects.isdisjoint(_FATAL):
+        effects.add("rejects")
+        message, at = (
+            "the file has no <robot> at its top level; ROS 2 rejects it",
+            source.at(document.first_tag),
+        )
+        if root is not None:
+            message = (
+                "the root of the file is "
+                f"<{root.tag.rpartition('}')[2]}>, expected <robot>; ROS 2 rejects it"
+            )
+            at = source.tag(0)
+        listed.append(Problem(urdf_problems.NO_ROBOT, message, at))
+    return Reading(_verdict(effects), None, in_order(listed), source, root, document.unresolved)
+
+
+def _read_content(document: XmlDocument, root: Element) -> Reading:
+    """Return what is read of a robot: if ROS 2 rejects it for words that surely stand for
+    others, with these undone.
+    """
+    listed = document.problems
+    robot, problems = _read_robot(document, root)
+    effects = {problem.kind.effect for problem in listed} | problems.effects
+    found, incomplete = (
+        problems.listed,
+        _why_incomplete(document, robot) if effects.intersection(_FATAL) else "",
+    )
+    is_meant = document.is_meant and "rejects" not in problems.effects
+    undone: tuple[Word, ...] = ()
+    if document.is_meant and not is_meant and not incomplete and len(causes(found)) <= _MAX_CAUSES:
+        from grader.ros.urdf.meant import read_as_meant  # late: few files are rejected
+
+        meant = read_as_meant(root, robot, partial(_read_robot, document, root))
+        if meant is not None:
+            is_meant, robot, undone = True, meant.robot, tuple(meant.words)
+            found = [*causes(found), *meant.problems]
+    if document.root is None:
+        broken = {problem.location.line for problem in listed}
+        found = [
+            it for it in found if not it.kind.is_consequence and it.location.line not in broken
+        ]
+    listed += found
+    if problems.unlisted:
+        message = f"{problems.unlisted} more problems of this file are not listed"
+        listed.append(
+            Problem(urdf_problems.UNLISTED, message, document.source.at(len(document.source.text)))
+        )
+    verdict = _verdict(effects)
+    if verdict != "rejected" and not document.is_expanded:
+        listed += _problems_for_python(document, robot)
+    if verdict == "rejected":
+        robot = replace(
+            robot, rejected=not is_meant or "undetermined" in effects, incomplete=incomplete
+        )
+    places = (document.source, document.root, document.unresolved, document.recovered)
+    return Reading(verdict, robot, in_order(listed), *places, is_meant, undone)
+
+
+def _problems_for_python(document: XmlDocument, robot: Robot) -> Iterator[Problem]:
+    """Yield that joint_state_publisher cannot read the file, if it has joints for which it
+    publishes positions.
+    """
+    is_moving = any(joint.type in SINGLE for joint in robot.joints)
+    error = python_xml_error(document.source.text) if is_moving else None
+    if error is None:
+        return
+    at = document.source.at(error.offset)
+    same_line = (
+        it.subject
+        for it in document.problems
+        if it.location.line == at.line and it.kind is NOT_WELL_FORMED
+    )
+    message = f"joint_state_publisher cannot read this file ({next(same_line, error.message)})"
+    message += ": in RViz no moving link has a transform"
+    yield Problem(urdf_problems.NOT_FOR_PYTHON, message, at)
+
+
+def _verdict(effects: Collection[Effect]) -> Verdict:
+    if not _FATAL.isdisjoint(effects):
+        return "rejected"
+    return "degraded" if "drops" in effects else "clean"
+
+
+def _read_robot(document: XmlDocument, root: Element) -> tuple[Robot, Problems]:
+    problems = Problems(document, root)
+    if root.get("name") is None:
+        problems.add(
+            urdf_problems.ROBOT_WITHOUT_NAME, "<robot> has no name; ROS 2 rejects the file", root
+        )
+    version = root.get("version")
+    if version is not None and not is_version_one(version):
+        message = f'version="{version[:40]}" is not supported, expected 1.0; ROS 2 rejects the file'
+        problems.add(urdf_problems.BAD_VERSION, message, root, "version")
+    materials = Materials(problems)
+    for element in root.iterchildren("material"):
+        materials.define(element)
+    links: dict[str, Link] = {}
+    elements: dict[str, Element] = {}
+    for element in root.iterchildren("link"):
+        link = read_link(element, problems, materials)
+        if link.name in links:
+            problems.duplicate(urdf_problems.DUPLICATE_LINK, element, elements[link.name])
+        else:
+            links[link.name], elements[link.name] = link, element
+    if not links:
+        problems.add(
+            urdf_problems.NO_LINKS, "the robot has no <link>; ROS 2 rejects the file", root
+        )
+    robot = Robot(
+        root.get("name") or "",
+        tuple(links.values()),
+        _read_joints(root, problems),
+        tuple(materials.known.values()),
+    )
+    check_references(robot, problems)
+    check_tree(robot, elements, problems)
+    _check_spelling(root, problems)
+    _check_root_inertia(robot, elements, problems)
+    if root is document.root:
+        _check_text(problems, is_expanded=document.is_expanded)
+    return robot, problems
+
+
+def _why_incomplete(document: XmlDocument, robot: Robot) -> str:
+    """Return why there may be more links and joints than are known: unknown content, or the name
+    of one is unknown.
+    """
+    root = document.root if document.root is not None else document.recovered
+    of_root = document.unresolved.get(root) if root is not None else None
+    if of_root is not None and of_root.content:
+        return of_root.content
+    parts = [
+        *(link.unresolved for link in robot.links),
+        *(joint.unresolved for joint in robot.joints),
+    ]
+    named = (
+        found[key].reason for found in parts for key in ("@name", "parent", "child") if key in found
+    )
+    return next(filter(None, named), "")
+
+
+def _read_joints(root: Element, problems: Problems) -> tuple[Joint, ...]:
+    joints: list[Joint] = []
+    elements: dict[str, Element] = {}
+    for element in root.iterchildren("joint"):
+        joint = read_joint(element, problems)
+        joints.append(joint)
+        if (
+            element.get("name") is not None
+            and elements.setdefault(joint.name, element) is not element
+        ):
+            problems.duplicate(urdf_problems.DUPLICATE_JOINT, element, elements[joint.name])
+    return tuple(joints)
+
+
+def _check_root_inertia(robot: Robot, links: dict[str, Element], problems: Problems) -> None:
+    children = {joint.child for joint in robot.joints}
+    for link in robot.links:
+        if link.inertial is not None and link.name not in children:
+            message = (
+                f"the root link {quoted(link.name)} has an inertia: KDL ignores it, "
+                "robot_state_publisher warns"
+            )
+            problems.add(
+                urdf_problems.ROOT_INERTIA, message, next(links[link.name].iterchildren("inertial"))
+            )
+
+
+def find_xacro(text: str) -> int | None:
+    """Return the offset of the first xacro in a text outside of comments: a tag, ${...} or
+    $(...).
+    """
+    if "$" not in text and "xacro:" not in text:
+        return None
+    comments = list(_comment_spans(text))
+    outside = zip(
+        [0, *(end for _, end in comments)],
+        [*(start for start, _ in comments), len(text)],
+        strict=True,
+    )
+    found = next(filter(None, (_XACRO.search(text, *span) for span in outside)), None)
+    return found.start() if found is not None else None
+
+
+def _check_text(problems: Problems, *, is_expanded: bool) -> None:
+    text = problems.source.text
+    xacro = find_xacro(text) if not is_expanded else None
+    if xacro is not None:
+        from shlex import quote  # late: most files are no xacro
+
+        name = problems.source.path.rpartition("/")[2]
+        message = (
+            "this is xacro, which ROS 2 does not evaluate in a .urdf: run `ros2 run xacro "
+            f"xacro {quote(name)}`"
+        )
+        problems.listed.append(Problem(urdf_problems.RAW_XACRO, message, problems.source.at(xacro)))
+    for start, end in _comment_spans(text):
+        if text.find(": ", start, end) >= 0 or text.find("\t", start, end) >= 0:
+            message = "this comment contains a colon and a space, or a tab"
+            message += ": it can stop a launch file that passes the URDF as YAML"
+            problems.listed.append(
+                Problem(urdf_problems.COMMENT_TRAP, message, problems.source.at(start))
+            )
+            break
+
+
+def _comment_spans(text: str) -> Iterator[tuple[int, int]]:
+    """Yield the offsets at which each comment begins and ends."""
+    start = text.find("<!--")
+    while start >= 0 and (end := text.find("-->", start + 4)) >= 0:
+        yield start, end
+        start = text.find("<!--", end)
+
+
+def _check_spelling(root: Element, problems: Problems) -> None:
+    """Report misspelt names and repeated elements in what urdfdom reads; extensions of other tools
+    are skipped.
+    """
+    if not ATTRIBUTES["robot"].issuperset(root.keys()):
+        _check_attributes(root, problems)
+    waiting = [root]
+    while waiting:
+        element = waiting.pop()
+        allowed = CHILDREN.get(element.tag, ())
+        tags = []
+        for child in element:
+            tag = child.tag
+            tags.append(tag)
+            if tag in allowed:
+                if not ATTRIBUTES[tag].issuperset(child.keys()):
+                    _check_attributes(child, problems)
+                if len(child):
+                    waiting.append(child)
+            else:
+                _check_unread(child, element, allowed, problems)
+        if (
+            element is not root
+            and len(tags) > 1
+            and (len(set(tags)) < len(tags) or element.tag == "geometry")
+        ):
+            _check_repeated(element, tags, problems)
+
+
+def _check_attributes(element: Element, problems: Problems) -> None:
+    known, given = ATTRIBUTES[element.tag], list(map(str, element.keys()))
+    missing = known - set(given)
+    for name in given:
+        if name in known or name.startswith("{"):
+            continue
+        meant = TAGS[element.tag].aliases.get(name) or problems.closest(name, missing)
+        message = f"ROS 2 ignores the unknown attribute {quoted(name)} of <{element.tag}>"
+        if meant:
+            message += f"; did you mean {quoted(meant)}?"
+            problems.add(urdf_problems.MISSPELT, message, element, name, str(element.tag))
+        elif PARTS.get(name) and any(
+            numbers_in(element.get(name) or "")
+        ):  # a place that the student gives something
+            owners = enumerated([f"<{tag}>" for tag in OWNERS[name]])
+            problems.add(
+                urdf_problems.MISSPELT,
+                f"{message}: it belongs to {owners}",
+                element,
+                name,
+                str(element.tag),
+            )
+
+
+def _check_unread(
+    child: Element, parent: Element, allowed: tuple[str, ...], problems: Problems
+) -> None:
+    """Report an element that urdfdom does not read, unless it is in the place of an extension."""
+    if child.tag not in _EXTENSIONS or (child.tag in ELSEWHERE and parent is not problems.root):
+        _check_tag(child, parent.tag, allowed, problems)
+    elif child.tag == "gazebo":
+        for inner in child.iterchildren("ros2_control", "transmission"):
+            _check_tag(inner, child.tag, (), problems)
+
+
+def _check_tag(child: Element, parent: str, allowed: tuple[str, ...], problems: Problems) -> None:
+    if child.tag.startswith("{"):  # a prefix is not a misspelling
+        return
+    instead = ELSEWHERE.get(child.tag, "")
+    meant = problems.closest(child.tag, allowed) if not instead else None
+    if instead:
+        message = f"<{child.tag}> in <{parent}> is ignored: {instead}"
+    elif meant:
+        message = f"ROS 2 ignores <{child.tag}> in <{parent}>; did you mean <{meant}>?"
+    elif child.tag in ATTRIBUTES:
+        message = f"ROS 2 ignores <{child.tag}> in <{parent}>: it does not belong there"
+    else:
+        return
+    problems.add(urdf_problems.MISSPELT, message, child, subject=meant or str(child.tag))
+
+
+def _check_repeated(element: Element, tags: list[str], problems: Problems) -> None:
+    seen: set[str] = set()
+    for child, tag in zip(element, tags, strict=True):
+        if element.tag == "geometry" and seen:
+            problems.add(
+                urdf_problems.REPEATED_ELEMENT,
+                "a <geometry> has one shape: ROS 2 reads only the first",
+                child,
+            )
+        elif (
+            tag in seen
+            and tag in TAGS[element.tag].children
+            and tag not in TAGS[element.tag].repeated
+        ):
+            message = f"<{tag}> is repeated in this <{element.tag}>: ROS 2 reads only the first"
+            problems.add(urdf_problems.REPEATED_ELEMENT, message, child)
+        seen.add(tag)

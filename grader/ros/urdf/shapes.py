@@ -1,0 +1,264 @@
+"""The size of a robot's shapes: support points, extents, volumes; how far a placed shape differs
+from another one.
+
+Lengths are metres. A negative size counts as its absolute value: urdfdom accepts it, and a shape
+that is symmetric about its centre does not change when it is mirrored. Shapes are compared as
+solids: symmetries, such as the turn of a sphere, do not count.
+"""
+
+from collections.abc import Iterator
+from itertools import permutations, product
+from math import acos, asin, degrees, hypot, inf, nan, pi
+from typing import NamedTuple
+
+from grader.base.text import quoted
+from grader.ros.urdf.model import Box, Cylinder, Geometry, Mesh, Sphere
+from grader.ros.urdf.transforms import AXES, Rotation, Transform, Vector, dot, minus, unit
+
+Shape = Box | Cylinder | Sphere
+
+# relative to its length; a direction that leans less from a face's normal means the whole face
+_TIE = 1e-9
+_CORNERS = tuple(
+    product((1.0,), (1.0, -1.0), (1.0, -1.0))
+)  # the signs of four; the others are opposite to these
+
+
+class UnknownShape(ValueError):
+    """The size of a shape is needed, but not known; `geometry` is that shape."""
+
+    def __init__(self, geometry: Mesh) -> None:
+        super().__init__(
+            f"the size of mesh {quoted(geometry.filename)} is unknown: mesh files are not opened"
+        )
+        self.geometry = geometry
+
+
+def half_width(geometry: Geometry, direction: Vector) -> float:
+    """Return the extent (m) of a shape from its centre along a unit direction of its frame;
+    UnknownShape for a mesh.
+
+    This is the shape's support function (Ericson, Real-Time Collision Detection, 2004, section
+    4.3). The cylinder's `hypot` has no cancellation near its axis, which `sqrt(1 - z * z)` would
+    have.
+    """
+    x, y, z = direction
+    if isinstance(geometry, Box):
+        a, b, c = geometry.size
+        return (abs(a * x) + abs(b * y) + abs(c * z)) / 2.0
+    if isinstance(geometry, Cylinder):
+        return abs(geometry.length * z) / 2.0 + abs(geometry.radius) * hypot(x, y)
+    if isinstance(geometry, Sphere):
+        return abs(geometry.radius)
+    raise UnknownShape(geometry)
+
+
+def support(geometry: Geometry, direction: Vector) -> Vector:
+    """Return the farthest point of a shape along a direction of its frame; the middle of them if
+    several tie.
+
+    Metres, in the shape's frame; the direction need not be unit, and a zero one gives the centre.
+    Raises UnknownShape for a mesh.
+    """
+    x, y, z = direction
+    tie = _TIE * max(abs(x), abs(y), abs(z))
+    if isinstance(geometry, Box):
+        a, b, c = geometry.size
+        return (_signed_half(a, x, tie), _signed_half(b, y, tie), _signed_half(c, z, tie))
+    if isinstance(geometry, Cylinder):
+        outward = unit((x, y, 0.0)) if hypot(x, y) > tie else None
+        radius = abs(geometry.radius)
+        x, y, _ = outward or (0.0, 0.0, 0.0)
+        return (radius * x, radius * y, _signed_half(geometry.length, z, tie))
+    if isinstance(geometry, Sphere):
+        radius = abs(geometry.radius)
+        x, y, z = unit(direction) or (0.0, 0.0, 0.0)
+        return (radius * x, radius * y, radius * z)
+    raise UnknownShape(geometry)
+
+
+def extent(geometry: Geometry, T_frame_shape: Transform, direction: Vector) -> tuple[float, float]:
+    """Return the smallest and the largest coordinate of a shape along a unit direction of the
+    frame, metres.
+
+    Raises UnknownShape for a mesh.
+    """
+    middle = dot(T_frame_shape.translation, direction)
+    half = half_width(geometry, T_frame_shape.unrotate(direction))
+    return (middle - half, middle + half)
+
+
+def farthest(geometry: Geometry, T_frame_shape: Transform, direction: Vector) -> Vector:
+    """Return the farthest point of a shape along a direction of the frame; the middle of them if
+    several tie.
+
+    Metres, in the frame. Raises UnknownShape for a mesh.
+    """
+    return T_frame_shape.apply(support(geometry, T_frame_shape.unrotate(direction)))
+
+
+def volume(geometry: Geometry) -> float:
+    """Return the volume of a shape in cubic metres; UnknownShape for a mesh."""
+    if isinstance(geometry, Box):
+        a, b, c = geometry.size
+        return abs(a * b * c)
+    if isinstance(geometry, Cylinder):
+        return pi * geometry.radius * geometry.radius * abs(geometry.length)
+    if isinstance(geometry, Sphere):
+        return 4.0 / 3.0 * pi * geometry.radius * geometry.radius * abs(geometry.radius)
+    raise UnknownShape(geometry)
+
+
+def is_empty(geometry: Geometry) -> bool:
+    """Return whether a shape is invisible, because it has neither a volume nor an area.
+
+    That is a box with two or three zero edges (with one it is a plate, which RViz shows), a
+    cylinder or sphere of zero radius (a cylinder of zero length is a disc), and a mesh scaled by
+    zero along all three axes.
+    """
+    if isinstance(geometry, Box):
+        return geometry.size.count(0.0) >= 2
+    if isinstance(geometry, Mesh):
+        return not any(geometry.scale)
+    return geometry.radius == 0.0
+
+
+def straight_edges(geometry: Geometry) -> list[Vector]:
+    """Return the directions of the straight edges of a shape, which are the normals of its flat
+    faces too.
+    """
+    if isinstance(geometry, Box):
+        return [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
+    return [(0.0, 0.0, 1.0)] if isinstance(geometry, Cylinder) else []
+
+
+def bounding_radius(shape: Shape) -> float:
+    """Return the radius of the smallest ball about a shape's centre that contains it."""
+    if isinstance(shape, Box):
+        x, y, z = shape.size
+        return hypot(x / 2.0, y / 2.0, z / 2.0)
+    if isinstance(shape, Cylinder):
+        return hypot(shape.radius, shape.length / 2.0)
+    return half_width(shape, (0.0, 0.0, 1.0))
+
+
+def shrunk(shape: Shape, scale: float) -> Shape:
+    """Return a shape with its lengths divided by a scale."""
+    if isinstance(shape, Box):
+        x, y, z = shape.size
+        return Box((x / scale, y / scale, z / scale))
+    if isinstance(shape, Cylinder):
+        return Cylinder(shape.radius / scale, shape.length / scale)
+    return Sphere(shape.radius / scale)
+
+
+def _signed_half(size: float, component: float, tie: float) -> float:
+    if abs(component) <= tie:
+        return 0.0
+    return abs(size) / 2.0 if component > 0.0 else -abs(size) / 2.0
+
+
+class Mismatch(NamedTuple):
+    """The differences of two shapes in metres: how far the centres are apart, the largest
+    difference of a size, and how far the turn of one against the other moves a point of the
+    surface. `angle` is that turn in degrees.
+    """
+
+    apart: float
+    size: float
+    turn: float
+    angle: float
+
+    @property
+    def largest(self) -> float:
+        """The largest of the differences in metres; NaN where they overflow."""
+        three = (self.apart, self.size, self.turn)
+        return max(three) if sum(three) < inf else nan
+
+
+def mismatch(
+    a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, tolerance: float, *, turned: bool = True
+) -> Mismatch | None:
+    """Return how two shapes differ, with as few differences beyond a tolerance as their symmetries
+    allow.
+
+    None for shapes of different kinds. Without `turned`, their orientations do not count.
+    """
+    apart = hypot(*minus(T_w_a.translation, T_w_b.translation))
+    found = [
+        Mismatch(apart, *(way if turned else (way[0], 0.0, 0.0)))
+        for way in _differences_by_pose(a, T_w_a, b, T_w_b)
+    ]
+    return min(
+        found,
+        key=lambda way: (not way.size <= tolerance) + (not way.turn <= tolerance),
+        default=None,
+    )
+
+
+def turn_between(one: Rotation, other: Rotation) -> float:
+    """Return the angle in degrees of the rotation from one to the other."""
+    trace = sum(
+        a * b for a, b in zip(one, other, strict=True)
+    )  # of that rotation: 1 + 2 cos(angle)
+    return degrees(acos(max(-1.0, min(1.0, (trace - 1.0) / 2.0))))
+
+
+def _differences_by_pose(
+    a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform
+) -> Iterator[tuple[float, float, float]]:
+    """Yield the size, turn and angle of the difference for each way to lay a shape over another,
+    aligned axes first.
+    """
+    match a, b:
+        case Sphere(), Sphere():
+            yield _size_difference(a.radius, b.radius), 0.0, 0.0
+        case Cylinder(), Cylinder():
+            size = max(_size_difference(a.radius, b.radius), _size_difference(a.length, b.length))
+            lean = _nearest_chord(T_w_a.rotate(AXES[2]), T_w_b.rotate(AXES[2]))
+            yield size, hypot(*lean) * hypot(a.radius, a.length / 2.0), _chord_angle(lean)
+        case Box(), Box():
+            ours, theirs = ([T.rotate(axis) for axis in AXES] for T in (T_w_a, T_w_b))
+            for order in permutations(range(3)):
+                size = max(
+                    _size_difference(edge, b.size[other])
+                    for edge, other in zip(a.size, order, strict=True)
+                )
+                leans = [
+                    _nearest_chord(axis, theirs[other])
+                    for axis, other in zip(ours, order, strict=True)
+                ]
+                yield size, _corner_motion(a.size, leans), max(map(_chord_angle, leans))
+
+
+def _size_difference(one: float, other: float) -> float:
+    return abs(one - other)  # a negative size is a mistake, which simulators refuse
+
+
+def _nearest_chord(one: Vector, other: Vector) -> Vector:
+    """Return the vector from a unit vector to another or to its opposite, whichever is nearer."""
+    side = 1.0 if dot(one, other) >= 0.0 else -1.0
+    return (side * other[0] - one[0], side * other[1] - one[1], side * other[2] - one[2])
+
+
+def _chord_angle(chord: Vector) -> float:
+    """Return the angle in degrees between the unit vectors that a vector connects."""
+    return degrees(2.0 * asin(min(1.0, hypot(*chord) / 2.0)))
+
+
+def _corner_motion(size: Vector, leans: list[Vector]) -> float:
+    """Return how far the farthest corner of a box moves if the directions of its edges change by
+    these vectors.
+    """
+    return max(
+        hypot(
+            *(
+                sum(
+                    s * edge / 2.0 * lean[k]
+                    for s, edge, lean in zip(signs, size, leans, strict=True)
+                )
+                for k in range(3)
+            )
+        )
+        for signs in _CORNERS
+    )

@@ -1,0 +1,183 @@
+"""Frames and joints: those of the robot and of static transforms, and where other files name
+them.
+"""
+
+import re
+from collections.abc import Iterator
+from itertools import pairwise
+
+from grader.base.source import LazyLocation, Location
+from grader.ros.config.yaml_values import YamlValue, is_parameters, values_in
+from grader.ros.known.known import known
+from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
+from grader.ros.urdf.model import Robot
+from grader.ros.workspace.gazebo import roots, system_of
+from grader.ros.workspace.names import Definition, Fact, Mismatch, Open, Use
+from grader.ros.workspace.workspace import Workspace
+from grader.ros.xml.parsing import Element
+
+_JOINTS = re.compile(r"(^|_)joints?$|(wheels?|joints?)_names?$")
+_FRAMES = re.compile(r"(^|_)(frame|frame_id)$")
+# What a program calls the frames that it makes itself.
+_OWN_FRAMES = re.compile(
+    r"^(odom|map|world|global|fixed|parent|target)_frame(_id)?$|^frame_prefix$"
+)
+_GAZEBO_FRAMES = ("gz_frame_id", "ignition_frame_id", "frame_id", "frame_name", "frameName")
+_GAZEBO_JOINTS = (
+    "left_joint",
+    "right_joint",
+    "joint_name",
+    "left_steering_joint",
+    "right_steering_joint",
+)
+
+# Systems of gz-sim that publish odometry, the elements that name its frames, and the default beside
+# the robot's links.
+_ODOMETRY = (
+    "AckermannSteering",
+    "DiffDrive",
+    "MecanumDrive",
+    "OdometryPublisher",
+    "TrackedVehicle",
+)
+_ODOMETRY_FRAMES = ("frame_id", "child_frame_id", "odom_frame", "robot_base_frame")
+_DEFAULT_FRAMES = ("odom", "base_footprint")
+
+
+def frame_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the frames and joints that are defined, and those that YAML, SRDF, Gazebo and
+    transforms name.
+    """
+    robot = workspace.robot
+    if robot is None or not robot.links:
+        return
+    for link in robot.links:
+        yield Definition("frame", link.name, _place(link.location))
+        yield Definition("link", link.name, _place(link.location))
+    yield from (Definition("joint", joint.name, _place(joint.location)) for joint in robot.joints)
+    start = _place(robot.links[0].location)
+    yield from (Definition("frame", name, start) for name in known()["frames"])
+    yield from _openings(workspace)
+    yield from _static_transforms(workspace, robot)
+    controllers = workspace.typed_sections
+    for _, tree in workspace.trees:
+        if is_parameters(tree):
+            for value in values_in(tree):
+                yield from _in_yaml(value, is_of_controller=not controllers.isdisjoint(value.keys))
+    yield from _in_robot(workspace)
+    yield from _of_odometry(workspace, robot)
+
+
+def _place(location: LazyLocation | None) -> Location:
+    return location.resolve() if location is not None else Location("", 1, 1)
+
+
+def _openings(workspace: Workspace) -> Iterator[Fact]:
+    """Yield that there may be other names: of other robots, and of programs that may publish
+    frames.
+    """
+    if workspace.has_other_robots:
+        yield from (Open("frame"), Open("link"), Open("joint"), Open("group"))
+    for _, _, launch in workspace.launches:
+        if launch.more:
+            yield Open("frame", reason=launch.more)
+    packages = {package.name for package in workspace.packages}
+    for _, node in workspace.nodes:
+        if node.package not in known()["without_frames"] and node.package not in packages:
+            yield Open("frame")
+    if any(
+        package.is_cmake and package.installation and package.installation.programs
+        for package in workspace.packages
+    ):
+        yield Open("frame")
+    if any("TransformBroadcaster" in text for text in workspace.python_texts):
+        yield Open("frame")
+
+
+def _static_transforms(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
+    children = {joint.child: joint for joint in robot.joints}
+    for _, node in workspace.nodes:
+        if (node.package, node.executable) != STATIC_PUBLISHER:
+            continue
+        parent, child = frames_named(node)
+        if not parent or not child or None in (node.arguments or (None,)):
+            yield Open(
+                "frame", reason="the frames of a static_transform_publisher are not evaluated"
+            )
+            continue
+        yield Definition("frame", child, node.location)
+        yield Use("frame", parent, node.location, "static_transform_publisher")
+        own = children[child].parent if child in children else parent
+        if own != parent:
+            at = _place(children[child].location)
+            message = f"the frame {child!r} has two parents: {own!r} in the robot, {parent!r} here"
+            yield Mismatch("frames", message, node.location, at, is_sure=node.when is True)
+
+
+def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:
+    """Yield the joints and frames that a parameter names; what a node of another kind calls joints
+    may be others.
+    """
+    key = value.keys[-1] if value.keys else ""
+    if _JOINTS.search(key):
+        for text, node in value.texts():
+            if text and "/" not in text and "$" not in text:
+                yield Use("joint", text, node.location, value.said, optional=not is_of_controller)
+    elif _FRAMES.search(key) and not _OWN_FRAMES.search(key):
+        for text, node in value.texts():
+            if text.strip("/") and "$" not in text:
+                yield Use("frame", text.removeprefix("/"), node.location, value.said)
+
+
+def _in_robot(workspace: Workspace) -> Iterator[Fact]:
+    """Yield what the elements for Gazebo and ros2_control name."""
+    root, robot = workspace.robot_root, workspace.robot
+    if root is None or robot is None:
+        return
+    joints = {joint.name for joint in robot.joints}
+    for element in root.iterchildren("gazebo"):
+        at = workspace.place(element)
+        reference = element.get("reference")
+        if reference and reference not in joints:
+            yield Use("link", reference, at, "<gazebo reference>")
+        for inner in element.iter(*_GAZEBO_FRAMES, *_GAZEBO_JOINTS):
+            text, parent = (inner.text or "").strip(), inner.getparent()
+            if text and inner.tag in _GAZEBO_JOINTS:
+                yield Use("joint", text, workspace.place(inner), f"<{inner.tag}>")
+            elif text and inner.tag == "frame_id" and parent is not None and parent.tag == "plugin":
+                yield Definition("frame", text, workspace.place(inner))  # that the plugin publishes
+            elif text:
+                yield Use("frame", text, workspace.place(inner), f"<{inner.tag}>")
+    for system in root.iterchildren("ros2_control"):
+        yield from _in_system(workspace, system)
+
+
+def _of_odometry(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
+    """Yield the frames that systems of Gazebo publish: those that they name, and by default those
+    below the model's.
+    """
+    words = [
+        pairwise(node.arguments or ()) for _, node in workspace.nodes if node.executable == "create"
+    ]
+    created = {name for pairs in words for option, name in pairs if option == "-name" and name}
+    links = [link.name for link in robot.links]
+    for root, place in roots(workspace):
+        for plugin in [it for it in root.iter("plugin") if system_of(it) in _ODOMETRY]:
+            named = [(it.text or "").strip() for it in plugin.iterchildren(*_ODOMETRY_FRAMES)]
+            around = {it.get("name", "") for it in plugin.iterancestors("robot", "model")}
+            below = [
+                f"{model}/{name}"
+                for model in sorted(around | created)
+                for name in (*_DEFAULT_FRAMES, *links)
+            ]
+            yield from (Definition("frame", name, place(plugin)) for name in (*named, *below))
+
+
+def _in_system(workspace: Workspace, system: Element) -> Iterator[Fact]:
+    """Yield the joints that a system of ros2_control names."""
+    for element in system.iterchildren("joint"):
+        yield Use("joint", element.get("name", ""), workspace.place(element), "<ros2_control>")
+        for param in element.iterchildren("param"):
+            text = (param.text or "").strip()
+            if param.get("name") == "mimic" and text:
+                yield Use("joint", text, workspace.place(param), "the parameter mimic")

@@ -1,0 +1,51 @@
+"""The kinds of problems of names: one for each family, for similar names and for unused files.
+
+docs/examples/ref.toml explains each.
+"""
+
+from collections.abc import Mapping
+from functools import partial
+
+from grader.base.problems import Kind, Problem, kinds_in
+from grader.ros.workspace.names import Agreement, Family
+
+_error = partial(Kind, severity="error", effect="other")
+_warning = partial(Kind, severity="warning", effect="other")
+
+_NO_FILE = _error("REF001", "File that a build does not install")
+_NO_FRAME = _error("REF002", "Frame, link or joint that does not exist")
+_NO_CONTROLLER = _error("REF003", "Controller or interface that does not exist")
+_NO_PARAMETER = _error("REF004", "Parameters that no node gets, or that a node does not accept")
+_NO_ARGUMENT = _error("REF005", "Argument that nothing declares")
+_NO_PROGRAM = _error("REF006", "Program, entry point or node that does not exist")
+_NO_TOPIC = _error("REF007", "Topic with another name, type or quality of service")
+_NO_DEPENDENCY = _warning("REF008", "Package that package.xml does not declare")
+_SIMILAR = _warning("REF009", "Name that is similar to one that is defined")
+_UNUSED = _warning("REF010", "File that no other file names")
+
+_OF_FAMILY: Mapping[Family, Kind] = {
+    "files": _NO_FILE,
+    "frames": _NO_FRAME,
+    "controllers": _NO_CONTROLLER,
+    "parameters": _NO_PARAMETER,
+    "arguments": _NO_ARGUMENT,
+    "programs": _NO_PROGRAM,
+    "topics": _NO_TOPIC,
+    "dependencies": _NO_DEPENDENCY,
+}
+NAME_CATALOGUE = kinds_in(globals().values())
+
+
+def name_problems(found: Agreement) -> tuple[Problem, ...]:
+    """Return what does not agree as problems, in the order of files and lines."""
+    problems = [
+        Problem(
+            _OF_FAMILY[it.family] if it.is_sure else _SIMILAR, it.message, it.location, it.family
+        )
+        for it in found.mismatches
+    ]
+    unused = [
+        Problem(_UNUSED, "no other file of the workspace names this file", at, "files")
+        for at in found.unused
+    ]
+    return (*problems, *unused)

@@ -1,0 +1,208 @@
+"""Join the names that files define with those that they use: a name that is used has to be defined
+somewhere.
+"""
+
+from collections.abc import Iterable, Mapping
+from typing import Literal, NamedTuple, get_args
+
+from grader.base.names import are_of_one_side, clearly_closest, near
+from grader.base.source import Location
+from grader.base.text import quoted
+
+Family = Literal[
+    "files",
+    "frames",
+    "controllers",
+    "parameters",
+    "arguments",
+    "programs",
+    "topics",
+    "dependencies",
+]
+FAMILIES: tuple[Family, ...] = get_args(Family)
+_Kind = Literal[
+    "frame",
+    "link",
+    "joint",
+    "group",
+    "controller",
+    "interface",
+    "plugin section",
+    "parameter",
+    "launch argument",
+    "xacro argument",
+    "node",
+    "topic",
+    "Gazebo topic",
+]
+FAMILY_OF: Mapping[_Kind, Family] = {
+    **dict.fromkeys(("frame", "link", "joint", "group"), "frames"),
+    **dict.fromkeys(("controller", "interface"), "controllers"),
+    **dict.fromkeys(("plugin section", "parameter"), "parameters"),
+    **dict.fromkeys(("launch argument", "xacro argument"), "arguments"),
+    **dict.fromkeys(("topic", "Gazebo topic"), "topics"),
+    "node": "programs",
+}
+
+
+class Definition(NamedTuple):
+    """A name that a file defines. Those of one kind agree within one owner only, such as the
+    arguments of a file.
+    """
+
+    kind: _Kind
+    name: str
+    location: Location
+    owner: str = ""
+
+
+class Use(NamedTuple):
+    """A name that a file uses, and what the file calls it. Where it is `optional`, only a similar
+    name is wrong.
+    """
+
+    kind: _Kind
+    name: str
+    location: Location
+    said: str
+    owner: str = ""
+    optional: bool = False
+
+
+class Open(NamedTuple):
+    """That names of a kind may be defined by what is not submitted, or, for a reason, by what is
+    not evaluated.
+    """
+
+    kind: _Kind
+    owner: str = ""
+    reason: str = ""
+
+
+class Correction(NamedTuple):
+    """Another name in a file: the old one is at a place, behind it in the same element, or the key
+    before it.
+    """
+
+    location: Location
+    old: str
+    new: str
+
+
+class Mismatch(NamedTuple):
+    """Something that does not agree. It is a warning, and fails no criterion, unless it certainly
+    fails at run time.
+    """
+
+    family: Family
+    message: str
+    location: Location
+    related: Location | None = None  # of what was meant
+    is_sure: bool = True
+    corrections: tuple[
+        Correction, ...
+    ] = ()  # with each of which it agrees: first of the use, then of the definition
+
+
+class Compared(NamedTuple):
+    """That something of a family is there to be compared; of a file its path below the prefix."""
+
+    family: Family
+    name: str = ""
+
+
+class Undecided(NamedTuple):
+    """That the names of a family are not compared, and why."""
+
+    family: Family
+    reason: str
+
+
+Fact = Definition | Use | Open | Mismatch | Compared | Undecided
+
+
+class Agreement(NamedTuple):
+    """What does not agree in a workspace, and for each family why something is not known."""
+
+    mismatches: tuple[Mismatch, ...]
+    undecided: Mapping[Family, str]
+    families: frozenset[Family]  # of which something is there
+    files: frozenset[str]  # the paths below the prefix at which files are looked for
+    unused: tuple[Location, ...] = ()  # the files that no other one names
+
+    def holds(self, family: Family) -> bool:
+        """Return whether something of a family is there, and all of it certainly agrees."""
+        is_wrong = any(it.family == family and it.is_sure for it in self.mismatches)
+        return family in self.families and family not in self.undecided and not is_wrong
+
+
+def agreement(facts: Iterable[Fact]) -> Agreement:
+    """Return which of the names that are used are not defined, in the order of their places."""
+    every = [*facts]
+    known: dict[tuple[_Kind, str], dict[str, Location]] = {}
+    for fact in every:
+        if isinstance(fact, Definition):
+            known.setdefault((fact.kind, fact.owner), {}).setdefault(fact.name, fact.location)
+    opened: dict[tuple[_Kind, str], str] = {}
+    for fact in every:
+        if isinstance(fact, Open):
+            opened[fact.kind, fact.owner] = opened.get((fact.kind, fact.owner)) or fact.reason
+    found = [fact for fact in every if isinstance(fact, Mismatch)]
+    undecided: dict[Family, str] = {
+        fact.family: fact.reason for fact in reversed(every) if isinstance(fact, Undecided)
+    }
+    uses = [fact for fact in every if isinstance(fact, Use)]
+    for use in uses:
+        key = use.kind, use.owner
+        if use.name in known.get(key, {}):
+            continue
+        mismatch = _mismatch(use, known.get(key, {}), is_open=key in opened)
+        if mismatch is not None:
+            found.append(mismatch)
+        if opened.get(key):
+            undecided.setdefault(FAMILY_OF[use.kind], opened[key])
+    order = sorted(
+        dict.fromkeys(found),
+        key=lambda it: (it.location.path, it.location.line, it.location.column),
+    )
+    families = {FAMILY_OF[it.kind] for it in uses}
+    families |= {fact.family for fact in every if isinstance(fact, Compared | Mismatch)}
+    files = frozenset(fact.name for fact in every if isinstance(fact, Compared) and fact.name)
+    return Agreement(tuple(order), undecided, frozenset(families), files)
+
+
+def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mismatch | None:
+    """Return what is wrong with a name that is not defined, as far as it is known what is."""
+    meant = near(use.name, known, "link" if use.kind == "frame" else use.kind)
+    if is_open and meant is None:
+        return None
+    meant = meant or clearly_closest(use.name, known)
+    is_sure = not is_open and (meant is not None or not use.optional)
+    if use.optional and meant is None:
+        return None
+    guess = (
+        f"; did you mean {quoted(meant)} ({place_text(known[meant])})?" if meant is not None else ""
+    )
+    message = f"{use.said}: there is no {use.kind} {quoted(use.name)}{guess}"
+    related = known[meant] if meant is not None else None
+    either = corrections(use.name, use.location, meant, related)
+    return Mismatch(FAMILY_OF[use.kind], message, use.location, related, is_sure, either)
+
+
+def corrections(
+    name: str, at: Location, meant: str | None, defined: Location | None = None
+) -> tuple[Correction, ...]:
+    """Return that a name becomes the one that is meant, or the reverse; none for names of two sides
+    or numbers.
+    """
+    if meant is None or not (are_of_one_side(name, meant) or near(name, [meant])):
+        return ()
+    return (
+        Correction(at, name, meant),
+        *([Correction(defined, meant, name)] if defined is not None else []),
+    )
+
+
+def place_text(location: Location) -> str:
+    """Return a place as file and line."""
+    return f"{location.path}:{location.line}"

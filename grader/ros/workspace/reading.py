@@ -1,0 +1,61 @@
+"""Read a workspace: what its files define and use, and what does not agree."""
+
+from collections.abc import Collection, Iterator
+from functools import lru_cache
+from itertools import chain
+
+from grader.ros.package.package import Package
+from grader.ros.workspace.arguments import argument_facts
+from grader.ros.workspace.bridges import bridge_facts
+from grader.ros.workspace.controllers import controller_facts
+from grader.ros.workspace.dependencies import dependency_facts
+from grader.ros.workspace.files import file_facts
+from grader.ros.workspace.frames import frame_facts
+from grader.ros.workspace.gazebo import gazebo_facts
+from grader.ros.workspace.moveit import moveit_facts
+from grader.ros.workspace.names import Agreement, Fact, Family, Mismatch, agreement
+from grader.ros.workspace.parameters import parameter_facts
+from grader.ros.workspace.programs import program_facts
+from grader.ros.workspace.spawners import spawner_facts
+from grader.ros.workspace.srdf import srdf_facts
+from grader.ros.workspace.topics import topic_facts
+from grader.ros.workspace.unused import unused_files
+from grader.ros.workspace.workspace import Workspace
+
+_READERS = (
+    file_facts,
+    frame_facts,
+    controller_facts,
+    spawner_facts,
+    parameter_facts,
+    argument_facts,
+    program_facts,
+    topic_facts,
+    gazebo_facts,
+    bridge_facts,
+    srdf_facts,
+    moveit_facts,
+    dependency_facts,
+)
+
+
+@lru_cache(maxsize=2)
+def read_agreement(workspace: Workspace) -> Agreement:
+    """Return what does not agree in a workspace."""
+    found = agreement(read_facts(workspace))
+    # names_agree needs a package.
+    families = found.families if workspace.packages else frozenset[Family]()
+    return found._replace(families=families, unused=tuple(unused_files(workspace)))
+
+
+def wrong_names(
+    workspace: Workspace, family: Family, packages: Collection[Package]
+) -> list[Mismatch]:
+    """Return what certainly does not agree in some packages of a workspace."""
+    own = [it for it in read_agreement(workspace).mismatches if it.family == family and it.is_sure]
+    return [it for it in own if any(package.holds(it.location.path) for package in packages)]
+
+
+def read_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield what the files of a workspace define and use."""
+    return chain.from_iterable(reader(workspace) for reader in _READERS)

@@ -1,0 +1,93 @@
+"""Descriptions of robots for MoveIt (SRDF): the links, joints and groups that they name, states and
+collisions.
+"""
+
+from collections.abc import Iterator
+from contextlib import suppress
+
+from grader.base.text import quoted
+from grader.ros.urdf.model import Robot
+from grader.ros.workspace.names import Definition, Fact, Mismatch, Use
+from grader.ros.workspace.workspace import Workspace
+from grader.ros.xml.parsing import XmlFile
+
+_LINKS = ("link1", "link2", "parent_link", "child_link", "base_link", "tip_link")
+_ROUNDING = 1e-6
+
+
+def srdf_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield what SRDF files define and name, if the robot is known."""
+    robot, files = workspace.robot, workspace.srdf_files
+    if robot is None:
+        return
+    is_one_of_several = workspace.has_other_robots or any(
+        file.root.get("name") == robot.name for file in files
+    )
+    for file in files:
+        groups = file.root.iterchildren("group")
+        yield from (Definition("group", it.get("name", ""), file.location(it)) for it in groups)
+        if (
+            file.root.get("name") == robot.name or not is_one_of_several
+        ):  # else it describes another robot
+            yield from _names(file)
+            yield from _states(robot, file)
+            yield from _neighbours(robot, file)
+
+
+def _names(file: XmlFile) -> Iterator[Fact]:
+    root = file.root
+    virtual = {it.get("name") for it in root.iterchildren("virtual_joint")}
+    for element in root.iter("*"):
+        if not isinstance(element.tag, str):
+            continue
+        at, name = file.location(element), element.get("name", "")
+        said = f"<{element.tag}>"
+        # The parent of a virtual joint is a frame of the world.
+        for key in [key for key in _LINKS if element.get(key)]:
+            yield Use("link", element.get(key, ""), at, f"{said} {key}")
+        if element.tag in ("joint", "passive_joint") and name and name not in virtual:
+            yield Use("joint", name, at, said)
+        if element.tag == "link" and name:
+            yield Use("link", name, at, said)
+        for key in ("group", "parent_group"):
+            if element.get(key):
+                yield Use("group", element.get(key, ""), at, f"{said} {key}")
+        if element.tag == "group" and element.getparent() is not root and name:
+            yield Use("group", name, at, said)
+
+
+def _states(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
+    """Yield positions in states of groups that are beyond the limits of their joints."""
+    limits = {it.name: it.limit for it in robot.joints if it.type in ("revolute", "prismatic")}
+    for element in file.root.iterfind("group_state/joint"):
+        name, limit = element.get("name", ""), limits.get(element.get("name", ""))
+        with suppress(ValueError):
+            value = float(element.get("value", ""))
+            if limit is not None and (
+                value < limit.lower - _ROUNDING or value > limit.upper + _ROUNDING
+            ):
+                message = (
+                    f"<group_state>: {quoted(name)} is at {value:g}; its limits are "
+                    f"{limit.lower:g} and {limit.upper:g}"
+                )
+                yield Mismatch("frames", message, file.location(element, "value"))
+
+
+def _neighbours(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
+    """Yield links that a joint connects and whose collisions are compared, where most such pairs
+    are disabled.
+    """
+    disabled = {
+        frozenset((it.get("link1"), it.get("link2")))
+        for it in file.root.iterchildren("disable_collisions")
+    }
+    solid = {link.name for link in robot.links if link.collisions}
+    pairs = [(it.parent, it.child) for it in robot.joints if {it.parent, it.child} <= solid]
+    missing = [pair for pair in pairs if frozenset(pair) not in disabled]
+    for parent, child in missing if 2 * len(missing) < len(pairs) else ():
+        message = (
+            f"a joint connects {quoted(parent)} and {quoted(child)}, but <disable_collisions> "
+            "does not name them"
+        )
+        # Wrong only if their shapes touch in some position, which is not computed.
+        yield Mismatch("frames", message, file.location(file.root), is_sure=False)

@@ -1,0 +1,466 @@
+"""The files of a workspace whose names are compared: packages, launch files, parameter files,
+the robot, nodes.
+"""
+
+import posixpath
+import re
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+
+from grader.base.errors import InputError
+from grader.base.source import LazyLocation, Location, Source
+from grader.files.tree import Tree
+from grader.ros.build.places import PREFIX, SHARE
+from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
+from grader.ros.config.yaml_values import sections_in, values_in
+from grader.ros.known.known import known
+from grader.ros.launch.launch_model import GivenParameters, Launch, StartedNode
+from grader.ros.launch.node_parameters import NodeParameters, controllers_of, parameters_of
+from grader.ros.package.finding import is_backup
+from grader.ros.package.installed_files import open_meant
+from grader.ros.package.package import Package
+from grader.ros.package.python_nodes import PythonNode, PythonNodes, read_nodes
+from grader.ros.package.robot_file import Read, Urdf
+from grader.ros.urdf.model import Robot
+from grader.ros.xml.elements import readable
+from grader.ros.xml.parsing import Element, XmlFault, XmlFile
+
+_SYSTEM = re.compile(r"<ros2_control\b")
+MANAGER, SPAWNERS = "controller_manager", ("spawner", "spawner.py")
+_NAME = re.compile(r"\bname=[\"'](?:xacro:)?([\w.-]+)[\"']")
+_CALLED = re.compile(r"<xacro:(?:[\w-]+\.)*([\w-]+)")
+_FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
+_MAX_FILES = 60  # of one kind in a package
+_MAX_YAML = 512 * 1024  # bytes
+_OF_YAML = (".yaml", ".yml", ".py")
+_COMMENT = {False: re.compile(r"<!--.*?-->", re.DOTALL), True: re.compile(r"(?:^|(?<=\s))#[^\n]*")}
+
+
+@dataclass(frozen=True, eq=False)
+class Workspace:
+    """The packages of a folder with their robot, as the readers of names see them. Each file is
+    read once.
+    """
+
+    found_packages: tuple[Package, ...]  # the one that matches best first
+    urdf: Urdf  # the file of the robot
+    tree: Tree  # all files, also those outside of packages
+    has_other_robots: bool  # whether there may be other robots, which names may belong to
+
+    @property
+    def packages(self) -> tuple[Package, ...]:
+        """The packages that a build of the workspace has: the best of each name, without those
+        that colcon ignores.
+        """
+        known = [it for it in self.found_packages if not it.ignored_by]
+        return tuple(
+            it
+            for it in known
+            if it.name in it.packages and it.packages[it.name].folder == it.folder
+        )
+
+    def means_one(self, package: Package, name: str) -> bool:
+        """Return whether a name in a file of a package certainly means one package: its own, or
+        the only one.
+        """
+        others = (
+            it for it in self.found_packages if not it.ignored_by and not is_backup(it.folder)
+        )
+        return name in package.names or sum(it.name == name for it in others) < 2
+
+    @cached_property
+    def launches(self) -> tuple[tuple[Package, str, Launch], ...]:
+        """The launch files, each with its package and its path in it; without those of tests."""
+        return tuple(
+            (package, path, package.launch(path))
+            for package in self.packages
+            for path in [it for it in package.launch_files if not it.startswith("test/")][
+                :_MAX_FILES
+            ]
+        )
+
+    @cached_property
+    def nodes(self) -> tuple[tuple[Package, StartedNode], ...]:
+        """The nodes that launch files start, or may start: those that no other launch file
+        includes.
+        """
+        return tuple((package, node) for package, launch in self.roots for node in launch.nodes)
+
+    @cached_property
+    def roots(self) -> tuple[tuple[Package, Launch], ...]:
+        """The launch files that no other one includes, with their packages."""
+        included = {passed.path for _, _, launch in self.launches for passed in launch.passed}
+        return tuple(
+            (package, launch)
+            for package, path, launch in self.launches
+            if included.isdisjoint(
+                target for target, source in package.installed.items() if source == path
+            )
+        )
+
+    @property
+    def launched(self) -> Iterator[tuple[int, StartedNode]]:
+        """The nodes, each with the number of the launch file that starts it on its own."""
+        yield from (
+            (number, node) for number, (_, launch) in enumerate(self.roots) for node in launch.nodes
+        )
+
+    @cached_property
+    def yaml_files(self) -> Mapping[str, YamlNode | YamlFault]:
+        """The YAML files that are no launch files, by their paths in the submission; or why one
+        is not read.
+        """
+        found: dict[str, YamlNode | YamlFault] = {}
+        for package in self.packages:
+            files = [
+                it
+                for it in package.tree.files
+                if it.endswith((".yaml", ".yml")) and not it.startswith("test/")
+            ]
+            paths = [it for it in files if it not in package.launch_files]
+            for path in paths[:_MAX_FILES]:
+                own, data = package.path(path), package.tree.read(path, _MAX_YAML)
+                try:
+                    found |= {own: read_yaml(data, own)} if data is not None else {}
+                except YamlFault as fault:
+                    found[own] = fault
+        return found
+
+    @property
+    def trees(self) -> Iterator[tuple[str, YamlNode]]:
+        """The YAML files that are read, with their paths."""
+        yield from (
+            (path, node) for path, node in self.yaml_files.items() if isinstance(node, YamlNode)
+        )
+
+    @cached_property
+    def sdf_files(self) -> tuple[XmlFile, ...]:
+        """The models and worlds of Gazebo that can be read."""
+        return tuple(self._xml_files((".sdf", ".world")))
+
+    @cached_property
+    def srdf_files(self) -> tuple[XmlFile, ...]:
+        """The descriptions of robots for MoveIt that can be read."""
+        return tuple(self._xml_files((".srdf",)))
+
+    def _xml_files(self, endings: tuple[str, ...]) -> Iterator[XmlFile]:
+        for package in self.packages:
+            for path in [it for it in package.tree.files if it.endswith(endings)][:_MAX_FILES]:
+                with suppress(InputError, XmlFault):
+                    data = package.tree.files[path].read(_MAX_YAML)
+                    yield XmlFile(data, Source(package.path(path), data.decode("utf-8", "replace")))
+
+    @cached_property
+    def robot(self) -> Robot | None:
+        """The robot; None without one, or where not all of it is known."""
+        urdf = self.urdf
+        is_known = (
+            isinstance(urdf, Read)
+            and not urdf.loaded.undetermined
+            and urdf.loaded.verdict != "rejected"
+        )
+        return urdf.loaded.robot if isinstance(urdf, Read) and is_known else None
+
+    @property
+    def has_controller_manager(self) -> bool:
+        """Return whether a launch file starts a controller manager, or the robot has one in
+        Gazebo.
+        """
+        plugins = self.robot_root.iter("plugin") if self.robot_root is not None else ()
+        is_simulated = any("ros2_control" in element.get("filename", "") for element in plugins)
+        return is_simulated or any(node.executable == "ros2_control_node" for _, node in self.nodes)
+
+    @cached_property
+    def robot_root(self) -> Element | None:
+        """The <robot> of the expanded robot."""
+        urdf = self.urdf
+        return urdf.loaded.root if isinstance(urdf, Read) and self.robot is not None else None
+
+    @cached_property
+    def python_nodes(self) -> Mapping[str, PythonNodes]:
+        """The nodes of the installed Python modules, by the names of packages."""
+        return {package.name: read_nodes(package) for package in self.packages}
+
+    def place(self, element: Element) -> Location:
+        """Return where an element of the expanded robot is written."""
+        urdf, root = self.urdf, self.robot_root
+        assert isinstance(urdf, Read)
+        assert root is not None
+        return LazyLocation(urdf.loaded.source, self._positions[element]).resolve()
+
+    @cached_property
+    def _positions(self) -> Mapping[Element, int]:
+        """The position of each element of the robot in document order."""
+        root = self.robot_root
+        return (
+            {element: tag for tag, element in enumerate(root.iter("*"))} if root is not None else {}
+        )
+
+    @cached_property
+    def command_interfaces(self) -> Mapping[str, tuple[frozenset[str], Location]] | None:
+        """The command interfaces of joints in <ros2_control>; None without one."""
+        root = self.robot_root
+        found: dict[str, tuple[frozenset[str], Location]] = {}
+        systems = list(root.iterchildren("ros2_control")) if root is not None else []
+        for joint in (joint for system in systems for joint in system.iterchildren("joint")):
+            names = frozenset(it.get("name", "") for it in joint.iterchildren("command_interface"))
+            before, at = found.get(joint.get("name", ""), (frozenset[str](), self.place(joint)))
+            found[joint.get("name", "")] = (before | names, at)
+        return found if systems else None
+
+    @property
+    def has_all_interfaces(self) -> bool:
+        """Return whether `command_interfaces` are those of every robot, also under other
+        arguments of xacro.
+        """
+        text = "".join(it.text for it in self.xacro_sources)
+        called = {*_CALLED.findall(text)}
+        if "call" not in called:  # <xacro:call macro="..."/> may compute the name
+            *macros, rest = text.split("</xacro:macro>")
+            text = "".join([*(_without_macro(it, called) for it in macros), rest])
+        written = len(_SYSTEM.findall(text))
+        systems = (
+            len(list(self.robot_root.iterchildren("ros2_control")))
+            if self.robot_root is not None
+            else -1
+        )
+        return written <= systems and not self.has_other_robots
+
+    def python_node(self, node: StartedNode) -> PythonNode | None:
+        """Return the Python node of the workspace that a program starts, if it starts one that
+        is known.
+        """
+        owner = self.package_of(node)
+        found = (
+            self.python_nodes[owner.name]
+            if owner is not None and owner.name in self.python_nodes
+            else None
+        )
+        programs = (
+            [it for it in found.programs if it.name == node.executable] if found is not None else []
+        )
+        return programs[0].nodes[0] if len(programs) == 1 and len(programs[0].nodes) == 1 else None
+
+    def package_of(self, node: StartedNode) -> Package | None:
+        """Return the package of the workspace whose program a node is."""
+        return self.packages[0].find(node.package) if self.packages else None
+
+    def name_of(self, node: StartedNode) -> str | None:
+        """Return the name that a node has, without its namespace; None where it is not known."""
+        if node.node_name is None or node.node_name:
+            return node.node_name
+        own = self.python_node(node)
+        return (
+            own.name
+            if own is not None
+            else known()["node_names"].get(f"{node.package}/{node.executable}")
+        )
+
+    def children_of(self, name: str) -> frozenset[str]:
+        """Return the nodes that a node of another package makes in its process, and that read
+        its parameters.
+        """
+        return frozenset(known()["children"].get(name, ())) | (
+            self.typed_sections if name == MANAGER else frozenset()
+        )
+
+    @cached_property
+    def controllers(self) -> frozenset[str]:
+        """The names of sections in parameter files that may be those of controllers."""
+        return frozenset(
+            keys[-1] for _, tree in self.trees for keys, _ in sections_in(tree) if keys
+        )
+
+    @cached_property
+    def typed_sections(self) -> frozenset[str]:
+        """The names of controllers and others that parameter files give a type."""
+        sections = [
+            (keys, section) for _, tree in self.trees for keys, section in sections_in(tree)
+        ]
+        own = {
+            keys[-1].rpartition("/")[2]
+            for keys, section in sections
+            if keys and section.get("type") is not None
+        }
+        named = {
+            name
+            for _, section in sections
+            if isinstance(section.value, dict)
+            for name, inner in section.value.items()
+            if inner.get("type") is not None
+        }
+        return frozenset(own | named)
+
+    def has_file(self, path: str) -> bool:
+        """Return whether a build of the workspace installs a file at a path below the prefix."""
+        return any(path in package.installed for package in self.packages)
+
+    def installed_yaml(self, path: str) -> YamlNode | None:
+        """Return the YAML file that is installed at a path, which begins with the prefix's
+        stand-in.
+        """
+        found = self.yaml_files.get(self.source_of(path) or "")
+        return found if isinstance(found, YamlNode) else None
+
+    def source_of(self, path: str) -> str | None:
+        """Return the file of the submission that is installed at a path, which begins with the
+        prefix's stand-in.
+        """
+        inside = posixpath.normpath(path).removeprefix(f"{PREFIX}/")
+        holding = [package for package in self.packages if inside in package.installed]
+        return holding[0].path(holding[0].installed[inside]) if holding else None
+
+    @cached_property
+    def parameter_files(self) -> Mapping[str, list[StartedNode]]:
+        """The parameter files, by their paths in the submission, with the nodes that are given
+        them.
+        """
+        found: dict[str, list[StartedNode]] = {}
+        for _, node in self.nodes:
+            for given in node.parameters or ():
+                path = self.source_of(given.path) if given.path and given.is_plain else None
+                if path is not None:
+                    found.setdefault(path, []).append(node)
+        return found
+
+    @cached_property
+    def parameter_owners(self) -> Mapping[str, list[NodeParameters]]:
+        """The parameters that nodes and controllers are given, by their names without
+        namespaces.
+        """
+        found: dict[str, list[NodeParameters]] = {}
+        for package, launch in self.roots:
+            managers = [it for it in launch.nodes if self.name_of(it) == MANAGER]
+            opened = partial(open_meant, package, absent_are_empty=True)
+            for node in launch.nodes:
+                name, own = self.name_of(node), self.python_node(node)
+                if (name is not None and node.package != MANAGER) or node in managers:
+                    given = parameters_of(
+                        node, opened, name or "", is_python=own is not None or None
+                    )
+                    found.setdefault(name or "", []).append(given)
+                for controller in (
+                    (controllers_of(node) or ()) if node.executable in SPAWNERS else ()
+                ):
+                    before = [it for manager in managers for it in manager.parameters or ()]
+                    files = (*before, *self._simulated, *(controller.parameters or ()))
+                    started = replace(controller, parameters=files)
+                    given = parameters_of(started, opened, is_python=False)
+                    found.setdefault(controller.node_name or "", []).append(given)
+        return found
+
+    @property
+    def _simulated(self) -> Iterator[GivenParameters]:
+        """The files that the robot gives to the controller manager in Gazebo."""
+        for element in self.robot_root.iter("parameters") if self.robot_root is not None else ():
+            path = _FOUND.sub(rf"{SHARE}/\1/", readable((element.text or "").strip()))
+            if path.startswith(SHARE):
+                yield GivenParameters(self.place(element), path)
+
+    @cached_property
+    def controller_files(self) -> frozenset[str]:
+        """The parameter files, by their paths in the submission, that Gazebo and spawners give
+        controllers.
+        """
+        spawned = (
+            it
+            for _, node in self.nodes
+            if node.executable in SPAWNERS
+            for it in controllers_of(node) or ()
+        )
+        given = (
+            *self._simulated,
+            *(it for controller in spawned for it in controller.parameters or ()),
+        )
+        paths = (self.source_of(it.path) for it in given if it.path)
+        return frozenset(path for path in paths if path is not None)
+
+    @cached_property
+    def unknown_nodes(self) -> str:
+        """Why launch files may start more nodes or controllers; empty where they do not."""
+        reasons = [it.message for _, launch in self.roots for it in launch.unknown]
+        reasons += [launch.unread for _, launch in self.roots if launch.unread]
+        if any(
+            node.executable in SPAWNERS and controllers_of(node) is None for _, node in self.nodes
+        ):
+            reasons.append("the arguments of a spawner are not evaluated")
+        return next(iter(reasons), "")
+
+    def wildcard_places(self, node: StartedNode) -> frozenset[Location]:
+        """Return the places of parameters that a file gives to every node."""
+        trees = [self.installed_yaml(given.path) for given in node.parameters or () if given.path]
+        wide = [
+            section
+            for tree in trees
+            if tree is not None
+            for keys, section in sections_in(tree)
+            if not keys or any(key.strip("/") in ("*", "**") for key in keys)
+        ]
+        return frozenset(value.node.location for section in wide for value in values_in(section))
+
+    def has_plugin(self, name: str) -> bool:
+        """Return whether a package describes a plugin of this name for pluginlib."""
+        sources = (it for package in self.packages for it in self.sources_of(package, (".xml",)))
+        return any(f'name="{name}"' in it.text for it in sources)
+
+    def sources_of(self, package: Package, endings: tuple[str, ...]) -> Iterator[Source]:
+        """Yield the texts of the files of a package with these endings, without those of tests."""
+        return self._sources(package, [it for it in package.tree.files if it.endswith(endings)])
+
+    def _sources(self, package: Package, paths: Sequence[str]) -> Iterator[Source]:
+        for path in [it for it in paths if not it.startswith("test/")][:_MAX_FILES]:
+            data = package.tree.read(path, _MAX_YAML)
+            if data is not None:
+                text = data.decode("utf-8", "replace")
+                yield Source(
+                    package.path(path), _COMMENT[path.endswith(_OF_YAML)].sub(_blank, text)
+                )
+
+    @cached_property
+    def robot_files(self) -> frozenset[str] | None:
+        """The files that the robot is made of, by their paths; None where it is not known."""
+        root, urdf = self.robot_root, self.urdf
+        if root is None or not isinstance(urdf, Read):
+            return None
+        return frozenset({urdf.path, *(self.place(element).path for element in root.iter("*"))})
+
+    @cached_property
+    def xacro_sources(self) -> tuple[Source, ...]:
+        """The texts of the xacro files and URDFs."""
+        return tuple(
+            it for package in self.packages for it in self.sources_of(package, (".xacro", ".urdf"))
+        )
+
+    @cached_property
+    def launch_texts(self) -> tuple[str, ...]:
+        """The texts of the launch files, of those of ROS 1 too."""
+        sources = [
+            source
+            for package in self.packages
+            for source in self._sources(package, package.launch_files)
+        ]
+        sources += [
+            source for package in self.packages for source in self.sources_of(package, (".launch",))
+        ]
+        return tuple(source.text for source in sources)
+
+    @cached_property
+    def python_texts(self) -> tuple[str, ...]:
+        """The texts of the Python files."""
+        return tuple(
+            it.text for package in self.packages for it in self.sources_of(package, (".py",))
+        )
+
+
+def _without_macro(text: str, called: Collection[str]) -> str:
+    """Return a text, which ends where a macro ends, without the macro if nothing calls it."""
+    before, _, macro = text.partition("<xacro:macro")
+    name = _NAME.search(macro.partition(">")[0])
+    return before if name is not None and name[1] not in called else text
+
+
+def _blank(found: re.Match[str]) -> str:
+    """Return blanks in place of a comment, so that places stay the same."""
+    return re.sub(r"\S", " ", found[0])

@@ -1,0 +1,455 @@
+"""The edits that correct what xacro refuses: one edit, where it surely is meant, and others that
+hints try.
+"""
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import islice
+from typing import NamedTuple
+
+from grader.base import markup
+from grader.base.names import closest
+from grader.base.source import Edit, Edits, Location
+from grader.base.text import cut, quoted
+from grader.ros.python.budget import Budget
+from grader.ros.python.values import EvaluationFails
+from grader.ros.xacro.macros import MacroError
+from grader.ros.xacro.scopes import ScopePlace, UnknownName, XacroFails
+from grader.ros.xacro.texts import TEXT_IN_QUOTES
+from grader.ros.xacro.xacro_files import Files, XmlFails
+from grader.ros.xacro.xacro_nodes import XacroNode, walk
+
+_MAX_NODES = 2000
+_OF_WALK = 500  # what looking at all elements of a file is charged
+_MAX_SHOWN = 60  # characters of an edit in a sentence
+_MAX_VALUE = 10_000  # characters of an attribute that is corrected
+_EXPRESSION = re.compile(
+    r"\$\{([^{}]*)\}"
+)  # no brace inside: else many that open take quadratic time
+_NAME = re.compile(r"[^\W\d]\w*")
+_NUMBER = re.compile(r"-?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_PRODUCT = re.compile(r"-?\s*[\w.]+(?:\s*[*/]\s*[\w.]+)*")
+_MAX_MIRRORED = 6  # ways to negate a number of what another call gives
+_WORD = re.compile(r"(?:\$\{[^{}]*\}|[^\s$])+")
+_DECIMAL_COMMA = re.compile(r"\s*[-+]?\d+,\d+\s*")
+# A separator between parameters, which xacro takes for a part of the name or of the default before
+# it.
+_SEPARATOR = re.compile(r"\$\{[^{}]*\}|'[^']*'|(?P<separator>\s*[,;](?=\s|\Z|[*^\W\d]))")
+# What is written for ${side}: {side}, $ {side}, $(side), $side.
+_UNMARKED = re.compile(
+    r"\$\{[^{}]*\}|\$?\s*\{\s*(?P<brace>[^\W\d]\w*)\s*\}|\$\(\s*(?P<paren>[^\W\d]\w*)\s*\)|\$(?P<bare>[^\W\d]\w*)"
+)
+
+
+class Correction(NamedTuple):
+    """Edits after which xacro does not refuse something, and what they assume."""
+
+    edits: Edits
+    sentence: str
+    location: Location
+    # of a name that may bring others with it: that of a macro, of an attribute, of a file
+    is_of_element: bool = False
+    problem: str = ""  # what is wrong, where it says more than xacro's message
+
+
+# What xacro refuses, and where: in an attribute, or without one in the tag itself.
+Refusal = tuple[EvaluationFails, ScopePlace, str | None]
+
+
+class Corrections:
+    """Finds the correction that is surely meant of what xacro refuses in a document and the
+    files it includes.
+    """
+
+    def __init__(self, files: Files, budget: Budget) -> None:
+        self._files, self._budget = files, budget
+
+    def of(self, refusal: Refusal) -> Correction | None:
+        """Return the correction of what is refused; None if several can be meant."""
+        error, place, attribute = refusal
+        location = place.at(attribute)
+        unknown = error.unknown if isinstance(error, XacroFails) else None
+        if isinstance(error, XmlFails) and error.repair:
+            return Correction(error.repair, error.assumed, location, is_of_element=True)
+        parameters = self._parameters(refusal)
+        if parameters:
+            return _correction(parameters, location, is_of_element=True)
+        if unknown is not None:
+            found = self._of_unknown(place, attribute, unknown)
+            if found is not None:
+                return found
+        ways: tuple[Callable[[Refusal], Edits], ...] = (
+            _power,
+            self._decimal_commas,
+            self._unmarked,
+        )
+        edits = next(filter(None, (way(refusal) for way in ways)), ())
+        return _correction(edits, location) if edits else None
+
+    def moved(self, unknown: UnknownName) -> tuple[Edits, Location] | None:
+        """Return the edits that move what defines a name to the top, and where it is; None if
+        nothing does, below.
+        """
+        tag = {"property": "xacro:property", "macro": "xacro:macro"}.get(unknown.kind)
+        root = next(iter(self._files.documents.values()))
+        found = [
+            (child, node)
+            for child in root.elements
+            for node in ([child] if child.tag == tag else self._included(child, tag))
+            if node.attributes.get("name", "").removeprefix("xacro:") == unknown.name
+        ]
+        if len(found) != 1 or found[0][0] is root.elements[0]:
+            return None
+        child, node = found[0]
+        source, start = child.place.source.element(child.place.tag)
+        _, first = source.element(root.elements[0].place.tag)
+        end = markup.element_end(source.text, start)
+        block = source.text[start:end]
+        indent = markup.indentation(source.text, first)
+        newline = "\r\n" if "\r\n" in source.text else "\n"
+        line = start - len(markup.indentation(source.text, start))
+        is_alone = (
+            source.text[end : end + 1] in ("\n", "\r")
+            and line > 0
+            and source.text[line - 1] == "\n"
+        )
+        removed = (
+            source.edit(line, end + len(newline), "") if is_alone else source.edit(start, end, "")
+        )
+        return (source.edit(first, first, f"{block}{newline}{indent}"), removed), node.place.at()
+
+    def _included(self, child: XacroNode, tag: str | None) -> list[XacroNode]:
+        """Return the definitions in the files that an element includes."""
+        paths = self._files.followed.get((child.place.source.path, child.place.tag), [])
+        documents = [self._files.documents[path] for path in paths if path in self._files.documents]
+        return [node for root in documents for node in root.elements if node.tag == tag]
+
+    def _of_unknown(
+        self, place: ScopePlace, attribute: str | None, unknown: UnknownName
+    ) -> Correction | None:
+        location, of_element = place.at(attribute), unknown.kind != "property"
+        moved = self.moved(unknown)
+        if moved is not None:
+            sentence = (
+                f"the {unknown.kind} {quoted(unknown.name)} of line {moved[1].line} is read "
+                "above its use"
+            )
+            problem = (
+                f"the {unknown.kind} {unknown.name} is defined in line {moved[1].line}, below "
+                "its use: move it up"
+            )
+            return Correction(moved[0], sentence, moved[1], is_of_element=True, problem=problem)
+        prefixed = [
+            tuple(tags_of(node.place, node.tag, f"xacro:{node.tag}"))
+            for node in self.nodes()
+            if node.tag == unknown.kind and node.attributes.get("name") == unknown.name
+        ]
+        if len(prefixed) == 1:
+            return _correction(prefixed[0], location, is_of_element=True)
+        edits = self._quoted(place, attribute, unknown)
+        if edits:
+            problem = f"there is no property {unknown.name}; a text needs quotes: '{unknown.name}'"
+            return _correction(edits, location)._replace(problem=problem)
+        return (
+            self._respelt(place, attribute, unknown, is_of_element=of_element)
+            if unknown.meant
+            else None
+        )
+
+    def _respelt(
+        self, place: ScopePlace, attribute: str | None, unknown: UnknownName, *, is_of_element: bool
+    ) -> Correction | None:
+        """Return the correction of a name where it is used, or where it is defined if nothing
+        uses it as defined.
+        """
+        meant = unknown.meant or ""
+        definition = unknown.known.get(meant)
+        if definition is not None and definition[1] is not None and self._uses(unknown.name) > 1:
+            edits = _rename(*definition, meant, unknown.name) if not self._uses(meant) else ()
+            if edits:
+                sentence = f"the {unknown.kind} {quoted(meant)} is read as {quoted(unknown.name)}"
+                return Correction(
+                    edits, sentence, definition[0].at(definition[1]), is_of_element=True
+                )
+        edits = _rename(place, attribute, unknown.name, meant)
+        sentence = f"the {unknown.kind} {quoted(unknown.name)} is read as {quoted(meant)}"
+        return Correction(edits, sentence, place.at(attribute), is_of_element) if edits else None
+
+    def _uses(self, name: str) -> int:
+        """Return how many attributes use a name in an expression, or give an argument of this
+        name.
+        """
+        used = re.compile(rf"(?<![\w.]){re.escape(name)}(?!\w)")
+        texts = (text for node in self.nodes() for text in node.attributes.values() if "${" in text)
+        given = sum(
+            name in node.attributes for node in self.nodes() if node.tag.startswith("xacro:")
+        )
+        return given + sum(any(map(used.search, _EXPRESSION.findall(text))) for text in texts)
+
+    def nodes(self) -> Iterator[XacroNode]:
+        """Yield the elements of all files, as they are written."""
+        for root in self._files.documents.values():
+            self._budget.charge(_OF_WALK)
+            yield from islice(walk(root), _MAX_NODES)
+
+    def _quoted(self, place: ScopePlace, attribute: str | None, unknown: UnknownName) -> Edits:
+        """Return the edit that puts a text in quotes with which something is compared: ${side ==
+        left}.
+        """
+        name = re.escape(unknown.name)
+        compared = re.compile(rf"([=!]=\s*){name}(?![\w.(\[])|(?<![\w.]){name}(?=\s*[=!]=)")
+        is_value = any(unknown.name in node.attributes.values() for node in self.nodes())
+        if unknown.kind != "property" or not (is_value or unknown.meant is None):
+            return ()
+        for own, text, quote in _values(place, attribute):
+            other = '"' if quote == "'" else "'"
+            if "${" in text and compared.search(text):
+                return _with_value(
+                    place, own, compared.sub(rf"\g<1>{other}{unknown.name}{other}", text)
+                )
+        return ()
+
+    def _parameters(self, refusal: Refusal) -> Edits:
+        """Return the edit that separates the parameters of a called macro by spaces."""
+        error, place, _ = refusal
+        if not isinstance(error, MacroError):
+            return ()
+        source, start = place.source.element(place.tag)
+        called = (
+            source.text[start + 1 : markup.name_end(source.text, start)]
+            .rpartition(":")[2]
+            .rpartition(".")[2]
+        )
+        for node in self.nodes():
+            params = node.attributes.get("params", "")
+            if (
+                node.tag == "xacro:macro"
+                and node.attributes.get("name", "").removeprefix("xacro:") == called
+            ):
+                new = _SEPARATOR.sub(
+                    lambda it: it[0] if it["separator"] is None else " ", params
+                ).rstrip()
+                if " ".join(new.split()) != " ".join(params.split()):
+                    return _with_value(node.place, "params", " ".join(new.split()))
+        return ()
+
+    def _decimal_commas(self, refusal: Refusal) -> Edits:
+        """Return the edits that write decimal points in the numbers that an expression uses."""
+        _, place, attribute = refusal
+        expressions = [
+            it for _, text, _ in _values(place, attribute) for it in _EXPRESSION.findall(text)
+        ]
+        names = {name for text in expressions for name in _NAME.findall(text)}
+        edits: list[Edit] = []
+        for node in self.nodes():
+            own = {
+                "value": node.attributes.get("name", ""),
+                "default": node.attributes.get("name", ""),
+            }
+            for key, text in node.attributes.items() if node.tag.startswith("xacro:") else ():
+                name = own.get(key, key) if node.tag in ("xacro:property", "xacro:arg") else key
+                if name in names and _DECIMAL_COMMA.fullmatch(text):
+                    edits += _with_value(node.place, key, text.replace(",", "."))
+        return tuple(edits)
+
+    def _unmarked(self, refusal: Refusal) -> Edits:
+        """Return the edits that write ${side} for $(side), which xacro takes for a command."""
+        _, place, attribute = refusal
+        if not any("$(" in text for _, text, _ in _values(place, attribute)):
+            return ()
+        return tuple(edit for edit in self.unmarked() if edit[:2] == place.at()[:2])
+
+    def unmarked(self) -> Edits:
+        """Return the edits that write ${side} where {side}, $ {side}, $(side) or $side stands for a
+        known name.
+        """
+        properties = {
+            it.attributes.get("name", "") for it in self.nodes() if it.tag == "xacro:property"
+        }
+        edits: list[Edit] = []
+        for root in self._files.documents.values():
+            waiting = [(root, frozenset(properties))]
+            while waiting and len(edits) < _MAX_NODES:
+                node, known = waiting.pop()
+                if node.tag == "xacro:macro":
+                    known |= {
+                        re.split(r":?=", word)[0]
+                        for word in node.attributes.get("params", "").split()
+                    }
+                for name, text in node.attributes.items():
+                    new = _marked(text, known) if "{" in text or "$" in text else text
+                    if new != text and name != "params":
+                        edits += _with_value(node.place, name, new)
+                waiting += [(child, known) for child in node.elements]
+        return tuple(edits)
+
+
+def _marked(text: str, known: Iterable[str]) -> str:
+    """Return a text in which each known name that is meant to be evaluated is in ${}."""
+
+    def marked(found: re.Match[str]) -> str:
+        name = found["brace"] or found["paren"]
+        if name is not None:
+            return f"${{{name}}}" if name in known else found[0]
+        bare = found["bare"] or ""
+        ends = [len(bare), *(at.start() for at in reversed([*re.finditer("_", bare)]))]
+        end = next((end for end in ends if bare[:end] in known), 0)
+        return f"${{{bare[:end]}}}{bare[end:]}" if end else found[0]
+
+    return _UNMARKED.sub(marked, text)
+
+
+def _power(refusal: Refusal) -> Edits:
+    """Return the edit that writes ** for ^ in an expression that xacro refuses."""
+    _, place, attribute = refusal
+    for name, text, _ in _values(place, attribute):
+        new = _EXPRESSION.sub(
+            lambda it: it[0] if TEXT_IN_QUOTES.search(it[0]) else it[0].replace("^", "**"), text
+        )
+        if new != text:
+            return _with_value(place, name, new)
+    return ()
+
+
+def _values(place: ScopePlace, attribute: str | None) -> Iterator[tuple[str, str, str]]:
+    """Yield the name, the text and the quote of an attribute; without a name, those of all
+    attributes of the tag.
+    """
+    source, start = place.source.element(place.tag)
+    for found in markup.attributes(source.text, start):
+        if attribute in (None, found.name) and found.value_end - found.value_start <= _MAX_VALUE:
+            yield (
+                found.name,
+                source.text[found.value_start : found.value_end],
+                source.text[found.value_end],
+            )
+
+
+def _with_value(place: ScopePlace, name: str, new: str) -> Edits:
+    """Return the edit that gives an attribute another value; none where it is not written in the
+    tag.
+    """
+    source, start = place.source.element(place.tag)
+    found = markup.attribute(source.text, start, name)
+    if found is None:
+        return ()
+    before, after = (
+        source.text[found.start : found.value_start],
+        source.text[found.value_end : found.end],
+    )
+    return (source.edit(found.start, found.end, f"{before}{new}{after}"),)
+
+
+def _correction(edits: Edits, location: Location, *, is_of_element: bool = False) -> Correction:
+    """Return a correction that is where the first edit is."""
+    at = Location(edits[0].path, edits[0].line, edits[0].column)
+    return Correction(
+        edits, sentence_of(edits), location if location[:3] == at[:3] else at, is_of_element
+    )
+
+
+def sentence_of(edits: Edits) -> str:
+    """Return what is read as what after some edits."""
+    shown = [
+        f"{cut(edit.old, _MAX_SHOWN)} is read as {cut(edit.new, _MAX_SHOWN)}" for edit in edits[:3]
+    ]
+    return ", ".join(shown)
+
+
+def respellings(place: ScopePlace, attribute: str | None, unknown: UnknownName) -> Iterator[Edits]:
+    """Yield the edits that correct an unknown name where it is used, or where a similar one is
+    defined.
+    """
+    similar = closest(unknown.name, unknown.known)
+    if similar is not None:
+        at, where = unknown.known[similar] or (place, None)
+        ways = [_rename(place, attribute, unknown.name, similar)]
+        if where is not None:
+            ways.append(_rename(at, where, similar, unknown.name))
+        yield from (edits for edits in ways if edits)
+
+
+def values_of_other_calls(
+    place: ScopePlace, nodes: Sequence[XacroNode], lacking: tuple[str, ...]
+) -> Iterator[tuple[Edits, Mapping[str, str]]]:
+    """Yield the edits that give a call the values that it lacks, from other calls of the macro,
+    also negated.
+    """
+    own = next((node for node in nodes if node.place[:2] == place[:2]), None)
+    for other in nodes:
+        given = other.attributes
+        if (
+            own is not None
+            and other is not own
+            and other.tag == own.tag
+            and set(lacking) <= given.keys()
+        ):
+            copied = {name: given[name] for name in lacking}
+            mirrored = ({**copied, name: new} for name in lacking for new in _mirrored(given[name]))
+            for values in (copied, *islice(mirrored, _MAX_MIRRORED)):
+                yield _give(place, values), values
+
+
+def _mirrored(text: str) -> Iterator[str]:
+    """Yield a text with each of its numbers and expressions negated: one on the other side differs
+    in one of them.
+    """
+    for found in _WORD.finditer(text):
+        new = negated(found[0])
+        if new != found[0] and found[0].strip("0."):
+            yield f"{text[: found.start()]}{new}{text[found.end() :]}"
+
+
+def negated(text: str) -> str:
+    """Return a number or an expression of xacro with the other sign; any other text as it is."""
+    inner = text[2:-1].strip() if _EXPRESSION.fullmatch(text) else ""
+    value = inner or text
+    if not (inner or _NUMBER.fullmatch(text)) or TEXT_IN_QUOTES.search(value):
+        return text
+    if inner and not _PRODUCT.fullmatch(inner):
+        return f"${{-({inner})}}"
+    value = value[1:].lstrip() if value.startswith("-") else f"-{value}"
+    return f"${{{value}}}" if inner else value
+
+
+def _give(place: ScopePlace, values: Mapping[str, str]) -> Edits:
+    source, start = place.source.element(place.tag)
+    ends = [
+        markup.name_end(source.text, start),
+        *(it.end for it in markup.attributes(source.text, start)),
+    ]
+    return (
+        source.edit(
+            ends[-1], ends[-1], "".join(f' {name}="{text}"' for name, text in values.items())
+        ),
+    )
+
+
+def _rename(place: ScopePlace, attribute: str | None, old: str, new: str) -> Edits:
+    """Return the edit of an attribute's value; without an attribute, of an attribute's name, the
+    tag, or any value.
+    """
+    source, start = place.source.element(place.tag)
+    if attribute is None:
+        tags = tuple(tags_of(place, f"xacro:{old}", f"xacro:{new}"))
+        if tags:
+            return tags
+    for found in markup.attributes(source.text, start):
+        whole = source.text[found.start : found.end]
+        changed = re.sub(
+            rf"(?<![\w.]){re.escape(old)}(?!\w)", new, whole, count=0 if "$" in whole else 1
+        )
+        if attribute in (None, found.name) and changed != whole:
+            return (source.edit(found.start, found.end, changed),)
+    return ()
+
+
+def tags_of(place: ScopePlace, old: str, new: str) -> Iterator[Edit]:
+    """Yield the edits of a call's start tag, and of its end tag if it has one."""
+    source, start = place.source.element(place.tag)
+    if source.text[start : markup.name_end(source.text, start)] == f"<{old}":
+        yield source.edit(start, start + len(old) + 1, f"<{new}")
+        end = markup.element_end(source.text, start)
+        closing = re.search(rf"</{re.escape(old)}\s*>\Z", source.text[start:end])
+        if closing is not None:
+            yield source.edit(start + closing.start(), end, f"</{new}>")

@@ -1,0 +1,334 @@
+"""A xacro file, expanded statically, as the document that ROS 2 reads; every element keeps its
+place in the source.
+
+xacro (ros/xacro 2.1) stops at the first thing that it refuses. Here it becomes a problem, and the
+rest is expanded all the same, so that one defect does not hide another.
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from functools import partial
+from itertools import groupby
+from typing import NamedTuple
+
+from grader.base.merge_conflicts import describe_conflicts, find_conflicts
+from grader.base.problems import Problem
+from grader.base.source import Edit, Edits, Location, Source
+from grader.ros.python.budget import Budget, OutOfBudget
+from grader.ros.python.values import EvaluationFails, Undetermined
+from grader.ros.xacro import xacro_problems
+from grader.ros.xacro.corrections import Corrections, Refusal, sentence_of
+from grader.ros.xacro.expander import STOPS, Expander, Open
+from grader.ros.xacro.tags import CALL, HANDLERS
+from grader.ros.xacro.texts import OtherArguments, Texts
+from grader.ros.xacro.xacro_files import Files, Workspace
+from grader.ros.xacro.xacro_nodes import XacroNode, read_nodes, recovered_nodes
+from grader.ros.xml.parsing import (
+    Element,
+    Unresolved,
+    XmlDocument,
+    XMLSyntaxError,
+    error_location,
+    make_element,
+)
+from grader.ros.xml.xml_problems import MISPLACED_DECLARATION, RECOVERED
+
+_READING_OF_SHORT = 1_500  # parts
+
+
+class ExpandedSource(Source):
+    """The text of a xacro file; its start tags are the expanded elements."""
+
+    is_expanded = True
+
+    def __init__(
+        self,
+        source: Source,
+        nodes: list[XacroNode],
+        expander: Expander,
+        work: int,
+        corrected: Edits = (),
+    ) -> None:
+        super().__init__(source.path, source.text)
+        # the edits without which xacro refuses what it was expanded from
+        self.corrected = corrected
+        self.nodes: Sequence[XacroNode] = nodes
+        self._expander, self._work = expander, work
+
+    def tag(self, index: int, attribute: str | None = None) -> Location:
+        """Return the location in the source of an expanded element, or of an attribute if it has
+        it.
+        """
+        return self.nodes[index].place.at(attribute)
+
+    def next_tag(self, index: int, name: str) -> int:
+        """Return the index of the first expanded element of this name after another one; that
+        one if there is none.
+        """
+        others = range(index + 1, len(self.nodes))
+        return next((other for other in others if self.nodes[other].tag == name), index)
+
+    @property
+    def documents(self) -> Mapping[str, XacroNode]:
+        """The files that it was expanded from, as they are written, by their paths: this one
+        first.
+        """
+        return self._expander.files.documents
+
+    @property
+    def includes(self) -> Mapping[tuple[str, int], list[str]]:
+        """The files that were included, by the path of the file and the index of the tag that
+        include them.
+        """
+        return self._expander.files.followed
+
+    @property
+    def texts(self) -> Texts:
+        """What the names in its texts stand for."""
+        return self._expander.texts
+
+    @property
+    def refused(self) -> Sequence[Refusal]:
+        """What xacro refuses, without which it was expanded, and where."""
+        return self._expander.refused
+
+    @property
+    def is_refused(self) -> bool:
+        """Whether xacro refuses something, without which it was expanded."""
+        return bool(self._expander.problems)
+
+    @property
+    def unmarked(self) -> Edits:
+        """The edits that write ${side} where {side} or $side stands for a known name."""
+        return Corrections(self._expander.files, Budget()).unmarked()
+
+    @property
+    def open_reason(self) -> str:
+        """Why something could not be expanded; empty if everything was."""
+        return next((found.reason for found in self._expander.undetermined), "")
+
+    @property
+    def cost(self) -> int:
+        """How much longer this takes to expand and to read than a short file."""
+        return super().cost + self._work // _READING_OF_SHORT
+
+    def element(self, tag: int) -> tuple[Source, int]:
+        """Return the text, perhaps of an included file, with an expanded element, and the offset
+        of its start tag.
+        """
+        place = self.nodes[tag].place
+        return place.source.element(place.tag)
+
+
+_INSTRUCTION = re.compile(
+    r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?(?!xml\s)(?P<target>[\w:.-]+)", re.DOTALL
+)
+_MAX_ASSUMED = 20
+
+
+class _Expansion(NamedTuple):
+    """An expanded file.
+
+    If it cannot be expanded at all, `root` is None, and `recovered` is what can be read despite
+    broken tags. `is_meant` says whether xacro refuses nothing else. If what it refuses can surely
+    be corrected, `meant` is the expansion of the corrected files, and `assumed` lists what was
+    corrected.
+    """
+
+    root: Element | None
+    source: Source
+    problems: tuple[Problem, ...]  # what xacro refuses
+    undetermined: tuple[Open, ...]  # what cannot be determined statically
+    unresolved: Mapping[Element, Unresolved]  # the elements that are not known completely
+    recovered: Element | None = None
+    is_meant: bool = False
+    assumed: tuple[Problem, ...] = ()
+    meant: "_Expansion | None" = None
+    warnings: tuple[Problem, ...] = ()  # what xacro writes to stderr, and notes
+
+    @property
+    def document(self) -> XmlDocument:
+        """The expanded file as the reader of robots takes it; what cannot be determined is a
+        problem in it.
+        """
+        undetermined = [
+            Problem(xacro_problems.XACRO_UNDETERMINED, found.reason, found.location)
+            for found in self.undetermined
+        ]
+        problems = [*self.problems, *undetermined, *self.warnings]
+        found = XmlDocument(self.root, self.source, problems, 0, self.unresolved, is_expanded=True)
+        return found._replace(recovered=self.recovered, is_meant=self.is_meant)
+
+
+def expand(
+    data: bytes,
+    path: str,
+    workspace: Workspace,
+    arguments: Mapping[str, str | None],
+    others: OtherArguments = "default",
+    edits: Edits = (),
+) -> _Expansion:
+    """Return a xacro file as xacro expands it with these arguments; never raises. `path` is that in
+    the submission.
+
+    `others` says what is known of other arguments. With `edits`, which surely are meant, `meant` is
+    the expansion of the files after these, too.
+    """
+    read = partial(_expand, data, path, workspace, arguments, others)
+    expansion, expander = read({})
+    refused = expander.refused if expander is not None else []
+    meant = expansion
+    corrected, assumed = dict.fromkeys(edits), dict[str, Problem]()
+    if edits:
+        sentence, first = sentence_of(edits), edits[0]
+        assumed[sentence] = Problem(
+            RECOVERED, sentence, Location(first.path, first.line, first.column)
+        )
+        meant, expander = read(_by_path(corrected))
+    while expander is not None and expander.corrections and len(assumed) < _MAX_ASSUMED:
+        of_elements = [
+            found for found in expander.corrections if found.is_of_element
+        ]  # first: they may define names
+        new = of_elements or expander.corrections
+        if all(corrected.keys() >= set(found.edits) for found in new):
+            break
+        for found in new:
+            corrected |= dict.fromkeys(found.edits)
+            assumed.setdefault(found.sentence, Problem(RECOVERED, found.sentence, found.location))
+        meant, expander = read(_by_path(corrected))
+    if expander is None or meant is expansion:
+        return expansion
+    expander.refused[:0] = refused  # for hints
+    return expansion._replace(meant=meant, assumed=tuple(assumed.values()))
+
+
+def _by_path(edits: Iterable[Edit]) -> dict[str, Edits]:
+    by_path: dict[str, Edits] = {}
+    for edit in edits:
+        by_path[edit.path] = (*by_path.get(edit.path, ()), edit)
+    return by_path
+
+
+def _expand(
+    data: bytes,
+    path: str,
+    workspace: Workspace,
+    arguments: Mapping[str, str | None],
+    others: OtherArguments,
+    edits: Mapping[str, Edits],
+) -> tuple[_Expansion, Expander | None]:
+    """Return an expansion, and its expander unless there was nothing to expand."""
+    plain, budget = Source(path, data.decode("utf-8", "surrogateescape")), workspace.budget
+    before = budget.used
+    try:
+        source, refused, is_recovered = _read(data, plain, budget, edits.get(path, ()))
+    except EvaluationFails as error:
+        problem = Problem(xacro_problems.XACRO_NOT_XML, f"{error}; {STOPS}", plain.at(0))
+        return _Expansion(None, plain, (problem,), (), {}), None
+    except (Undetermined, OutOfBudget) as error:
+        return _Expansion(None, plain, (), (Open(str(error), plain.at(0)),), {}), None
+    if source is None:
+        return _Expansion(None, plain, refused, (), {}), None
+    files = Files(workspace, path, edits)
+    files.documents[path] = source
+    refused = (*refused, *_instructions(plain))
+    expander = Expander(files, arguments, budget, HANDLERS, CALL)
+    expander.texts.other_arguments = others
+    root = expander.root(source)
+    nodes: list[XacroNode] = []
+    unresolved: dict[Element, Unresolved] = {}
+    element = _element(root, nodes, unresolved)
+    corrected = tuple(edit for of_file in edits.values() for edit in of_file)
+    expansion = _Expansion(
+        None if is_recovered else element,
+        ExpandedSource(plain, nodes, expander, budget.used - before, corrected),
+        (*refused, *expander.problems),
+        tuple(expander.undetermined),
+        unresolved,
+        element if is_recovered else None,
+        is_meant=not expander.problems,
+        warnings=tuple(expander.warnings),
+    )
+    return expansion, expander
+
+
+def _read(
+    data: bytes, text: Source, budget: Budget, edits: Edits
+) -> tuple[XacroNode | None, tuple[Problem, ...], bool]:
+    """Return the elements of a file, what xacro refuses in it, and whether they are only what
+    broken tags leave.
+    """
+    path = text.path
+    try:
+        return read_nodes(data, path, budget, edits=edits), (), False
+    except XMLSyntaxError as error:
+        what, location = f"xacro needs well-formed XML: {error.msg}", error_location(error, text)
+    conflicts = find_conflicts(text.text)
+    if conflicts:
+        what, location = describe_conflicts(text.text, conflicts), text.at(conflicts[0].start)
+    refused = (Problem(xacro_problems.XACRO_NOT_XML, f"{what}; {STOPS}", location),)
+    with suppress(XMLSyntaxError):
+        return read_nodes(data, path, budget, is_repaired=True, edits=edits), refused, False
+    recovered, assumed = recovered_nodes(data, path, budget, edits)
+    return recovered, (*refused, *assumed) if recovered is not None else refused, True
+
+
+def _instructions(text: Source) -> Iterator[Problem]:
+    """Yield the first processing instruction: xacro keeps it, after its own comment, where
+    TinyXML2 refuses it.
+    """
+    instruction = next(
+        (found for found in _INSTRUCTION.finditer(text.text) if found["target"]), None
+    )
+    if instruction is not None:
+        what = f"<?{instruction['target'][:40]}?>"
+        message = f"{what} comes after the comment that xacro adds, which ROS 2 rejects: remove it"
+        yield Problem(MISPLACED_DECLARATION, message, text.at(instruction.start()))
+
+
+def _element(
+    root: XacroNode, nodes: list[XacroNode], unresolved: dict[Element, Unresolved]
+) -> Element:
+    """Return the elements of lxml for expanded ones; `nodes` becomes the latter in document
+    order.
+    """
+    made = make_element(_name(root.tag), _attributes(root.attributes))
+    pending: list[tuple[XacroNode, Element]] = [(root, made)]
+    while pending:
+        node, element = pending.pop()
+        nodes.append(node)
+        if node.unresolved or node.open is not None:
+            unresolved[element] = Unresolved(node.unresolved, node.open)
+        children: list[tuple[XacroNode, Element]] = []
+        for kind, found in groupby(node.children, type):
+            if kind is XacroNode:
+                inside = [child for child in found if isinstance(child, XacroNode)]
+                children += [
+                    (it, make_element(_name(it.tag), _attributes(it.attributes), element))
+                    for it in inside
+                ]
+            elif children:
+                children[-1][1].tail = "".join(map(str, found))
+            else:
+                element.text = "".join(map(str, found))
+        pending += reversed(children)
+    return made
+
+
+def _name(tag: str) -> str:
+    """Return a name for lxml: a prefix stands for its namespace, because no element with one
+    belongs to a URDF.
+    """
+    if ":" not in tag:
+        return tag
+    prefix, _, local = tag.partition(":")
+    return f"{{{prefix}}}{local}"
+
+
+def _attributes(attributes: dict[str, str]) -> dict[str, str]:
+    return (
+        attributes
+        if ":" not in "".join(attributes)
+        else {_name(name): it for name, it in attributes.items()}
+    )

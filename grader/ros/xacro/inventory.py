@@ -1,0 +1,117 @@
+"""The properties and macros that xacro files define, and the names that they use, as they are
+written.
+"""
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+from grader.ros.python.budget import Budget
+from grader.ros.python.values import EvaluationFails, Undetermined
+from grader.ros.xacro.macros import read_parameters
+from grader.ros.xacro.scopes import ScopePlace
+from grader.ros.xacro.tags import HANDLERS
+from grader.ros.xacro.texts import PIECE, TEXT_IN_QUOTES
+from grader.ros.xacro.xacro_nodes import XacroNode, walk
+
+_NAME = re.compile(r"(?<![\w.])[^\W\d]\w*+(?:\.[^\W\d]\w*+)*+(?!\s*=[^=])")
+
+Definitions = dict[str, list[ScopePlace]]
+
+
+@dataclass(frozen=True, slots=True)
+class Inventory:
+    """The definitions in files, each with its places, and what is used; `dynamic` are tags with
+    evaluated names.
+    """
+
+    properties: Definitions = field(default_factory=dict)
+    macros: Definitions = field(default_factory=dict)
+    used: set[str] = field(default_factory=set)
+    called: set[str] = field(default_factory=set)
+    includes: list[ScopePlace] = field(default_factory=list)
+    dynamic: list[ScopePlace] = field(default_factory=list)
+
+    def define(self, definitions: Definitions, name: str, place: ScopePlace) -> None:
+        """Note a definition, or that its name is evaluated."""
+        if "$" in name:
+            self.dynamic.append(place)
+        elif name:
+            definitions.setdefault(name, []).append(place)
+
+
+def take_inventory(documents: Iterable[XacroNode], budget: Budget) -> Inventory:
+    """Return what files define and use; a macro's parameter is no use of a property of its name.
+    Raises OutOfBudget.
+    """
+    found, roots = Inventory(), [*documents]
+    namespaces = {
+        node.attributes.get("ns")
+        for root in roots
+        for node in walk(root)
+        if node.tag == "xacro:include"
+    }
+    waiting = [(root, frozenset[str]()) for root in reversed(roots)]
+    while waiting:
+        node, hidden = waiting.pop()
+        own = _note_tag(node, found)
+        texts = [
+            *node.attributes.values(),
+            *(child for child in node.children if isinstance(child, str)),
+        ]
+        dotted = {name.partition(".") for text in texts for name in _names_in(text)}
+        names = {other if first in namespaces else first for first, _, other in dotted}
+        found.used.update(names - hidden - {own})
+        if node.tag == "xacro:macro":
+            hidden |= _parameters(node, found, budget)
+        waiting += [(child, hidden) for child in reversed(node.elements)]
+    return found
+
+
+def _note_tag(node: XacroNode, found: Inventory) -> str:
+    """Note what a tag of xacro defines or calls; return the name of a property, whose own text is
+    no use of it.
+    """
+    name = node.attributes.get("name", "")
+    match node.tag:
+        case "xacro:property":
+            if node.attributes.get("remove") in (None, "false"):
+                found.define(found.properties, name, node.place)
+            return name
+        case "xacro:macro":
+            found.define(found.macros, name.removeprefix("xacro:"), node.place)
+        case "xacro:include":
+            found.includes.append(node.place)
+        case "xacro:insert_block":
+            found.used.add(name)
+        case "xacro:call":
+            called = node.attributes.get("macro", "")
+            found.called.add(called.rpartition(".")[2])
+            if "$" in called:
+                found.dynamic.append(node.place)
+        case tag if tag.startswith("xacro:") and tag not in HANDLERS:
+            found.called.add(tag.removeprefix("xacro:").rpartition(".")[2])
+    return ""
+
+
+def _parameters(node: XacroNode, found: Inventory, budget: Budget) -> frozenset[str]:
+    """Return the names of a macro's parameters; forwarding one uses the caller's property. Raises
+    OutOfBudget.
+    """
+    try:
+        parameters = read_parameters(node.attributes.get("params", ""), budget)
+    except (EvaluationFails, Undetermined):
+        return frozenset()
+    found.used.update(parameter.name for parameter in parameters if parameter.is_forwarded)
+    return frozenset(parameter.name.lstrip("*") for parameter in parameters)
+
+
+def _names_in(text: str) -> Iterator[str]:
+    """Yield the names in the expressions of a text, with dots."""
+    position = text.find("$")
+    while position >= 0 and (piece := PIECE.match(text, position)) is not None:
+        position = piece.end()
+        if piece["substitution"] is not None:
+            yield from _names_in(piece["substitution"])
+        for found in _NAME.finditer(TEXT_IN_QUOTES.sub("''", piece["expression"] or "")):
+            yield found[0]

@@ -1,0 +1,251 @@
+"""The names that xacro binds: properties, evaluated when they are first used, and macros, in
+nested scopes.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+from grader.base.names import MAX_LENGTH
+from grader.base.source import Location, Source
+from grader.ros.python.values import EvaluationFails, Namespace, Undetermined, Value
+
+# What a scope needs to evaluate a text in it, and to report that xacro refuses one, or that it
+# cannot be determined.
+_Evaluate = Callable[[str, "XacroScope"], Value]
+ReportFailure = Callable[[EvaluationFails | Undetermined, "ScopePlace", str], object]
+
+
+_MAX_CALLS = 20  # that a location names
+BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
+
+
+class ScopePlace(NamedTuple):
+    """A start tag in a source file; once expanded, with its macro calls, outermost first, and
+    the scope.
+    """
+
+    source: Source
+    tag: int
+    calls: "tuple[tuple[str, ScopePlace], ...] | None" = None
+    scope: "XacroScope | None" = None
+
+    def at(self, attribute: str | None = None) -> Location:
+        """Return the location of the tag, or of an attribute if it has it, with the macro calls."""
+        location = self.source.tag(self.tag, attribute)
+        if not self.calls:
+            return location
+        return location._replace(
+            calls=tuple((macro, place.at()) for macro, place in self.calls[:_MAX_CALLS])
+        )
+
+
+# Where a definition whose text is in an attribute has its name; a macro call has it in no value.
+_NAMED_IN = {"name": "name", "value": "name", "default": "name", "params": "params"}
+Key = tuple[str, int, str, str]
+
+
+class Definition(NamedTuple):
+    """Where a name got its value: the text in an attribute, and the scope in which it is
+    evaluated.
+    """
+
+    name: str
+    text: str
+    place: ScopePlace
+    attribute: str
+    scope: "XacroScope"
+
+    @property
+    def key(self) -> Key:
+        """What identifies the text in the source, however often it is evaluated."""
+        return self.place.source.path, self.place.tag, self.attribute, self.name
+
+
+# Names that are defined, each with the tag and attribute that define it where they are known.
+Known = Mapping[str, tuple[ScopePlace, str] | None]
+
+
+class UnknownName(NamedTuple):
+    """A name that is not defined, and those that are; `meant` is the one that it surely stands for,
+    if there is one.
+
+    `kind` is property where the name is in an expression, else what it names: a macro, block,
+    parameter, attribute or file.
+    """
+
+    name: str
+    known: Known
+    kind: str = ""
+    meant: str | None = None
+
+
+class XacroFails(EvaluationFails):
+    """Something that xacro refuses, perhaps for a name that it does not know, or values that a call
+    lacks.
+    """
+
+    def __init__(
+        self, message: str, unknown: UnknownName | None = None, lacking: tuple[str, ...] = ()
+    ) -> None:
+        super().__init__(message)
+        self.unknown, self.lacking = unknown, lacking
+
+
+class Reported(EvaluationFails):
+    """Something that xacro refuses, which is already listed as a problem."""
+
+
+class _Property:
+    """A value, or the text whose value is determined at the first use; `failure` is why it has
+    none.
+    """
+
+    __slots__ = ("definition", "failure", "is_lazy", "is_open", "value")
+
+    def __init__(self, value: Value, *, is_lazy: bool, definition: Definition | None) -> None:
+        value = _literal(value)
+        self.value = value
+        self.is_lazy = is_lazy and isinstance(value, str)
+        self.definition = definition
+        self.is_open = False  # whether it is being evaluated
+        self.failure: EvaluationFails | Undetermined | None = None
+
+
+class IncludedNames(Namespace):
+    """The properties of an included file with a namespace."""
+
+    __slots__ = ("scope",)
+
+    def __init__(self, name: str, find: Callable[[str], Value], scope: "XacroScope") -> None:
+        super().__init__(name, find)
+        self.scope = scope
+
+
+class XacroScope:
+    """The names of one macro call or the whole document."""
+
+    def __init__(self, parent: "XacroScope | None" = None, *, is_namespace: bool = False) -> None:
+        """`is_namespace`: whether they are those of an included file with a namespace."""
+        self.parent, self.is_namespace = parent, is_namespace
+        self.properties: dict[str, _Property] = {}
+
+    @property
+    def caller(self) -> "XacroScope | None":
+        """The scope that the scope parent means: around a macro, the namespace that it is defined
+        in does not count.
+        """
+        scope = self.parent
+        while not self.is_namespace and scope is not None and scope.is_namespace:
+            scope = scope.parent
+        return scope
+
+    def bound(self, name: str) -> Value | None:
+        """Return what a name stands for without evaluating it; None if nothing binds it."""
+        holder = self.holder(name)
+        return holder.properties[name].value if holder is not None else None
+
+    @property
+    def top(self) -> "XacroScope":
+        """The scope of the whole document."""
+        scope = self
+        while scope.parent is not None:
+            scope = scope.parent
+        return scope
+
+    def holder(self, name: str) -> "XacroScope | None":
+        """Return the nearest scope that binds a name."""
+        scope: XacroScope | None = self
+        while scope is not None and name not in scope.properties:
+            scope = scope.parent
+        return scope
+
+    def definitions(self) -> dict[str, tuple[ScopePlace, str] | None]:
+        """Return the names that are known here, each with the tag and attribute that define it
+        where there is one.
+        """
+        found = self.parent.definitions() if self.parent is not None else {}
+        for name, definition in (
+            (name, bound.definition) for name, bound in self.properties.items()
+        ):
+            if _is_compared(name):
+                attribute = _NAMED_IN.get(definition.attribute) if definition is not None else None
+                found[name] = (
+                    (definition.place, attribute) if definition is not None and attribute else None
+                )
+        return found
+
+    def blocks(self) -> dict[str, tuple[ScopePlace, str] | None]:
+        """Return the names of the blocks of this macro, with its own tag."""
+        bound = {
+            name.lstrip("*"): it.definition
+            for name, it in self.properties.items()
+            if name.startswith("*")
+        }
+        return {
+            name: (it.place, it.attribute) if it is not None else None for name, it in bound.items()
+        }
+
+    def bind(
+        self,
+        name: str,
+        value: Value,
+        *,
+        is_lazy: bool = False,
+        definition: Definition | None = None,
+    ) -> None:
+        """Give a name a value, or a text that is evaluated lazily."""
+        self.properties[name] = _Property(value, is_lazy=is_lazy, definition=definition)
+
+    def remove(self, name: str) -> None:
+        """Remove a name from this scope and those around it."""
+        scope: XacroScope | None = self
+        while scope is not None:
+            scope.properties.pop(name, None)
+            scope = scope.parent
+
+    def value(self, name: str, evaluate: _Evaluate, report: ReportFailure) -> Value:
+        """Return the value of a name that this scope binds itself."""
+        found = self.properties[name]
+        if found.failure is not None:
+            raise found.failure.with_traceback(None)
+        if not found.is_lazy:
+            return found.value
+        if found.is_open:
+            raise EvaluationFails(f"the property {name} is defined by itself")
+        found.is_open = True
+        try:
+            found.value, found.is_lazy = _literal(evaluate(found.value, self)), False
+        except EvaluationFails as error:
+            if found.definition is not None and not isinstance(error, Reported):
+                report(error, found.definition.place, "value")
+            found.failure = Reported(str(error))
+            raise found.failure from None
+        except Undetermined as error:
+            found.failure = error
+            raise
+        finally:
+            found.is_open = False
+        return found.value
+
+
+def _is_compared(name: str) -> bool:
+    """Return whether a name may be the one that a mistyped one stands for."""
+    return len(name) <= MAX_LENGTH and name.isidentifier()
+
+
+def _literal(value: Value) -> Value:
+    """Return the number or boolean that a text is for xacro, else the text, without single quotes
+    around it.
+    """
+    if not isinstance(value, str):
+        return value
+    if len(value) >= 2 and value[0] == "'" == value[-1]:
+        return value[1:-1]
+    if "_" in value:
+        return value
+    for kind in (int, float):
+        try:
+            return kind(value)
+        except ValueError:
+            pass
+    return BOOLEANS.get(value, value)

@@ -1,0 +1,215 @@
+"""The files that a xacro file names: where they are in the submission, and what is in them."""
+
+import posixpath
+import re
+from collections.abc import Collection, Mapping
+from typing import Protocol
+
+from grader.base.errors import InputError, NotDecided
+from grader.base.merge_conflicts import describe_conflicts, find_conflicts
+from grader.base.names import near
+from grader.base.source import Edits, Source
+from grader.ros.python.budget import Budget
+from grader.ros.python.values import EvaluationFails, Undetermined
+from grader.ros.xacro.scopes import UnknownName, XacroFails
+from grader.ros.xacro.texts import INSTALLED
+from grader.ros.xacro.xacro_nodes import XacroNode, read_nodes
+from grader.ros.xml.parsing import XMLSyntaxError
+
+_SHARED = re.compile(
+    rf"{INSTALLED}/(?P<package>[^/]+)/share/(?P=package)(?:/+(?P<inside>.+))", re.DOTALL
+)
+_ADDED = re.compile(r".*\.(?:urdf|xacro)(.*)", re.IGNORECASE | re.DOTALL)
+_MAX_OPEN = 50  # files that include each other
+_MAX_PATH = 1_000  # characters
+_OF_FILE, _OF_NAME = (
+    50,
+    20,
+)  # what looking for one, and comparing its name with another one, are charged
+
+
+class Workspace(Protocol):
+    """The files around a xacro file: those of its submission."""
+
+    @property
+    def budget(self) -> Budget:
+        """The budget of the submission."""
+
+    @property
+    def paths(self) -> Collection[str]:
+        """The paths of the files."""
+
+    @property
+    def is_part(self) -> bool:
+        """Whether the files may be a part of any package, because there is none among them."""
+
+    def read(self, path: str) -> bytes:
+        """Return the bytes of a file. Raises InputError, NotDecided."""
+
+    def package(self, name: str) -> str | None:
+        """Return the folder of a package."""
+
+    def installed(self, package: str, inside: str) -> str | None:
+        """Return the file that a build installs at a path in a package. Raises Undetermined."""
+
+    def ask(self, name: str) -> object:
+        """Note the name of a file that is looked for."""
+
+
+class FileFails(XacroFails):
+    """A file that is not there."""
+
+
+class XmlFails(EvaluationFails):
+    """A file that is not well-formed XML, with the edits that repair it, and what these assume."""
+
+    def __init__(self, message: str, repair: Edits = (), assumed: str = "") -> None:
+        super().__init__(message)
+        self.repair, self.assumed = repair, assumed
+
+
+class Files:
+    """The files that are open while a document is expanded, innermost last."""
+
+    def __init__(self, workspace: Workspace, path: str, edits: Mapping[str, Edits]) -> None:
+        """`edits` correct the files before they are read, by their paths."""
+        self._workspace, self._budget, self._edits = workspace, workspace.budget, edits
+        self.open = [path]
+        self.documents: dict[str, XacroNode] = {}  # every file that was read, as it is written
+        self.followed: dict[
+            tuple[str, int], list[str]
+        ] = {}  # the tags that include files, and the paths of these
+
+    def has_package(self, name: str) -> bool:
+        """Return whether a package is, or may be, part of the submission."""
+        return (
+            self._workspace.is_part
+            or not self._workspace.paths
+            or self._workspace.package(name) is not None
+        )
+
+    def path(self, text: str) -> str:
+        """Return the path in the submission of a file that the innermost file names. Raises
+        Undetermined.
+        """
+        if len(text) > _MAX_PATH:
+            raise Undetermined("the path of a file is too long")
+        self._budget.charge(_OF_FILE + len(self._workspace.paths) * (1 + text.count("/")))
+        self._workspace.ask(text)
+        shared = _SHARED.fullmatch(text)
+        if shared is not None:
+            path = self._share_path(shared["package"], posixpath.normpath(shared["inside"]))
+        else:
+            path = posixpath.normpath(posixpath.join(posixpath.dirname(self.open[-1]), text))
+        if text.startswith(f"{INSTALLED}/") and shared is None:
+            raise FileFails(
+                f"there is no file {text.partition('/share/')[2]}: is a slash missing after "
+                "$(find ...)?"
+            )
+        if path.startswith(("/", "../")) or path == "..":
+            raise Undetermined(f"{text} is outside the submission")
+        renamed = path + self._extra_ending()
+        return (
+            renamed
+            if path not in self._workspace.paths and renamed in self._workspace.paths
+            else path
+        )
+
+    def _extra_ending(self) -> str:
+        """Return what an upload without the package added to the innermost file's name: .txt of
+        a.xacro.txt.
+        """
+        added = (
+            _ADDED.fullmatch(posixpath.basename(self.open[-1])) if self._workspace.is_part else None
+        )
+        return added[1] if added is not None else ""
+
+    def _share_path(self, package: str, inside: str) -> str:
+        """Return the path of a file that $(find package) names."""
+        folder, source = (
+            self._workspace.package(package),
+            self._workspace.installed(package, inside),
+        )
+        if folder is None and source is None:
+            raise Undetermined(f"the package {package} is not part of the submission")
+        return (
+            source
+            if source is not None
+            else posixpath.normpath(posixpath.join(folder or "", inside))
+        )
+
+    def read(self, path: str) -> bytes:
+        """Return the bytes of a file. Raises FileFails for one that does not exist,
+        Undetermined.
+        """
+        try:
+            return self._workspace.read(path)
+        except InputError as error:
+            raise self._not_found(path, str(error)) from None
+        except NotDecided as error:
+            raise Undetermined(str(error)) from None
+
+    def nodes(self, path: str) -> XacroNode:
+        """Return the root element of an included file."""
+        if self.open.count(path) and len(self.open) > _MAX_OPEN:
+            raise FileFails(f"{path} includes itself again and again")
+        data = self.read(path)
+        try:
+            self.documents[path] = read_nodes(
+                data, path, self._budget, edits=self._edits.get(path, ())
+            )
+        except XMLSyntaxError as error:
+            raise self._not_xml(path, data, error.msg) from None
+        return self.documents[path]
+
+    def _not_found(self, path: str, message: str) -> FileFails:
+        """Return the error for a file that does not exist, with the one that it surely stands
+        for.
+        """
+        self._budget.charge(len(self._workspace.paths))
+        folder, name = posixpath.split(path)
+        names = [
+            posixpath.basename(other)
+            for other in self._workspace.paths
+            if posixpath.dirname(other) == folder
+        ]
+        self._budget.charge(_OF_NAME * len(names))
+        same = [other for other in self._workspace.paths if other.lower() == path.lower()]
+        if len(same) != 1:
+            return FileFails(
+                message, UnknownName(name, dict.fromkeys(names), "file", near(name, names))
+            )
+        parts, others = path.split("/"), same[0].split("/")
+        first = next(
+            index
+            for index, (one, other) in enumerate(zip(parts, others, strict=True))
+            if one != other
+        )
+        meant = "/".join(others[first:])
+        unknown = UnknownName("/".join(parts[first:]), {meant: None}, "file", meant)
+        return FileFails(f"{message}, but {same[0]}: capital letters count", unknown)
+
+    def _not_xml(self, path: str, data: bytes, message: str) -> XmlFails:
+        """Return the error for an included file that is not well-formed XML, with what repairs
+        it.
+        """
+        from grader.ros.xml.repair import repair  # late: few files are broken
+
+        source = Source(path, data.decode("utf-8", "replace"))
+        self._budget.charge(1, len(data))
+        repaired = repair(source.text)
+        edits = (
+            tuple(source.edit(*change) for change in repaired.changes)
+            if not repaired.is_lossy
+            else ()
+        )
+        conflicts = find_conflicts(source.text)
+        assumed = (
+            "; ".join(found.message for found in repaired.assumed[:3])
+            or "the first version is read"
+        )
+        if conflicts:
+            return XmlFails(
+                f"{path} has {describe_conflicts(source.text, conflicts)}", edits, assumed
+            )
+        return XmlFails(f"{path} is not well-formed XML: {message}", edits, assumed)

@@ -1,0 +1,225 @@
+"""The elements of a xacro file before and after expansion, each with the place in the source that
+it came from.
+"""
+
+import re
+from bisect import bisect_right
+from collections.abc import Callable, Iterator
+
+from grader.base.problems import Problem
+from grader.base.reuse import reuse
+from grader.base.source import Edits, Source
+from grader.ros.python.budget import Budget
+from grader.ros.python.values import EvaluationFails, Undetermined
+from grader.ros.xacro.scopes import ScopePlace
+from grader.ros.xml.parsing import Element, parse_xml
+
+_Children = list["XacroNode | str"]
+_OF_TAG, _OF_ATTRIBUTE = 4, 2  # what reading one is charged
+_COMPARED = 256  # names of attributes that lxml compares for one part: each with all of its element
+
+# xacro reads the file as UTF-8, so that its parser ignores the encoding that the file declares.
+_DECLARATION = re.compile(
+    r"""
+    ^\ufeff?<\?xml\s+version\s*=\s*(["'])1\.[0-9]+\1
+    (?:\s+\w+\s*=\s*(?:"[^"<>]*"|'[^'<>]*'))*        # encoding="latin-1", standalone='yes'
+    \s*\?>
+    """,
+    re.VERBOSE,
+)
+_MISPLACED = re.compile(r"<\?xml\s[^<>]*\?>")
+_UNDECLARED = re.compile(r"(</?\s*)xacro:")
+# for the colon of an undeclared prefix: a letter that looks like one, so that columns stay
+_STAND_IN = "\u02d0"
+_UNDECLARED_TAG = f"xacro{_STAND_IN}"
+_CDATA = re.compile(r"<!--.*?-->|<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
+
+
+class XacroNode:
+    """An element. `unresolved` holds why attributes are left as written: they are refused, or
+    cannot be determined.
+    """
+
+    __slots__ = ("attributes", "children", "open", "place", "tag", "unresolved")
+
+    def __init__(
+        self, tag: str, place: ScopePlace, attributes: dict[str, str] | None = None
+    ) -> None:
+        self.tag = tag
+        self.place = place
+        self.attributes: dict[str, str] = attributes if attributes is not None else {}
+        self.children: _Children = []
+        self.unresolved: dict[
+            str, str
+        ] = {}  # attribute -> why it cannot be determined; empty where xacro refuses it
+        # why it may have more children or attributes; empty where xacro refuses them
+        self.open: str | None = None
+
+    @property
+    def elements(self) -> "list[XacroNode]":
+        """The children that are elements."""
+        return [child for child in self.children if isinstance(child, XacroNode)]
+
+
+def walk(node: XacroNode) -> Iterator[XacroNode]:
+    """Yield an element and all in it, in the order of the text."""
+    waiting = [node]
+    while waiting:
+        found = waiting.pop()
+        yield found
+        waiting += reversed(found.elements)
+
+
+def read_nodes(
+    data: bytes, path: str, budget: Budget, *, is_repaired: bool = False, edits: Edits = ()
+) -> XacroNode:
+    """Return the root of an XML file. Raises XMLSyntaxError, and Undetermined for a file with
+    entities of its own.
+
+    With `is_repaired`, two faults that xacro refuses do not matter: a misplaced declaration, and no
+    xmlns:xacro. The text is read after the `edits`; places are those in the text before.
+    """
+    _decode(data, budget)
+    root, parts = _read(data, path, is_repaired, edits)
+    budget.charge(parts)
+    return root
+
+
+@reuse
+def _read(data: bytes, path: str, is_repaired: bool, edits: Edits) -> tuple[XacroNode, int]:
+    """Return the root of an XML file, and what its attributes are charged."""
+    source = Source(path, data.decode())
+    text, origin = _edited(source, edits)
+    xml = _DECLARATION.sub(lambda found: " " * len(found[0]), text, count=1)
+    if is_repaired:
+        xml = _MISPLACED.sub(lambda found: " " * len(found[0]), xml)
+        xml = xml if "xmlns:xacro" in xml else _UNDECLARED.sub(r"\1xacro" + _STAND_IN, xml)
+    root = parse_xml(xml.encode())
+    definitions = root.getroottree().docinfo.internalDTD
+    if definitions is not None and next(definitions.iterentities(), None) is not None:  # type: ignore[attr-defined]
+        raise Undetermined("entities of a DOCTYPE are not supported")
+    if "<![CDATA[" in text and any("$" in section for section in _CDATA.findall(text)):
+        raise Undetermined("a CDATA section with $ is not supported")
+    own = Budget()
+    if edits:
+        written, count = Source(path, text), sum(1 for _ in root.iter())
+        source = Source(
+            path, source.text, [origin(written.element(index)[1]) for index in range(count)]
+        )
+    return _nodes(root, source, own), own.used
+
+
+def _edited(source: Source, edits: Edits) -> tuple[str, Callable[[int], int]]:
+    """Return a text after edits, and what returns the offset before them of a character; one that
+    is moved has its own.
+
+    Of edits that overlap, the first counts.
+    """
+    removed = {
+        edit.old.strip(): source.offset(edit.line, edit.column)
+        + len(edit.old)
+        - len(edit.old.lstrip())
+        for edit in edits
+        if not edit.new
+    }
+    pieces: list[str] = []
+    places: list[
+        tuple[int, int]
+    ] = []  # of the pieces: the offset after the edits, and the one before
+    length = position = 0
+    for start, edit in sorted(
+        ((source.offset(it.line, it.column), it) for it in edits), key=lambda pair: pair[0]
+    ):
+        if start < position:
+            continue
+        for piece, at in (
+            (source.text[position:start], position),
+            (edit.new, removed.get(edit.new.strip(), start)),
+        ):
+            places.append((length, at))
+            pieces.append(piece)
+            length += len(piece)
+        position = start + len(edit.old)
+    places.append((length, position))
+
+    def origin(offset: int) -> int:
+        after, before = places[bisect_right(places, offset, key=lambda place: place[0]) - 1]
+        return min(before + offset - after, len(source.text))
+
+    return "".join([*pieces, source.text[position:]]), origin
+
+
+def recovered_nodes(
+    data: bytes, path: str, budget: Budget, edits: Edits = ()
+) -> tuple[XacroNode | None, list[Problem]]:
+    """Return what can be read of a file with broken tags, None if no link can, and what was
+    assumed.
+    """
+    from grader.ros.xml.repair import repair  # late: few files are broken
+
+    written = Source(path, _decode(data, budget))
+    text, origin = _edited(written, edits)
+    repaired = repair(text)
+    source = Source(path, written.text, [*map(origin, repaired.offsets)])
+    assumed = [
+        Problem(found.kind, found.message, source.at(origin(found.offset)), found.subject)
+        for found in repaired.assumed
+    ]
+    return _nodes(parse_xml(repaired.xml), source, budget) if repaired.xml else None, assumed
+
+
+def _nodes(root: Element, source: Source, budget: Budget) -> XacroNode:
+    nodes: dict[Element, XacroNode] = {}
+    for index, element in enumerate(root.iter()):
+        attributes = _attributes(element)
+        budget.charge(len(attributes) ** 2 // _COMPARED)
+        node = nodes[element] = XacroNode(_tag(element), ScopePlace(source, index), attributes)
+        _add_text(node.children, element.text)
+        parent = element.getparent()
+        if parent is not None:
+            children = nodes[parent].children
+            children.append(node)
+            _add_text(children, element.tail)
+    return nodes[root]
+
+
+def _decode(data: bytes, budget: Budget) -> str:
+    """Return the text of a file as UTF-8, which xacro assumes whatever the declaration says; charge
+    its tags.
+    """
+    prefixes = data.count(b"xmlns") * data.count(b":") // 8
+    budget.charge(
+        _OF_TAG * data.count(b"<") + _OF_ATTRIBUTE * data.count(b"=") + prefixes, len(data)
+    )
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        raise EvaluationFails("the file is not UTF-8 text") from None
+
+
+def _add_text(children: _Children, text: str | None) -> None:
+    if text and not text.isspace():
+        children.append(text)
+
+
+def _tag(element: Element) -> str:
+    tag = str(element.tag)
+    if tag[0] != "{":
+        return tag.replace(_STAND_IN, ":", 1) if tag.startswith(_UNDECLARED_TAG) else tag
+    local = tag.rpartition("}")[2]
+    return f"{element.prefix}:{local}" if element.prefix else local
+
+
+def _attributes(element: Element) -> dict[str, str]:
+    attributes: dict[str, str] = dict(element.items())  # type: ignore[arg-type]  # lxml gives str here
+    if "{" not in "".join(attributes):
+        return attributes
+    prefixes = {uri: prefix for prefix, uri in element.nsmap.items() if prefix} | {_XML: "xml"}
+    named = (
+        name[1:].partition("}") if name.startswith("{") else ("", "", name) for name in attributes
+    )
+    names = (f"{prefixes[uri]}:{local}" if uri else local for uri, _, local in named)
+    return dict(zip(names, attributes.values(), strict=True))
+
+
+_XML = "http://www.w3.org/XML/1998/namespace"

@@ -1,0 +1,469 @@
+"""The edits that repair a text which TinyXML2 refuses, and the robot as it is read after these
+edits.
+
+Every element but the broken ones is read as it stands. What the text stands for is assumed by the
+format of a URDF: a tag that does not fit closes those that are in its way.
+"""
+
+import re
+from bisect import bisect_right
+from typing import Literal, NamedTuple
+
+from grader.base.markup import indentation
+from grader.base.merge_conflicts import find_conflicts, without_conflicts
+from grader.base.names import near
+from grader.base.text import enumerated
+from grader.ros.xml import xml_problems
+from grader.ros.xml.tinyxml2 import (
+    Difference,
+    MalformedTagError,
+    Tag,
+    decode,
+    escape,
+    read_tag,
+    scan,
+    short,
+)
+from grader.ros.xml.urdf_format import CHILDREN, PARTS, REQUIRED, TAGS, numbers_in
+
+# What is no tag: a comment, a CDATA section, a declaration, a DOCTYPE. A declaration may lack its
+# end, ?>.
+_OTHER = re.compile(
+    r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?[^<]*?\?>|(?P<declaration><\?[^<>]*>?)|<!(?!--|\[CDATA\[).*?>",
+    re.DOTALL,
+)
+# A broken tag to its > or to the next tag, and the attributes in it.
+_BROKEN = re.compile(r"<\s*+(?P<close>/?)\s*+(?P<name>[A-Za-z_][\w:.-]*)(?P<rest>[^<>]*)>?")
+_ATTRIBUTE = re.compile(
+    r"""
+    (?<![\w:.-])([A-Za-z_][\w:.-]*+)\s*+=\s*+(?:
+        "([^"]*)"? | '([^']*)'?    # link="base", or link="base at the end of the tag
+      | [“”„‘’‚]([^“”„‘’‚]*)[“”„‘’‚]
+      | ([^\s"'“”„‘’‚=]+)           # link=base
+    )
+    """,
+    re.VERBOSE,
+)
+_NAMELESS = re.compile(r"""\s*=\s*["']([^"']*)["']""")
+_NAME = re.compile(r"<\s*+([A-Za-z_][\w:.-]*)")
+# Elements for other tools, and of xacro, which stand in the robot; those of xacro have no URDF in
+# them.
+_XACRO = ("xacro:property", "xacro:arg", "xacro:include")
+_TOP = ("gazebo", "transmission", "ros2_control", *_XACRO)
+_TAGS = {*CHILDREN, *(tag for tags in CHILDREN.values() for tag in tags), *_XACRO}
+_ARROW = re.compile(r"(?<!-)->(?=[ \t]*(?:\r?\n|<))")
+_VISIBLE = re.compile(r"[^\r\n]")
+# where reading stops; urdfdom never looks deeper than robot/link/visual/geometry/box
+_MAX_DEPTH = 32
+_MAX_ASSUMED = 20
+
+
+class _TextEdit(NamedTuple):
+    """A change of a text: what is between two offsets becomes `new`."""
+
+    start: int
+    end: int
+    new: str
+
+    @property
+    def is_replacement(self) -> bool:
+        """Whether it changes a text that is there; else it inserts one."""
+        return self.end > self.start
+
+
+class _Repair(NamedTuple):
+    """The robot that is read of a text after the changes that repair it; no robot if no link can
+    be read.
+    """
+
+    xml: bytes
+    offsets: list[int]  # of its start tags, in the text as the student wrote it
+    changes: list[_TextEdit]  # in order; none overlaps another one
+    assumed: list[Difference]  # what the changes assume
+    is_lossy: bool  # whether something that the student wrote has no place in the repaired text
+
+
+def repair(text: str) -> _Repair:
+    """Return the changes that repair a text, and the robot that is read after them."""
+    conflicts = find_conflicts(text)
+    changes = [_TextEdit(*span, "") for conflict in conflicts for span in conflict.removed]
+    kept = without_conflicts(text, conflicts)
+    assumed: list[Difference] = []
+    for start, end in unclosed_comments(kept):
+        changes.append(_TextEdit(end - 2, end, "-->"))
+        assumed.append(
+            Difference(xml_problems.RECOVERED, "the comment ends here: -> is read as -->", end - 2)
+        )
+        kept = f"{kept[:start]}{_VISIBLE.sub(' ', kept[start:end])}{kept[end:]}"
+    found = _Repairer(kept).run()
+    assumed = [*assumed, *found.assumed] if found.xml else []
+    around = [
+        range(change.start, change.end) for change in found.changes
+    ]  # a tag with a comment in a value
+    own = [change for change in changes if not any(change.start in tag for tag in around)]
+    return found._replace(changes=sorted([*found.changes, *own]), assumed=assumed)
+
+
+def unclosed_comments(text: str) -> list[tuple[int, int]]:
+    """Return the offsets of comments that end with -> by mistake: they run to the end of another
+    one or of the text.
+    """
+    found: list[tuple[int, int]] = []
+    position = text.find("<!--")
+    while position >= 0 and len(found) < _MAX_ASSUMED:
+        end = text.find("-->", position + 4)
+        whole = end if end >= 0 else len(text)
+        arrow = _ARROW.search(text, position + 4, whole)
+        if arrow is not None and (end < 0 or text.find("<!--", arrow.end(), whole) >= 0):
+            found.append((position, arrow.end()))
+            whole = arrow.end()
+        position = text.find("<!--", whole)
+    return found
+
+
+class _Repairer:
+    """One pass over a text, which notes what becomes of its tags, and which end tags are missing
+    where.
+    """
+
+    def __init__(self, text: str) -> None:
+        self._text = text.partition("\0")[0]  # TinyXML2 reads no further
+        self._replaced: dict[
+            int, tuple[int, str]
+        ] = {}  # by the offset of a tag: where it ends, what it becomes
+        self._last = -1  # the offset of the tag that was replaced last
+        self._inserted: dict[int, str] = {}  # end tags, by the offset before which they are missing
+        self._assumed: list[Difference] = []
+        self._is_lossy = False
+        self._open: list[Tag] = []
+        self._robot: int | None = None  # the offset of the first robot
+
+    def run(self) -> _Repair:
+        """Find the changes, and read the robot after them."""
+        end = self._read()
+        if self._open:
+            opened = enumerated([f"<{short(tag.name)}>" for tag in self._open], 3)
+            self._assume(f"what is open is closed at the end: {opened}", len(self._text))
+            self._is_lossy |= end < len(self._text)
+        while self._open:
+            self._close_last(end)
+        noted = self._noted()
+        xml, offsets = self._robot_after(noted, end)
+        if b"<link" not in xml:
+            return _Repair(b"", [], _joined(noted), [], self._is_lossy)
+        return _Repair(xml, offsets, _joined(noted), self._assumed, self._is_lossy)
+
+    def _read(self) -> int:
+        """Read the tags of the first robot; return the offset at which reading stops."""
+        position, text = 0, self._text
+        while len(self._assumed) < _MAX_ASSUMED and len(self._open) <= _MAX_DEPTH:
+            start = text.find("<", position)
+            if start < 0:
+                return len(text)
+            if text.startswith(("<!", "<?"), start):
+                other = _OTHER.match(text, start)
+                if other is None:
+                    return start  # a comment or the like without an end
+                position = other.end()
+                self._repair_declaration(other)
+                continue
+            position = self._read_tag(start)
+            if self._robot is not None and not self._open:
+                rest = text[position:].strip()
+                if rest and "<" not in rest:
+                    self._replace(position, len(text), "")
+                return position
+        return position
+
+    def _read_tag(self, start: int) -> int:
+        """Read the tag at an offset; return the offset after it."""
+        tag, end = self._tag(start)
+        if tag is None:
+            return end
+        if not self._open and tag.name != "robot":
+            if tag.form == "close":  # TinyXML2 reads no further
+                self._replace(start, end, "")
+        elif tag.form == "close":
+            self._close(tag, end)
+        else:
+            self._start(tag)
+        return end
+
+    def _repair_declaration(self, found: re.Match[str]) -> None:
+        """Remove a declaration that is not at the top, and end one that has no end."""
+        start, end = found.span()
+        if start and found[0].startswith("<?xml ") and self._text[:start].strip("\ufeff \t\r\n"):
+            self._replace(start, end, "")
+        elif found["declaration"]:
+            self._replace(start, end, found[0].rstrip("?> \t\r\n") + "?>")
+
+    def _tag(self, start: int) -> tuple[Tag | None, int]:
+        """Return the tag at an offset, and the offset after it; a broken one with the attributes
+        that can be read.
+        """
+        try:
+            tag, end = read_tag(self._text, start, lambda *_: None)
+        except MalformedTagError as error:
+            found = _BROKEN.match(self._text, start)
+            if found is None:
+                self._assume("a < without the name of a tag is ignored", start)
+                self._replace(start, start + 1, "")
+                return None, max(error.resume, start + 1)
+            tag, end = self._broken(found), found.end()
+        if tag.form == "empty" and self._has_end(tag, end):
+            self._assume(f"<{short(tag.name)} .../> is read as <{short(tag.name)} ...>", start)
+            self._replace(
+                start, end, f"{self._text[start : self._text.rindex('/', start, end)].rstrip()}>"
+            )
+            return tag._replace(form="open"), end
+        is_slash_missing = (
+            tag.form == "open"
+            and not tag.attributes
+            and self._open
+            and self._open[-1].name == tag.name
+        )
+        if is_slash_missing and not self._is_before_child(tag, end):
+            self._assume(f"<{short(tag.name)}> is read as </{short(tag.name)}>", start)
+            self._replace(start, end, f"</{tag.name}>")
+            return tag._replace(form="close"), end
+        return tag, end
+
+    def _broken(self, found: re.Match[str]) -> Tag:
+        """Return a broken tag as it is read: a value without a name is that of the attribute
+        that the tag needs.
+        """
+        name, rest = found["name"], found["rest"].rstrip()
+        if found["close"]:
+            self._replace(*found.span(), f"</{name}>")
+            return Tag(name, "close", {}, found.start())
+        attributes: dict[str, str] = {}
+        given = [
+            (key, decode("".join(values)))
+            for key, *values in _ATTRIBUTE.findall(rest.removesuffix("/"))
+        ]
+        for key, text in given:
+            known = attributes.setdefault(key, text)
+            other = _other_attribute(name, {one for one, _ in given}, text) if known != text else ""
+            if other:
+                attributes[other] = text
+        value = _NAMELESS.match(rest)
+        if (
+            value is not None
+            and (key := _main_attribute(name)) not in attributes
+            and _is_value_of(key, value[1])
+        ):
+            attributes = {key: decode(value[1]), **attributes}
+        is_value_lost = "=" in rest and not attributes
+        self._is_lossy |= is_value_lost
+        what = (
+            f"with {enumerated(list(map(short, attributes)))}"
+            if attributes
+            else "without attributes"
+        )
+        self._assume(
+            f"<{short(name)}> is read {what}", found.start(), name if is_value_lost else ""
+        )
+        form: Literal["open", "empty"] = "empty" if rest.endswith("/") else "open"
+        written = "".join(f' {key}="{escape(value)}"' for key, value in attributes.items())
+        self._replace(*found.span(), f"<{name}{written}{'/' if form == 'empty' else ''}>")
+        return Tag(name, form, attributes, found.start())
+
+    def _has_end(self, tag: Tag, end: int) -> bool:
+        """Return whether the content of an element and its own end tag follow, although its tag
+        ends with a slash.
+        """
+        if tag.name not in CHILDREN or not (tag.name == "robot" or self._is_before_child(tag, end)):
+            return False
+        other = re.compile(rf"<\s*(/?)\s*{tag.name}(?![\w:.-])").search(self._text, end)
+        return other is not None and other[1] == "/"
+
+    def _is_before_child(self, tag: Tag, end: int) -> bool:
+        found = _NAME.search(self._text, end)
+        return found is not None and found[1] in CHILDREN.get(tag.name, ())
+
+    def _start(self, tag: Tag) -> None:
+        if self._robot is None:
+            self._robot = tag.offset
+        parents = (
+            {"robot"}
+            if tag.name in _TOP
+            else {name for name, tags in CHILDREN.items() if tag.name in tags}
+        )
+        around = [opened.name for opened in self._open]
+        if (
+            around
+            and around[-1] not in parents
+            and parents.intersection(around)
+            and _TAGS.issuperset(around)
+        ):
+            self._leave(
+                max(index for index, name in enumerate(around) if name in parents) + 1, tag.offset
+            )
+        if tag.form == "open":
+            self._open.append(tag)
+
+    def _close(self, tag: Tag, end: int) -> None:
+        found = [index for index, opened in enumerate(self._open) if opened.name == tag.name]
+        if found:
+            self._leave(found[-1] + 1, tag.offset)
+            self._open.pop()
+        elif (
+            self._open
+            and self._open[-1].name not in _TAGS
+            and near(self._open[-1].name, [tag.name])
+        ):
+            opened = self._open.pop()
+            self._assume(f"<{short(opened.name)}> is read as <{short(tag.name)}>", opened.offset)
+            self._rename(opened, tag.name)
+        else:
+            self._assume(
+                f"</{short(tag.name)}> is ignored, because no <{short(tag.name)}> is open",
+                tag.offset,
+            )
+            self._replace(tag.offset, end, "")
+
+    def _leave(self, depth: int, offset: int) -> None:
+        """Close the tags that are open below a depth, before an offset."""
+        while len(self._open) > depth:
+            name = short(self._open[-1].name)
+            line = self._text.count("\n", 0, self._open[-1].offset) + 1
+            self._assume(f"<{name}> of line {line} is closed here", offset)
+            self._close_last(offset)
+
+    def _assume(self, message: str, offset: int, subject: str = "") -> None:
+        self._assumed.append(Difference(xml_problems.RECOVERED, message, offset, subject))
+
+    def _close_last(self, offset: int) -> None:
+        """Close the innermost open tag before an offset, in a line of its own if it has one."""
+        opened = self._open.pop()
+        head = self._text[opened.offset : offset].rstrip()
+        if (
+            opened.offset not in self._replaced
+            and _is_never_filled(opened.name)
+            and head.find(">") == len(head) - 1
+        ):
+            self._replace(opened.offset, opened.offset + len(head), f"{head[:-1].rstrip()}/>")
+            return
+        end, new = self._replaced.get(self._last, (0, " "))
+        if (
+            not new and not _OTHER.sub("", self._text[end:offset]).strip()
+        ):  # a wrong end tag is there
+            self._replaced[self._last] = end, f"</{opened.name}>"
+            return
+        at = len(self._text[:offset].rstrip())
+        before = ""
+        if "\n" in self._text[opened.offset : at]:
+            newline = "\r\n" if "\r\n" in self._text else "\n"
+            before = f"{newline}{indentation(self._text, opened.offset)}"
+        self._inserted[at] = f"{self._inserted.get(at, '')}{before}</{opened.name}>"
+
+    def _replace(self, start: int, end: int, new: str) -> None:
+        """Note what a tag becomes; white space at its end stays."""
+        self._replaced[start] = start + len(self._text[start:end].rstrip()), new
+        self._last = start
+
+    def _rename(self, opened: Tag, name: str) -> None:
+        start = opened.offset
+        end, new = self._replaced.get(start, (0, ""))
+        if new:
+            self._replaced[start] = end, f"<{name}{new.removeprefix(f'<{opened.name}')}"
+        else:
+            self._replace(
+                start, self._text.index(opened.name, start) + len(opened.name), f"<{name}"
+            )
+
+    def _noted(self) -> list[_TextEdit]:
+        """Return all changes in order: of two at one place, the end tags that are inserted come
+        first.
+        """
+        replaced = [_TextEdit(start, end, new) for start, (end, new) in self._replaced.items()]
+        inserted = [_TextEdit(at, at, new) for at, new in self._inserted.items()]
+        return sorted(replaced + inserted)
+
+    def _robot_after(self, changes: list[_TextEdit], end: int) -> tuple[bytes, list[int]]:
+        """Return the robot that is read after changes of the text before an offset, and where
+        its tags are now.
+        """
+        if self._robot is None:
+            return b"", []
+        pieces: list[str] = []
+        places: list[
+            tuple[int, int]
+        ] = []  # of the pieces: the offset after the changes, and the one before
+        position = self._robot
+        length = 0
+        for change in changes:
+            if self._robot <= change.start and change.end <= end:
+                for piece, start in (
+                    (self._text[position : change.start], position),
+                    (change.new, change.start),
+                ):
+                    places.append((length, start))
+                    pieces.append(piece)
+                    length += len(piece)
+                position = change.end
+        places.append((length, position))
+        found = scan("".join([*pieces, self._text[position:end]]))
+        offsets = []
+        for offset in found.offsets:
+            after, before = places[bisect_right(places, offset, key=lambda place: place[0]) - 1]
+            offsets.append(before + offset - after)
+        return found.xml, offsets
+
+
+def _is_never_filled(tag: str) -> bool:
+    """Return whether an element has attributes only: <box size="1 1 1"/> is closed where it
+    begins.
+    """
+    return tag in TAGS and bool(TAGS[tag].attributes) and not TAGS[tag].children
+
+
+def _main_attribute(tag: str) -> str:
+    """Return the attribute that a value without a name is for: the first that the tag needs, else
+    has.
+    """
+    known = [*REQUIRED.get(tag, ()), *(TAGS[tag].attributes if tag in TAGS else ())]
+    return known[0] if known else ""
+
+
+def _other_attribute(tag: str, given: set[str], value: str) -> str:
+    """Return the one attribute, which is not given, that a value is meant for whose name is given
+    twice.
+    """
+    known = TAGS[tag].attributes if tag in TAGS else {}
+    absent = [name for name in known if name not in given and _is_value_of(name, value)]
+    needed = [name for name in absent if name in REQUIRED.get(tag, ())]
+    found = needed or absent
+    return found[0] if len(found) == 1 else ""
+
+
+def _is_value_of(attribute: str, value: str) -> bool:
+    """Return whether a value has the numbers of an attribute; a text may be anything."""
+    parts = PARTS.get(attribute, ())
+    return bool(attribute) and (not parts or len(numbers_in(value)) == len(parts))
+
+
+def _joined(changes: list[_TextEdit]) -> list[_TextEdit]:
+    """Return the changes with inserted end tags as a part of the change that they touch."""
+    found: list[_TextEdit] = []
+    for change in changes:
+        last = found[-1] if found else None
+        if (
+            last is not None
+            and last.end == change.start
+            and not (last.is_replacement and change.is_replacement)
+        ):
+            found[-1] = _TextEdit(last.start, change.end, last.new + change.new)
+        else:
+            found.append(change)
+    return found
+
+
+def broken_tag(text: str, start: int) -> str:
+    """Return the broken tag at an offset; empty if it is not broken."""
+    try:
+        read_tag(text, start, lambda *_: None)
+    except MalformedTagError:
+        found = _BROKEN.match(text, start)
+        return found[0].rstrip() if found is not None else ""
+    return ""
