@@ -92,7 +92,9 @@ def clearly_closest(name: str, known: Iterable[str]) -> str | None:
     if first is None or second is None:
         return first
     ratios = [SequenceMatcher(None, name.lower(), it.lower()).ratio() for it in (first, second)]
-    return first if ratios[0] - ratios[1] > _MARGIN else None
+    if ratios[0] - ratios[1] > _MARGIN:
+        return first
+    return None
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
@@ -128,7 +130,9 @@ def near(name: str, known: Iterable[str], suffix: str = "") -> str | None:
             distances[other] = distance
     nearest = min(distances.values(), default=None)
     found = [other for other, distance in distances.items() if distance == nearest]
-    return found[0] if len(found) == 1 else None
+    if len(found) == 1:
+        return found[0]
+    return None
 
 
 def are_of_one_side(name: str, other: str) -> bool:
@@ -137,11 +141,9 @@ def are_of_one_side(name: str, other: str) -> bool:
     """
     words = _words(name), _words(other)
     first, second = (sorted(it for it in each if it.isdigit() or it in _DISTINCT) for each in words)
-    pairs = (
-        zip(*words, strict=True)
-        if len(words[0]) == len(words[1]) and sorted(words[0]) != sorted(words[1])
-        else ()
-    )
+    pairs: Iterable[tuple[str, str]] = ()
+    if len(words[0]) == len(words[1]) and sorted(words[0]) != sorted(words[1]):
+        pairs = zip(*words, strict=True)
     return first == second and not any(
         one != known and _are_distinct(one, known) for one, known in pairs
     )

@@ -47,7 +47,9 @@ def _escape(character: str) -> str:
     code = ord(character)
     if 0xDC80 <= code <= 0xDCFF:  # a byte that is not UTF-8, as Python decodes it
         return f"\\x{code - 0xDC00:02x}"
-    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}"
+    if code < 0x100:
+        return f"\\x{code:02x}"
+    return f"\\u{code:04x}"
 
 
 def printable_path(path: Path | str) -> str:
@@ -78,19 +80,25 @@ def cut(text: str, most: int) -> str:
     """Return a text of at most so many characters, the last three of which are points if it was
     longer.
     """
-    return text if len(text) <= most else f"{text[: most - 3]}..."
+    if len(text) <= most:
+        return text
+    return f"{text[: most - 3]}..."
 
 
 def named(key: str, name: str) -> str:
     """Return a student's name with the key, or the key alone: "Jane Doe (12280)"."""
-    return f"{name} ({key})" if name not in ("", key) else key
+    if name not in ("", key):
+        return f"{name} ({key})"
+    return key
 
 
 def capitalised(text: str) -> str:
     """Return a text with a capital, unless it begins with a quote, a file or an attribute, such as
     xyz="0 0".
     """
-    return text[:1].upper() + text[1:] if text.split(" ", 1)[0].isalpha() else text
+    if text.split(" ", 1)[0].isalpha():
+        return text[:1].upper() + text[1:]
+    return text
 
 
 def enumerated(
@@ -101,7 +109,9 @@ def enumerated(
     if most is not None and len(names) > most:
         names[most:] = [f"{len(names) - most} more"]
     *first, last = names or [""]
-    return f"{separator.join(first)} {word} {last}" if first else last
+    if first:
+        return f"{separator.join(first)} {word} {last}"
+    return last
 
 
 def people_text(names: Collection[str], most: int) -> str:
@@ -118,7 +128,9 @@ def first_lines(lines: Sequence[str], most: int) -> list[str]:
 
 def counted(number: int, noun: str, plural: str = "") -> str:
     """Return a number with its noun: "1 file", "2 files", "2 entries"."""
-    return f"{number} {noun}" if number == 1 else f"{number} {plural or noun + 's'}"
+    if number == 1:
+        return f"{number} {noun}"
+    return f"{number} {plural or noun + 's'}"
 
 
 @lru_cache(maxsize=1024)

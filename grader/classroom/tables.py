@@ -73,11 +73,9 @@ class TableRow(NamedTuple):
         """Return the stripped value in a column; empty if the row is shorter or the column is
         None.
         """
-        return (
-            _unquoted(self.cells[column]).strip()
-            if column is not None and column < len(self.cells)
-            else ""
-        )
+        if column is not None and column < len(self.cells):
+            return _unquoted(self.cells[column]).strip()
+        return ""
 
 
 class Table(NamedTuple):
@@ -91,7 +89,9 @@ class Table(NamedTuple):
     @property
     def titles(self) -> tuple[str, ...]:
         """The cells of the first row, without surrounding spaces."""
-        return tuple(value.strip() for value in self.rows[0].values) if self.rows else ()
+        if self.rows:
+            return tuple(value.strip() for value in self.rows[0].values)
+        return ()
 
     @property
     def filled(self) -> list[TableRow]:
@@ -121,7 +121,9 @@ class Table(NamedTuple):
         is_quoted = (
             is_quoted or re.search(rf'[{self.delimiter};\t"\r\n]|^\s|\s$', value) is not None
         )
-        return '"' + value.replace('"', '""') + '"' if is_quoted else value
+        if is_quoted:
+            return '"' + value.replace('"', '""') + '"'
+        return value
 
 
 def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Table:
@@ -172,7 +174,9 @@ def _decode(data: bytes, shown: str) -> tuple[bytes, str, str]:
 
 def _unquoted(cell: str) -> str:
     found = _QUOTED.match(cell)
-    return cell if found is None else found[0][1:-1].replace('""', '"') + cell[found.end() :]
+    if found is None:
+        return cell
+    return found[0][1:-1].replace('""', '"') + cell[found.end() :]
 
 
 def _split_rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
@@ -218,7 +222,9 @@ def protected(text: str) -> str:
     """Return text that no spreadsheet takes for a formula, and that `unprotected` returns
     unchanged.
     """
-    return text if text.isalnum() else _FORMULA.sub(r"\1'\2", spelt_out(text))
+    if text.isalnum():
+        return text
+    return _FORMULA.sub(r"\1'\2", spelt_out(text))
 
 
 def unprotected(text: str) -> str:
@@ -232,9 +238,9 @@ def unprotected(text: str) -> str:
 
 def spelt_out(text: str) -> str:
     """Return text with escapes for controls, lone surrogates and bidirectional marks."""
-    return (
-        text if text.isprintable() else _ESCAPED.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
-    )
+    if text.isprintable():
+        return text
+    return _ESCAPED.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
 
 
 def _cell_text(value: CellValue) -> str:
@@ -242,4 +248,6 @@ def _cell_text(value: CellValue) -> str:
         return ""
     if isinstance(value, str):
         return protected(value)
-    return format_points(value) if isinstance(value, Decimal) else str(value)
+    if isinstance(value, Decimal):
+        return format_points(value)
+    return str(value)

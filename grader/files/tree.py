@@ -72,7 +72,9 @@ class File(NamedTuple):
         """The ending of its name, in lower case: .png."""
         name = self.name
         dot = name.rfind(".")
-        return name[dot:].lower() if 0 < dot < len(name) - 1 else ""
+        if 0 < dot < len(name) - 1:
+            return name[dot:].lower()
+        return ""
 
 
 @dataclass(
@@ -103,8 +105,10 @@ class Tree:
         """Return the bytes of a file; None where there is none, or none that can be read within a
         limit.
         """
+        if path not in self.files:
+            return None
         try:
-            return self.files[path].read(limit) if path in self.files else None
+            return self.files[path].read(limit)
         except InputError:
             return None
 

@@ -101,11 +101,10 @@ class ReportSections(NamedTuple):
         for entry in self.unbuilt:
             outcome, hint = entry.result.outcome, entry.result.hint
             if not listed.issuperset(outcome.absent):
-                what = (
-                    hint_text(entry, hint)
-                    if hint is not None
-                    else sentence(outcome.mistake or outcome.message)
-                )
+                if hint is not None:
+                    what = hint_text(entry, hint)
+                else:
+                    what = sentence(outcome.mistake or outcome.message)
                 yield Line("unbuilt", f"{printable(', '.join(outcome.absent))}: {what}")
             listed.update(outcome.absent)
 
@@ -154,11 +153,10 @@ def _skipped_alone(cause: str, some: Sequence[Entry]) -> Entry:
     """Return the entry of criteria that are skipped although no mistake says so: a mark may
     override their cause.
     """
-    why = (
-        f"Skipped because {cause} failed."
-        if cause
-        else "Not graded, because nothing was submitted."
-    )
+    if cause:
+        why = f"Skipped because {cause} failed."
+    else:
+        why = "Not graded, because nothing was submitted."
     first, *others = some
     return first._replace(also=tuple(others), blocks=(Line("finding", printable(why)),))
 
@@ -260,11 +258,9 @@ def _shared_edit(failure: Entry) -> str:
     result, outcome = failure.result, failure.result.outcome
     if result.why_given or result.manual_mark is not None:
         return f"only {failure.id}"
-    return (
-        result.hint.shown_by
-        if result.hint is not None
-        else f"{outcome.mistake or outcome.message} {outcome.location}"
-    )
+    if result.hint is not None:
+        return result.hint.shown_by
+    return f"{outcome.mistake or outcome.message} {outcome.location}"
 
 
 def _fixed_together(some: tuple[Entry, ...]) -> tuple[Entry, ...]:
@@ -299,7 +295,9 @@ def _reason_to_join(entry: Entry) -> str:
         any(isinstance(block, Answer) for block in entry.blocks),
     )
     is_ungraded = entry.status in ("pending", "errored") and not (has_own or entry.result.comment)
-    return outcome.mistake or outcome.message if is_ungraded else entry.id
+    if is_ungraded:
+        return outcome.mistake or outcome.message
+    return entry.id
 
 
 def result_line(report: Report) -> str:
@@ -352,11 +350,9 @@ def score_text(report: Report) -> str:
     excused.
     """
     points = counting_text(report)
-    return (
-        f"{points} / {format_points(report.max_score)} points"
-        if report.counting is not None
-        else points
-    )
+    if report.counting is not None:
+        return f"{points} / {format_points(report.max_score)} points"
+    return points
 
 
 def counting_text(report: Report) -> str:
@@ -365,7 +361,9 @@ def counting_text(report: Report) -> str:
     """
     if report.grade is None:
         return sum_text(report.results)
-    return format_points(report.grade.points) if report.grade.points is not None else "Excused"
+    if report.grade.points is not None:
+        return format_points(report.grade.points)
+    return "Excused"
 
 
 def grade_line(report: Report) -> str:
@@ -381,7 +379,9 @@ def grade_line(report: Report) -> str:
     text += f" - {format_points(-report.grade.late)} late" if report.grade.late else ""
     if report.grade.points is None:
         return f"Excused; the criteria give {text} points."
-    return f"Final mark, instead of {text} points." if report.grade.is_final else f"Points: {text}."
+    if report.grade.is_final:
+        return f"Final mark, instead of {text} points."
+    return f"Points: {text}."
 
 
 def graded_line(report: Report) -> str:
@@ -540,7 +540,9 @@ def next_command(report: Report) -> str:
         if entry.result.manual_mark is None
     ]
     first = next(iter((*failed, *report.pending_automatic)), None)
-    return _explain_command(first.criterion.id, report) if first is not None else ""
+    if first is not None:
+        return _explain_command(first.criterion.id, report)
+    return ""
 
 
 def _explain_command(name: str, report: Report) -> str:

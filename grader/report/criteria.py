@@ -137,7 +137,9 @@ def sum_text(results: tuple[Result, ...]) -> str:
     grading.
     """
     is_open = bool(results) and all(result.is_open for result in results)
-    return "–" if is_open else format_points(sum((result.points for result in results), Decimal(0)))
+    if is_open:
+        return "–"
+    return format_points(sum((result.points for result in results), Decimal(0)))
 
 
 def earned_text(*results: Result) -> str:
@@ -400,7 +402,9 @@ def _one_line(text: str) -> str:
 
 def answer_lines(outcome: Outcome) -> list[str]:
     """Return the lines of the answer that a check found; none if it is not about a question."""
-    return outcome.measured.strip("\n").splitlines() if isinstance(outcome.measured, str) else []
+    if isinstance(outcome.measured, str):
+        return outcome.measured.strip("\n").splitlines()
+    return []
 
 
 def model_lines(criterion: Criterion) -> list[str]:
@@ -420,7 +424,9 @@ def counts_lines(location: Location) -> bool:
 def sentence(message: str) -> str:
     """Return a message as a printable sentence, with a capital and a full stop."""
     text = capitalised(printable(message))
-    return text if text.endswith((".", "?")) else f"{text}."
+    if text.endswith((".", "?")):
+        return text
+    return f"{text}."
 
 
 def hint_text(entry: Entry, hint: Hint) -> str:

@@ -120,11 +120,10 @@ def explanation(name: str, rubric: Rubric) -> str:
         "reports show the codes"
     )
     begun = [criterion.id for criterion in rubric.criteria if criterion.id.startswith(name)]
-    similar = (
-        f"; there are {enumerated(begun, _MAX_SIMILAR)}: `grader explain {begun[0]}`"
-        if begun
-        else ""
-    )
+    if begun:
+        similar = f"; there are {enumerated(begun, _MAX_SIMILAR)}: `grader explain {begun[0]}`"
+    else:
+        similar = ""
     guess = similar or did_you_mean(name, known) or f"; {lists}"
     raise InputError(f"there is no problem code, criterion or check {name!r}{guess}")
 
@@ -142,11 +141,10 @@ def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
     if criterion.requires:
         yield _fill(f"Skipped unless these passed: {', '.join(criterion.requires)}.")
     positions = ", ".join(f"{name} = {value:g}" for name, value in criterion.at.items())
-    pose = (
-        f"The robot is posed: {positions} (degrees or metres); its other joints are at 0."
-        if positions
-        else ""
-    )
+    if positions:
+        pose = f"The robot is posed: {positions} (degrees or metres); its other joints are at 0."
+    else:
+        pose = ""
     given = " ".join(f"{name}:={value}" for name, value in criterion.args.items())
     launched = f"Launch files and the robot are read under the arguments {given}." if given else ""
     yield _check_text("Check", criterion.check, criterion.arguments, pose, launched)
@@ -218,13 +216,17 @@ def _examples(name: str) -> Iterator[str]:
 
 
 def _family_of(name: str) -> str:
-    return name.rstrip(digits).lower() if name.isupper() else _CHECKS
+    if name.isupper():
+        return name.rstrip(digits).lower()
+    return _CHECKS
 
 
 @cache
 def _family(name: str) -> Mapping[str, Any]:
     path = shipped_folder("docs", "examples") / f"{name}.toml"  # not in a bundle for a platform
-    return read_toml(path.read_bytes(), path)[1] if path.is_file() else {}
+    if path.is_file():
+        return read_toml(path.read_bytes(), path)[1]
+    return {}
 
 
 def default_text(value: object) -> str:

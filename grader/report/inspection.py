@@ -72,7 +72,9 @@ class Inspection:
     def source(self, path: str) -> Source | None:
         """Return the text of a file, for quoting."""
         own = self.reading.source if self.reading is not None else None
-        return own if own is not None and own.path == path else self.source_of(path)
+        if own is not None and own.path == path:
+            return own
+        return self.source_of(path)
 
     def poses(self) -> Iterator[tuple[str, Transform | str]]:
         """Yield the pose of every link in the frame `relative_to`, in file order, or the reason why
@@ -119,18 +121,18 @@ def lists(inspection: Inspection) -> Iterator[tuple[str, list[tuple[str, str]]]]
 
 def _first_rows(rows: Iterator[tuple[str, str]]) -> list[tuple[str, str]]:
     shown, rest = [*islice(rows, MAX_LISTED)], sum(1 for _ in rows)
-    return [*shown, (f"... and {rest} more", " (--format json lists all)")] if rest else shown
+    if rest:
+        return [*shown, (f"... and {rest} more", " (--format json lists all)")]
+    return shown
 
 
 def effect(inspection: Inspection) -> str:
     """Return what ROS 2 does with a URDF; without one, how many names are wrong."""
     if inspection.verdict is not None:
         return EFFECTS[inspection.verdict]
-    return (
-        f"{counted(len(inspection.names), 'problem')} of names"
-        if inspection.names
-        else "the names agree"
-    )
+    if inspection.names:
+        return f"{counted(len(inspection.names), 'problem')} of names"
+    return "the names agree"
 
 
 def _tree(robot: Configuration) -> Iterator[tuple[str, str, Joint | None]]:
@@ -164,11 +166,9 @@ def _joint_text(joint: Joint | None) -> str:
 
 
 def _pose_text(pose: Transform | str) -> str:
-    return (
-        printable(pose)
-        if isinstance(pose, str)
-        else f"{_numbers(pose.translation)}  rpy {_numbers(pose.rpy)}"
-    )
+    if isinstance(pose, str):
+        return printable(pose)
+    return f"{_numbers(pose.translation)}  rpy {_numbers(pose.rpy)}"
 
 
 def _numbers(values: tuple[float, ...]) -> str:

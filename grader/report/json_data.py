@@ -41,11 +41,9 @@ def _harmless(text: str) -> str:
 
 
 def _laid_out(value: Any) -> str:
-    return (
-        f"[\n  {_objects(value, next(iter(value[0])))}\n ]"
-        if _is_of_objects(value)
-        else _ENCODER.encode(value)
-    )
+    if _is_of_objects(value):
+        return f"[\n  {_objects(value, next(iter(value[0])))}\n ]"
+    return _ENCODER.encode(value)
 
 
 def _is_of_objects(value: Any) -> bool:
@@ -81,7 +79,9 @@ def exact(points: Decimal | None) -> int | float | None:
     """Return points as a JSON number: 58.5, and 70 rather than 70.0."""
     if points is None:
         return None
-    return int(points) if points == points.to_integral_value() else float(points)
+    if points == points.to_integral_value():
+        return int(points)
+    return float(points)
 
 
 def rounded(value: Any) -> Any:
@@ -91,7 +91,9 @@ def rounded(value: Any) -> Any:
     if value is None or isinstance(value, str | int):
         return value
     if isinstance(value, float):
-        return round(value, 6) + 0.0 if value - value == 0 else None
+        if value - value == 0:
+            return round(value, 6) + 0.0
+        return None
     if isinstance(value, Decimal):
         return exact(value)
     if isinstance(value, Mapping):
@@ -222,7 +224,9 @@ def _reader(kind: KeyType, origin: _Origin) -> Callable[[Any], Any]:
         case JsonObject():
             return lambda value: _optional(kind, get(value))
     is_plain = callable(origin) or kind.get("type") in ("string", "integer", "boolean")
-    return get if is_plain else lambda value: rounded(get(value))
+    if is_plain:
+        return get
+    return lambda value: rounded(get(value))
 
 
 def _optional(of: JsonObject, found: Any) -> dict[str, Any] | None:

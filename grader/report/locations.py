@@ -29,7 +29,9 @@ _MAX_LINES = 40  # of a diff
 def width_of(line: str, column: int) -> int:
     """Return the length of the attribute, tag or word at a column; 1 if there is none."""
     found = re.match(_MEANT, line[column - 1 :])
-    return len(found[0].rstrip()) if found else 1
+    if found:
+        return len(found[0].rstrip())
+    return 1
 
 
 def excerpt(
@@ -134,11 +136,10 @@ def _texts_around(edits: list[Edit], source: Source | None) -> tuple[str, str]:
     """
     height = 1 + max(edit.old.count("\n") for edit in edits)
     start = edits[0].line
-    before = (
-        "\n".join(source.line(start + number) for number in range(height))
-        if source is not None
-        else ""
-    )
+    if source is not None:
+        before = "\n".join(source.line(start + number) for number in range(height))
+    else:
+        before = ""
     after = before
     for edit in reversed(edits):
         column, old = edit.column - 1, edit.old.replace("\r\n", "\n")

@@ -186,7 +186,9 @@ class Processes(Executor):
 def processors() -> int:
     """Return the number of processors that this process may use."""
     affinity = getattr(os, "sched_getaffinity", None)
-    return len(affinity(0)) if affinity is not None else os.cpu_count() or 1
+    if affinity is not None:
+        return len(affinity(0))
+    return os.cpu_count() or 1
 
 
 def _start_worker(memory: int) -> None:
@@ -222,4 +224,6 @@ def _exit_words(code: int) -> str:
     """Return how a worker ended, in words."""
     if code == _EXIT_ENDED:
         return "exited unexpectedly"
-    return f"was ended by signal {-code}" if code < 0 else f"ended with exit code {code}"
+    if code < 0:
+        return f"was ended by signal {-code}"
+    return f"ended with exit code {code}"

@@ -135,4 +135,6 @@ def _without_extra(requirement: str, extra: str) -> str:
     if condition is not None and condition[1] != extra:
         return ""
     rest = _EXTRA.sub("", marker).strip()
-    return f"{name.strip()} ; {rest}" if rest else name.strip()
+    if rest:
+        return f"{name.strip()} ; {rest}"
+    return name.strip()

@@ -149,7 +149,9 @@ def _complete() -> int:
         try:
             make_app(COMMANDS)(prog_name="grader")
         except SystemExit as end:  # its code tells fish whether there are completions
-            return end.code if isinstance(end.code, int) else 0
+            if isinstance(end.code, int):
+                return end.code
+            return 0
     return 0
 
 
@@ -180,11 +182,10 @@ def _other_error(error: Exception) -> ExitCode:
         print(message, file=sys.stderr)
     else:
         command = context.command_path if context is not None else "grader"
-        advice = (
-            f"for example `grader grade {example}`"
-            if example
-            else f"`{command} --help` shows the usage"
-        )
+        if example:
+            advice = f"for example `grader grade {example}`"
+        else:
+            advice = f"`{command} --help` shows the usage"
         warn(_one_line(f"{message} ({advice})"))
     return ExitCode.NOT_GRADED
 

@@ -177,9 +177,8 @@ def diff(
     """
     from grader.classroom.reports.class_figures import compare
 
-    books = (
-        [gradebook, *(gradebooks or ())]
-        if gradebook is not None
-        else gradebooks or [only_gradebook()]
-    )
+    if gradebook is not None:
+        books = [gradebook, *(gradebooks or ())]
+    else:
+        books = gradebooks or [only_gradebook()]
     return compare(tuple(books), before, after, output_format, screen())

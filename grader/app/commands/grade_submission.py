@@ -67,7 +67,9 @@ class GradeRequest(NamedTuple):
     @property
     def threshold(self) -> tuple[Decimal, bool] | None:
         """The threshold of `--fail-under`, if there is one. Raises GraderError."""
-        return read_threshold(self.fail_under) if self.fail_under is not None else None
+        if self.fail_under is not None:
+            return read_threshold(self.fail_under)
+        return None
 
 
 class GradeRun(NamedTuple):

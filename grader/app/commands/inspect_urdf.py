@@ -93,7 +93,9 @@ def _without_part(submission: Submission) -> Submission:
     name = urdf.path.rpartition("/")[2]
     is_part = NO_LINKS in errors and errors <= {NO_LINKS, ROBOT_WITHOUT_NAME}
     is_loaded = any(package.robot_references(name) for package in submission.packages)
-    return replace(submission, urdf=Absent()) if is_part and not is_loaded else submission
+    if is_part and not is_loaded:
+        return replace(submission, urdf=Absent())
+    return submission
 
 
 def _name_problems(submission: Submission) -> tuple[Problem, ...]:

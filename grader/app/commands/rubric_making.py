@@ -188,11 +188,10 @@ def test_rubric(
     ):
         progress = lambda done, total: show(Progress(total, done))  # noqa: E731
         result = run_rubric_test(rubric, samples, progress, partial(_graded, executor, rubric))
-    text = (
-        render_rubric_test_json(result)
-        if is_json
-        else render_rubric_test(result, terminal.screen().width)
-    )
+    if is_json:
+        text = render_rubric_test_json(result)
+    else:
+        text = render_rubric_test(result, terminal.screen().width)
     is_passed = result.is_sound and result.score >= least
     code = ExitCode.PASSED if is_passed else ExitCode.FAILED
     return text, ExitCode.FAULT if result.is_faulty else code

@@ -199,9 +199,7 @@ def _stamp(path: Path) -> tuple[int, ...] | None:
         status = path.stat()
         known = status.st_dev, status.st_ino, status.st_mode
         # A folder changes with each report that is written into it.
-        return (
-            known
-            if path.is_dir()
-            else (*known, status.st_size, status.st_mtime_ns, status.st_ctime_ns)
-        )
+        if path.is_dir():
+            return known
+        return (*known, status.st_size, status.st_mtime_ns, status.st_ctime_ns)
     return None

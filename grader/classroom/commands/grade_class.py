@@ -321,11 +321,10 @@ def _ending(folder: Path, table: ClassTable, layout: str) -> str:
     lms = layout if layout in FORMS else "csv"
     command = f"grader {'review' if table.open else f'export {lms}'}"
     option = "" if is_only else f" --gradebook {shell_quoted(folder)}"
-    attention = (
-        f" · {table.attention} need{'s' * (table.attention == 1)} attention"
-        if table.attention
-        else ""
-    )
+    if table.attention:
+        attention = f" · {table.attention} need{'s' * (table.attention == 1)} attention"
+    else:
+        attention = ""
     return f"grades: {printable_path(folder / names.GRADES)}{attention} · next: {command}{option}"
 
 

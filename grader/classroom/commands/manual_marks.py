@@ -165,10 +165,9 @@ def _grade_text(book: Gradebook, grade: StudentGrade) -> str:
     if not grade.has_final:  # also with marks of parts that are not graded
         whole = grade.report.max_score
     final = "final mark " if grade.has_final else ""
-    late = (
-        f" after the late penalty of {format_points(-grade.late.points)}"
-        if grade.late.points
-        else ""
-    )
+    if grade.late.points:
+        late = f" after the late penalty of {format_points(-grade.late.points)}"
+    else:
+        late = ""
     pending = f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else ""
     return f"{final}{format_points(grade.total)} of {format_points(whole)} points{late}{pending}"

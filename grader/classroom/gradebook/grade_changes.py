@@ -95,12 +95,16 @@ def changes(before: _Snapshot, after: _Snapshot) -> Iterator[Change]:
 
 
 def _points(value: float | str | None) -> Decimal | None:
-    return None if value is None else Decimal(str(value))
+    if value is None:
+        return None
+    return Decimal(str(value))
 
 
 def _stored_points(stored: StoredResult, name: str) -> Decimal | None:
     """Return the points of a criterion; None if it was not graded, or not decided."""
-    return _points(stored.results[name][0]) if name in stored.results else None
+    if name in stored.results:
+        return _points(stored.results[name][0])
+    return None
 
 
 def _points_changes(old: StoredResult, new: StoredResult) -> Iterator[PointsChange]:

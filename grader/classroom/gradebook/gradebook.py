@@ -285,4 +285,6 @@ def _table_row(book: Gradebook, grade: StudentGrade, is_exported: bool) -> list[
     row: list[CellValue] = [student.key, student.name, student.section, grade.status, points[TOTAL]]
     row += [points[name.id] for name in book.rubric.criteria]
     row += [*numbers, grade.why_open, student.email, digest]
-    return [*row, exported_text(points)] if is_exported else row
+    if is_exported:
+        return [*row, exported_text(points)]
+    return row

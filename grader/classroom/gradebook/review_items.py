@@ -34,11 +34,9 @@ class ReviewStudent(NamedTuple):
     @property
     def label(self) -> str:
         """The name and key of the student, or the number of an anonymous one."""
-        return (
-            f"submission {self.number}"
-            if self.number
-            else named(self.student.key, self.student.name)
-        )
+        if self.number:
+            return f"submission {self.number}"
+        return named(self.student.key, self.student.name)
 
     @property
     def order(self) -> tuple[int, str, str]:
@@ -52,7 +50,9 @@ class ReviewStudent(NamedTuple):
         """One of STATES."""
         if self.mark is None or self.mark.points is None:
             return UNMARKED
-        return "marked" if self.mark.submission in ("", self.stored.digest) else OLDER
+        if self.mark.submission in ("", self.stored.digest):
+            return "marked"
+        return OLDER
 
 
 class ReviewItem(NamedTuple):

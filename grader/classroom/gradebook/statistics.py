@@ -152,11 +152,15 @@ def _words(those: Sequence[tuple[str, str, float]]) -> str:
     if len({words for _, words, _ in those}) == 1:
         return those[0][1]
     least, most = (in_millimetres(pick(off for *_, off in those)) for pick in (min, max))
-    return f"{most} off" if least == most else f"{least.removesuffix(' mm')} to {most} off"
+    if least == most:
+        return f"{most} off"
+    return f"{least.removesuffix(' mm')} to {most} off"
 
 
 def _share(row: Criterion, found: Counter[str], earned: Decimal) -> float | None:
     decided = found["decided"]
     if not decided or row.adjustment is not None:
         return None
-    return float(earned / row.points / decided) if row.points else found["passed"] / decided
+    if row.points:
+        return float(earned / row.points / decided)
+    return found["passed"] / decided

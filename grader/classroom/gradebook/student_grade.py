@@ -87,7 +87,9 @@ class SharedResult(Result):
         if self.carried or self.is_adjusted:
             return "carried", "decided"
         status = self.outcome.status
-        return (status,) if status in ("pending", "errored") else (status, "decided")
+        if status in ("pending", "errored"):
+            return (status,)
+        return (status, "decided")
 
     @cached_property
     def mistake(self) -> str:
@@ -98,7 +100,9 @@ class SharedResult(Result):
     @cached_property
     def cell(self) -> str:
         """The points in a table; empty if they are not decided."""
-        return "" if self.is_open or self.is_faulty else format_points(self.points)
+        if self.is_open or self.is_faulty:
+            return ""
+        return format_points(self.points)
 
 
 @dataclass(frozen=True)
@@ -145,7 +149,9 @@ class StudentGrade:
     @property
     def final_points(self) -> Decimal | None:
         """The points of the final mark; None without one."""
-        return self.final.points if self.final is not None else None
+        if self.final is not None:
+            return self.final.points
+        return None
 
     @property
     def has_final(self) -> bool:
@@ -172,7 +178,9 @@ class StudentGrade:
             return "excused"
         if Reason.DAMAGED in self.known:
             return "errored"
-        return self.stored.verdict if self.stored is not None else "missing"
+        if self.stored is not None:
+            return self.stored.verdict
+        return "missing"
 
     @property
     def results(self) -> tuple[SharedResult, ...]:
@@ -189,16 +197,16 @@ class StudentGrade:
         """The final mark, else the points after the late penalty; None for an excuse, and without a
         submission.
         """
-        return (
-            self.final_points
-            if self.has_final or self.stored is None
-            else self.score + self.late.points
-        )
+        if self.has_final or self.stored is None:
+            return self.final_points
+        return self.score + self.late.points
 
     @cached_property
     def pending(self) -> Decimal:
         """The points that still need manual grading and can change the grade."""
-        return self.report.pending if not self.has_final else Decimal(0)
+        if not self.has_final:
+            return self.report.pending
+        return Decimal(0)
 
     @property
     def shown_total(self) -> Decimal | None:
@@ -209,7 +217,9 @@ class StudentGrade:
     @property
     def total_text(self) -> str:
         """The grade; empty where there is none or nothing could be graded."""
-        return "" if self.shown_total is None else format_points(self.shown_total)
+        if self.shown_total is None:
+            return ""
+        return format_points(self.shown_total)
 
     @cached_property
     def losses(self) -> list[tuple[Decimal, str]]:
@@ -272,7 +282,9 @@ class StudentGrade:
         if self.obstacle is None:
             return ""
         detail = self.concerns.get(self.obstacle)
-        return f"{self.obstacle}: {detail}" if detail else str(self.obstacle)
+        if detail:
+            return f"{self.obstacle}: {detail}"
+        return str(self.obstacle)
 
     @property
     def published(self) -> Decimal | None:

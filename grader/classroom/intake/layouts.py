@@ -147,11 +147,9 @@ def readings_of(name: str, layout: str) -> list[NamedPath]:
     is_known = layout == "moodle" or bool(
         found and not found[0].student.name
     )  # an anonymous student's
-    return (
-        found[:1]
-        if is_known
-        else [one for one in found if _NAME_IN_CANVAS.fullmatch(one.student.name)]
-    )
+    if is_known:
+        return found[:1]
+    return [one for one in found if _NAME_IN_CANVAS.fullmatch(one.student.name)]
 
 
 def _read_path(found: re.Match[str]) -> NamedPath:
@@ -193,9 +191,10 @@ def entries_of(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
         possible = [one for one in found if not 0 < one.upload * _MAX_GROWTH < first] or found
         for one in possible[-1:]:
             users = tuple(other.student.canvas for other in possible)
-            student = (
-                one.student._replace(canvas="", aliases=users) if len(users) > 1 else one.student
-            )
+            if len(users) > 1:
+                student = one.student._replace(canvas="", aliases=users)
+            else:
+                student = one.student
             yield one._replace(student=student)
 
 
@@ -225,9 +224,9 @@ def _folders(folder: ClassFolder) -> Iterator[NamedPath]:
 
 
 def _without(prefix: str, name: str) -> str:
-    return (
-        name[len(prefix) :] if len(name) > len(prefix) and name.lower().startswith(prefix) else name
-    )
+    if len(name) > len(prefix) and name.lower().startswith(prefix):
+        return name[len(prefix) :]
+    return name
 
 
 def _prefix(names: Collection[str], folder: ClassFolder) -> str:
@@ -253,11 +252,10 @@ def nbgrader(course: ClassFolder) -> Iterator[NamedPath]:
     for student in sorted(folder.children.folders):
         for name in folder.listing.children(folder.start + student).folders:
             found[name].append(student)
-    wanted = (
-        [folder.lab]
-        if folder.lab in found
-        else [name for name in found if folded(name) == folded(folder.lab)]
-    )
+    if folder.lab in found:
+        wanted = [folder.lab]
+    else:
+        wanted = [name for name in found if folded(name) == folded(folder.lab)]
     if len(wanted) != 1:
         named = enumerated([printable_path(name) for name in sorted(found)], _MAX_NAMED) or "none"
         raise InputError(f"name the assignment to grade with --assignment; there are: {named}")
@@ -286,7 +284,9 @@ def _time_of(folder: ClassFolder, path: str) -> str:
     except InputError:
         return ""
     time = iso_time(data.decode("utf-8", "replace"))
-    return f"{time}Z" if time and datetime.fromisoformat(time).tzinfo is None else time
+    if time and datetime.fromisoformat(time).tzinfo is None:
+        return f"{time}Z"
+    return time
 
 
 def teams(folder: ClassFolder) -> Iterator[NamedPath]:
@@ -339,4 +339,6 @@ def _students(lab: ClassFolder, team: str, words: Collection[str]) -> set[str]:
     if not (lab.is_explicit or known or are_students):
         return set()
     is_alone = bool(known) and len(lab.entries) == 1 == len(people.members(team))
-    return set() if is_alone or not PACKAGE_FILES.isdisjoint(lab.children.files) else known | others
+    if is_alone or not PACKAGE_FILES.isdisjoint(lab.children.files):
+        return set()
+    return known | others

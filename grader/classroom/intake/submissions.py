@@ -143,7 +143,9 @@ def _paths_in(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
     """Yield the paths of submissions in a class folder with a layout."""
     if layout == "teams":
         return teams(folder)
-    return nbgrader(folder) if layout == "nbgrader" else entries_of(folder, layout)
+    if layout == "nbgrader":
+        return nbgrader(folder)
+    return entries_of(folder, layout)
 
 
 def _without_ignored(
@@ -204,7 +206,9 @@ def _inner_class(folder: ClassFolder) -> ClassFolder:
         return folder
     folders, files, _ = around[1].children
     is_package = not PACKAGE_FILES.isdisjoint(files) or any(map(is_part, folders))
-    return folder if is_package or len(around[1].entries) <= 1 else around[1]
+    if is_package or len(around[1].entries) <= 1:
+        return folder
+    return around[1]
 
 
 def _only_folder(folder: ClassFolder) -> str:
@@ -283,7 +287,9 @@ def _only_file(listing: ClassListing, top: str) -> str:
     """Return the archive or URDF that is alone in a folder, as in Canvas; else the folder."""
     inner = listing.children(top, 9)
     names = inner.files if not (inner.folders or inner.refused) else []
-    return f"{top}/{names[0]}" if len(names) == 1 and is_submission(names[0]) else top
+    if len(names) == 1 and is_submission(names[0]):
+        return f"{top}/{names[0]}"
+    return top
 
 
 def _files_below(listing: ClassListing, top: str) -> list[str]:
@@ -473,15 +479,15 @@ def _plain_path(path: str) -> str:
 
 def _csv_cell(text: str) -> str:
     """Return a text as a cell of a CSV file."""
-    return '"' + text.replace('"', '""') + '"' if set(text) & set(',;"') else text
+    if set(text) & set(',;"'):
+        return '"' + text.replace('"', '""') + '"'
+    return text
 
 
 def _path_key(path: str) -> str:
     """Return the key of a submission whose name cannot be one: `./` begins no name that a student
     can give a folder.
     """
-    return (
-        f"./{path}"
-        if path.isprintable()
-        else f"./{printable_path(path)}-{sha256(os.fsencode(path)).hexdigest()}"
-    )
+    if path.isprintable():
+        return f"./{path}"
+    return f"./{printable_path(path)}-{sha256(os.fsencode(path)).hexdigest()}"

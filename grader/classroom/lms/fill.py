@@ -191,7 +191,9 @@ def _grade_text(grade: PublishedGrade, file: _GradeFile) -> str:
     if grade.total is None:
         return file.form.excuse if grade.is_excused else ""
     text = format(grade.total.quantize(Decimal("0.01"), ROUND_FLOOR), "f")
-    return text.replace(".", ",") if re.search(_COMMA, file.maximum) else text
+    if re.search(_COMMA, file.maximum):
+        return text.replace(".", ",")
+    return text
 
 
 def _check_maximum(text: str, what: str, options: FillOptions) -> list[str]:
@@ -208,7 +210,9 @@ def _check_maximum(text: str, what: str, options: FillOptions) -> list[str]:
             "unchanged"
         )
         raise InputError(f"the maximum of {what} is {others}: {advice}")
-    return [] if maximum is not None else [f"the file does not state the maximum of {what}"]
+    if maximum is not None:
+        return []
+    return [f"the file does not state the maximum of {what}"]
 
 
 def _read_grade_file(data: bytes, form: Form, options: FillOptions) -> _GradeFile:
@@ -267,11 +271,10 @@ def _choose(columns: Mapping[int, re.Match[str]], form: Form, options: FillOptio
     if len(found) == 1:
         return found[0]
     listed = _listed([columns[at][0] for at in found or columns])
-    advice = (
-        f"choose one with --column: {listed}"
-        if listed
-        else f"create it in {form.lms}, and export again"
-    )
+    if listed:
+        advice = f"choose one with --column: {listed}"
+    else:
+        advice = f"create it in {form.lms}, and export again"
     what = f"{'' if options.column.strip() else 'for '}{' or '.join(map(repr, names))}"
     raise InputError(
         f"{options.shown} has {'several columns' if found else 'no column'} {what}; {advice}"

@@ -152,7 +152,9 @@ class ClassSettings:
 
     def deadline(self, folder: Path) -> datetime | None:
         """Return the deadline. Raises InputError."""
-        return read_time(self.due, f"{printable_path(folder / CLASS_FILE)}: ") if self.due else None
+        if self.due:
+            return read_time(self.due, f"{printable_path(folder / CLASS_FILE)}: ")
+        return None
 
 
 def relative(path: Path, folder: Path) -> str:

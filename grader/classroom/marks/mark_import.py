@@ -176,6 +176,6 @@ def _hash_of(points: Mapping[str, str], names: Sequence[str]) -> str:
 def _plain(text: str) -> str:
     """Return a number as it is written in one way only, another text unchanged."""
     number = number_in(text)
-    return (
-        text if number is None or abs(number.adjusted()) > _MAX_DIGITS else str(number.normalize())
-    )
+    if number is None or abs(number.adjusted()) > _MAX_DIGITS:
+        return text
+    return str(number.normalize())

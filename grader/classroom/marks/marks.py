@@ -74,7 +74,9 @@ class Mark(NamedTuple):
     @property
     def points(self) -> Decimal | None:
         """The points; None for another value."""
-        return number_in(self.value) if self.criterion != DEADLINE else None
+        if self.criterion != DEADLINE:
+            return number_in(self.value)
+        return None
 
 
 _Reader = Callable[[Cells, str], Iterable[Mark]]  # of the marks in the cells of a row, at a place

@@ -90,11 +90,10 @@ def report_of(book: Gradebook, grade: StudentGrade, *, has_hints: bool = True) -
     is_changed = (
         grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
     )
-    counting = (
-        Grade(grade.total, grade.late.points, grade.final_points is not None)
-        if is_changed
-        else None
-    )
+    if is_changed:
+        counting = Grade(grade.total, grade.late.points, grade.final_points is not None)
+    else:
+        counting = None
     student = grade.student.name or grade.student.key
     return report._replace(
         notes=(*report.notes, *notes_of(grade, report)), grade=counting, student=student
@@ -133,7 +132,9 @@ def _graded_again(book: Gradebook, stored: StoredResult, *, has_hints: bool) -> 
     submission = book.reopened(stored) if stored.verdict != "errored" else None
     if submission is None:
         report = book.report(stored)
-        return report._replace(notes=(_MOVED,)) if stored.verdict == "graded" else report
+        if stored.verdict == "graded":
+            return report._replace(notes=(_MOVED,))
+        return report
     report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
     if not has_hints or book.rubric.hints == "none" or not report.has_failures:
         return report
@@ -171,11 +172,10 @@ def write_reports(
     book = Gradebook(run.gradebook)
     files = file_names([one.student.key for one in book if one.stored is not None or one.has_final])
     place = run.gradebook if run.folder == run.gradebook / names.REPORTS else run.folder
-    class_page = (
-        ""
-        if Format.HTML not in run.formats
-        else f"{'' if place == run.folder else '../'}{_CLASS_PAGE}"
-    )
+    if Format.HTML not in run.formats:
+        class_page = ""
+    else:
+        class_page = f"{'' if place == run.folder else '../'}{_CLASS_PAGE}"
     run = run._replace(time=book.run.time, class_page=class_page)
     lost = render_reports(run, files, terminal, jobs, timeout)
     if Format.HTML in run.formats:

@@ -250,4 +250,6 @@ def _before_and_after(change: Change | PointsChange, nothing: str) -> str:
         nothing if points is None else format_points(points) for points in (before, after)
     )
     more = f" ({signed_points(after - before)})" if before is not None and after is not None else ""
-    return f"{first}, as before" if first == last else f"{first} to {last}{more}"
+    if first == last:
+        return f"{first}, as before"
+    return f"{first} to {last}{more}"

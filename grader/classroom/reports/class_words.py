@@ -36,11 +36,9 @@ def _letters(name: str) -> str:
 def late_text(grade: StudentGrade) -> str:
     """Return the days late and the penalty; empty where they do not count."""
     penalty = f", {format_points(grade.late.points)}" if grade.late.points else ""
-    return (
-        f"{counted(grade.late.days, 'day')}{penalty}"
-        if grade.late.days and not grade.has_final
-        else ""
-    )
+    if grade.late.days and not grade.has_final:
+        return f"{counted(grade.late.days, 'day')}{penalty}"
+    return ""
 
 
 def head_lines(found: ClassStatistics) -> Iterator[str]:
@@ -91,4 +89,6 @@ def span(found: ClassStatistics, tenth: int) -> str:
 
 def percent(share: float) -> str:
     """Return a share in percent, not rounded up to 100 % or down to 0 %."""
-    return f"{share:.0%}" if share in (0, 1) else f"{min(99, max(1, round(100 * share)))}%"
+    if share in (0, 1):
+        return f"{share:.0%}"
+    return f"{min(99, max(1, round(100 * share)))}%"

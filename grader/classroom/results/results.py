@@ -69,11 +69,9 @@ class StoredResult(NamedTuple):
         line = _json_line(
             {name: value for name, value in values.items() if value or name in ("student", "run")}
         )
-        return (
-            _json_line({"texts": self.student, "digest": self.digest, "files": files}) + line
-            if files
-            else line
-        )
+        if files:
+            return _json_line({"texts": self.student, "digest": self.digest, "files": files}) + line
+        return line
 
 
 class Run(NamedTuple):
@@ -198,11 +196,10 @@ class Results:
         """Which lines are damaged; empty without any."""
         lines = enumerated([*map(str, self.damaged)], _MAX_NAMED)
         noun, verb = ("line", "does") if len(self.damaged) == 1 else ("lines", "do")
-        return (
-            f"{noun} {lines} of {printable_path(self._file)} cannot be read, and {verb} not count"
-            if lines
-            else ""
-        )
+        if lines:
+            where = f"{noun} {lines} of {printable_path(self._file)}"
+            return f"{where} cannot be read, and {verb} not count"
+        return ""
 
     def check_newest(self) -> None:
         """Raise InputError if the newest run may be lost."""
@@ -236,7 +233,9 @@ class Results:
     @property
     def next_run(self) -> int:
         """The number of the next run."""
-        return self.runs[-1].run + 1 if self.runs else 1
+        if self.runs:
+            return self.runs[-1].run + 1
+        return 1
 
     @property
     def students(self) -> list[str]:
@@ -261,7 +260,9 @@ class Results:
     def texts(self, stored: StoredResult) -> dict[str, str]:
         """Return the texts of the Word and PDF files in a submission as it was graded, by path."""
         [found] = self._read_values(self._texts, [stored.student])
-        return dict(found["files"]) if found and found["digest"] == stored.digest else {}
+        if found and found["digest"] == stored.digest:
+            return dict(found["files"])
+        return {}
 
     def _read_values(
         self, places: Mapping[str, int], keys: Iterable[str]

@@ -80,7 +80,9 @@ def open_item(book: Gradebook, item: ReviewItem) -> OpenedItem:
         opened = opened._replace(answer=documents, title="Documents")
     if not is_manual(result):
         opened = _with_robot(opened, report, results, is_anonymous=bool(first.number))
-    return _anonymous(opened, item, result) if first.number else opened
+    if first.number:
+        return _anonymous(opened, item, result)
+    return opened
 
 
 def _paths(book: Gradebook, item: ReviewItem, result: Result) -> Iterator[str]:
@@ -160,9 +162,10 @@ def _deciding_place(report: Report, result: Result) -> Location | None:
     if robot is None or not robot.links or criterion.check.subject not in _OF_ROBOT:
         return None
     link = criterion.arguments.get("link")
-    examined = (
-        robot.link(link) if isinstance(link, str) and robot.has_link(link) else robot.links[0]
-    )
+    if isinstance(link, str) and robot.has_link(link):
+        examined = robot.link(link)
+    else:
+        examined = robot.links[0]
     return location_of(examined.known.location)
 
 

@@ -118,7 +118,9 @@ def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) ->
 def _total(marks: Sequence[Mark | None]) -> str:
     """Return the points of the marks of an item together; empty if one is missing."""
     points = [mark.points for mark in marks if mark is not None and mark.points is not None]
-    return format_points(sum(points, Decimal(0))) if len(points) == len(marks) else ""
+    if len(points) == len(marks):
+        return format_points(sum(points, Decimal(0)))
+    return ""
 
 
 def _marked_text(marks: Sequence[Mark | None], *, is_older: bool) -> str:

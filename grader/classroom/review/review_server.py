@@ -116,9 +116,10 @@ class LocalServer(ThreadingTCPServer):
             with self.lock:
                 return self.application(path, body)
         except Exception as error:  # noqa: BLE001  no traceback ever reaches a user
-            reason = (
-                error.strerror if isinstance(error, OSError) else f"{type(error).__name__}: {error}"
-            )
+            if isinstance(error, OSError):
+                reason = error.strerror
+            else:
+                reason = f"{type(error).__name__}: {error}"
             message = printable(f"the grader failed on this request: {reason}")
             return _Response(f"{message}\n".encode(), status=HTTPStatus.INTERNAL_SERVER_ERROR)
 
@@ -217,7 +218,9 @@ class ReviewPage:
         at = self._position(path[0])
         try:
             self.session.refresh()
-            return self._page(at, path) if body is None else self._act(at, body)
+            if body is None:
+                return self._page(at, path)
+            return self._act(at, body)
         except GraderError as error:
             if body is not None:
                 return _json(error=str(error))
@@ -323,7 +326,9 @@ class ReviewPage:
 
     def address(self, at: int) -> str:
         """Return the address of an item below that of the server."""
-        return str(at + 1) if at < len(self.session.places) else "end"
+        if at < len(self.session.places):
+            return str(at + 1)
+        return "end"
 
     def _position(self, address: str) -> int:
         """Return the position of an item, beyond the last one for the end; -1 if there is none."""
@@ -331,7 +336,9 @@ class ReviewPage:
         if address == "end":
             return count
         at = int(address) if re.fullmatch("[1-9][0-9]{0,7}", address) else 0
-        return at - 1 if at <= count else -1
+        if at <= count:
+            return at - 1
+        return -1
 
 
 def _html(page: str, status: HTTPStatus = HTTPStatus.OK) -> _Response:
@@ -376,11 +383,10 @@ def review_in_browser(
                 if opens
                 else nullcontext(False) as is_open
             ):
-                how = (
-                    "the page opens in the browser"
-                    if is_open
-                    else "open this address in a browser on this machine"
-                )
+                if is_open:
+                    how = "the page opens in the browser"
+                else:
+                    how = "open this address in a browser on this machine"
                 terminal.warn(f"{how}; Ctrl-C ends the review, all marks are kept")
                 server.serve_forever()
     write_grades(Gradebook(session.folder))

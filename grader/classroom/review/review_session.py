@@ -159,7 +159,9 @@ class ReviewSession:
         here = self.item_at(position).members[0].order, position
         shown = ((self._joined[at].members[0], at) for at in self.listed)
         later = [(one.order, at) for one, at in shown if (one.order, at) > here]
-        return min(later)[1] if later else len(self.places)
+        if later:
+            return min(later)[1]
+        return len(self.places)
 
     def people(self, position: int) -> list[tuple[str, int, int]]:
         """Return the students with items of the question and section that are shown, whatever their
@@ -191,9 +193,9 @@ class ReviewSession:
         if item.members[1:] or grade.total is None:
             return ""
         points = f"{format_points(grade.total)} of {counted_points(grade.report.max_score)} so far"
-        return (
-            f"{points}; {format_points(grade.pending)} left to grade" if grade.pending else points
-        )
+        if grade.pending:
+            return f"{points}; {format_points(grade.pending)} left to grade"
+        return points
 
     @property
     def lms(self) -> str:

@@ -71,7 +71,9 @@ def read_time(text: str, where: str = "") -> datetime:
         raise InputError(
             f"{where}{text!r} is not a date or time: write it as 2026-11-20T23:59+01:00"
         ) from None
-    return moment.replace(second=59, microsecond=_LAST) if _IN_MINUTES.fullmatch(text) else moment
+    if _IN_MINUTES.fullmatch(text):
+        return moment.replace(second=59, microsecond=_LAST)
+    return moment
 
 
 def time_text(when: datetime | str, zone: tzinfo | None = None) -> str:
@@ -89,7 +91,9 @@ def time_text(when: datetime | str, zone: tzinfo | None = None) -> str:
     shown = plain.isoformat(
         " ", "seconds" if plain.second and plain.microsecond != _LAST else "minutes"
     )
-    return f"{shown} (UTC{offset.replace('+00:00', '')})" if offset else shown
+    if offset:
+        return f"{shown} (UTC{offset.replace('+00:00', '')})"
+    return shown
 
 
 def _days_late(
@@ -103,18 +107,17 @@ def _days_late(
         days = max(
             0, ceil(times.days_late - grace / _DAY if times.days_late % 1 else times.days_late)
         )
-        source = (
-            f"by {times.measured_by}'s own status"
-            if times.measured_by
-            else "as recorded by the instructor"
-        )
+        if times.measured_by:
+            source = f"by {times.measured_by}'s own status"
+        else:
+            source = "as recorded by the instructor"
         is_guess = bool(times.measured_by and times.due)  # which the LMS may not know
         return days, f"{counted(days, 'day')} late, {source}" if days else "", is_guess
-    due = (
-        read_time(times.due)
-        if times.due
-        else deadline or (policy.due if policy is not None else None)
-    )
+    due = deadline
+    if times.due:
+        due = read_time(times.due)
+    elif due is None and policy is not None:
+        due = policy.due
     if times.submitted and due is not None:
         # A time without an offset is in the time zone of the other one.
         submitted = _in_zone(datetime.fromisoformat(times.submitted), due)
@@ -130,11 +133,9 @@ def _days_late(
         )
         return days, f"{counted(days, 'day')} late: {shown}" if days else "", False
     # The LMS says only that the submission is late, and may not know the student's own deadline.
-    return (
-        (1, "late by an unknown time, which counts as 1 day", True)
-        if times.is_late
-        else (0, "", False)
-    )
+    if times.is_late:
+        return (1, "late by an unknown time, which counts as 1 day", True)
+    return (0, "", False)
 
 
 def _in_zone(time: datetime, other: datetime) -> datetime:

@@ -256,7 +256,9 @@ def _student(row: dict[str, str]) -> Student:
 
 def _days(text: str) -> float | None:
     found = _DAYS.fullmatch(text)
-    return float(found[1].replace(",", ".")) if found else None
+    if found:
+        return float(found[1].replace(",", "."))
+    return None
 
 
 def _days_of(status: str) -> float | None:
@@ -299,7 +301,9 @@ def iso_time(text: str) -> str:
     except ValueError:
         return ""
     if ":" not in text:
-        return time.date().isoformat() if len(text) == len("2026-09-01") else ""
+        if len(text) == len("2026-09-01"):
+            return time.date().isoformat()
+        return ""
     precision = "seconds" if re.search(":[0-9]+:", text) else "minutes"
     return time.isoformat(timespec=precision).replace("+00:00", "Z")
 
@@ -315,11 +319,9 @@ class _Match(NamedTuple):
         """The student whom it belongs to, or each member of its group; empty if that is not
         certain.
         """
-        return (
-            self.students
-            if self.by == GROUP or (len(self.students) == 1 and self.by < GROUP)
-            else ()
-        )
+        if self.by == GROUP or (len(self.students) == 1 and self.by < GROUP):
+            return self.students
+        return ()
 
 
 class People:
@@ -373,7 +375,9 @@ class People:
         if is_own_name or not {*group}.difference(found.students):
             return found
         if found.by == _LMS_ID and claim.canvas:
-            return _Match(tuple(group), GROUP) if found.students[0] in group else found
+            if found.students[0] in group:
+                return _Match(tuple(group), GROUP)
+            return found
         if found.students or (claim.canvas and any(self.students[index].canvas for index in group)):
             return _Match(tuple(sorted({*found.students, *group})))
         return _Match(tuple(group), GROUP)
@@ -434,9 +438,8 @@ def _in_canvas(name: str) -> Iterable[str]:
     as the user set.
     """
     words = name.split()[:_MAX_WORDS]
-    orders = (
-        [name]
-        if "," in name
-        else [" ".join(words[index:] + words[:index]) for index in range(len(words))]
-    )
+    if "," in name:
+        orders = [name]
+    else:
+        orders = [" ".join(words[index:] + words[:index]) for index in range(len(words))]
     return map(letters, orders)

@@ -116,7 +116,9 @@ def _numbers(names: tuple[str, ...]) -> list[tuple[str, Decimal]]:
 
 def number_in(text: str) -> Decimal | None:
     """Return the number in a text, with a decimal point or comma, or None."""
-    return Decimal(text.replace(",", ".")) if _NUMBER.fullmatch(text) else None
+    if _NUMBER.fullmatch(text):
+        return Decimal(text.replace(",", "."))
+    return None
 
 
 def read_points(text: str, name: str, most: Decimal) -> Decimal:

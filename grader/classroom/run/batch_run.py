@@ -98,9 +98,10 @@ class Batch:
         )
 
     def _errored(self, task: Task, error: Exception) -> StoredResult:
-        reason = (
-            str(error) if isinstance(error, WorkerError) else f"{type(error).__name__}: {error}"
-        )
+        if isinstance(error, WorkerError):
+            reason = str(error)
+        else:
+            reason = f"{type(error).__name__}: {error}"
         return undecided(self._shared, StoredResult(task.key, 0, "errored", reason=reason))
 
     def _line(
@@ -128,4 +129,6 @@ class Batch:
 
 def _without_documents(task: Task, error: WorkerError) -> Task | None:
     """Return a lost task without its documents, which may be the cause."""
-    return None if task.no_documents else task._replace(no_documents=str(error))
+    if task.no_documents:
+        return None
+    return task._replace(no_documents=str(error))

@@ -79,9 +79,10 @@ def _grade_one(context: ClassContext, task: Task) -> StoredResult:
         if isinstance(error, MemoryError) and not task.no_documents:
             return _grade_one(context, task._replace(no_documents=NO_MEMORY))
         is_known = isinstance(error, MachineError)  # in the next run it may be over
-        reason = (
-            str(error) if is_known else f"the grader itself failed: {type(error).__name__}: {error}"
-        )
+        if is_known:
+            reason = str(error)
+        else:
+            reason = f"the grader itself failed: {type(error).__name__}: {error}"
         reason = NO_MEMORY if isinstance(error, MemoryError) else reason
         return undecided(context, result._replace(verdict="errored", reason=reason))
     entries = {one.criterion.id: _stored_criterion(one) for one in report.results}
@@ -107,7 +108,9 @@ def _stored_criterion(result: Result) -> StoredCriterion:
     number = int(points) if points == int(points) else float(points)
     stored = None if is_open else number, outcome.status, cut(words, _MAX_CAUSE), result.carried
     off = how_far_off(outcome)
-    return stored if off is None else (*stored, off)
+    if off is None:
+        return stored
+    return (*stored, off)
 
 
 def _answers_of(report: Report, digest: str) -> dict[str, str]:

@@ -7,7 +7,7 @@ its heading.
 
 import re
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import chain, islice
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -114,11 +114,9 @@ def draft(submission: Submission, solution: Solution | None, head: Head, path: P
     InputError.
     """
     started = [*words_of_launches(submission)]
-    of_robot = (
-        chain(robot_facts(solution), element_facts(solution, started))
-        if solution is not None
-        else ()
-    )
+    of_robot: Iterable[Fact | Omission] = ()
+    if solution is not None:
+        of_robot = chain(robot_facts(solution), element_facts(solution, started))
     measured = measure_facts(solution) if solution is not None else ()
     of_packages = chain(package_facts(submission), name_facts(submission), measured)
     found = list(islice(chain(of_robot, of_packages), _MAX_FACTS + 1))
@@ -138,11 +136,10 @@ def draft(submission: Submission, solution: Solution | None, head: Head, path: P
             for fact, row in facts
         }.values()
     ]
-    values = (
-        _values(subjects, submission, {row.fact.words for row in rows})
-        if submission.packages
-        else {}
-    )
+    if submission.packages:
+        values = _values(subjects, submission, {row.fact.words for row in rows})
+    else:
+        values = {}
     data = _rubric_text(head, rows, values).encode()
     return RubricDraft(
         data, read_rubric(data, path), tuple(it for it in tried if isinstance(it, Omission))
@@ -283,7 +280,8 @@ def _value_lines(
     for node, rows in values.items():
         for row in rows[:_MAX_VALUES]:
             lines = layout.criterion(layout.ids[row.fact.words], row, 0, _MAX_COMMENT)
-            yield from (f"# {line}" if line else "" for line in lines)
+            for line in lines:
+                yield f"# {line}" if line else ""
         if len(rows) > _MAX_VALUES:
             yield from ("", f"# # {len(rows) - _MAX_VALUES} more of {printable(node)}")
 

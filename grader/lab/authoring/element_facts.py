@@ -91,11 +91,9 @@ def _by_links(fact: Fact, selectors: Mapping[str, str]) -> Fact:
     def named(key: str, value: Any) -> Any:
         if not (is_of_system or _JOINT_KEY.search(key) or (is_joint and key == "@name")):
             return value
-        return (
-            [selectors.get(it, it) for it in value]
-            if isinstance(value, list)
-            else selectors.get(value, value)
-        )
+        if isinstance(value, list):
+            return [selectors.get(it, it) for it in value]
+        return selectors.get(value, value)
 
     return fact._replace(
         arguments=_entry(at, {key: named(key, value) for key, value in values.items()})
@@ -248,7 +246,9 @@ def _value(text: str) -> str | bool | int | float:
     if word in _TRUTH:
         return _TRUTH[word]
     if _NUMBER.fullmatch(word) and isfinite(number := float(word)):
-        return int(word) if re.fullmatch(r"-?(?:0|[1-9]\d{0,14})", word) else number
+        if re.fullmatch(r"-?(?:0|[1-9]\d{0,14})", word):
+            return int(word)
+        return number
     return " ".join(word.split())
 
 

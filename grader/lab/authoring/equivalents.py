@@ -77,11 +77,9 @@ def equivalents(root: Element, rules: RewritingRules) -> Iterator[Equivalent]:
 def _reorder(tree: Element, _: RewritingRules) -> bool:
     """Reverse the order of elements: links, joints and materials, and those inside of each."""
     # A visual may use the material that another one defines before it.
-    free = (
-        ("joint", "material", "collision")
-        if tree.find("link/visual/material/*") is not None
-        else _SORTED
-    )
+    free: tuple[str, ...] = _SORTED
+    if tree.find("link/visual/material/*") is not None:
+        free = ("joint", "material", "collision")
     for owner in [tree, *own_elements(tree, "link", "joint", "visual", "collision", "inertial")]:
         kinds: dict[object, list[Element]] = {}  # of several origins the first counts
         for child in owner:
@@ -105,11 +103,10 @@ def _move_frames(tree: Element, rules: RewritingRules) -> bool:
     moved = False
     for link in tree.iterchildren("link"):
         joint = parent_joint(tree, link.get("name", ""))
-        change = (
-            _free_move(tree, joint, rules)
-            if joint is not None and link.get("name") not in rules.named
-            else None
-        )
+        if joint is not None and link.get("name") not in rules.named:
+            change = _free_move(tree, joint, rules)
+        else:
+            change = None
         if change is not None:
             move_frame(tree, link, change)
             moved = True
@@ -198,7 +195,9 @@ def _use_properties(tree: Element, _: RewritingRules) -> bool:
     names = {number: f"number_{index}" for index, number in enumerate(repeated)}
 
     def use(found: re.Match[str]) -> str:
-        return f"${{{names[found[0]]}}}" if found[0] in names else found[0]
+        if found[0] in names:
+            return f"${{{names[found[0]]}}}"
+        return found[0]
 
     for it, key in values:
         it.set(key, _NUMBER.sub(use, it.get(key, "")))

@@ -135,11 +135,10 @@ def _visual_facts(link: Link) -> Facts:
         yield _size(link.name, visual)
         if kinds[type(visual.geometry)] == 1:
             is_mesh = isinstance(visual.geometry, Mesh)
-            selected = (
-                {}
-                if len(kinds) == 1 or is_mesh
-                else {"shape": type(visual.geometry).__name__.lower()}
-            )
+            if len(kinds) == 1 or is_mesh:
+                selected = {}
+            else:
+                selected = {"shape": type(visual.geometry).__name__.lower()}
             if visual.material is not None:
                 yield _link_fact(
                     link.name, "shows_colour", **selected, colour=_rounded(visual.material.rgba, 4)
@@ -247,11 +246,10 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
     yield _link_fact(link, "held_by", parent=parent, joint_type=joint.type)._replace(title=title)
     pose = robot.pose(link, relative_to=parent)
     xyz, rpy = _rounded(pose.translation), _rounded(pose.rpy, 4)
-    turned = (
-        f"with rpy = {point((*_rounded([*map(degrees, rpy)], 1),))} (degrees)"
-        if any(rpy)
-        else "not rotated"
-    )
+    if any(rpy):
+        turned = f"with rpy = {point((*_rounded([*map(degrees, rpy)], 1),))} (degrees)"
+    else:
+        turned = "not rotated"
     title = f"the frame {link!r} is at {point((*xyz,))} m in {parent!r}, {turned}"
     frame = _link_fact(
         link, "frame_at", relative_to=parent, xyz=xyz, **({"rpy": rpy} if any(rpy) else {})

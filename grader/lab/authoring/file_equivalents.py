@@ -46,15 +46,15 @@ def _in_flow_style(tree: YamlNode) -> str | None:
     """
     text = _flow(tree)
     with suppress(ValueError):
-        return text if yaml_value(text) == yaml_value(tree.source.text) else None
+        if yaml_value(text) == yaml_value(tree.source.text):
+            return text
+        return None
     return None
 
 
 def _flow(node: YamlNode) -> str:
     if isinstance(node.value, dict):
         return f"{{{', '.join(f'{key}: {_flow(inner)}' for key, inner in node.value.items())}}}"
-    return (
-        f"[{', '.join(map(_flow, node.items))}]"
-        if node.text is None
-        else node.source.text[slice(*node.span)]
-    )
+    if node.text is None:
+        return f"[{', '.join(map(_flow, node.items))}]"
+    return node.source.text[slice(*node.span)]

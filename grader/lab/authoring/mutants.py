@@ -188,7 +188,9 @@ def _alternatives(value: float) -> Iterable[tuple[str, float]]:
 def misspelt(name: str) -> str:
     """Return a text without the letter in its middle."""
     middle = len(name) // 2
-    return name[:middle] + name[middle + 1 :] if len(name) > 3 else f"{name}x"
+    if len(name) > 3:
+        return name[:middle] + name[middle + 1 :]
+    return f"{name}x"
 
 
 # Files for people: without them the package does the same.
@@ -326,7 +328,9 @@ def _short(file: PythonFile, node: ast.expr) -> str:
     """Return what tells an item of a list from others: the executable of a node, else its text."""
     executable = argument(node, "executable") if isinstance(node, ast.Call) else None
     text = " ".join(file.segment(executable.value if executable is not None else node).split())
-    return text.strip("'\"") if len(text) <= MAX_LABEL else text[:MAX_LABEL]
+    if len(text) <= MAX_LABEL:
+        return text.strip("'\"")
+    return text[:MAX_LABEL]
 
 
 def _for_people(file: PythonFile) -> Iterator[tuple[int, int]]:

@@ -66,9 +66,8 @@ def package_facts(submission: Submission) -> Facts:
         facts = _facts_of(submission, package, named, prefix)
         about = f"{_THE_PACKAGE} {package.name}" if prefix else _THE_PACKAGE
         of = package.name if prefix else ""
-        yield from (
-            fact._replace(about=about, package=of, words=f"{prefix}{fact.words}") for fact in facts
-        )
+        for fact in facts:
+            yield fact._replace(about=about, package=of, words=f"{prefix}{fact.words}")
 
 
 def _packages(submission: Submission) -> Iterator[tuple[Package, str]]:
@@ -85,11 +84,9 @@ def words_of_launches(submission: Submission) -> Iterator[str]:
     """Yield the words of what the launch files start and find."""
     for package, prefix in _packages(submission):
         names = [posixpath.basename(path) for path in package.launch_files]
-        yield from (
-            f"{prefix}{name} {check}"
-            for name in names
-            for check in ("node_runs", "launch_finds_files")
-        )
+        for name in names:
+            for check in ("node_runs", "launch_finds_files"):
+                yield f"{prefix}{name} {check}"
 
 
 def _builds(submission: Submission) -> tuple[str, ...]:
@@ -182,7 +179,9 @@ def _sizes_meant(name: str, links: Sequence[str]) -> tuple[str, Iterable[tuple[s
     """
     if "radius" in name:
         return "radius", ((link,) for link in links)
-    return ("distance", combinations(links, 2)) if _DISTANCE.search(name) else None
+    if _DISTANCE.search(name):
+        return ("distance", combinations(links, 2))
+    return None
 
 
 def _is_measured(robot: Configuration, measure: str, links: tuple[str, ...], value: float) -> bool:
@@ -302,9 +301,10 @@ def _turned_facts(package: Package, path: str) -> Iterator[Fact]:
         )
         given = {key: names for key, names in (("nodes", nodes), ("not", absent)) if names}
         if given:
-            starts = (
-                f"starts {enumerated(nodes)}" if nodes else f"does not start {enumerated(absent)}"
-            )
+            if nodes:
+                starts = f"starts {enumerated(nodes)}"
+            else:
+                starts = f"does not start {enumerated(absent)}"
             fact = _package_fact("node_runs", f"{name} {argument}", launch=name, **given)
             title = f"with {argument}:={text}, the launch file {starts}"
             yield fact._replace(args={argument: turned}, title=title)

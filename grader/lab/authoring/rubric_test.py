@@ -170,7 +170,9 @@ class Trial:
     def _name_changes(self, source: Source, label: str) -> Iterable[MutantEdit]:
         """Return the changes of names and values in a file, if a criterion compares them."""
         is_compared = any(it.check.name in ("names_agree", "parameter_is") for it in self.tested)
-        return name_changes(source, label, self._names, self._families) if is_compared else ()
+        if is_compared:
+            return name_changes(source, label, self._names, self._families)
+        return ()
 
     @cached_property
     def _families(self) -> tuple[Family, ...]:
@@ -353,7 +355,9 @@ class RubricTest(NamedTuple):
         that are ignored.
         """
         count = self.caught + len(self.survivors)
-        return Decimal(100 * self.caught) / count if count else Decimal(100)
+        if count:
+            return Decimal(100 * self.caught) / count
+        return Decimal(100)
 
     @property
     def lost(self) -> tuple[str, ...]:
@@ -387,11 +391,10 @@ def run_rubric_test(
     every = [*trial.mutants()]
     chosen = every if len(every) <= _MAX_MUTANTS else Random(0).sample(every, _MAX_MUTANTS)
     total = len(chosen) + len(samples or ())
-    of_samples = (
-        tested_samples(rubric, samples, lambda done: progress(done, total))
-        if samples is not None
-        else None
-    )
+    if samples is not None:
+        of_samples = tested_samples(rubric, samples, lambda done: progress(done, total))
+    else:
+        of_samples = None
     outcomes = []
     for outcome in grade_all(chosen):
         outcomes.append(outcome)
@@ -461,11 +464,9 @@ def _survivor(trial: Trial, mutant: Mutant) -> _Survivor:
 
 def _mutant_diff(trial: Trial, mutant: Mutant) -> str:
     if mutant.is_deleted:
-        return (
-            f"rename {mutant.path} to {mutant.renamed}"
-            if mutant.renamed
-            else f"delete {mutant.path}"
-        )
+        if mutant.renamed:
+            return f"rename {mutant.path} to {mutant.renamed}"
+        return f"delete {mutant.path}"
     text = trial.text(mutant.path)
     return _text_diff(mutant.path, text, mutant.applied(text))
 

@@ -92,7 +92,9 @@ def parent_joint(tree: Element, link: str) -> Element | None:
     found = [
         joint for joint in tree.iterchildren("joint") if end(joint, "child").get("link") == link
     ]
-    return found[0] if len(found) == 1 else None
+    if len(found) == 1:
+        return found[0]
+    return None
 
 
 def move_frame(tree: Element, link: Element, change: Transform) -> None:

@@ -74,11 +74,10 @@ def shows_box(
     )
     is_turned = actual is None or all_within(sorted(actual), sorted(size), tolerance)
     is_turned = is_turned and any(visual.origin.rpy)
-    at = (
-        place(visual.origin.location, "rpy")
-        if is_turned
-        else place(visual.geometry.location, "size")
-    )
+    if is_turned:
+        at = place(visual.origin.location, "rpy")
+    else:
+        at = place(visual.geometry.location, "size")
     if actual is None:
         return failed(
             f"the box of {link!r} is rotated: its edges should be along the axes of {link!r}", at
@@ -287,21 +286,17 @@ def _off_centre_failure(link: str, visual: Visual, tolerance: float) -> Outcome:
 
 
 def _largest_difference(actual: Sequence[float] | None, expected: Sequence[float]) -> float:
-    return (
-        float("inf")
-        if actual is None
-        else max(abs(a - b) for a, b in zip(actual, expected, strict=True))
-    )
+    if actual is None:
+        return float("inf")
+    return max(abs(a - b) for a, b in zip(actual, expected, strict=True))
 
 
 def _why_invisible(material: Material) -> str:
     """Return the end of a message on a colour that nobody sees; empty for one that shows."""
     alpha = material.rgba[3]
-    return (
-        ""
-        if alpha >= VISIBLE
-        else f"; its alpha is {alpha:g}, so it is invisible; it should be at least {VISIBLE:g}"
-    )
+    if alpha >= VISIBLE:
+        return ""
+    return f"; its alpha is {alpha:g}, so it is invisible; it should be at least {VISIBLE:g}"
 
 
 def _has_only_texture(material: Material) -> bool:

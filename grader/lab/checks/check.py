@@ -107,11 +107,10 @@ class Check(NamedTuple):
         """Return the check as it is called with these arguments, which may decide what is
         examined.
         """
-        function = (
-            self.about.function_for(arguments)
-            if self.about.function_for is not None
-            else self.function
-        )
+        if self.about.function_for is not None:
+            function = self.about.function_for(arguments)
+        else:
+            function = self.function
         if function is self.function:
             return self
         return self._replace(function=function, examined=describe(function).examined)
@@ -169,7 +168,9 @@ def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
 
 def _key(name: str) -> str:
     """Return the key of an argument in a rubric."""
-    return name.removesuffix("_") if iskeyword(name.removesuffix("_")) else name
+    if iskeyword(name.removesuffix("_")):
+        return name.removesuffix("_")
+    return name
 
 
 def _is_subject(parameter: inspect.Parameter) -> bool:

@@ -137,7 +137,9 @@ def collides_as(
             tolerance + SLACK,
             turned=is_turned,
         )
-        return found if found is None or xyz is not None else found._replace(apart=0.0)
+        if found is None or xyz is not None:
+            return found
+        return found._replace(apart=0.0)
 
     solid = _solid_collisions(robot, link, what)
     fitting = next((one for one in solid if _fits(off(one), tolerance)), None)

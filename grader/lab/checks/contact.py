@@ -94,11 +94,10 @@ def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative
     fine = deepest <= tolerance
     if fine and unknown is not None:
         raise UnknownShape(unknown)
-    message = (
-        f"{link!r} does not overlap {of!r}"
-        if fine
-        else f"{link!r} overlaps {of!r} by {in_millimetres(deepest)}"
-    )
+    if fine:
+        message = f"{link!r} does not overlap {of!r}"
+    else:
+        message = f"{link!r} overlaps {of!r} by {in_millimetres(deepest)}"
     at = place(culprit.origin.location, "xyz") or place(culprit.location)
     return judged(fine, message, round(deepest, 4), 0.0, tolerance, "m", at=at)
 

@@ -117,7 +117,9 @@ def _entry_of_file(
 
 def _function_for(arguments: Mapping[str, Any]) -> Callable[..., Outcome]:
     """Return what examines the robot, or another file."""
-    return entry_is if arguments.get("file", _ROBOT) == _ROBOT else _entry_of_file
+    if arguments.get("file", _ROBOT) == _ROBOT:
+        return entry_is
+    return _entry_of_file
 
 
 ABOUT = {
@@ -142,7 +144,9 @@ class _Wanted(NamedTuple):
     @property
     def first(self) -> Step:
         """The first step of the path; an empty one for the root."""
-        return self.steps[0] if self.steps else Step("")
+        if self.steps:
+            return self.steps[0]
+        return Step("")
 
     @property
     def is_valued(self) -> bool:
@@ -328,10 +332,13 @@ def _shown(steps: Sequence[Step], tree: Entry) -> str:
         )
         return repr(".".join(texts)) if steps else "the file"
     tags = [_tag(step) for step in steps if not step.name.startswith("@")]
-    shown = (
-        f"{''.join(tags[1:])} in {tags[0]}" if len(tags) > 1 else (tags or [f"<{tree.name}>"])[0]
-    )
-    return f"{steps[-1].name} of {shown}" if steps and steps[-1].name.startswith("@") else shown
+    if len(tags) > 1:
+        shown = f"{''.join(tags[1:])} in {tags[0]}"
+    else:
+        shown = (tags or [f"<{tree.name}>"])[0]
+    if steps and steps[-1].name.startswith("@"):
+        return f"{steps[-1].name} of {shown}"
+    return shown
 
 
 def _tag(step: Step) -> str:
@@ -344,7 +351,9 @@ def _fault_text(key: str, found: Sequence[Entry], expected: Content) -> str:
     """Return what is wrong with the texts at a path: 'update_rate' is 10; it should be 30."""
     wanted = expected if isinstance(expected, list) else [expected]
     should = f"it should be {enumerated([*map(_value_text, wanted)])}"
-    return f"{key!r} is {_texts(found)}; {should}" if found else f"{key!r} is missing; {should}"
+    if found:
+        return f"{key!r} is {_texts(found)}; {should}"
+    return f"{key!r} is missing; {should}"
 
 
 def _texts(found: Sequence[Entry]) -> str:
@@ -356,7 +365,9 @@ def _texts(found: Sequence[Entry]) -> str:
 def _text_of(entry: Entry) -> str:
     if entry.text is None:
         return "a table"
-    return f'"{entry.text}"' if entry.is_quoted else _value_text(readable(entry.text))
+    if entry.is_quoted:
+        return f'"{entry.text}"'
+    return _value_text(readable(entry.text))
 
 
 def _should(wanted: _Wanted) -> str:
@@ -371,7 +382,9 @@ def _should(wanted: _Wanted) -> str:
 
 def _value_text(value: Scalar) -> str:
     text = xml_text(value)
-    return text if not isinstance(value, str) or numbers_in(text) else quoted(text)
+    if not isinstance(value, str) or numbers_in(text):
+        return text
+    return quoted(text)
 
 
 # --- The robot

@@ -96,9 +96,10 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
         )
         return failed(message, robot.link(link).location)
     largest = principal_moments(solid.inertia)[2]
-    off = (
-        100.0 * largest_difference(given.inertia, solid.inertia) / largest if largest > 0.0 else nan
-    )
+    if largest > 0.0:
+        off = 100.0 * largest_difference(given.inertia, solid.inertia) / largest
+    else:
+        off = nan
     distance = hypot(*minus(given.centre, solid.centre))
     at = place(inertial.location, None, "inertia")
     if not isfinite(off + distance):
@@ -221,4 +222,6 @@ def _size_bound(shapes: Sequence[tuple[Shape, Transform]]) -> float:
 
 def _round_percentage(percentage: float) -> str:
     """Return a percentage rounded for reading: 61.2, 1,000."""
-    return f"{percentage:.3g}" if not 1e3 <= percentage < 1e10 else f"{percentage:,.0f}"
+    if not 1e3 <= percentage < 1e10:
+        return f"{percentage:.3g}"
+    return f"{percentage:,.0f}"

@@ -76,7 +76,9 @@ class _InstalledFiles:
 
     def package(self, name: str) -> str | None:
         """Return the share folder of a package."""
-        return f"share/{name}" if any(name in owner.names for owner in self.owners) else None
+        if any(name in owner.names for owner in self.owners):
+            return f"share/{name}"
+        return None
 
     def installed(self, package: str, inside: str) -> str | None:
         """Return the path below the prefix of a file in a package."""

@@ -562,11 +562,10 @@ def _fault_of_owner(package: Package, owner: str, rest: str, what: str) -> str:
     # A path may lack a slash after the package's name: get_package_share_directory(...) +
     # 'my_robot.urdf'.
     more = owner.removeprefix(package.name)
-    is_known = (
-        more in package.tree.folders
-        if rest
-        else more in map(posixpath.basename, package.tree.files)
-    )
+    if rest:
+        is_known = more in package.tree.folders
+    else:
+        is_known = more in map(posixpath.basename, package.tree.files)
     if owner.startswith(package.name) and is_known:
         path = posixpath.join("share", owner, rest).rstrip("/")
         return (
@@ -693,4 +692,6 @@ def _fault_that_stops(package: Package, name: str, launch: "Launch") -> MissingE
 
 def _join_faults(launch: "Launch") -> str:
     messages = list(dict.fromkeys(fault.message for fault in launch.faults))
-    return f"{messages[0]} (and {len(messages) - 1} more)" if len(messages) > 1 else messages[0]
+    if len(messages) > 1:
+        return f"{messages[0]} (and {len(messages) - 1} more)"
+    return messages[0]

@@ -36,9 +36,10 @@ def urdf_loads(urdf: Reading) -> Outcome:
     problems.sort(key=lambda problem: (not problem.kind.is_before_ros, problem.kind not in _OF_XML))
     causes = [problem for problem in problems if not problem.kind.is_consequence]
     first = (causes or problems or list(urdf.problems))[0]
-    others = (
-        f" (and {counted(len(problems) - 1, 'more such problem')})" if len(problems) > 1 else ""
-    )
+    if len(problems) > 1:
+        others = f" (and {counted(len(problems) - 1, 'more such problem')})"
+    else:
+        others = ""
     message = f"{first.message}{others}"
     if assumed := _list_assumed(urdf):
         what = "The rest is graded with this correction" if urdf.is_meant else "Assumed"

@@ -35,11 +35,9 @@ def content_fault(file: File, path: str) -> str:
             "a mesh is a Git LFS pointer",
         )
     suffix = posixpath.splitext(path)[1].lower()
-    return (
-        ""
-        if _is_of_format(file, start, suffix)
-        else f"is no {suffix.removeprefix('.').upper()} file"
-    )
+    if _is_of_format(file, start, suffix):
+        return ""
+    return f"is no {suffix.removeprefix('.').upper()} file"
 
 
 def _is_of_format(file: File, start: bytes, suffix: str) -> bool:

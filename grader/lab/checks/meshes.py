@@ -160,7 +160,9 @@ def shows_mesh(
     wanted = _Pose(relative_to or link, scale, xyz, rpy, tolerance)
     outcomes = [_examine_mesh(robot, submission, it, wanted) for it in named]
     best = min(outcomes, key=lambda outcome: _BEST_FIRST.index(outcome.status))
-    return best if best.status == "failed" else _broken_collision(robot, submission, link) or best
+    if best.status == "failed":
+        return best
+    return _broken_collision(robot, submission, link) or best
 
 
 def _broken_collision(robot: Configuration, submission: Submission, link: str) -> Outcome | None:
@@ -205,9 +207,10 @@ def _examine_mesh(
         fault = fault or _why_not_found(it.file, submission)
     except NotDecided as reason:
         doubt, cause = str(reason), reason.cause
-    wrong = (
-        [(f"the mesh of {it.link!r} {fault}", place(it.mesh.location, "filename"))] if fault else []
-    )
+    if fault:
+        wrong = [(f"the mesh of {it.link!r} {fault}", place(it.mesh.location, "filename"))]
+    else:
+        wrong = []
     wrong += _pose_differences(robot, it, wanted)
     if wrong:
         problem = _problem_text(it.link, it.file, fault) if fault else ""
@@ -392,7 +395,9 @@ def _path_from_xacro(path: str) -> tuple[str, str] | None:
     from grader.ros.xacro.texts import INSTALLED  # late: most URDFs are no xacro
 
     found = re.fullmatch(rf"/*{INSTALLED}/([^/]+)/share/\1/+(.*)", path, re.DOTALL)
-    return (found[1], found[2]) if found is not None else None
+    if found is not None:
+        return (found[1], found[2])
+    return None
 
 
 def _without_package(name: str, path: str, submission: Submission) -> str:
@@ -408,11 +413,10 @@ def _without_package(name: str, path: str, submission: Submission) -> str:
     meant = closest(name, [package.name for package in submission.packages]) or next(
         iter(holding), None
     )
-    hint = (
-        f"; the submission has {quoted(meant)}"
-        if meant is not None
-        else ", which is not part of the submission"
-    )
+    if meant is not None:
+        hint = f"; the submission has {quoted(meant)}"
+    else:
+        hint = ", which is not part of the submission"
     return f"names the package {quoted(name)}{hint}"
 
 

@@ -86,11 +86,10 @@ def travel_of(
     poses = [
         (visual.geometry, visual_pose(robot, link, visual, base)) for visual in visuals(robot, link)
     ]
-    lowest = (
-        min(poses, key=lambda shape: extent(shape[0], shape[1], up)[0])
-        if len(poses) > 1
-        else poses[0]
-    )
+    if len(poses) > 1:
+        lowest = min(poses, key=lambda shape: extent(shape[0], shape[1], up)[0])
+    else:
+        lowest = poses[0]
     low = farthest(*lowest, minus((0.0, 0.0, 0.0), up))
     moved = _flatten(
         minus(robot.displacement(link, joint, _SMALL_ANGLE, relative_to=base).apply(low), low), up
@@ -167,11 +166,10 @@ def turns_about_itself(
     """
     robot = _as_turning(robot, link) if any_type else robot
     cylinders = [visual for visual in visuals(robot, link) if isinstance(visual.geometry, Cylinder)]
-    visual = (
-        max(cylinders, key=lambda visual: volume(visual.geometry))
-        if cylinders
-        else main_visual(robot, link)
-    )
+    if cylinders:
+        visual = max(cylinders, key=lambda visual: volume(visual.geometry))
+    else:
+        visual = main_visual(robot, link)
     if not isinstance(visual.geometry, Cylinder):
         message = f"{link!r} shows no cylinder, so it has no axis to turn about"
         raise MissingElement(

@@ -47,4 +47,6 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
 
 def _also(places: list[str]) -> str:
     """Return the further places of one mistake, in parentheses; empty without one."""
-    return f" (also {enumerated(places, _MAX_NAMED)})" if places else ""
+    if places:
+        return f" (also {enumerated(places, _MAX_NAMED)})"
+    return ""

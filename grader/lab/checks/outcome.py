@@ -150,7 +150,9 @@ def judged(
 
 def location_of(at: _AnyPlace) -> Location | None:
     """Return the place in the file, computed on demand: most places are never used."""
-    return at.resolve() if isinstance(at, LazyLocation) else at
+    if isinstance(at, LazyLocation):
+        return at.resolve()
+    return at
 
 
 def within(actual: float, expected: float, tolerance: float) -> bool:
@@ -244,13 +246,17 @@ def difference(off: float, over: str = _SIDES[0], under: str = _SIDES[1]) -> str
 
 def number_text(value: float, digits: int = 9) -> str:
     """Return a number of a URDF for a message."""
-    return "missing or unreadable" if isnan(value) else f"{value + 0.0:.{digits}g}"
+    if isnan(value):
+        return "missing or unreadable"
+    return f"{value + 0.0:.{digits}g}"
 
 
 def in_millimetres(length: float) -> str:
     """Return the size of a difference in metres, rounded for reading: 25 mm."""
     millimetres = abs(length) * 1000
-    return f"{millimetres:.0f} mm" if _FEW <= millimetres < _MANY else f"{millimetres:.3g} mm"
+    if _FEW <= millimetres < _MANY:
+        return f"{millimetres:.0f} mm"
+    return f"{millimetres:.3g} mm"
 
 
 def in_degrees(angle: float) -> str:
@@ -270,11 +276,9 @@ def place(
     """Return the place of an element that was read from the file, of one of its attributes, or of
     an element inside.
     """
-    return (
-        LazyLocation(element.source, element.tag, attribute, inside)
-        if element is not None
-        else None
-    )
+    if element is not None:
+        return LazyLocation(element.source, element.tag, attribute, inside)
+    return None
 
 
 @lru_cache(maxsize=4096)

@@ -326,13 +326,16 @@ def _kind_of_file(path: str, package: Package) -> _FileKind | None:
         if path.lower().endswith(endings):
             return kind
     folder = posixpath.dirname(path)
-    beside = (
-        [path for path in package.tree.files if posixpath.dirname(path) == folder] if folder else []
-    )
+    if folder:
+        beside = [path for path in package.tree.files if posixpath.dirname(path) == folder]
+    else:
+        beside = []
     endings = (*_ENDINGS["urdf"], *_ENDINGS["rviz"])
     kinds = {
         _kind_of_file(path, package)
         for path in beside
         if path.endswith(endings) or ".launch." in path
     }
-    return next(iter(kinds)) if len(kinds) == 1 else None
+    if len(kinds) == 1:
+        return next(iter(kinds))
+    return None

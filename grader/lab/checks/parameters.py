@@ -184,7 +184,9 @@ def _text(value: Any) -> str:
         return f"[{', '.join(map(_text, value))}]"
     if isinstance(value, bool):
         return str(value).lower()
-    return quoted(value) if isinstance(value, str) else f"{value:.12g}"
+    if isinstance(value, str):
+        return quoted(value)
+    return f"{value:.12g}"
 
 
 def measured(submission: Submission, measure: _Measure, links: list[str]) -> float:

@@ -57,17 +57,15 @@ def frame_at(
     placed = measured_point(
         f"the frame {link!r}", pose.translation, xyz, tolerance, relative_to, at=at
     )
-    return (
-        _with_orientation(
+    if angle < _ANY_ANGLE:
+        return _with_orientation(
             placed,
             turn_between(pose.rotation, rotation_from_rpy(rpy)),
             angle,
             f"rpy = {point(rpy)} (radians)",
             at,
         )
-        if angle < _ANY_ANGLE
-        else placed
-    )
+    return placed
 
 
 def centre_at(

@@ -30,7 +30,9 @@ from grader.ros.urdf.transforms import Transform
 
 def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
     """The joints are paired by name, or by their order along the chains to the links."""
-    return () if arguments.get("match") == "order" else ("joints renamed",)
+    if arguments.get("match") == "order":
+        return ()
+    return ("joints renamed",)
 
 
 ABOUT = {
@@ -233,9 +235,10 @@ class _MotionComparison(NamedTuple):
         wrong = dict.fromkeys(index for index, offset in alone if not self._is_within(offset))
         cause, at = "", self.robots[0].link(worst.link).location
         if not self._is_within(zero):
-            cause = (
-                f"; it is already {zero.text} off with all joints at 0" if zero is not worst else ""
-            )
+            if zero is not worst:
+                cause = f"; it is already {zero.text} off with all joints at 0"
+            else:
+                cause = ""
         elif wrong:
             differing = [self.joints[index][0] for index in wrong]
             at = differing[0].axis_location or differing[0].location

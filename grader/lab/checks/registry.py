@@ -142,7 +142,9 @@ def _load_plugin(name: str, entry: "EntryPoint") -> Check:
 
 
 def _package_of(entry: "EntryPoint") -> str:
-    return entry.dist.name if entry.dist is not None else entry.value.partition(":")[0]
+    if entry.dist is not None:
+        return entry.dist.name
+    return entry.value.partition(":")[0]
 
 
 def _entry_points() -> dict[str, list["EntryPoint"]]:

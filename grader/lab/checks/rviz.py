@@ -77,11 +77,10 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
     if None in frames and actual.endswith(frame):
         raise NotDecided(_UNKNOWN_PREFIX)
     robot = submission.urdf.reading.robot if isinstance(submission.urdf, Read) else None
-    links = (
-        [it for link in robot.links for it in _frames_of_link(opened, link.name) if it]
-        if robot is not None
-        else []
-    )
+    if robot is not None:
+        links = [it for link in robot.links for it in _frames_of_link(opened, link.name) if it]
+    else:
+        links = []
     message, detail = f"the Fixed Frame is {actual!r}", ""
     if actual not in frames:
         message += f"; it should be {expected!r}{_prefix_reason(expected, frame)}"
@@ -143,7 +142,9 @@ def rviz_display_on(package: Package, *, name: str, kind: str, launch: str = "")
     ]
     if "" in faults:
         return passed(f"a {kind} display is on")
-    return failed(faults[0], found[0].location) if found else _no_display(rviz, kind)
+    if found:
+        return failed(faults[0], found[0].location)
+    return _no_display(rviz, kind)
 
 
 def _no_display(rviz: "RvizFile", kind: str) -> Outcome:
@@ -160,7 +161,9 @@ def _class_of_ros1(display: "Display") -> str:
     right = f"in ROS 2 it is {_PLUGINS}/{display.kind}"
     if not display.package:
         return f"the class {display.kind!r} names no package; {right}"
-    return f"rviz/{display.kind} is a class of ROS 1; {right}" if display.package == "rviz" else ""
+    if display.package == "rviz":
+        return f"rviz/{display.kind} is a class of ROS 1; {right}"
+    return ""
 
 
 def _why_other_class(display: "Display", package: str) -> str:
@@ -177,7 +180,9 @@ def _why_off(display: "Display") -> str:
 
 
 def _frames_of_link(opened: "Launch | None", link: str) -> tuple[str | None, ...]:
-    return opened.frames_of(link) if opened is not None else (link,)
+    if opened is not None:
+        return opened.frames_of(link)
+    return (link,)
 
 
 def _prefix_reason(frame: str, link: str) -> str:
@@ -209,7 +214,9 @@ def _judge_model(model: "Display", topic: str, opened: "Launch | None") -> tuple
     verdict = _judge_topic(
         (value.text or "" if value is not None else "").strip(), topic, _Names.of(opened)
     )
-    return verdict if verdict[0] != "passed" else _judge_prefix(model, opened)
+    if verdict[0] != "passed":
+        return verdict
+    return _judge_prefix(model, opened)
 
 
 def _judge_topic(actual: str, topic: str, names: "_Names") -> tuple[Status, str]:
@@ -226,11 +233,10 @@ def _judge_topic(actual: str, topic: str, names: "_Names") -> tuple[Status, str]
                 f"RViz reads the robot from {_listed(shown)}, but it is on {_listed(described)}"
             )
     elif actual.strip("/") != topic.strip("/"):
-        fault = (
-            f"reads the topic {actual!r}; it should read"
-            if actual
-            else "has no Description Topic; it should be"
-        )
+        if actual:
+            fault = f"reads the topic {actual!r}; it should read"
+        else:
+            fault = "has no Description Topic; it should be"
         unheard = f"the RobotModel display {fault} {topic!r}"
     return ("failed", unheard) if unheard else ("passed", "")
 
@@ -266,7 +272,9 @@ class _Names(NamedTuple):
     def described(self) -> set[str] | None:
         """The topics that the robot is on; None where one is known only at run time."""
         topics = {node.topic("robot_description") for node in self.publishers}
-        return None if None in topics else {topic for topic in topics if topic is not None}
+        if None in topics:
+            return None
+        return {topic for topic in topics if topic is not None}
 
     def shown(self, topic: str) -> set[str | None]:
         """Return the topics that RViz reads for the one in its file."""

@@ -131,7 +131,9 @@ def _fault_of(node: "StartedNode", wanted: Wanted) -> Fault | None:
 
 def _words_of(word: str | None) -> Sequence[str | None]:
     """Return the option and the value of --option=value; else the word."""
-    return word.split("=", 1) if word is not None and word.startswith("--") else [word]
+    if word is not None and word.startswith("--"):
+        return word.split("=", 1)
+    return [word]
 
 
 def _phrases(arguments: Iterable[str]) -> Iterator[Sequence[str]]:

@@ -163,11 +163,10 @@ def root_of_tree(
         return failed(
             message, place(loose[0].location, "type"), detail=f" (joint {loose[0].name!r})"
         )
-    place_in_tree = (
-        f"only frames are above {link!r}"
-        if link in robot.parent_joints
-        else f"{link!r} is the root"
-    )
+    if link in robot.parent_joints:
+        place_in_tree = f"only frames are above {link!r}"
+    else:
+        place_in_tree = f"{link!r} is the root"
     return passed(f"{place_in_tree}, and {holds!r} is fixed to it")
 
 

@@ -221,9 +221,10 @@ def _missing_uses(
                 f"{counted(len(own) - len(unused), kind, plural)} defined and used; there "
                 f"should be {wanted}"
             )
-            detail = (
-                f"; not used: {enumerated([*map(quoted, unused)], _MAX_NAMED)}" if unused else ""
-            )
+            if unused:
+                detail = f"; not used: {enumerated([*map(quoted, unused)], _MAX_NAMED)}"
+            else:
+                detail = ""
             yield _Lack(message, own[unused[0]] if unused else None, detail)
         return
     for name in wanted:

@@ -96,7 +96,9 @@ def _read_ordinal(place: str) -> _Ordinal | None:
     texts.
     """
     found = _ORDINAL.fullmatch(place.lower())
-    return _Ordinal(tuple(WORDS.findall(found[1])), int(found[2]), int(found[3])) if found else None
+    if found:
+        return _Ordinal(tuple(WORDS.findall(found[1])), int(found[2]), int(found[3]))
+    return None
 
 
 def _match_answer(
@@ -175,9 +177,9 @@ def _answer_by_number(
 def _answers_after_list(answers: Sequence[Passage], total: int) -> list[int]:
     """Return the answers that follow a list of all questions; none without such a list."""
     is_list = len(answers) == 2 * total and all(map(_is_line, answers[:total]))
-    return (
-        list(range(total, 2 * total)) if is_list and not any(map(_is_line, answers[total:])) else []
-    )
+    if is_list and not any(map(_is_line, answers[total:])):
+        return list(range(total, 2 * total))
+    return []
 
 
 def _answer_text(answers: Sequence[Passage], indices: Sequence[int]) -> str:
@@ -220,11 +222,10 @@ class _AnswerSearch:
         question as well.
         """
         for wanted in self._wanted:
-            found = (
-                self._in_order(wanted)
-                if isinstance(wanted, _Ordinal)
-                else self._passages_below(wanted)
-            )
+            if isinstance(wanted, _Ordinal):
+                found = self._in_order(wanted)
+            else:
+                found = self._passages_below(wanted)
             first = [it.text for it in found[:1]]
             others = (
                 it for it in found[1:] if it.is_certain and not it.is_empty and it.text not in first
@@ -287,7 +288,9 @@ class _AnswerSearch:
             )
         is_other = None not in (self._task, head.task) and head.task != self._task
         how = f"below a heading of task {head.task}: it may answer another question"
-        return passage._replace(how=how, is_certain=False) if is_other else passage
+        if is_other:
+            return passage._replace(how=how, is_certain=False)
+        return passage
 
     def _in_order(self, wanted: _Ordinal) -> list[Passage]:
         """Return the passages below headings that questions share, or in files of that name, if
@@ -364,7 +367,9 @@ def _is_shared(pattern: Pattern, head: Heading) -> bool:
     """Return whether a heading has this pattern; "question" means also those that say which:
     "REQUIRED Question".
     """
-    return "question" in head.pattern if pattern == ("question",) else head.pattern == pattern
+    if pattern == ("question",):
+        return "question" in head.pattern
+    return head.pattern == pattern
 
 
 def _joined_passage(match: _AnswerMatch, passages: list[Passage]) -> Passage:
@@ -385,5 +390,7 @@ def _place_of(document: TextDocument, head: Heading, at: Location) -> str:
     if page is not None:
         return f"on page {page} of {at.path}"
     if document.file.suffix == ".docx":
-        return f'in {at.path}, below "{head.shown}"' if head.text else f"in {at.path}"
+        if head.text:
+            return f'in {at.path}, below "{head.shown}"'
+        return f"in {at.path}"
     return f"in {at.path}, from line {at.line}"

@@ -113,7 +113,9 @@ def matches(wanted: Label, found: Label, task: int | None = None) -> bool:
         own = found.task if found.task is not None else task
         if wanted.task is not None and wanted.task != own:
             return False
-        return wanted.steps <= found.steps if wanted.steps else own == wanted.task
+        if wanted.steps:
+            return wanted.steps <= found.steps
+        return own == wanted.task
     return bool(wanted.words) and _in_order(wanted.words, found.words)
 
 

@@ -82,9 +82,9 @@ def read_picture(file: File) -> EmbeddedPicture | NotShown:
     except InputError as error:
         return NotShown(file.path, error.reason if isinstance(error, FileError) else str(error))
     kind = _image_type(data)
-    return (
-        EmbeddedPicture(file.path, kind, data) if kind is not None else NotShown(file.path, _OTHER)
-    )
+    if kind is not None:
+        return EmbeddedPicture(file.path, kind, data)
+    return NotShown(file.path, _OTHER)
 
 
 def pictures_in_word(file: File) -> Iterator[EmbeddedPicture | NotShown]:

@@ -106,7 +106,9 @@ def content_of(result: Result, report: Report) -> str:
     if not (_is_question(result) and isinstance(found, str) and is_certain) or _loose_files(report):
         return ""
     is_whole = not any(sign in found for sign in (_PICTURE, "![", "]("))
-    return "\n".join(filter(None, map(str.rstrip, found.splitlines()))) if is_whole else ""
+    if is_whole:
+        return "\n".join(filter(None, map(str.rstrip, found.splitlines())))
+    return ""
 
 
 def loose_lines(result: Result, submission: Submission, *, is_anonymous: bool = False) -> list[str]:
@@ -189,7 +191,9 @@ def _shown_files(result: Result) -> tuple[str, ...]:
     if place is None or not _is_question(result) or _has_no_answer(result):
         return ()
     shown = CONVERTED if _PICTURE in str(result.outcome.measured) else (".pdf",)
-    return (place.path,) if place.path.lower().endswith(shown) else ()
+    if place.path.lower().endswith(shown):
+        return (place.path,)
+    return ()
 
 
 def _read_pictures(

@@ -54,11 +54,9 @@ def _manual_subjects(rubric: Rubric, submission: Submission) -> Mapping[str, str
     lacking = _missing_work(rubric, submission) if is_wanted else {}
     if rubric.without_urdf == "manual" and "URDF" in lacking:
         return lacking
-    return (
-        {"package": lacking["package"]}
-        if rubric.without_package == "manual" and "package" in lacking
-        else {}
-    )
+    if rubric.without_package == "manual" and "package" in lacking:
+        return {"package": lacking["package"]}
+    return {}
 
 
 class _Grading:
@@ -79,11 +77,10 @@ class _Grading:
     def decide(self, criterion: Criterion) -> None:
         """Run the check of a criterion, or skip it because of another that failed."""
         cause = self._blocking_cause(criterion)
-        result = (
-            Result(criterion, _skip_outcome(cause), cause)
-            if cause
-            else self._decide_by_check(criterion)
-        )
+        if cause:
+            result = Result(criterion, _skip_outcome(cause), cause)
+        else:
+            result = self._decide_by_check(criterion)
         self.results[criterion.id] = self._carry_from_any(result)
         for other in [self.results[name] for name in self._lost]:
             if _is_carried_from(other.criterion, criterion.id):
@@ -152,16 +149,12 @@ class _Grading:
             or criterion.check.subject != "robot"
         ):
             return outcome
-        found = (
-            robot.link(link)
-            if isinstance(link, str) and robot.has_link(link)
-            else next(iter(robot.links), None)
-        )
-        return (
-            outcome._replace(location=location_of(found.known.location))
-            if found is not None
-            else outcome
-        )
+        found = next(iter(robot.links), None)
+        if isinstance(link, str) and robot.has_link(link):
+            found = robot.link(link)
+        if found is not None:
+            return outcome._replace(location=location_of(found.known.location))
+        return outcome
 
     def _explain(self, outcome: Outcome, *thing: str, looks_at: Collection[str] = ()) -> Outcome:
         from grader.lab.grading.explanation import explain  # late: many submissions lose nothing
@@ -196,9 +189,9 @@ class _Grading:
         is_shown = result.outcome.location is not None or (
             result.because and not self.results[result.because].carried
         )
-        return (
-            result if is_shown and other.outcome.status != "errored" else self._with_reasons(other)
-        )
+        if is_shown and other.outcome.status != "errored":
+            return result
+        return self._with_reasons(other)
 
     def _is_excused(self, criterion: Criterion, cause: str) -> bool:
         """Return whether what counts instead passes, if another criterion is the cause of a
@@ -299,21 +292,18 @@ class _Grading:
     def _absent_of(self, missing: MissingElement) -> tuple[str, ...]:
         """Return what is not built yet, if that is all."""
         if missing.kind == "link":
-            return (
-                (missing.name,)
-                if missing.name in self._rubric.links and self._is_unbuilt(missing.name)
-                else ()
-            )
+            if missing.name in self._rubric.links and self._is_unbuilt(missing.name):
+                return (missing.name,)
+            return ()
         return (missing.absent,) if missing.absent else ()
 
     def _is_unbuilt(self, name: str) -> bool:
         """Return whether no link of the robot may be meant by the name of a missing one."""
         robot, wanted = self.submission.robot, self._rubric.links
-        others = (
-            [link.known for link in robot.links if link.known.name not in wanted]
-            if robot is not None
-            else []
-        )
+        if robot is not None:
+            others = [link.known for link in robot.links if link.known.name not in wanted]
+        else:
+            others = []
         return not (
             any(link.visuals for link in others)
             or near(name, [link.name for link in others], "link")
@@ -414,7 +404,9 @@ def _missing_work(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
             f"no package was submitted for this lab; {package.name!r} is in the folder of "
             "another lab"
         )
-    return found if found and not submission.is_single and submission.evidence_files else {}
+    if found and not submission.is_single and submission.evidence_files:
+        return found
+    return {}
 
 
 def _by_evidence(submission: Submission, reason: str) -> Outcome:

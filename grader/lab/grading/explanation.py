@@ -78,11 +78,10 @@ def explain(
         for it in problems
         if it.kind is not urdf_problems.MISSPELT or _is_about(it.subject, looks_at)
     ]
-    inside = (
-        [*_inside(place, about, source, is_of_link="material" in looks_at)]
-        if part not in _OUTSIDE
-        else []
-    )
+    if part not in _OUTSIDE:
+        inside = [*_inside(place, about, source, is_of_link="material" in looks_at)]
+    else:
+        inside = []
     for problem in problems:
         if problem in at_place or problem in inside:
             message = f"{outcome.message} ({problem.code}: {problem.message})"

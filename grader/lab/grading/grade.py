@@ -181,11 +181,9 @@ def _note_on_unread(submission: Submission, evidence: Sequence[EvidenceResult]) 
     from grader.lab.documents.evidence import DOCUMENTS
 
     unread = documents.named(DOCUMENTS)[1]
-    return (
-        f"not searched for evidence: {enumerated(list(map(str, unread)), _MAX_UNREAD)}"
-        if unread
-        else ""
-    )
+    if unread:
+        return f"not searched for evidence: {enumerated(list(map(str, unread)), _MAX_UNREAD)}"
+    return ""
 
 
 def _explain_by_convention(

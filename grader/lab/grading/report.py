@@ -213,7 +213,9 @@ class Report(NamedTuple):
         """The points that count for the student: the grade, else the score; None for an excused
         student.
         """
-        return self.grade.points if self.grade is not None else self.score
+        if self.grade is not None:
+            return self.grade.points
+        return self.score
 
     @property
     def is_bare(self) -> bool:

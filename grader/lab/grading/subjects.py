@@ -176,11 +176,10 @@ def _find_joint(robot: Configuration, name: str) -> Joint:
     """Return a joint that turns or slides, by its name or by a selector of the link that it
     moves.
     """
-    named = (
-        name
-        if robot.robot.has_joint(name)
-        else selected_name(robot.known, robot.known_parents, name)
-    )
+    if robot.robot.has_joint(name):
+        named = name
+    else:
+        named = selected_name(robot.known, robot.known_parents, name)
     if named != name and not name.startswith(JOINT_OF):
         found = robot.parent_joints.get(named)
         if found is None:

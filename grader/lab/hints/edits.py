@@ -75,7 +75,9 @@ class FoundHint(NamedTuple):
     @property
     def edits(self) -> Edits:
         """The edits to make."""
-        return self.proposal.edits if self.alternative is None else ()
+        if self.alternative is None:
+            return self.proposal.edits
+        return ()
 
 
 def _change_size(old: str, new: str) -> int:
@@ -127,11 +129,9 @@ def without_element(source: Source, start: int) -> Edit:
     is_alone = source.text[end : end + 2].startswith(("\n", "\r\n")) and (
         line == 0 or source.text[line - 1] == "\n"
     )
-    return (
-        source.edit(line, source.text.find("\n", end) + 1, "")
-        if is_alone
-        else source.edit(start, end, "")
-    )
+    if is_alone:
+        return source.edit(line, source.text.find("\n", end) + 1, "")
+    return source.edit(start, end, "")
 
 
 def with_element(source: Source, start: int, xml: str) -> Edit:
@@ -168,7 +168,9 @@ def _merge_one(old: str, new: str) -> str:
     if isclose(before, after, rel_tol=_SAME, abs_tol=_SAME / 100):
         return old
     if isclose(before, -after, rel_tol=_SAME):
-        return old.lstrip("-") if before < 0 else f"-{old.lstrip('+')}"
+        if before < 0:
+            return old.lstrip("-")
+        return f"-{old.lstrip('+')}"
     return new
 
 
@@ -232,11 +234,10 @@ def with_urdf(submission: Submission, files: _Files) -> Submission:
     assert isinstance(urdf, Read)
     is_renamed = files.get(urdf.path, b"") is None
     path = next((new for new, data in files.items() if data is not None and is_renamed), urdf.path)
-    whole_tree = (
-        overlaid(submission.whole_tree, files)
-        if submission.whole_tree.files
-        else submission.whole_tree
-    )
+    if submission.whole_tree.files:
+        whole_tree = overlaid(submission.whole_tree, files)
+    else:
+        whole_tree = submission.whole_tree
     surroundings = submission.surroundings(Budget(), whole_tree)
     read = read_as_ros(files.get(path) or urdf.data, path, surroundings)
     return replace(submission, urdf=read, whole_tree=whole_tree, budget=surroundings.budget)

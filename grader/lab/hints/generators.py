@@ -71,7 +71,9 @@ class Situation:
     @cached_property
     def exchanges(self) -> list[Piece]:
         """The pieces that exchange ends of joints."""
-        return exchanges(self.difference) if self.difference is not None else []
+        if self.difference is not None:
+            return exchanges(self.difference)
+        return []
 
     @cached_property
     def has_reversed(self) -> bool:
@@ -267,11 +269,10 @@ def _with_xacro(submission: Submission) -> Iterator[Proposal]:
     from grader.lab.hints.python_file import with_xacro  # late: most URDFs are no such file
 
     package = submission.package
-    sources = (
-        [submission.source(package.path(path)) for path in package.launch_files]
-        if package is not None
-        else []
-    )
+    if package is not None:
+        sources = [submission.source(package.path(path)) for path in package.launch_files]
+    else:
+        sources = []
     for source in sources:
         if source is not None:
             yield from (Proposal(edits, _RAW_XACRO) for edits in with_xacro(source))
@@ -348,7 +349,9 @@ def _cause_of_part(part: MissingPart, first: str) -> str:
     """Return words for a part; the joint of the first link is its joint."""
     if part.tag == "link":
         return f"the link {part.link!r}"
-    return "its joint" if part.link == first else f"the joint of {part.link!r}"
+    if part.link == first:
+        return "its joint"
+    return f"the joint of {part.link!r}"
 
 
 def _part_in_words(part: MissingPart) -> str:

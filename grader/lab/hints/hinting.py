@@ -185,7 +185,9 @@ def _hint(found: FoundHint, text: str, shown_by: str, result: Result, *, keeps_e
 def _draft(reference: ReferenceSolution | None) -> Draft | None:
     """Return the robot of the reference solution."""
     with suppress(InputError):
-        return Draft.of(reference.reading) if reference is not None else None
+        if reference is not None:
+            return Draft.of(reference.reading)
+        return None
     return None
 
 
@@ -196,7 +198,9 @@ def _package(reference: ReferenceSolution | None, name: str) -> "Package | None"
     with suppress(InputError):
         submission = reference.submission if reference is not None else None
         if submission is not None:
-            return submission.with_package(name).package if name else submission.package
+            if name:
+                return submission.with_package(name).package
+            return submission.package
     return None
 
 
@@ -256,7 +260,9 @@ def _changes(edits: Sequence[Edit], submission: Submission) -> str:
 def _texts_to_check(edits: Sequence[Edit], submission: Submission) -> str:
     """Return the texts to look at, each with its line."""
     texts = [f"{_quote(edit.old)} ({_where(edit, submission)})" for edit in edits if edit.old]
-    return enumerated(texts, _MAX_NAMED) if texts else _places(edits, submission)
+    if texts:
+        return enumerated(texts, _MAX_NAMED)
+    return _places(edits, submission)
 
 
 def _places(edits: Sequence[Edit], submission: Submission) -> str:
@@ -294,7 +300,9 @@ def _calls(edits: Sequence[Edit], source: "ExpandedSource", main: str | None) ->
 
 
 def _at(place: Location | Edit, main: str | None) -> str:
-    return f"line {place.line}" if place.path == main else f"line {place.line} of {place.path}"
+    if place.path == main:
+        return f"line {place.line}"
+    return f"line {place.line} of {place.path}"
 
 
 def _moves(edits: Sequence[Edit], submission: Submission) -> list[str]:
@@ -348,7 +356,9 @@ def _change(edit: Edit, submission: Submission) -> str:
     added = edit.new.removeprefix(edit.old).strip()
     if edit.old.startswith("<") and edit.new.startswith(edit.old) and "<" not in added:
         return f"add {_quote(added)} to `{edit.old}>` ({where})"
-    return f"change {old} to {new} ({where})" if edit.new else f"remove {old} ({where})"
+    if edit.new:
+        return f"change {old} to {new} ({where})"
+    return f"remove {old} ({where})"
 
 
 def _whole_lines(edit: Edit, submission: Submission) -> Edit:
@@ -410,7 +420,9 @@ def _where(edit: Edit, submission: Submission) -> str:
 
 def _line(edit: Edit, submission: Submission) -> str:
     lines = (content(submission, edit.path) or b"").decode("utf-8", "surrogateescape").split("\n")
-    return lines[edit.line - 1].removeprefix("\ufeff") if 0 < edit.line <= len(lines) else ""
+    if 0 < edit.line <= len(lines):
+        return lines[edit.line - 1].removeprefix("\ufeff")
+    return ""
 
 
 def _quote(text: str) -> str:
@@ -418,4 +430,6 @@ def _quote(text: str) -> str:
     line = " ".join(text.split()).replace("> <", "><")
     if not line:
         return "a space" if text else ""
-    return f"`{line}`" if len(line) <= _MAX_TEXT else f"`{line[: _MAX_TEXT - 3]}...`"
+    if len(line) <= _MAX_TEXT:
+        return f"`{line}`"
+    return f"`{line[: _MAX_TEXT - 3]}...`"

@@ -54,9 +54,10 @@ def name_proposals(
         for each in (workspace.packages, others)
     )
     # A part of a path is a name of its own, a part of a topic is none.
-    pattern = (
-        r"(?<![\w-]){}(?![\w-])" if family in ("files", "programs") else r"(?<![\w/.-]){}(?![\w/-])"
-    )
+    if family in ("files", "programs"):
+        pattern = r"(?<![\w-]){}(?![\w-])"
+    else:
+        pattern = r"(?<![\w/.-]){}(?![\w/-])"
     texts = ("\n".join([*(it.text for it in own), *frames]), "\n".join(it.text for it in known))
     spelling = _Spelling(own, texts, pattern)
     ways = [
@@ -96,7 +97,9 @@ class _Spelling(NamedTuple):
         """
         old, new = correction.old.strip("/"), correction.new.strip("/")
         places = [(source, span) for source in self.sources for span in _spans(source, old)]
-        return tuple(source.edit(*span, new) for source, span in places) if len(places) == 1 else ()
+        if len(places) == 1:
+            return tuple(source.edit(*span, new) for source, span in places)
+        return ()
 
 
 def _ways(

@@ -461,11 +461,10 @@ def _of_one_machine(name: str, file: PythonFile, actual: str, target: str) -> It
             str(literal.value).rstrip("/").replace("~", HOME, 1),
             f"{WORKING_FOLDER}/{literal.value!s}",
         ):
-            rest = (
-                actual.removeprefix(path).strip("/")
-                if f"{actual}/".startswith(f"{path}/")
-                else None
-            )
+            if f"{actual}/".startswith(f"{path}/"):
+                rest = actual.removeprefix(path).strip("/")
+            else:
+                rest = None
             others = _moved(file.source, rest, target)[:1] if rest and rest != target else []
             if rest in ("", target) or others:
                 new = share if rest else f"os.path.join({share}, {target!r})"
@@ -576,14 +575,18 @@ def _adding(own: PythonFile, codes: Sequence[str], what: str) -> Iterator[Propos
 def _package_of(file: PythonFile, code: ast.expr) -> str | None:
     """Return the package of the program that a node starts."""
     given = argument(code, "package") if isinstance(code, ast.Call) else None
-    return file.plain(given.value) if given is not None else None
+    if given is not None:
+        return file.plain(given.value)
+    return None
 
 
 def _list(file: PythonFile) -> ast.expr | None:
     """Return the list of files to install, or of actions to start."""
     for call in file.calls("setup"):
         entries = argument(call, "data_files")
-        return file.meant(entries.value) if entries is not None else None
+        if entries is not None:
+            return file.meant(entries.value)
+        return None
     return next((file.meant(call.args[0]) for call in file.calls(_DESCRIPTION) if call.args), None)
 
 

@@ -34,7 +34,9 @@ class PackageTask:
         be read.
         """
         text = _text(self.package, path) if path is not None else None
-        return Source(self.package.path(path or ""), text) if text is not None else None
+        if text is not None:
+            return Source(self.package.path(path or ""), text)
+        return None
 
     def file(self, package: Package | None, kind: str) -> str | None:
         """Return the path of the file of a kind in a package: the one that a check names, else
@@ -44,7 +46,9 @@ class PackageTask:
             return kind
         name = min((name for name in self.given if _kind_of(name) == kind), default="")
         launch = next((package.launch(path) for path in package.launch_files[:1]), None)
-        return package.launch_file(name) if kind == "launch" else package.rviz_file(name, launch)
+        if kind == "launch":
+            return package.launch_file(name)
+        return package.rviz_file(name, launch)
 
     def launch(self, path: str, source: Source) -> Launch:
         """Return a launch file of the package with another text, evaluated."""
@@ -52,9 +56,10 @@ class PackageTask:
 
     def wanted(self, path: str | None) -> str | None:
         """Return the text of a file of the reference, with the student's name of the package."""
-        text = (
-            _text(self.reference, path) if self.reference is not None and path is not None else None
-        )
+        if self.reference is not None and path is not None:
+            text = _text(self.reference, path)
+        else:
+            text = None
         return self.named(text) if text is not None else None
 
     def named(self, text: str) -> str:
@@ -87,7 +92,9 @@ def _kind_of(path: str) -> str:
         return "rviz" if path.endswith(".rviz") else "urdf"
     if path.endswith(ENDINGS) or is_in_launch_folder(path):
         return "launch"
-    return SETUP if path.startswith("resource/") or path == "setup.cfg" else path
+    if path.startswith("resource/") or path == "setup.cfg":
+        return SETUP
+    return path
 
 
 def _text(package: Package, path: str) -> str | None:
@@ -104,11 +111,10 @@ def change(edits: Iterable[Edit], cause: str, what: str = "") -> Proposal:
 
 def file_proposals(task: PackageTask, kind: str) -> Iterator[Proposal]:
     """Yield edits that give a file the name that it has in the reference."""
-    wanted = (
-        [task.named(path) for path in task.reference.tree.files]
-        if task.reference is not None
-        else []
-    )
+    if task.reference is not None:
+        wanted = [task.named(path) for path in task.reference.tree.files]
+    else:
+        wanted = []
     names = {posixpath.basename(path) for path in wanted} | task.given
     for path in dict.fromkeys(wanted):
         folder, name = posixpath.split(path)

@@ -57,7 +57,9 @@ class PythonFile:
     @cached_property
     def nodes(self) -> list[ast.AST]:
         """All nodes of the syntax tree; nothing where Python cannot read the file."""
-        return list(ast.walk(self.parsed.tree)) if isinstance(self.parsed, Code) else []
+        if isinstance(self.parsed, Code):
+            return list(ast.walk(self.parsed.tree))
+        return []
 
     @cached_property
     def literals(self) -> list[_Literal]:
@@ -142,7 +144,9 @@ class PythonFile:
     def names_in(self, code: str) -> set[str]:
         """Return the names in an expression."""
         tree = _expression(code)
-        return {it.id for it in ast.walk(tree) if isinstance(it, ast.Name)} if tree else set()
+        if tree:
+            return {it.id for it in ast.walk(tree) if isinstance(it, ast.Name)}
+        return set()
 
     @cached_property
     def bound(self) -> frozenset[str]:
@@ -185,15 +189,17 @@ class PythonFile:
         body = self.parsed.tree.body if isinstance(self.parsed, Code) else []
         start = next((self.span(node)[0] for node in (*self.imports, *body)), len(self.text))
         text = "".join(sorted(map(self._import, wanted), key=lambda line: line.startswith("from")))
-        return [self.source.edit(start, start, text)] if wanted else []
+        if wanted:
+            return [self.source.edit(start, start, text)]
+        return []
 
     def _import(self, name: str) -> str:
         module, _, own = USUAL_NAMES[name].rpartition(".")
         if own == "?glob":
             module, own = ("", "glob") if _USE.search(self.text) else ("glob", "glob")
-        return (
-            f"from {module} import {own}{self.newline}" if module else f"import {own}{self.newline}"
-        )
+        if module:
+            return f"from {module} import {own}{self.newline}"
+        return f"import {own}{self.newline}"
 
 
 def _expression(code: str) -> ast.Expression | None:
@@ -205,7 +211,9 @@ def _expression(code: str) -> ast.Expression | None:
 
 def called(call: ast.Call) -> str:
     """Return the last part of the name of the function that is called."""
-    return call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
+    if isinstance(call.func, ast.Attribute):
+        return call.func.attr
+    return getattr(call.func, "id", "")
 
 
 def argument(call: ast.Call, name: str) -> ast.keyword | None:

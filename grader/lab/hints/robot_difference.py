@@ -155,9 +155,10 @@ class RobotDifference:
                 )
         for used in self.draft.root.iter("material"):
             link = self.reference.link(self.draft.link_of(used))
-            names = (
-                [it.get("name") or "" for it in link.iter("material")] if link is not None else []
-            )
+            if link is not None:
+                names = [it.get("name") or "" for it in link.iter("material")]
+            else:
+                names = []
             like = self.reference.material(names[0]) if names else None
             colour = child_of(like, "color") if like is not None else None
             if like is None or colour is None:
@@ -204,11 +205,10 @@ class RobotDifference:
                 case "rename" | "unset" if new := step.other or _meant_attribute(
                     own.tag, step.name
                 ):
-                    edits = (
-                        self.draft.rename_attribute(own.of, step.name, new)
-                        if new not in own.values
-                        else ()
-                    )
+                    if new not in own.values:
+                        edits = self.draft.rename_attribute(own.of, step.name, new)
+                    else:
+                        edits = ()
                     yield self.piece(
                         own.of, f"the name of the attribute {new} of {{}}", edits, rank=SIBLING
                     )
@@ -386,7 +386,9 @@ def normal(tag: str, attribute: str, text: str | None) -> str:
         text = known.default or "" if known is not None else ""
     is_read = known is not None and known.parts and (len(known.parts) > 1 or text == text.rstrip())
     values = values_of(text) if is_read else ()
-    return " ".join(f"{value + 0.0:.6g}" for value in values) if values else text
+    if values:
+        return " ".join(f"{value + 0.0:.6g}" for value in values)
+    return text
 
 
 def _wanted_value(step: Step) -> str | None:
@@ -428,7 +430,9 @@ def _keys(element: Element, values: Mapping[str, str]) -> tuple[str, ...]:
         and child_of(element, "child") is not None
     ):
         return end_of(element, "child"), name
-    return (name,) if name and element.tag not in ("visual", "collision") else ()
+    if name and element.tag not in ("visual", "collision"):
+        return (name,)
+    return ()
 
 
 def _is_default(node: Node, *, is_moving: bool) -> bool:
@@ -471,7 +475,9 @@ def _values_of_one(found: Iterable[Step]) -> Iterator[list[Step]]:
 
 def _meant_attribute(tag: str, name: str) -> str:
     """Return the attribute that a wrong name of one often means; empty if none is known."""
-    return TAGS[tag].aliases.get(name, "") if tag in TAGS else ""
+    if tag in TAGS:
+        return TAGS[tag].aliases.get(name, "")
+    return ""
 
 
 def _rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:

@@ -46,7 +46,9 @@ class Set(NamedTuple):
     @property
     def element(self) -> Element | None:
         """The element whose attribute it is; None where it is missing."""
-        return child_of(self.owner, self.tag) if self.tag else self.owner
+        if self.tag:
+            return child_of(self.owner, self.tag)
+        return self.owner
 
 
 class Draft:
@@ -129,7 +131,9 @@ class Draft:
         owner = self.owner(element)
         if owner.tag == "joint":
             return end_of(owner, "child")
-        return (owner.get("name") or "") if owner.tag == "link" else ""
+        if owner.tag == "link":
+            return owner.get("name") or ""
+        return ""
 
     def describe(self, element: Element, tag: str = "", known: Collection[str] = ()) -> str:
         """Return what an element, or its child with a tag, is called: the visual origin of
@@ -149,7 +153,9 @@ class Draft:
         what = " ".join(path[:1] + path[1:][-1:])
         if name not in known:
             return f"the {what}"
-        return f"the link {name!r}" if what == "link" else f"the {what} of {name!r}"
+        if what == "link":
+            return f"the link {name!r}"
+        return f"the {what} of {name!r}"
 
     def text(self, element: Element) -> str:
         """Return an element as it is written in the file, without comments."""
@@ -178,7 +184,9 @@ class Draft:
 
     def corrections(self, names: Sequence[str]) -> list[Proposal]:
         """Return edits that may correct what xacro refuses; `names` are those that may be meant."""
-        return self._expanded.corrections(names) if self._expanded is not None else []
+        if self._expanded is not None:
+            return self._expanded.corrections(names)
+        return []
 
     def numbers(self, element: Element, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
         """Return the numbers from which xacro computes an attribute, each with what makes the
@@ -229,9 +237,10 @@ class Draft:
                 others = self._siblings(element, one.attribute, sets)
                 done |= {(it, one.attribute) for it in others}
                 is_numeric = bool(PARTS.get(one.attribute))
-                value = (
-                    merged(element.get(one.attribute) or "", one.value) if is_numeric else one.value
-                )
+                if is_numeric:
+                    value = merged(element.get(one.attribute) or "", one.value)
+                else:
+                    value = one.value
                 ways = self._ways_of(element, one.attribute, value, others)
                 found = [(*before, *more) for before in found for more in ways][:_MAX_WAYS]
             else:
@@ -267,7 +276,9 @@ class Draft:
             with_attribute(source, start, it.attribute, text)
             for it, text in zip(sets, texts, strict=True)
         )
-        return [*ways[:1], edits] if all("$" in text for text in texts) else [edits]
+        if all("$" in text for text in texts):
+            return [*ways[:1], edits]
+        return [edits]
 
     def _ways_of(
         self, element: Element, attribute: str, value: str, others: Mapping[Element, str]
@@ -400,7 +411,9 @@ def escaped(value: str) -> str:
 def end_of(joint: Element, role: str) -> str:
     """Return the name of the link that is the parent or child of a joint."""
     found = child_of(joint, role)
-    return (found.get("link") or "") if found is not None else ""
+    if found is not None:
+        return found.get("link") or ""
+    return ""
 
 
 def child_of(element: Element, tag: str) -> Element | None:

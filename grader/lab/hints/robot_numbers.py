@@ -58,7 +58,9 @@ def mistake_in(parts: Sequence[str], unit: str, old: Values, new: Values) -> str
 
 
 def _with_article(part: str) -> str:
-    return part if len(part) == 1 else f"the {part}"
+    if len(part) == 1:
+        return part
+    return f"the {part}"
 
 
 def plausible(unit: str, old: Values) -> Iterator[Values]:
@@ -89,8 +91,10 @@ def _is_same(one: float, other: float, relative: float = 1e-9) -> bool:
 
 def values_of(text: str | None) -> Values:
     """Return the numbers of an attribute; none where ROS 2 cannot read it."""
+    if text is None:
+        return ()
     try:
-        return tuple(numbers(text)) if text is not None else ()
+        return tuple(numbers(text))
     except NumberError:
         return ()
 
@@ -107,4 +111,6 @@ def format_number(value: float) -> str:
     text = f"{round(value, 6) + 0.0:.6g}"
     if text == "0" and abs(value) > 1e-12:  # an inertia
         return f"{value:.6g}"
-    return text if "e" not in text else f"{value:.6f}".rstrip("0").rstrip(".")
+    if "e" not in text:
+        return text
+    return f"{value:.6f}".rstrip("0").rstrip(".")

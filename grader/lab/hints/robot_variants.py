@@ -298,11 +298,10 @@ def whole_elements(difference: RobotDifference) -> Iterator[Piece]:
     for is_owner in (False, True):
         groups: dict[Element, list[Piece]] = {}
         for piece in difference.pieces:
-            owner = (
-                difference.draft.owner(piece.around)
-                if piece.around is not None
-                else difference.draft.root
-            )
+            if piece.around is not None:
+                owner = difference.draft.owner(piece.around)
+            else:
+                owner = difference.draft.root
             has_values = owner.tag in ("link", "joint", "material", "robot")
             is_removed = not piece.sets and not any(edit.new for edit in piece.edits)
             if piece.around is not None and not is_removed and (piece.edits or not has_values):

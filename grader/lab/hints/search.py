@@ -316,7 +316,9 @@ class HintSearch:
 
     def _situation_after(self, edits: Edits) -> Situation:
         edited = self.trials.edited(edits) if edits else None
-        return self._situation_of(edited) if edited is not None else self._situation
+        if edited is not None:
+            return self._situation_of(edited)
+        return self._situation
 
     def _verify(self) -> None:
         """Take no hint back only if all together hold where the submission is read from scratch."""

@@ -139,7 +139,9 @@ def _find_text(place: ScopePlace, attribute: str, scope: XacroScope) -> _Written
         span = (start, end) if text.strip() else None
     text = source.text[start:end]
     is_read = span is not None and not re.search("[&<]", text) and len(text) <= _MAX_LENGTH
-    return _Written(source, start, text, scope, span) if span is not None and is_read else None
+    if span is not None and is_read:
+        return _Written(source, start, text, scope, span)
+    return None
 
 
 def _definition_text(definition: Definition) -> _Written | None:
@@ -152,7 +154,9 @@ def _definition_text(definition: Definition) -> _Written | None:
         if found is None or not whole.text.startswith(definition.text, found.end()):
             return None
         whole = whole.part(found.end(), found.end() + len(definition.text))
-    return whole._replace(key=definition.key) if whole is not None else None
+    if whole is not None:
+        return whole._replace(key=definition.key)
+    return None
 
 
 class _Rewriter:
@@ -171,11 +175,10 @@ class _Rewriter:
             return []
         found: list[_TextChange] = []
         has_definition = False
-        parts = (
-            [(use, *part) for use in changed for part in _parts(text, use)]
-            if "$" in text.text
-            else []
-        )
+        if "$" in text.text:
+            parts = [(use, *part) for use in changed for part in _parts(text, use)]
+        else:
+            parts = []
         for use, part, old, new in parts:
             changes = self._definitions(part, use.scope, old, new)
             if not changes and self._is_loaded(part):
@@ -222,11 +225,9 @@ class _Rewriter:
                         "1.0",
                         "-1.0",
                     )
-                    yield from (
-                        change
-                        for change in found
-                        if _may_change(change.written, keeps_sign=keeps_sign)
-                    )
+                    for change in found:
+                        if _may_change(change.written, keeps_sign=keeps_sign):
+                            yield change
             return
         own, inside, was, value = defined
         parts = _parts(own, _Use(inside, was, value))
@@ -315,7 +316,9 @@ class _Rewriter:
         if self.definitions(own):
             parts = _parts(own, _Use(inside, was, inner))
             changes = [self._definitions(part, inside, a, b, depth - 1) for part, a, b in parts]
-            return [change for several in changes for change in several] if all(changes) else []
+            if all(changes):
+                return [change for several in changes for change in several]
+            return []
         return [self._rewritten(own, inner)]
 
     def _defined(
@@ -337,11 +340,9 @@ class _Rewriter:
         name = found["argument"]
         definition = self._texts.defaults.get(name) if name else self._of_name(found["name"], scope)
         own = _definition_text(definition) if definition is not None else None
-        return (
-            (own, definition.scope, was, inner)
-            if definition is not None and own is not None
-            else None
-        )
+        if definition is not None and own is not None:
+            return (own, definition.scope, was, inner)
+        return None
 
     def _rewritten(self, own: _Written, value: str) -> _TextChange:
         """Return the change of a definition to a value, which stays in quotes."""
@@ -354,7 +355,9 @@ class _Rewriter:
 
     def _of_name(self, name: str, scope: XacroScope) -> Definition | None:
         holder = scope.holder(name)
-        return holder.properties[name].definition if holder is not None else None
+        if holder is not None:
+            return holder.properties[name].definition
+        return None
 
     def definitions(self, text: _Written) -> list[_Written]:
         """Return the texts with which the names in a text are defined, also by way of others."""
@@ -382,11 +385,9 @@ class _Rewriter:
     def numbers(self, place: ScopePlace, attribute: str, scope: XacroScope) -> list[_Written]:
         """Return the texts that define numbers from which an attribute is computed."""
         text = _find_text(place, attribute, scope)
-        return (
-            [it for it in self.definitions(text) if _NUMBER.fullmatch(it.text)]
-            if text is not None
-            else []
-        )
+        if text is not None:
+            return [it for it in self.definitions(text) if _NUMBER.fullmatch(it.text)]
+        return []
 
 
 def _may_change(text: _Written, *, keeps_sign: bool) -> bool:
@@ -417,11 +418,9 @@ def _around(text: _Written, use: _Use) -> str:
         return ""
     value = use.old[len(found["before"]) : len(use.old) - len(found["after"])]
     expression = text.text[len(found["before"]) : len(text.text) - len(found["after"])]
-    return (
-        use.new.replace(value, expression)
-        if value.isidentifier() and use.new.count(value) == 1
-        else ""
-    )
+    if value.isidentifier() and use.new.count(value) == 1:
+        return use.new.replace(value, expression)
+    return ""
 
 
 def _is_equal(one: str, other: str) -> bool:
@@ -468,11 +467,10 @@ class ExpandedEdits:
         uses = []
         for tag in self.siblings(next(iter(wanted))):
             node = self._source.nodes[tag]
-            text = (
-                node.attributes.get(attribute, "")
-                if attribute
-                else "".join(map(str, node.children)).strip()
-            )
+            if attribute:
+                text = node.attributes.get(attribute, "")
+            else:
+                text = "".join(map(str, node.children)).strip()
             call = node.place.calls[-1][1] if node.place.calls else None
             uses.append(_Use(node.place.scope or scope, *wanted.get(tag, (text, text)), call))
         return self._rewriter.ways(place, attribute, uses)
@@ -510,11 +508,10 @@ class ExpandedEdits:
         `names` are those that the reference and the format have.
         """
         written = Source(self._source.path, self._source.text)
-        found = (
-            [Proposal(self._source.corrected, "what xacro refuses")]
-            if self._source.corrected
-            else []
-        )
+        if self._source.corrected:
+            found = [Proposal(self._source.corrected, "what xacro refuses")]
+        else:
+            found = []
         found += _corrections(written, self._source.documents, self._source.refused)
         given = sorted({word for name in names for word in name.split("_")})
         for document in self._source.documents.values():

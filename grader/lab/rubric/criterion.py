@@ -93,7 +93,9 @@ class _Worth(NamedTuple):
         if not self.bonus:
             return counted_points(self.points)
         extra = f"{format_points(self.bonus)} bonus {'point' if self.bonus == 1 else 'points'}"
-        return f"{counted_points(self.points)} and {extra}" if self.points else extra
+        if self.points:
+            return f"{counted_points(self.points)} and {extra}"
+        return extra
 
     @property
     def short(self) -> str:
@@ -101,7 +103,9 @@ class _Worth(NamedTuple):
         if not self.bonus:
             return format_points(self.points)
         extra = f"{format_points(self.bonus)} bonus"
-        return f"{format_points(self.points)} + {extra}" if self.points else extra
+        if self.points:
+            return f"{format_points(self.points)} + {extra}"
+        return extra
 
 
 def worth(criteria: Iterable[Criterion]) -> _Worth:

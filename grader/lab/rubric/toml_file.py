@@ -127,11 +127,9 @@ def one_line_each(path: Path, found: Iterable[tuple[int, str]]) -> list[str]:
 def _also(lines: Sequence[int]) -> str:
     """Return the other lines of the same mistake, as a clause."""
     numbers = [str(line) for line in dict.fromkeys(lines)]
-    return (
-        f" (also line{'s' if len(numbers) > 1 else ''} {enumerated(numbers, _MAX_PLACES)})"
-        if numbers
-        else ""
-    )
+    if numbers:
+        return f" (also line{'s' if len(numbers) > 1 else ''} {enumerated(numbers, _MAX_PLACES)})"
+    return ""
 
 
 def _syntax_mistake(error: str, text: str) -> str:
@@ -314,7 +312,9 @@ class TomlRowReader:
         similar.
         """
         self._guesses -= 1
-        return did_you_mean(name, known) if self._guesses >= 0 else ""
+        if self._guesses >= 0:
+            return did_you_mean(name, known)
+        return ""
 
     def complain(self, where: TomlPath, message: str) -> None:
         """Add a mistake in the value of a key."""
@@ -339,11 +339,10 @@ def toml_literal(value: Any) -> str:
 
             text = json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
         case Mapping():
-            text = (
-                f"{{ {', '.join(assignment(key, item) for key, item in value.items())} }}"
-                if value
-                else "{}"
-            )
+            if value:
+                text = f"{{ {', '.join(assignment(key, item) for key, item in value.items())} }}"
+            else:
+                text = "{}"
         case list() | tuple():
             text = f"[{', '.join(map(toml_literal, value))}]"
         case int() if (

@@ -84,11 +84,11 @@ class Validation:
                 self.bound.append(bound)
                 self._check_subject(where, row, bound[0])
             given = row.get("carried", [])
-            tables = (
-                [((), given)]
-                if isinstance(given, dict)
-                else [((i,), table) for i, table in enumerate(given)]
-            )
+            tables: list[tuple[tuple[int, ...], dict[str, Any]]]
+            if isinstance(given, dict):
+                tables = [((), given)]
+            else:
+                tables = [((i,), table) for i, table in enumerate(given)]
             found = [
                 self._bind_carried((*where, "carried", *i), row, table, positions)
                 for i, table in tables
@@ -224,7 +224,9 @@ class Validation:
         carried = self._row(where, table, keys.CARRIED)
         self._check_order((*where, "from"), row, positions)
         bound = self._bind_check(where, carried)
-        return (carried["from"], *bound) if bound is not None and "from" in carried else None
+        if bound is not None and "from" in carried:
+            return (carried["from"], *bound)
+        return None
 
     def _read_adjustments(self, positions: Mapping[str, int]) -> dict[str, TomlRow]:
         """Return the adjustments by criterion."""

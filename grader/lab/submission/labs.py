@@ -230,4 +230,6 @@ def _join_words(words: Sequence[str]) -> str:
 def _without_archive(name: str) -> str:
     """Return a name without the ending of an archive."""
     stem, dot, ending = name.rpartition(".")
-    return _without_archive(stem) if dot and f".{ending.lower()}" in ARCHIVES else name
+    if dot and f".{ending.lower()}" in ARCHIVES:
+        return _without_archive(stem)
+    return name

@@ -128,7 +128,9 @@ def _read_with_neighbours(place: Path, data: bytes, identity: str, opening: Open
     except (OSError, InputError) as error:
         MachineError.check(error, printable_path(place.name))
         tree = None
-    return _with_files_around(submission, tree, path, alone) if tree is not None else submission
+    if tree is not None:
+        return _with_files_around(submission, tree, path, alone)
+    return submission
 
 
 def _packages_in(asked: Iterable[str]) -> set[str]:
@@ -150,7 +152,9 @@ def _with_files_around(
 
     def read(file: File, limit: int, *, first: bool = False) -> bytes:
         data = file.read(limit, first=first)
-        return data if first else known.setdefault(file.path, data)
+        if first:
+            return data
+        return known.setdefault(file.path, data)
 
     recorded = replace(
         tree,
@@ -190,11 +194,10 @@ def submission_of(
     it has no files.
     """
     if not tree.files and not tree.generated:
-        reason = (
-            f": {tree.ignored[0]}"
-            if tree.ignored
-            else " (hidden files and build folders are ignored)"
-        )
+        if tree.ignored:
+            reason = f": {tree.ignored[0]}"
+        else:
+            reason = " (hidden files and build folders are ignored)"
         raise InputError(f"{shown or identity} is empty{reason}")
     # Late: a URDF on its own needs no search.
     from grader.lab.submission.selection import select

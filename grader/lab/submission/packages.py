@@ -25,7 +25,9 @@ def best_named(packages: tuple[Package, ...], name: str) -> Package | None:
     empty.
     """
     for package in packages[:1]:
-        return package if not name or name_distance(package, name) <= IN_NAMED_FOLDER else None
+        if not name or name_distance(package, name) <= IN_NAMED_FOLDER:
+            return package
+        return None
     return None
 
 
@@ -81,4 +83,6 @@ def why_not(graded: Package | None, other: Package, urdf: str) -> str:
         return BACKUP
     if missing_files(other, urdf) != missing_files(graded, urdf):
         return "the package that is graded has more of the files that the lab asks for"
-    return DEEPER if other.folder.count("/") != graded.folder.count("/") else LATER
+    if other.folder.count("/") != graded.folder.count("/"):
+        return DEEPER
+    return LATER

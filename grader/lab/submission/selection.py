@@ -209,7 +209,9 @@ class _Places(NamedTuple):
 
 
 def _part_of(tree: Tree, belongs: Callable[[str], bool]) -> Tree:
-    return tree if all(map(belongs, (*tree.files, *tree.generated))) else tree.only(belongs)
+    if all(map(belongs, (*tree.files, *tree.generated))):
+        return tree
+    return tree.only(belongs)
 
 
 def _searched(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
@@ -243,11 +245,10 @@ def _searched(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     packages: tuple[Package, ...] = ()
     if of_packages is not None:
         package_tree = places.only(tree, (of_packages,))
-        packages = (
-            every_package
-            if package_tree is tree
-            else read_packages(package_tree, lab.urdf, lab.package, lab.packages)
-        )
+        if package_tree is tree:
+            packages = every_package
+        else:
+            packages = read_packages(package_tree, lab.urdf, lab.package, lab.packages)
     other_roots = [
         path for path in roots if places.of(path) is None or places.of(path) is not of_packages
     ]
@@ -286,10 +287,14 @@ def _other_lab(tree: Tree, labs: LabFolders, urdf: str | None, roots: Sequence[s
     nothing else.
     """
     if urdf is not None:
-        return labs.around(urdf) if labs.belonging(urdf) is Belonging.OTHER_LAB else ""
+        if labs.belonging(urdf) is Belonging.OTHER_LAB:
+            return labs.around(urdf)
+        return ""
     others = {Belonging.OTHER_LAB}
     is_only = others in (set(map(labs.belonging, roots)), set(map(labs.belonging, tree.files)))
-    return labs.around(next(iter([*roots, *tree.files]))) if is_only else ""
+    if is_only:
+        return labs.around(next(iter([*roots, *tree.files])))
+    return ""
 
 
 class _Tier(IntEnum):
@@ -502,4 +507,6 @@ def _reason_against(best: _Candidate, other: _Candidate, lab: Lab) -> str:
     """Return why a file is not graded: the first field in which it differs from the best."""
     pairs = zip(_Candidate._fields, best, other, strict=True)
     field = next(name for name, wanted, found in pairs if wanted != found)
-    return _ELSEWHERE[other.place] if field == "place" else _REASONS[field].format(urdf=lab.urdf)
+    if field == "place":
+        return _ELSEWHERE[other.place]
+    return _REASONS[field].format(urdf=lab.urdf)

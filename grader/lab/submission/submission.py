@@ -170,12 +170,16 @@ class Submission:
     @property
     def path(self) -> str | None:
         """The path of the URDF, relative to the submission; None without one."""
-        return None if isinstance(self.urdf, Absent) else self.urdf.path or None
+        if isinstance(self.urdf, Absent):
+            return None
+        return self.urdf.path or None
 
     @property
     def robot(self) -> Robot | None:
         """The robot that is graded; None if there is none."""
-        return self.urdf.reading.robot if isinstance(self.urdf, Read) else None
+        if isinstance(self.urdf, Read):
+            return self.urdf.reading.robot
+        return None
 
     @property
     def unused_candidates(self) -> tuple[OtherCandidate, ...]:
@@ -220,7 +224,9 @@ class Submission:
     @property
     def unread(self) -> str:
         """The reason why the URDF could not be read; empty if it was, or if there is none."""
-        return self.urdf.reason if isinstance(self.urdf, Unreadable) else ""
+        if isinstance(self.urdf, Unreadable):
+            return self.urdf.reason
+        return ""
 
     @property
     def included(self) -> Collection[str]:
@@ -231,11 +237,9 @@ class Submission:
     @property
     def verdict(self) -> Verdict | None:
         """ROS 2's verdict on the URDF; None if it was not read, or cannot be determined."""
-        return (
-            self.urdf.loaded.verdict
-            if isinstance(self.urdf, Read) and self.urdf.loaded.is_certain
-            else None
-        )
+        if isinstance(self.urdf, Read) and self.urdf.loaded.is_certain:
+            return self.urdf.loaded.verdict
+        return None
 
     @property
     def ignored(self) -> tuple[str, ...]:
@@ -280,11 +284,10 @@ class Submission:
             case Absent():
                 self._refuse_unopened("URDF")
         count = len(self.tree.files)
-        files = (
-            f"none of the {count} files contains a <robot>"
-            if count > 1
-            else "the only file contains no <robot>"
-        )
+        if count > 1:
+            files = f"none of the {count} files contains a <robot>"
+        else:
+            files = "the only file contains no <robot>"
         built = next(
             (path for path in self.tree.generated if path.lower().endswith(ROBOT_ENDINGS)), ""
         )
@@ -339,4 +342,6 @@ class Submission:
         if isinstance(self.urdf, Read) and path == self.urdf.path:
             return self.urdf.source
         data = self.whole_tree.read(path, URDF_LIMIT)
-        return Source(path, data.decode("utf-8", "replace")) if data is not None else None
+        if data is not None:
+            return Source(path, data.decode("utf-8", "replace"))
+        return None

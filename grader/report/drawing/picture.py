@@ -176,7 +176,9 @@ def _wheel(scene: Scene, link: str) -> Wheel | None:
     with suppress(*_NOT_KNOWN):
         joint = turning_joint(scene.robot, link, scene.frame)
         travel, _ = travel_of(scene.robot, link, joint, scene.frame, Z_AXIS)
-        return Wheel(centre, travel) if centre is not None and travel is not None else None
+        if centre is not None and travel is not None:
+            return Wheel(centre, travel)
+        return None
     return None
 
 
@@ -217,11 +219,9 @@ def plain_picture(robot: Configuration | None, frame: str | None) -> Picture | N
     """Return the picture of a robot that is not graded, in the frame of one of its links; None
     without either.
     """
-    return (
-        Picture(scene_of(robot, frame), (), (), ())
-        if robot is not None and frame is not None
-        else None
-    )
+    if robot is not None and frame is not None:
+        return Picture(scene_of(robot, frame), (), (), ())
+    return None
 
 
 def picture_of(report: Report) -> Picture | None:
@@ -237,11 +237,10 @@ def picture_of(report: Report) -> Picture | None:
         return None
     wheels = [*_wheels(report.rubric, robot)]
     scene = scene_of(robot, frame, wheels)
-    reference = (
-        scene_of(solution, reference_frame, wheels)
-        if solution is not None and reference_frame
-        else None
-    )
+    if solution is not None and reference_frame:
+        reference = scene_of(solution, reference_frame, wheels)
+    else:
+        reference = None
     lost = [result for result in report.results if _is_marked(result)]
     about = _by_link(lost, robot, solution)
     outlines, frames = _expected(scene, reference, about) if reference is not None else ((), ())

@@ -87,11 +87,10 @@ def _points_of(body: Body) -> _Points:
     pose, shape = body.T_frame_shape, body.shape
     if isinstance(shape, Sphere):
         return pose.translation + shape.radius * np.vstack([np.eye(3), -np.eye(3)])
-    points = (
-        _CORNERS * shape.size
-        if isinstance(shape, Box)
-        else _CAPS * (shape.radius, shape.radius, shape.length)
-    )
+    if isinstance(shape, Box):
+        points = _CORNERS * shape.size
+    else:
+        points = _CAPS * (shape.radius, shape.radius, shape.length)
     return points @ np.reshape(pose.rotation, (3, 3)).T + pose.translation
 
 

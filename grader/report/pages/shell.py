@@ -80,7 +80,9 @@ def _environment(folder: Path) -> Environment:
 
 def _printable(value: object) -> object:
     """Return a text in one line, without control characters."""
-    return printable(value) if isinstance(value, str) and not isinstance(value, Markup) else value
+    if isinstance(value, str) and not isinstance(value, Markup):
+        return printable(value)
+    return value
 
 
 @cache

@@ -41,11 +41,10 @@ def render_html(report: Report) -> str:
     them.
     """
     picture = picture_of(report) if not report.is_bare else None
-    callouts = (
-        [callout for callout in picture.callouts if callout.point is not None]
-        if picture is not None
-        else []
-    )
+    if picture is not None:
+        callouts = [callout for callout in picture.callouts if callout.point is not None]
+    else:
+        callouts = []
     called = {
         result.criterion.id: callout.number for callout in callouts for result in callout.results
     }

@@ -83,7 +83,9 @@ def _feedback(result: Result) -> str:
 
 
 def _hints(result: Result) -> list[Hint]:
-    return [result.hint] if result.hint is not None else []
+    if result.hint is not None:
+        return [result.hint]
+    return []
 
 
 _RESULT = JsonObject(

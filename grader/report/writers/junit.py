@@ -61,11 +61,9 @@ def _kind(result: Result) -> str:
     """Return the element for the status of a criterion; empty if it has all points."""
     if result.carried:
         return ""
-    return (
-        "skipped"
-        if is_failure(result) and result.criterion.bonus
-        else _KINDS.get(status_of(result), "")
-    )
+    if is_failure(result) and result.criterion.bonus:
+        return "skipped"
+    return _KINDS.get(status_of(result), "")
 
 
 def _facts(report: Report) -> dict[str, str]:

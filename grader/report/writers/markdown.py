@@ -68,7 +68,9 @@ def cut_markdown(report: Report, most: int) -> str:
         return whole
     ends = accumulate(len(block.encode()) + 1 for block in blocks)
     kept = (block for block, end in zip(blocks, ends, strict=True) if end <= room)
-    return "\n".join((*kept, _CUT)) if room >= 0 else ""
+    if room >= 0:
+        return "\n".join((*kept, _CUT))
+    return ""
 
 
 def overview_markdown(report: Report) -> str:
@@ -102,9 +104,8 @@ def _blocks(report: Report, *, answers: bool) -> Iterator[str]:
 
 
 def _head(report: Report) -> Iterator[str]:
-    yield from (
-        _LOOKS.get(line.role, "{}").format(escape(line.text)) for line in content.head(report)
-    )
+    for line in content.head(report):
+        yield _LOOKS.get(line.role, "{}").format(escape(line.text))
 
 
 def _section(section: Section, report: Report, *, answers: bool) -> Iterator[str]:
@@ -158,7 +159,9 @@ def _fold_passed(group: CriteriaGroup) -> str:
         for result in group.results
         if has_passed(result)
     ]
-    return _fold(f"{printable(group.title)} {group.points}", lines) if lines else ""
+    if lines:
+        return _fold(f"{printable(group.title)} {group.points}", lines)
+    return ""
 
 
 def escape(text: str) -> str:
@@ -181,7 +184,9 @@ def _escape_words(text: str) -> str:
 def _keep_spaces(text: str) -> str:
     """Return escaped text with the spaces around it."""
     inner = text.strip(" ")
-    return text.replace(inner, escape(inner)) if inner else text
+    if inner:
+        return text.replace(inner, escape(inner))
+    return text
 
 
 def code(text: str) -> str:

@@ -139,9 +139,10 @@ def _by_element(test: RubricTest) -> list[Loss]:
         of_attribute = " " in label and mutant.family not in _OF_ELEMENT
         element = label.rpartition(" ")[0] if of_attribute else label
         is_of_robot = mutant.path.endswith(ROBOT_ENDINGS)
-        place = (
-            f"{element} in {mutant.path}" if is_of_robot else f"{mutant.path}, line {mutant.line}"
-        )
+        if is_of_robot:
+            place = f"{element} in {mutant.path}"
+        else:
+            place = f"{mutant.path}, line {mutant.line}"
         groups.setdefault(place, []).append(mutant.id)
         diffs.setdefault(place, diff)
     return [

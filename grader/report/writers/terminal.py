@@ -157,11 +157,10 @@ def _show_start(report: Report, page: Page) -> None:
     rejected = ", which ROS 2 rejects" if submission.verdict == "rejected" else ""
     page.line(content.graded_line(report) + rejected, LOOKS["graded"])
     page.line(content.result_line(report), LOOKS["result"])
-    folder = (
-        f"{submission.package.folder}/"
-        if submission.package is not None and submission.package.folder
-        else ""
-    )
+    if submission.package is not None and submission.package.folder:
+        folder = f"{submission.package.folder}/"
+    else:
+        folder = ""
     package = content.package_line(report)
     if package and not (submission.path or "").startswith(folder or "urdf/"):
         page.line(package, "dim")
@@ -235,11 +234,9 @@ def _mistake_head(entry: Entry, page: Page, *, is_whole: bool = False) -> Text:
     where = entry.location
     if where is None:
         return text
-    places = (
-        (where,)
-        if is_whole
-        else (where, where._replace(path=where.path.rpartition("/")[2], calls=()))
-    )
+    places = [where]
+    if not is_whole:
+        places.append(where._replace(path=where.path.rpartition("/")[2], calls=()))
     room = page.console.width - INDENT - text.cell_len
     fitting = (it for it in places if len(location_text(it)) + 2 <= room)
     return text.append(f"  {location_text(next(fitting, where))}", "dim")
@@ -278,7 +275,9 @@ def excerpt_block(console: Console, source: Source, where: Location, indent: int
 
 def _symbol(console: Console, fancy: str, plain: str) -> str:
     """Return a symbol, or its ASCII form if the terminal cannot show it."""
-    return fancy if console.encoding.lower().startswith("utf") else plain
+    if console.encoding.lower().startswith("utf"):
+        return fancy
+    return plain
 
 
 def _show_pending(report: Report, pending: Sequence[Entry], page: Page) -> None:

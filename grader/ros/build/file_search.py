@@ -138,7 +138,9 @@ class PackageListing:
                 return None
             if here in self._links:
                 raise Undetermined(f"{here} {IS_LINK}")
-        return here if here in self.folders or here in self.files else None
+        if here in self.folders or here in self.files:
+            return here
+        return None
 
     def glob(self, pattern: str, *, recursive: bool = False, above: str = "") -> list[str]:
         """Return the paths that glob.glob finds, as it writes them. Raises Undetermined.
@@ -353,7 +355,9 @@ class _PackageFolder:
 
     def iglob(self, evaluation: Evaluation, call: Call) -> Value:
         found = self.glob(evaluation, call)
-        return Items(found) if isinstance(found, list) else found
+        if isinstance(found, list):
+            return Items(found)
+        return found
 
     def path_glob(self, _: Evaluation, call: Call, prefix: str = "") -> Value:
         pattern = call.argument(1, "pattern")

@@ -35,7 +35,9 @@ class InstallError(NamedTuple):
     @property
     def message(self) -> str:
         """The error that stops the build, as part of a sentence."""
-        return f"{self.by} lists {self.path!r}, but {self.reason}" if self.path else self.reason
+        if self.path:
+            return f"{self.by} lists {self.path!r}, but {self.reason}"
+        return self.reason
 
 
 class IgnoredArgument(NamedTuple):
@@ -149,7 +151,9 @@ class Installation:
     @property
     def entry(self) -> str:
         """One of these: entry of data_files in setup.py, install() in CMakeLists.txt."""
-        return self.entries if self.is_cmake else f"entry of {self.entries}"
+        if self.is_cmake:
+            return self.entries
+        return f"entry of {self.entries}"
 
     @property
     def misspelt(self) -> IgnoredArgument | None:

@@ -47,7 +47,9 @@ def _compare(left: str, operator: str, right: str) -> bool:
 def _value_of(term: str) -> str:
     if term.startswith("$"):
         return _VARIABLES.get(term[1:], "")
-    return term[1:-1] if term[0] in "\"'" else term
+    if term[0] in "\"'":
+        return term[1:-1]
+    return term
 
 
 def _decide(node: ast.expr) -> bool:
@@ -56,5 +58,7 @@ def _decide(node: ast.expr) -> bool:
             return value
         case ast.BoolOp(op=operator, values=values):
             decided = [_decide(value) for value in values]
-            return all(decided) if isinstance(operator, ast.And) else any(decided)
+            if isinstance(operator, ast.And):
+                return all(decided)
+            return any(decided)
     raise ValueError("this is no condition")

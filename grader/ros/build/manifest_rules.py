@@ -62,7 +62,9 @@ def find_refusals(root: Element) -> Iterator[_Refusal]:
 def tag_of(element: Element) -> str:
     """Return the tag of an element as it is written: catkin_pkg ignores namespaces."""
     name = str(element.tag).rpartition("}")[2]
-    return f"{element.prefix}:{name}" if element.prefix else name
+    if element.prefix:
+        return f"{element.prefix}:{name}"
+    return name
 
 
 def text_of(element: Element) -> str:

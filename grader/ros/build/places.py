@@ -46,7 +46,9 @@ def is_launch_named(path: str, name: str) -> bool:
 def launch_stem(name: str) -> str:
     """Return the name of a launch file without its endings."""
     base = name.rpartition("/")[2]
-    return base.split(".launch")[0] if ".launch" in base else base.rpartition("_launch.")[0] or base
+    if ".launch" in base:
+        return base.split(".launch")[0]
+    return base.rpartition("_launch.")[0] or base
 
 
 def one_machine_only(path: str) -> str:

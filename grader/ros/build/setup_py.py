@@ -344,7 +344,9 @@ class _DataFiles:
 
     def _origin(self, path: str, at: Position) -> Position:
         """Return the position of the search that finds a path, or where it is written."""
-        return self.listing.positions.get(path) or self.written.get(path, at) if path else at
+        if path:
+            return self.listing.positions.get(path) or self.written.get(path, at)
+        return at
 
     def _give_up(self, value: Value, reason: str, at: Position) -> None:
         """Add the unknown parts of a value, or that it is not supported."""
@@ -677,9 +679,9 @@ def _cfg_findings(text: str, at: Position) -> Iterator[_Finding]:
 
 
 def _packages_in(value: Value) -> tuple[str, ...]:
-    return (
-        tuple(it for it in value if isinstance(it, str)) if isinstance(value, list | tuple) else ()
-    )
+    if isinstance(value, list | tuple):
+        return tuple(it for it in value if isinstance(it, str))
+    return ()
 
 
 def _scripts_folder(listing: PackageListing) -> str:

@@ -52,11 +52,9 @@ class Display:
                 return "its Alpha is 0"
         tables = links.value.values() if links is not None and isinstance(links.value, dict) else ()
         shown = [value for link in tables if (value := link.get("Value")) is not None]
-        return (
-            "all its links are off"
-            if shown and not any(_switched_on(it, default=True) for it in shown)
-            else ""
-        )
+        if shown and not any(_switched_on(it, default=True) for it in shown):
+            return "all its links are off"
+        return ""
 
     @property
     def location(self) -> Location:

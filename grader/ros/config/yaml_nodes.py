@@ -77,9 +77,10 @@ class YamlNode:
         """Return the node at a path of keys, None where there is none."""
         node: YamlNode | None = self
         for key in keys:
-            node = (
-                node.value.get(key) if node is not None and isinstance(node.value, dict) else None
-            )
+            if node is not None and isinstance(node.value, dict):
+                node = node.value.get(key)
+            else:
+                node = None
         return node
 
     def key_location(self, *keys: str) -> Location:
@@ -91,26 +92,34 @@ class YamlNode:
     def mapping_of(self, keys: "tuple[str, ...]") -> "YamlNode | None":
         """Return the mapping that has the last of some keys."""
         if len(keys) == 1:
-            return self if keys[0] in self.key_marks else None
+            if keys[0] in self.key_marks:
+                return self
+            return None
         found = (inner.mapping_of(keys[1:]) for key, inner in self.pairs if key == keys[0])
         return next((it for it in found if it is not None), None)
 
     @property
     def text(self) -> str | None:
         """The text of a scalar; None for lists and mappings."""
-        return self.value if isinstance(self.value, str) else None
+        if isinstance(self.value, str):
+            return self.value
+        return None
 
     @property
     def pairs(self) -> "list[tuple[str, YamlNode]]":
         """The keys of a mapping with their values, also those that are written again, as rcl reads
         them.
         """
-        return [*self.replaced, *self.value.items()] if isinstance(self.value, dict) else []
+        if isinstance(self.value, dict):
+            return [*self.replaced, *self.value.items()]
+        return []
 
     @property
     def items(self) -> "list[YamlNode]":
         """The entries of a list; no entries for other values."""
-        return self.value if isinstance(self.value, list) else []
+        if isinstance(self.value, list):
+            return self.value
+        return []
 
 
 def yaml_value(text: str) -> Any:

@@ -63,11 +63,10 @@ def _nested(node: YamlNode) -> YamlNode:
     tables, places = dict[str, YamlNode](), dict[str, Any]()
     for key, inner in node.value.items():
         outer, _, last = key.partition(".")
-        table = (
-            replace(inner, value={last: inner}, key_marks={last: node.key_marks[key]})
-            if last
-            else inner
-        )
+        if last:
+            table = replace(inner, value={last: inner}, key_marks={last: node.key_marks[key]})
+        else:
+            table = inner
         before = tables.get(outer)
         if before is not None and isinstance(before.value, dict) and isinstance(table.value, dict):
             marks = before.key_marks | table.key_marks

@@ -4,7 +4,7 @@
 includes, arguments, timers, events.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from grader.ros.build.places import PREFIX
@@ -241,11 +241,11 @@ def _evaluate_field(value: Value, test: str, context: Context, at: Position) -> 
         case "text":
             resolve(value, context, at)
         case "texts" | "mapping":
-            pairs = (
-                value.items()
-                if isinstance(value, dict)
-                else ((item,) for item in items_in(value) or ())
-            )
+            pairs: Iterable[tuple[object, ...]]
+            if isinstance(value, dict):
+                pairs = value.items()
+            else:
+                pairs = ((item,) for item in items_in(value) or ())
             for item in (item for pair in pairs for item in pair):
                 resolve(item, context, at)
         case "bool" if not isinstance(value, bool):
@@ -420,11 +420,10 @@ def _register_handler(
         visitor.add_form(Undetermined("this event handler is not evaluated"), call.at, when)
         return
     value = handler.kwargs.get("on_exit", handler.kwargs.get("on_start"))
-    actions = (
-        visitor.call_function(value, handler.at, None, context)
-        if isinstance(value, Function)
-        else value
-    )
+    if isinstance(value, Function):
+        actions = visitor.call_function(value, handler.at, None, context)
+    else:
+        actions = value
     if kind == "OnProcessStart" and value is actions and when is not False:
         target, executed = (
             handler.kwargs.get("target_action"),

@@ -114,7 +114,9 @@ class LaunchFunctions(dict[str, Any]):
     def get(self, name: str, default: Any = None) -> Any:
         """Return a function; None for one that is not evaluated."""
         found = super().get(name)
-        return found if found is not None else _function_of(name) or default
+        if found is not None:
+            return found
+        return _function_of(name) or default
 
     def __contains__(self, name: object) -> bool:
         return self.get(str(name)) is not None
@@ -165,7 +167,9 @@ def _copied(value: Value, evaluation: Evaluation, depth: int = 0) -> Value:
     if isinstance(value, dict):
         return {key: _copied(item, evaluation, depth + 1) for key, item in value.items()}
     copies = [_copied(item, evaluation, depth + 1) for item in value]
-    return copies if isinstance(value, (list, *VIEWS)) else type(value)(copies)
+    if isinstance(value, (list, *VIEWS)):
+        return copies
+    return type(value)(copies)
 
 
 def _fail_missing(message: str, *_: object) -> Value:
@@ -230,7 +234,9 @@ def _wrong_argument(cls: LaunchClass, call: Call, name: str, value: Value) -> st
     own = _CHECKS.get(test.removesuffix("?"))
     wanted = own(value) if own is not None and not (value is None and test.endswith("?")) else ""
     tail = "" if wanted.startswith("has a") else f", not {kind_of(value)}"
-    return f"{name} of {cls.short} {wanted}{tail}" if wanted else ""
+    if wanted:
+        return f"{name} of {cls.short} {wanted}{tail}"
+    return ""
 
 
 def _find_bound(value: Value) -> expr | None:
@@ -280,13 +286,17 @@ def _wrong_text(value: Value) -> str:
     """Return what is wrong with a value that has to be a text, or nothing. Raises Undetermined."""
     if isinstance(value, _COLLECTIONS):
         wrong = next((item for item in value if not _is_text(item)), "")
-        return f"has an item that is {kind_of(wrong)}{_in_quotes(wrong)}" if wrong != "" else ""
+        if wrong != "":
+            return f"has an item that is {kind_of(wrong)}{_in_quotes(wrong)}"
+        return ""
     return "" if _is_text(value) else "takes a string or a substitution"
 
 
 def _in_quotes(value: Value) -> str:
     """Return how a number is written as a text, as advice."""
-    return f": write '{value}'" if type(value) in (int, float) else ""
+    if type(value) in (int, float):
+        return f": write '{value}'"
+    return ""
 
 
 def kind_of(value: Value) -> str:
@@ -303,16 +313,16 @@ def _check_of_type(kind: type) -> Callable[[Value], str]:
 
     def checked(value: Value) -> str:
         if isinstance(value, str | int | float):
-            return "" if isinstance(value, kind) else f"takes {_WANTED[kind]} or a substitution"
+            if isinstance(value, kind):
+                return ""
+            return f"takes {_WANTED[kind]} or a substitution"
         if isinstance(value, list | tuple) and any(
             isinstance(item, Call | Unknown) for item in value
         ):
             return _wrong_text(value)
-        return (
-            ""
-            if not isinstance(value, _COLLECTIONS) and _is_text(value)
-            else f"takes {_WANTED[kind]} or a substitution"
-        )
+        if not isinstance(value, _COLLECTIONS) and _is_text(value):
+            return ""
+        return f"takes {_WANTED[kind]} or a substitution"
 
     return checked
 
@@ -329,7 +339,9 @@ def _wrong_parameters(value: Value) -> str:
 def _wrong_item(item: Value) -> str:
     if isinstance(item, PurePosixPath) or (isinstance(item, Call) and item.name in (*TYPED, FILE)):
         return ""
-    return _wrong_dict(item) if isinstance(item, dict) else _wrong_text(item)
+    if isinstance(item, dict):
+        return _wrong_dict(item)
+    return _wrong_text(item)
 
 
 def _wrong_dict(table: dict[Any, Value]) -> str:
@@ -351,7 +363,9 @@ def _wrong_parameter(value: Value) -> str:
         case list() | tuple() | range():
             items = [item for item in value if not isinstance(item, SCALARS)]
             return next(filter(None, map(_wrong_text, items)), "")
-    return "" if _is_text(value) else f"has a value that is {kind_of(value)}"
+    if _is_text(value):
+        return ""
+    return f"has a value that is {kind_of(value)}"
 
 
 def _wrong_typed(call: Call) -> str:
@@ -360,11 +374,9 @@ def _wrong_typed(call: Call) -> str:
     if isinstance(value, UnknownText):
         return "" if kind in (None, str) else "the value is a text"
     if isinstance(value, SCALARS):
-        return (
-            ""
-            if kind is None or isinstance(value, kind)
-            else f"the value is {kind_of(value)}, not {kind.__name__}"
-        )
+        if kind is None or isinstance(value, kind):
+            return ""
+        return f"the value is {kind_of(value)}, not {kind.__name__}"
     if isinstance(value, list | tuple) and not any(isinstance(it, Call | Unknown) for it in value):
         is_wrong = kind is not None or not all(isinstance(it, SCALARS) for it in value)
         return f"the value is {kind_of(value)}" if is_wrong else ""
@@ -399,7 +411,9 @@ def _wrong_texts(value: Value) -> str:
 
 def _wrong_mapping(value: Value) -> str:
     if not isinstance(value, dict):
-        return "" if items_in(value) is None and isinstance(value, Unknown) else "has to be a dict"
+        if items_in(value) is None and isinstance(value, Unknown):
+            return ""
+        return "has to be a dict"
     return next(filter(None, (_wrong_text(item) for pair in value.items() for item in pair)), "")
 
 
@@ -455,7 +469,9 @@ def _wrong_include(call: Call) -> str:
     if isinstance(given, dict) and not all(isinstance(key, str) and len(key) == 2 for key in given):
         # Python takes a key of two letters for a pair
         return "launch_arguments is given a dict: add .items() to it"
-    return "launch_arguments takes pairs" if given is not None and items_in(given) is None else ""
+    if given is not None and items_in(given) is None:
+        return "launch_arguments takes pairs"
+    return ""
 
 
 def _wrong_opaque_function(call: Call) -> str:
@@ -487,16 +503,16 @@ def _wrong_event_handler(call: Call) -> str:
 
 def _wrong_description(call: Call) -> str:
     actions = call.kwargs.get("initial_entities")
-    return "put [ ] around the actions" if actions is not None and items_in(actions) is None else ""
+    if actions is not None and items_in(actions) is None:
+        return "put [ ] around the actions"
+    return ""
 
 
 def _wrong_text_substitution(call: Call) -> str:
     text = call.kwargs["text"]
-    return (
-        ""
-        if isinstance(text, str) or (_is_text(text) and not isinstance(text, Call))
-        else f"text is {kind_of(text)}"
-    )
+    if isinstance(text, str) or (_is_text(text) and not isinstance(text, Call)):
+        return ""
+    return f"text is {kind_of(text)}"
 
 
 def _wrong_timer(call: Call) -> str:

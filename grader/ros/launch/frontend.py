@@ -149,9 +149,10 @@ def read_frontend(data: bytes, source: Source, *, is_yaml: bool) -> _Entity | La
     """
     try:
         data.decode()  # as open does, whatever the file itself says of its encoding
-        root = (
-            _YamlReader().root(data, source.path) if is_yaml else _xml_root(XmlFile(data, source))
-        )
+        if is_yaml:
+            root = _YamlReader().root(data, source.path)
+        else:
+            root = _xml_root(XmlFile(data, source))
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         return LaunchFault(
@@ -168,11 +169,10 @@ def read_frontend(data: bytes, source: Source, *, is_yaml: bool) -> _Entity | La
         if not is_yaml and _is_of_ros1(root):
             root.error = _ROS1
         return root
-    what = (
-        "the file is not a list of actions below launch:"
-        if is_yaml
-        else "the root of the file is not <launch>"
-    )
+    if is_yaml:
+        what = "the file is not a list of actions below launch:"
+    else:
+        what = "the root of the file is not <launch>"
     return LaunchFault(f"{what}; ros2 launch starts nothing", Location(source.path, 1, 1))
 
 
@@ -273,11 +273,9 @@ def _plain_value(node: YamlNode) -> Any:
         found = yaml_value(text) if len(text) < 50 else text  # longer ones are no numbers
     except ValueError:
         return text
-    return (
-        text
-        if isinstance(found, dict | list) or (isinstance(found, str) and found != text)
-        else found
-    )
+    if isinstance(found, dict | list) or (isinstance(found, str) and found != text):
+        return text
+    return found
 
 
 def _position_of(node: YamlNode) -> Position:
@@ -369,7 +367,9 @@ def _attributes_of(entity: _Entity, known: str) -> dict[str, Any]:
 def _typed_attribute(entity: _Entity, name: str, value: Any, kind: str) -> Any:
     wanted = _TYPES[kind] if kind else str
     if not entity.is_yaml:
-        return value if wanted is str else _typed_text(value, wanted, entity.place(name))
+        if wanted is str:
+            return value
+        return _typed_text(value, wanted, entity.place(name))
     if not _is_typed(value, wanted, entity.place(name)):
         what = f"{name} of {entity.kind} is {value!r}, which YAML reads as {type(value).__name__}"
         todo = "put quotes around it" if wanted is str else f"write a {kind}"
@@ -504,7 +504,9 @@ def _parse_value(text: str, at: Position) -> list[Value]:
 def _parse_if_text(value: Any, at: Position) -> Any:
     """Return a value; a text is parsed. Raises EvaluationFails."""
     parts = _parse_value(value, at) if isinstance(value, str) else [value]
-    return parts[0] if len(parts) == 1 and not isinstance(parts[0], Call) else parts
+    if len(parts) == 1 and not isinstance(parts[0], Call):
+        return parts[0]
+    return parts
 
 
 def _command_line(text: str, at: Position) -> list[list[Value]]:
@@ -612,11 +614,10 @@ class _ValueParser:
             self.position += 1
             values.append(self.value(quote, depth))
         if self.next != ")":
-            what = (
-                "is not closed"
-                if not self.next
-                else f"has {self.next!r} in an argument without quotes"
-            )
+            if not self.next:
+                what = "is not closed"
+            else:
+                what = f"has {self.next!r} in an argument without quotes"
             raise EvaluationFails(f"the bracket of $({name[0][:40]} {what}", self.at)
         self.position += 1
         return self.call(name[0], values)

@@ -228,11 +228,9 @@ def _launch_of_python(
     code = parse(data, path)
     if isinstance(code, SyntaxFault):
         syntax = LaunchFault(f"Python cannot read the file: {code.message}", code.location)
-        return (
-            Launch(code.source, syntax)
-            if code.sure
-            else Launch(code.source, unknown=(syntax,), doubts=(syntax,))
-        )
+        if code.sure:
+            return Launch(code.source, syntax)
+        return Launch(code.source, unknown=(syntax,), doubts=(syntax,))
     findings = Findings(lambda position: location_in(code.source, position))
     file = _PythonLaunchFile(context)
     entry = file.run(code, installed).get(_ENTRY)
@@ -413,11 +411,9 @@ class _PythonLaunchFile:
         except Undetermined as error:  # at this call, not at the substitution
             raise Undetermined(str(error)) from None
         reason = "the content of a file is not evaluated"
-        return (
-            FileText(reason=reason, at=call.at, contents=found)
-            if isinstance(found, Contents)
-            else found
-        )
+        if isinstance(found, Contents):
+            return FileText(reason=reason, at=call.at, contents=found)
+        return found
 
     def _text(self, evaluation: Evaluation, call: Call) -> Value:
         """Return the text of a file that is expanded, or read for the first time."""
@@ -483,11 +479,9 @@ class _PythonLaunchFile:
     def _exists(self, _: Evaluation, call: Call) -> Value:
         path = path_text(known(call.args[0])) or ""
         is_there = self.context.text_of(path) is not None
-        return (
-            True
-            if is_there
-            else Unknown(f"whether {posixpath.basename(path)} exists is not evaluated", call.at)
-        )
+        if is_there:
+            return True
+        return Unknown(f"whether {posixpath.basename(path)} exists is not evaluated", call.at)
 
     def _xacro(self, evaluation: Evaluation, call: Call) -> Value:
         given = call.argument(0, "input_file_name")
@@ -551,8 +545,6 @@ def _join_paths(evaluation: Evaluation, call: Call) -> Value:
 def _expand_user(_: Evaluation, call: Call) -> Value:
     """Return a path with the home folder in place of ~."""
     text = path_text(known(call.args[0])) if call.args else None
-    return (
-        re.sub("^~", HOME, text)
-        if text is not None
-        else Unknown("a path is not evaluated", call.at)
-    )
+    if text is not None:
+        return re.sub("^~", HOME, text)
+    return Unknown("a path is not evaluated", call.at)

@@ -120,8 +120,10 @@ class Context:
         found = self.installation.open_installed(
             posixpath.normpath(path).removeprefix(f"{PREFIX}/")
         )
+        if found is None:
+            return None
         try:
-            return found[0].decode().replace("\r\n", "\n") if found is not None else None
+            return found[0].decode().replace("\r\n", "\n")
         except UnicodeDecodeError:
             return None
 
@@ -196,20 +198,16 @@ class StartedNode:
         """
         if name.startswith("~/") and self.node_name:
             name = f"{self.node_name}{name[1:]}"
-        return (
-            name
-            if name.startswith("/")
-            else f"/{(self.namespace or '').strip('/')}/{name}".replace("//", "/")
-        )
+        if name.startswith("/"):
+            return name
+        return f"/{(self.namespace or '').strip('/')}/{name}".replace("//", "/")
 
     @property
     def name(self) -> str:
         """The package and the program, once where they are called the same."""
-        return (
-            self.executable
-            if self.package == self.executable
-            else f"{self.package}/{self.executable}"
-        )
+        if self.package == self.executable:
+            return self.executable
+        return f"{self.package}/{self.executable}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -279,13 +277,11 @@ class Launch:
     def more(self) -> str:
         """Why it may start more than is known; empty where it does not."""
         is_read = self.syntax is None and not self.unread
-        return (
-            self.unknown[0].message
-            if self.unknown
-            else ""
-            if is_read
-            else "a launch file cannot be read"
-        )
+        if self.unknown:
+            return self.unknown[0].message
+        if is_read:
+            return ""
+        return "a launch file cannot be read"
 
     def frames_of(self, link: str) -> tuple[str | None, ...]:
         """Return the frames of a link that robot_state_publisher publishes (a rubric may prefix
@@ -382,4 +378,6 @@ def _position(value: Value, call: Call) -> Position:
     """Return the position of the call that gives a value; of open(path).read() that of open."""
     if isinstance(value, list | tuple):
         value = next((part for part in value if isinstance(part, Call)), None)
-    return value.at if isinstance(value, Call | FileText) else call.at
+    if isinstance(value, Call | FileText):
+        return value.at
+    return call.at

@@ -280,11 +280,9 @@ class MoveItConfigurations:
             robot.get(key) if isinstance(robot, dict) else None
             for key in ("package", "relative_path")
         )
-        return (
-            f"{SHARE}/{package}/{file}"
-            if isinstance(package, str) and isinstance(file, str)
-            else None
-        )
+        if isinstance(package, str) and isinstance(file, str):
+            return f"{SHARE}/{package}/{file}"
+        return None
 
     def _description(
         self, own: _Configuration, at: Position, given: Mapping[str, Value]
@@ -300,9 +298,10 @@ class MoveItConfigurations:
                     "the file of the robot that MoveIt finds is not evaluated", at
                 )
             }
-        contents = (
-            self._read(path, at, "xacro", _mappings(given)) if is_there else Contents(path, "xacro")
-        )
+        if is_there:
+            contents = self._read(path, at, "xacro", _mappings(given))
+        else:
+            contents = Contents(path, "xacro")
         return {own.description: FileText("the output of xacro is not evaluated", at, contents)}
 
     def _semantic(
@@ -346,11 +345,10 @@ class MoveItConfigurations:
             raise EvaluationFails(
                 f"the default pipeline {default!r} is none of {', '.join(map(str, pipelines))}", at
             )
-        unordered = (
-            UnknownText("the order in which files are found is not known", at)
-            if wanted is None
-            else None
-        )
+        if wanted is None:
+            unordered = UnknownText("the order in which files are found is not known", at)
+        else:
+            unordered = None
         tables = {
             it: self._pipeline(own, it, at, is_there=it in found) for it in map(str, pipelines)
         }
@@ -365,11 +363,9 @@ class MoveItConfigurations:
             return UnknownTable(f"the default configuration of {name} is not evaluated", at)
         table = self._yaml(f"{own.folder}/config/{name}_planning.yaml", at)
         is_whole = name != "ompl" or (isinstance(table, dict) and "planner_configs" in table)
-        return (
-            table
-            if is_whole
-            else UnknownTable("the default configuration of ompl is not evaluated", at)
-        )
+        if is_whole:
+            return table
+        return UnknownTable("the default configuration of ompl is not evaluated", at)
 
     def _controllers(
         self, own: _Configuration, at: Position, given: Mapping[str, Value]
@@ -405,14 +401,14 @@ class MoveItConfigurations:
     ) -> dict[str, Value]:
         path = self._path(own, given, "config/sensors_3d.yaml")
         if not self._is_there(path):
-            return (
-                {}
-                if self._names(own) is not None
-                else _spread(UnknownTable("sensors are not evaluated", at))
-            )
+            if self._names(own) is not None:
+                return {}
+            return _spread(UnknownTable("sensors are not evaluated", at))
         table = self._yaml(path, at)
         sensors = table.get("sensors") if isinstance(table, dict) else None
-        return _spread(table) if isinstance(sensors, list) and sensors and sensors[0] else {}
+        if isinstance(sensors, list) and sensors and sensors[0]:
+            return _spread(table)
+        return {}
 
     def _scene(
         self, _: _Configuration, __: Position, given: Mapping[str, Value]
@@ -459,9 +455,10 @@ class MoveItConfigurations:
                 )
         elif name == "generate_static_virtual_joint_tfs_launch":
             srdf = next(iter(configs.find("robot_description_semantic").values()))
-            text = (
-                self.context().text_of(srdf.contents.path) if isinstance(srdf, FileText) else None
-            )
+            if isinstance(srdf, FileText):
+                text = self.context().text_of(srdf.contents.path)
+            else:
+                text = None
             if text is None or "xacro:" in text:
                 yield Unknown("the virtual joints of the SRDF are not evaluated", at)
                 return
@@ -501,12 +498,16 @@ def _value_of(node: YamlNode, depth: int) -> Value:
         case list() as items:
             return [_value_of(it, depth + 1) for it in items]
         case str() as text:
-            return text if node.quoted or len(text) > _MAX_NUMBER else yaml_value(text)
+            if node.quoted or len(text) > _MAX_NUMBER:
+                return text
+            return yaml_value(text)
 
 
 def _spread(table: Value) -> dict[str, Value]:
     """Return a table that becomes a part of another one; unknown ones have any name."""
-    return dict(table) if isinstance(table, dict) else {"": table}
+    if isinstance(table, dict):
+        return dict(table)
+    return {"": table}
 
 
 def _as_dict(parts: Mapping[str, Value]) -> dict[str, Value]:
@@ -555,7 +556,9 @@ class _Actions:
         """Return a value; "$name" is that of a launch argument."""
         if isinstance(value, str) and value.startswith("$"):
             return self.made(_CONFIGURATION, variable_name=value[1:])
-        return value.format(**self.folders) if isinstance(value, str) else value
+        if isinstance(value, str):
+            return value.format(**self.folders)
+        return value
 
     def started(self, row: Mapping[str, Any]) -> list[Value]:
         """Return the node or include of a row; two nodes if one has a debugger."""

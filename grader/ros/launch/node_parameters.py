@@ -155,7 +155,9 @@ def _evaluate_list(name: str, items: list[Value], context: Context, at: Position
         raise Undetermined(f"the value of the parameter {name!r} is not evaluated", at)
     if len(kinds) > 1 and kinds != {int, float}:
         raise EvaluationFails(f"the parameter {name!r} is a list of values of different types", at)
-    return [*map(float, items)] if len(kinds) > 1 else items
+    if len(kinds) > 1:
+        return [*map(float, items)]
+    return items
 
 
 def _evaluate_typed(call: Call, context: Context) -> Any:
@@ -178,7 +180,9 @@ def _evaluate_typed(call: Call, context: Context) -> Any:
     if not isinstance(text, str):
         raise Undetermined("the value of a parameter is not evaluated", call.at)
     try:
-        return boolean(text, call.at) if kind is bool else kind(text)
+        if kind is bool:
+            return boolean(text, call.at)
+        return kind(text)
     except ValueError:
         raise EvaluationFails(
             f"the value {text[:40]!r} of a parameter is not {kind.__name__}", call.at
@@ -269,7 +273,12 @@ def given_parameters(
     has_namespace = call.kwargs.get("namespace") is not None or "ros_namespace" in context.arguments
     is_named = has_namespace and call.kwargs.get("name") is not None
     given = call.kwargs.get("parameters")
-    items = list(given) if isinstance(given, list | tuple) else [] if given is None else [given]
+    if isinstance(given, list | tuple):
+        items = list(given)
+    elif given is None:
+        items = []
+    else:
+        items = [given]
     found = (_given_item(item, place, is_named=is_named) for item in items)
     return (*_of_command_line(words, at), *context.to_all.get(TO_ALL, ()), *found)
 
@@ -344,11 +353,9 @@ def _values_in(table: dict[Any, Value], place: _Place) -> dict[str, ParameterVal
 def _plain(value: Any, at: Position) -> Any:
     """Return a value without stand-ins; the contents of a file are unknown."""
     is_plain = isinstance(value, (*SCALARS, list)) and PART_UNKNOWN not in str(value)
-    return (
-        value
-        if is_plain or isinstance(value, Unknown)
-        else Unknown("the contents of a file are not evaluated", at)
-    )
+    if is_plain or isinstance(value, Unknown):
+        return value
+    return Unknown("the contents of a file are not evaluated", at)
 
 
 def _of_command_line(words: Sequence[str], at: Location) -> Iterator[GivenParameters]:
@@ -370,11 +377,9 @@ def _of_command_line(words: Sequence[str], at: Location) -> Iterator[GivenParame
 
 def _value_of_text(text: str) -> Any:
     try:
-        return (
-            _value_of(read_yaml(text.encode(), ""))
-            if PART_UNKNOWN not in text
-            else Unknown("a text", START)
-        )
+        if PART_UNKNOWN not in text:
+            return _value_of(read_yaml(text.encode(), ""))
+        return Unknown("a text", START)
     except YamlFault as fault:
         return Unknown(str(fault), START)
 
@@ -384,11 +389,9 @@ def _value_of(node: YamlNode) -> Any:
     if isinstance(node.value, list):
         items = [_value_of(item) for item in node.items]
         kinds = {type(item) for item in items}
-        return (
-            items
-            if len(kinds) == 1 and kinds <= {*SCALARS}
-            else Unknown("a list of different values", START)
-        )
+        if len(kinds) == 1 and kinds <= {*SCALARS}:
+            return items
+        return Unknown("a list of different values", START)
     text = node.text
     if text is None or (not text and not node.quoted):
         return Unknown("no value", START)
@@ -400,11 +403,18 @@ def _scalar(text: str) -> "bool | int | float | str":
         return text in _TRUE
     if found := _INTEGER.fullmatch(text):
         sign, digits = found.groups()
-        base = 16 if digits[:2].lower() == "0x" else 8 if digits[0] == "0" else 10
+        if digits[:2].lower() == "0x":
+            base = 16
+        elif digits[0] == "0":
+            base = 8
+        else:
+            base = 10
         return int(sign + digits, base)
     if text.lower() in _SPECIAL:
         return _SPECIAL[text.lower()]
-    return float(text) if _FLOAT.fullmatch(text) else text
+    if _FLOAT.fullmatch(text):
+        return float(text)
+    return text
 
 
 class NodeParameters(NamedTuple):
@@ -436,11 +446,11 @@ def parameters_of(
         is_python: Whether it is written in Python, if this is known.
     """
     full = _full_name(node, name)
-    is_cpp = (
-        not is_python
-        if is_python is not None
-        else _IN_CPP.fullmatch(node.package) is not None or None
-    )
+    is_cpp: bool | None = None
+    if is_python is not None:
+        is_cpp = not is_python
+    elif _IN_CPP.fullmatch(node.package) is not None:
+        is_cpp = True
     by_key: dict[str, dict[str, ParameterValue]] = {}
     reasons = []
     if node.parameters is None:
@@ -483,11 +493,9 @@ def _full_name(node: StartedNode, name: str) -> str | None:
     own = name or node.node_name
     if own and own.startswith("/"):
         return own
-    return (
-        f"/{node.namespace.strip('/')}/{own}".replace("//", "/")
-        if own and node.namespace is not None
-        else None
-    )
+    if own and node.namespace is not None:
+        return f"/{node.namespace.strip('/')}/{own}".replace("//", "/")
+    return None
 
 
 def _tables_of(
@@ -518,7 +526,9 @@ def _key_of(given: GivenParameters, own: str | None) -> str:
     """Return for which nodes the parameters of a launch file are."""
     if given.is_named:
         return own or _OWN
-    return f"/{given.node.strip('/')}" if given.node else _EVERY_NODE
+    if given.node:
+        return f"/{given.node.strip('/')}"
+    return _EVERY_NODE
 
 
 def _sections(
@@ -638,11 +648,10 @@ def controllers_of(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
     manager = [*given.get("-c", ()), *given.get("--controller-manager", ())][-1:] or [
         "controller_manager"
     ]
-    full = (
-        manager[0]
-        if manager[0].startswith("/")
-        else f"/{spawner.namespace.strip('/')}/{manager[0]}"
-    )
+    if manager[0].startswith("/"):
+        full = manager[0]
+    else:
+        full = f"/{spawner.namespace.strip('/')}/{manager[0]}"
     namespace = full.replace("//", "/").rpartition("/")[0] or "/"
     parameters = tuple(GivenParameters(spawner.location, path) for path in files)
     rules = remap_rules(" ".join(given.get("--controller-ros-args", ())).split())

@@ -264,7 +264,9 @@ def namespace_below(value: Value, context: Context, at: Position) -> str:
         )
     if _NAMESPACE.fullmatch(text) is None or not isinstance(above, str):
         raise Undetermined(f"whether the namespace {text[:40]!r} is valid is not evaluated", at)
-    return text if text.startswith("/") else "/".join(filter(None, (above.removesuffix("/"), text)))
+    if text.startswith("/"):
+        return text
+    return "/".join(filter(None, (above.removesuffix("/"), text)))
 
 
 def _frame_prefix(call: Call, context: Context) -> str | None:
@@ -277,7 +279,9 @@ def _frame_prefix(call: Call, context: Context) -> str | None:
     words = _words_of(call.kwargs.get("arguments"), context, call.at)
     given += [word.partition(":=")[2] for word in words if word.startswith("frame_prefix:=")]
     found = _text_if_known(_inner_value(given[-1]), context, call.at) if given else ""
-    return found if isinstance(found, str) and PART_UNKNOWN not in found else None
+    if isinstance(found, str) and PART_UNKNOWN not in found:
+        return found
+    return None
 
 
 def _find_description(findings: Findings, call: Call, context: Context) -> None:
@@ -407,7 +411,9 @@ def _display_config(words: list[str]) -> str | None:
 def _text_if_known(value: Value, context: Context, at: Position) -> Resolved:
     """Return the text of a value; Unknown where launch may fail, which is added elsewhere."""
     try:
-        return resolve(value, context, at) if value is not None else Unknown("there is none", at)
+        if value is not None:
+            return resolve(value, context, at)
+        return Unknown("there is none", at)
     except EvaluationSignal as signal:
         return Unknown(str(signal), signal.at or at)
 
@@ -423,7 +429,9 @@ def _words_of(value: Value, context: Context, at: Position) -> list[str]:
 
 def _inner_value(value: Value) -> Value:
     """Return the value in ParameterValue; another value as it is."""
-    return value.kwargs["value"] if isinstance(value, Call) and value.name in TYPED else value
+    if isinstance(value, Call) and value.name in TYPED:
+        return value.kwargs["value"]
+    return value
 
 
 def _tables_in(parameters: Value) -> Iterator[dict[Any, Value]]:

@@ -141,11 +141,9 @@ class _Substitution:
         found = [self.resolve(value) for value in values]
         unknown = next((it for it in found if isinstance(it, Unknown)), None)
         texts = [it for it in found if isinstance(it, str)]
-        return (
-            texts
-            if len(texts) == len(found)
-            else unknown or Unknown("the content of a file is used", self.call.at)
-        )
+        if len(texts) == len(found):
+            return texts
+        return unknown or Unknown("the content of a file is used", self.call.at)
 
     def configuration(self) -> Resolved:
         name, arguments = self.argument("variable_name"), self.context.arguments
@@ -400,7 +398,9 @@ def _printed_file(words: list[str]) -> Contents | None:
     if program not in ("xacro", "cat") or "-o" in words or not is_known:
         return None
     if program != "xacro":
-        return Contents(files[0], "cat") if words[1:] == files else None
+        if words[1:] == files:
+            return Contents(files[0], "cat")
+        return None
     given = (word.split(":=", 1) for word in words[1:] if ":=" in word)
     return Contents(
         files[0], "xacro", tuple((name, None if PART_UNKNOWN in it else it) for name, it in given)

@@ -64,7 +64,9 @@ def _place_of(package: Package, name: str) -> Location:
     setup = package.installation
     assert setup is not None
     written = re.search(rf"""(?<=['"])[ \t]*{re.escape(name)}[ \t]*=""", setup.source.text)
-    return setup.source.at(written.start()) if written else setup.location(setup.called_at)
+    if written:
+        return setup.source.at(written.start())
+    return setup.location(setup.called_at)
 
 
 def entry_fault(package: Package, name: str) -> EntryFault | None:
@@ -79,16 +81,19 @@ def entry_fault(package: Package, name: str) -> EntryFault | None:
     [entry] = named
     path = _module_path(package, entry.module)
     if path is None:
-        return _missing_module(package, entry) if _lacks_module(package, entry.module) else None
+        if _lacks_module(package, entry.module):
+            return _missing_module(package, entry)
+        return None
     code = read_module(package, path)
     names = _certain_names(code) if code is not None else None
     if not entry.function or names is None or entry.function in names:
         return None
-    parts = (
-        [node for node in code.tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)]
-        if code
-        else []
-    )
+    if code:
+        parts = [
+            node for node in code.tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)
+        ]
+    else:
+        parts = []
     functions = [node.name for node in parts if isinstance(node, ast.FunctionDef)]
     only = functions[0] if len(functions) == 1 else ""
     return _fault(

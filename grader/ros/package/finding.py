@@ -132,7 +132,9 @@ def name_distance(package: Package, name: str) -> int:
         own is not None and folded(own) == folded(name)
     ):
         return IN_NAMED_FOLDER
-    return SIMILAR if package.manifest is not None and closest(package.name, [name]) else _OTHER
+    if package.manifest is not None and closest(package.name, [name]):
+        return SIMILAR
+    return _OTHER
 
 
 def _read_package(

@@ -29,7 +29,9 @@ def share_parts(path: str) -> tuple[str, str]:
     """
     inside = posixpath.normpath(path)
     owner, _, rest = inside.removeprefix(f"{SHARE}/").partition("/")
-    return (owner, rest) if inside.startswith(f"{SHARE}/") else ("", "")
+    if inside.startswith(f"{SHARE}/"):
+        return (owner, rest)
+    return ("", "")
 
 
 def look_up(owner: Package, target: str) -> Lookup:
@@ -40,11 +42,9 @@ def look_up(owner: Package, target: str) -> Lookup:
     if setup is None:
         return Lookup("no build", text=f"its package has no {owner.missing_build_file}")
     if setup.fault is not None:
-        return (
-            Lookup("unknown", text=setup.unread)
-            if setup.unread
-            else Lookup("no build", text=setup.fault_text)
-        )
+        if setup.unread:
+            return Lookup("unknown", text=setup.unread)
+        return Lookup("no build", text=setup.fault_text)
     if target in owner.installed:
         return Lookup("installed", owner.installed[target])
     if setup.unknown:
@@ -74,11 +74,9 @@ def _meant_by(owner: Package, target: str) -> list[str]:
     name.
     """
     inside, name = target.removeprefix(owner.share), posixpath.basename(target)
-    return (
-        [inside]
-        if inside in owner.tree.files
-        else [it for it in owner.tree.files if posixpath.basename(it) == name]
-    )
+    if inside in owner.tree.files:
+        return [inside]
+    return [it for it in owner.tree.files if posixpath.basename(it) == name]
 
 
 def is_surely_absent(package: Package, target: str) -> bool:
@@ -121,16 +119,17 @@ def open_meant(
     ):
         return b"", path
     data = owner.tree.read(named[0], _MAX_FILE) if len(named) == 1 else None
-    return (data, owner.path(named[0])) if data is not None else None
+    if data is not None:
+        return (data, owner.path(named[0]))
+    return None
 
 
 def _installs_for_tests(package: Package) -> bool:
     """Return whether CMakeLists.txt installs something only if BUILD_TESTING is on, as it is by
     default.
     """
-    text = (
-        package.tree.files[CMAKE].read(_MAX_CMAKE).decode("utf-8", "replace")
-        if package.is_cmake
-        else ""
-    )
+    if package.is_cmake:
+        text = package.tree.files[CMAKE].read(_MAX_CMAKE).decode("utf-8", "replace")
+    else:
+        text = ""
     return any("install(" in block.lower() for block in _FOR_TESTS.findall(text))

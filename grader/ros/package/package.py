@@ -93,7 +93,9 @@ class Package:
 
     def path(self, path: str) -> str:
         """Return a path of the package as one of the submission."""
-        return f"{self.folder}/{path}" if self.folder else path
+        if self.folder:
+            return f"{self.folder}/{path}"
+        return path
 
     def holds(self, path: str) -> bool:
         """Return whether a path of the submission is in the package."""
@@ -169,18 +171,24 @@ class Package:
         """Return the file that should install the package, by its package.xml: setup.py or
         CMakeLists.txt.
         """
-        return SETUP if self._build_type in ("ament_python", "") else CMAKE
+        if self._build_type in ("ament_python", ""):
+            return SETUP
+        return CMAKE
 
     @property
     def missing_build_file(self) -> str:
         """What a package without a build file lacks, in words: that of its build type, or
         either.
         """
-        return f"{SETUP} or {CMAKE}" if self._build_type in ("catkin", "") else self.build_file
+        if self._build_type in ("catkin", ""):
+            return f"{SETUP} or {CMAKE}"
+        return self.build_file
 
     @property
     def _build_type(self) -> str:
-        return self.manifest.build_type if self.manifest is not None else ""
+        if self.manifest is not None:
+            return self.manifest.build_type
+        return ""
 
     @cached_property
     def installation(self) -> "Installation | None":
@@ -214,18 +222,19 @@ class Package:
     @cached_property
     def installed(self) -> dict[str, str]:
         """Each installed file's path in the package, by its path below the prefix."""
-        return self.installation.installed() if self.installation is not None else {}
+        if self.installation is not None:
+            return self.installation.installed()
+        return {}
 
     @cached_property
     def shadows_ros(self) -> str:
         """The name of a Python package that a build installs and that ros2 launch imports in place
         of its own.
         """
-        packages = (
-            self.installation.packages
-            if self.installation is not None and not self.installation.unknown
-            else ()
-        )
+        if self.installation is not None and not self.installation.unknown:
+            packages = self.installation.packages
+        else:
+            packages = ()
         return next((name for name in packages if name in _OF_ROS_IN_PYTHON), "")
 
     @cached_property
@@ -327,7 +336,9 @@ class Package:
             launch = read_launch(data, own, installed, self, self.arguments)
         except InputError as error:
             launch = Launch(Source(own, ""), unread=str(error))
-        return self._launches.setdefault(path, launch) if text is None else launch
+        if text is None:
+            return self._launches.setdefault(path, launch)
+        return launch
 
     def rviz(self, path: str) -> "RvizFile":
         """Return an RViz file."""
@@ -380,9 +391,9 @@ class Package:
         prefix's stand-in.
         """
         shares = tuple(f"{SHARE}/{name}/" for name in self.names)
-        return (
-            self.installed.get(path.removeprefix(f"{PREFIX}/")) if path.startswith(shares) else None
-        )
+        if path.startswith(shares):
+            return self.installed.get(path.removeprefix(f"{PREFIX}/"))
+        return None
 
     @property
     def _all(self) -> "tuple[Package, ...]":
@@ -414,11 +425,9 @@ class Package:
         owner = self.find(package)
         if owner is None:
             return not lacks_program(package, name)
-        return (
-            owner.installation.has_program(name, package)
-            if owner.installation is not None
-            else None
-        )
+        if owner.installation is not None:
+            return owner.installation.has_program(name, package)
+        return None
 
     def files_in(self, folder: str) -> "Sequence[str] | None":
         """Return the names of the files that builds install in a folder below the prefix; None if

@@ -402,7 +402,9 @@ class _Module:
     def _called(self, part: _Part, call: ast.Call) -> str:
         first, dot, rest = dotted(call.func).partition(".")
         found = constant_in(part.scope, first)
-        return f"{found.name}{dot}{rest}" if isinstance(found, QualifiedName) else ""
+        if isinstance(found, QualifiedName):
+            return f"{found.name}{dot}{rest}"
+        return ""
 
     def _argument(self, part: _Part, call: ast.Call, position: int, name: str) -> Value:
         """Return an argument of a call; None where it is missing, Unknown where * or ** may give
@@ -420,13 +422,14 @@ class _Module:
         """Return the place of the node that an expression is; None where that is not known."""
         name = dotted(node)
         if name == "self":
-            return part.of if part.of in self._facts else None
+            if part.of in self._facts:
+                return part.of
+            return None
         value = constant_in(part.scope, name)
-        at = (
-            location_in(self._code.source, value.at)
-            if isinstance(value, Call) and value.name in _CREATES
-            else None
-        )
+        if isinstance(value, Call) and value.name in _CREATES:
+            at = location_in(self._code.source, value.at)
+        else:
+            at = None
         return at if at in self._facts else None
 
     def _read_call(self, part: _Part, call: ast.Call) -> None:
@@ -513,7 +516,9 @@ def _default(value: Value) -> Value:
         return None
     items = value if isinstance(value, list | tuple) else [value]
     is_known = all(isinstance(it, SCALARS) or it is None for it in items)
-    return value if is_known else Unknown("the default is computed", getattr(value, "at", START))
+    if is_known:
+        return value
+    return Unknown("the default is computed", getattr(value, "at", START))
 
 
 def _declared(namespace: Value, parameters: Value, at: Location) -> Iterator[NodeParameter]:

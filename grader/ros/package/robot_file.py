@@ -81,11 +81,9 @@ class Read(NamedTuple):
     @property
     def source(self) -> Source:
         """The text that the student wrote."""
-        return (
-            Source(self.path, self.data.decode("utf-8", "replace"))
-            if self.is_expanded
-            else self.reading.source
-        )
+        if self.is_expanded:
+            return Source(self.path, self.data.decode("utf-8", "replace"))
+        return self.reading.source
 
     @property
     def problems(self) -> tuple[Problem, ...]:
@@ -314,7 +312,9 @@ def _says_xacro(name: str) -> bool:
     """Return whether xacro in a file of this name, in lower case, is meant to be expanded; standard
     input is a URDF.
     """
-    return not name.endswith(".urdf") if ".xacro" in name else ".urdf" not in name and name != "-"
+    if ".xacro" in name:
+        return not name.endswith(".urdf")
+    return ".urdf" not in name and name != "-"
 
 
 def _loaded_model(reading: Reading) -> tuple[object, ...]:

@@ -144,7 +144,9 @@ def _frame_of(node: StartedNode, source_of: Callable[[str], Source | None]) -> _
 
 def _words_of(node: StartedNode) -> tuple[str | None, ...]:
     words = node.arguments if node.arguments is not None else (None,)
-    return words[: words.index("--ros-args")] if "--ros-args" in words else words
+    if "--ros-args" in words:
+        return words[: words.index("--ros-args")]
+    return words
 
 
 def frames_named(node: StartedNode) -> tuple[str, str]:
@@ -181,7 +183,9 @@ def _origin_of(options: Mapping[str, str], location: LazyLocation) -> Origin | N
     if not set(turned) & {*_QUATERNION}:
         return Origin((x, y, z), (roll, pitch, yaw), location)
     rpy = _rpy_of(*(values.get(name, float(name == "--qw")) for name in _QUATERNION))
-    return Origin((x, y, z), rpy, location) if rpy is not None else None
+    if rpy is not None:
+        return Origin((x, y, z), rpy, location)
+    return None
 
 
 def _rpy_of(x: float, y: float, z: float, w: float) -> Vector | None:

@@ -187,11 +187,10 @@ def read_tree(package: Package, file: str) -> Entry:
     be read.
     """
     files = package.tree.files
-    found = (
-        [file]
-        if file in files
-        else [path for path in files if path.endswith(f"/{file.strip('/')}")]
-    )
+    if file in files:
+        found = [file]
+    else:
+        found = [path for path in files if path.endswith(f"/{file.strip('/')}")]
     if len(found) > 1:
         raise NotDecided(
             f"several files are called {file}: {', '.join(found[:3])}",
@@ -211,7 +210,9 @@ def read_tree(package: Package, file: str) -> Entry:
         raise NotDecided(str(error), "a file cannot be read") from None
     kind = "YAML" if path.lower().endswith(_YAML) else "XML"
     try:
-        return _yaml_entry(read_yaml(data, own)) if kind == "YAML" else _read_xml(data, own)
+        if kind == "YAML":
+            return _yaml_entry(read_yaml(data, own))
+        return _read_xml(data, own)
     except (YamlFault, XmlFault) as fault:
         message = f"{path} is not readable as {kind}: {fault}"
         raise MissingElement(

@@ -38,11 +38,9 @@ def call(
     """Return what a call of a function of the allow-list returns."""
     if not isinstance(function, py.PlainFunction):
         budget.measure([args, list(kwargs.values())], "holds")
-        return (
-            call_plain(function, *args, **kwargs)
-            if not callable(function)
-            else _refuse("this call")
-        )
+        if not callable(function):
+            return call_plain(function, *args, **kwargs)
+        return _refuse("this call")
     budget.measure(
         [args, list(kwargs.values())], "holds" if function.kind == "applies" else function.kind
     )
@@ -120,7 +118,9 @@ def _range(*bounds: int) -> range:
 
 
 def _sized(value: py.Value) -> py.Value:
-    return value if isinstance(value, (*py.PLAIN, py.Items)) else known(value)
+    if isinstance(value, (*py.PLAIN, py.Items)):
+        return value
+    return known(value)
 
 
 def _next(value: py.Value, *default: py.Value) -> py.Value:

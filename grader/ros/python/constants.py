@@ -67,8 +67,10 @@ class Constants(Interpreter):
 
     def value_of(self, node: ast.expr | None, scope: Scope) -> Value:
         """Return the value of an expression; None for none."""
+        if node is None:
+            return None
         try:
-            return self.evaluate(node, scope) if node is not None else None
+            return self.evaluate(node, scope)
         except (OutOfBudget, RecursionError) as error:
             return Unknown(str(error), START)
 
@@ -130,7 +132,9 @@ class Constants(Interpreter):
 
     def _constant_attribute(self, node: ast.Attribute, scope: Scope) -> Value:
         found = constant_in(scope, dotted(node), self)
-        return found if found is not self else Interpreter.KINDS[ast.Attribute](self, node, scope)
+        if found is not self:
+            return found
+        return Interpreter.KINDS[ast.Attribute](self, node, scope)
 
     KINDS: ClassVar = {
         **Interpreter.KINDS,
@@ -153,7 +157,9 @@ def dotted(node: ast.AST) -> str:
     while isinstance(node, ast.Attribute):
         names.append(node.attr)
         node = node.value
-    return ".".join([node.id, *reversed(names)]) if isinstance(node, ast.Name) else ""
+    if isinstance(node, ast.Name):
+        return ".".join([node.id, *reversed(names)])
+    return ""
 
 
 def offset_of(node: ast.AST) -> tuple[int, int]:

@@ -138,11 +138,9 @@ class Evaluation(Expressions):
 
     def _builtin(self, name: str) -> py.Value:
         full = f"builtins.{name}"
-        return (
-            BUILTINS[name]
-            if name in BUILTINS and full not in self.functions
-            else py.QualifiedName(full)
-        )
+        if name in BUILTINS and full not in self.functions:
+            return BUILTINS[name]
+        return py.QualifiedName(full)
 
     def test(self, value: py.Value, branches: Collection[ast.expr]) -> bool:
         """Return whether a condition holds; stop if that is unknown and a branch may change
@@ -252,11 +250,9 @@ class Evaluation(Expressions):
         if function is None:
             reason = f"{made.name.removeprefix('builtins.')} {NOT_EVALUATED}"
             raise py.Undetermined(reason, made.at, is_final=True)
-        return (
-            self.call_value(function, made)
-            if isinstance(function, py.PlainFunction)
-            else function(self, made)
-        )
+        if isinstance(function, py.PlainFunction):
+            return self.call_value(function, made)
+        return function(self, made)
 
     def _method(self, owner: py.Value, name: str, made: py.Call) -> py.Value:
         """Return the value of a method. Of what is not known, only a method of texts is known to
@@ -335,11 +331,10 @@ class Evaluation(Expressions):
             or (len(made.args) > len(positional) and not parameters.vararg)
             or (others and not parameters.kwarg)
         ):
-            what = (
-                f"the argument {missing[0]!r} is missing"
-                if missing
-                else "there is one argument too many"
-            )
+            if missing:
+                what = f"the argument {missing[0]!r} is missing"
+            else:
+                what = "there is one argument too many"
             self.error(f"{what} in this call", made.at)
         bound = {
             **dict.fromkeys(names, py.Unknown("an argument is missing", made.at)),

@@ -73,7 +73,9 @@ class Expressions:
         if kind is None:
             raise Undetermined("an expression of this kind is not supported")
         value: Value = kind(self, node, scope)
-        return self.budget.checked(value) if type(node) in _MAKES_VALUES else value
+        if type(node) in _MAKES_VALUES:
+            return self.budget.checked(value)
+        return value
 
     evaluate = value  # of a part of an expression: in a file, it may be Unknown
 

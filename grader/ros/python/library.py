@@ -230,11 +230,10 @@ def _import_error(module: str, name: str) -> str | None:
         or (module, name) == ("distutils.core", "setup")
         or (top in sys.stdlib_module_names and full == top and not module)
     )
-    guess = (
-        closest(top, ("os", "glob", "pathlib", "setuptools", "sys", "shutil"))
-        if top != "psutil"
-        else None
-    )
+    if top != "psutil":
+        guess = closest(top, ("os", "glob", "pathlib", "setuptools", "sys", "shutil"))
+    else:
+        guess = None
     if (
         is_there
         or not guess
@@ -254,7 +253,9 @@ def _missing_name(module: str, name: str) -> str | None:
         missing, guess = not hasattr(found, name), did_you_mean(name, dir(found))
     if name in _ADDED:
         return UNCERTAIN
-    return f"{module} has no {name!r}{guess}" if missing else None
+    if missing:
+        return f"{module} has no {name!r}{guess}"
+    return None
 
 
 def attribute_error(module: str, name: str) -> str | None:
@@ -278,11 +279,9 @@ def imported_names(
     if module:
         return {alias.asname or alias.name: py.QualifiedName(f"{module}.{alias.name}")}
     top = alias.name.split(".")[0]
-    return (
-        {alias.asname: py.QualifiedName(alias.name)}
-        if alias.asname
-        else {top: py.QualifiedName(top)}
-    )
+    if alias.asname:
+        return {alias.asname: py.QualifiedName(alias.name)}
+    return {top: py.QualifiedName(top)}
 
 
 @cache

@@ -71,7 +71,9 @@ def method(owner: py.Value, name: str, budget: Budget) -> py.PlainFunction | Non
 
 def _search_cost(text: py.Value, part: py.Value) -> int:
     """Return how many characters a search for one text in another looks at, at most."""
-    return len(text) * len(part) // 16 if isinstance(text, str) and isinstance(part, str) else 0
+    if isinstance(text, str) and isinstance(part, str):
+        return len(text) * len(part) // 16
+    return 0
 
 
 def _percent_format(template: str, value: py.Value) -> str:
@@ -225,7 +227,9 @@ def _kind(op: ast.operator, left: py.Value, right: py.Value) -> str:
         isinstance(right, _CONTAINERS) and not isinstance(left, str)
     ):
         return "holds"
-    return "text" if isinstance(op, ast.Add | ast.Div | ast.Mod) else "plain"
+    if isinstance(op, ast.Add | ast.Div | ast.Mod):
+        return "text"
+    return "plain"
 
 
 def _run(

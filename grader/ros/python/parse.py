@@ -173,11 +173,10 @@ def own_nodes(node: ast.AST) -> list[ast.AST]:
     classes in it.
     """
     found: list[ast.AST] = []
-    pending = (
-        list(ast.iter_child_nodes(node))
-        if isinstance(node, ast.FunctionDef | ast.ClassDef)
-        else [node]
-    )
+    if isinstance(node, ast.FunctionDef | ast.ClassDef):
+        pending = list(ast.iter_child_nodes(node))
+    else:
+        pending = [node]
     while pending:
         part = pending.pop()
         found.append(part)

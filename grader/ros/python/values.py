@@ -132,7 +132,9 @@ class Call:
         for name in names:
             if name in self.kwargs:
                 return self.kwargs[name]
-        return self.args[position] if position < len(self.args) else None
+        if position < len(self.args):
+            return self.args[position]
+        return None
 
 
 class Function:
@@ -244,7 +246,9 @@ def parts_of(part: Value) -> Collection[Value]:
         return [*part.keys(), *part.values()]
     if isinstance(part, list | tuple | range):
         return part
-    return [*part] if isinstance(part, VIEWS) else ()
+    if isinstance(part, VIEWS):
+        return [*part]
+    return ()
 
 
 def too_large(what: str) -> NoReturn:
@@ -370,4 +374,6 @@ def _has_text(value: Value) -> bool:
 
 def path_text(value: Value) -> str | None:
     """Return the text of a path or string; None for other values."""
-    return str(value) if isinstance(value, str | PurePosixPath) else None
+    if isinstance(value, str | PurePosixPath):
+        return str(value)
+    return None

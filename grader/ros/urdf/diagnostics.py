@@ -108,7 +108,9 @@ class Problems:
 
     def element(self, joint: Joint) -> Element:
         """Return the element that a joint was read from."""
-        return self._elements[joint.location.tag] if joint.location is not None else self.root
+        if joint.location is not None:
+            return self._elements[joint.location.tag]
+        return self.root
 
     def add(
         self,
@@ -146,14 +148,18 @@ class Problems:
     def closest(self, name: str, known: Iterable[str]) -> str | None:
         """Return the known name that is most like this one, if one is close."""
         self._guesses -= 1
-        return closest(name, known) if self._guesses >= 0 else None
+        if self._guesses >= 0:
+            return closest(name, known)
+        return None
 
     def did_you_mean(self, name: str, known: Iterable[str]) -> str:
         """Return `; did you mean 'x'?` for the end of a message, or nothing if no known name is
         close.
         """
         self._guesses -= 1
-        return did_you_mean(name, known) if self._guesses >= 0 else ""
+        if self._guesses >= 0:
+            return did_you_mean(name, known)
+        return ""
 
     def check_printed(self, text: str, element: Element, attribute: str | None = None) -> None:
         """Add a problem if ROS 2 passes this text to printf and it contains a directive that can

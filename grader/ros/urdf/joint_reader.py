@@ -168,11 +168,9 @@ def _read_mimic(element: Element, problems: Problems) -> Mimic | None:
     if joint is None:
         reader.fail("<mimic> has no joint", element)
     multiplier, offset = reader.number(element, "multiplier"), reader.number(element, "offset")
-    return (
-        None
-        if reader.failed or joint is None
-        else Mimic(joint, multiplier, offset, problems.location(element))
-    )
+    if reader.failed or joint is None:
+        return None
+    return Mimic(joint, multiplier, offset, problems.location(element))
 
 
 def _read_dynamics(element: Element, problems: Problems) -> Dynamics | None:

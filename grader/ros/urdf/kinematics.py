@@ -62,7 +62,9 @@ class _Frames:
         tree.
         """
         found = self._known.get(link)
-        return found if found is not None else self._solve(link)
+        if found is not None:
+            return found
+        return self._solve(link)
 
     def _solve(self, link: str) -> _Frame:
         self._robot.link(link)
@@ -191,11 +193,9 @@ def _motion_of(joint: Joint, position: float) -> Transform | None:
         # KDL divides by the axis' length before it uses the position. An unreadable axis matters
         # only if the joint moves.
         return IDENTITY if joint.axis is None and not position else None
-    return (
-        IDENTITY
-        if joint.type == "planar" or not position
-        else _motion_along(joint, direction, position)
-    )
+    if joint.type == "planar" or not position:
+        return IDENTITY
+    return _motion_along(joint, direction, position)
 
 
 def _motion_along(joint: Joint, direction: Vector, position: float) -> Transform:

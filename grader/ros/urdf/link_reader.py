@@ -76,11 +76,10 @@ class Materials:
         name = element.get("name") or ""
         if not len(element) and name in self.known and name:
             return self.known[name], name, False
-        fallback = (
-            "the definition above applies"
-            if name in self.known
-            else f"material {quoted(name)} stays undefined"
-        )
+        if name in self.known:
+            fallback = "the definition above applies"
+        else:
+            fallback = f"material {quoted(name)} stays undefined"
         own, reported = self._read_material(element, name, f"ROS 2 logs an error: {fallback}")
         found = self.known.get(name) if name else own
         if own is None:

@@ -207,9 +207,10 @@ def _check_roots(
     is_child_open = any("child" in joint.unresolved for joint in robot.joints)
     if is_child_open or len([name for name in roots if name not in explained]) < 2:
         return
-    sizes = (
-        {name: len(_reachable([name], edges)) for name in roots} if len(roots) <= _MAX_ROOTS else {}
-    )
+    if len(roots) <= _MAX_ROOTS:
+        sizes = {name: len(_reachable([name], edges)) for name in roots}
+    else:
+        sizes = {}
     main = max(roots, key=lambda name: sizes.get(name, 0))
     others = [name for name in roots if name != main and name not in explained]
     named = enumerated([*map(quoted, others)], _MAX_ROOTS)
@@ -346,11 +347,10 @@ def _main_root(places: Mapping[str, _LinkPlace], name: str) -> str:
     largest = [root for root, size in sizes if size == sizes[0][1]]
     if len(largest) == 1:
         return largest[0]
-    message = (
-        "no link is the root of the robot"
-        if not largest
-        else "several links are roots of trees of the same size"
-    )
+    if not largest:
+        message = "no link is the root of the robot"
+    else:
+        message = "several links are roots of trees of the same size"
     detail = f": {enumerated([*map(quoted, largest)], _MAX_CHOICES)}" if largest else ""
     raise MissingElement("link", name, message=f"there is no {name}: {message}", detail=detail)
 

@@ -123,11 +123,10 @@ def _misspelt_references(root: Element, robot: Robot) -> Iterator[Word]:
     if sum(uses[name] for name in misspelt) > _MAX_ROUNDS * _MAX_WORDS:
         misspelt = set()
     for joint in root.iterchildren("joint"):
-        kind = (
-            near(joint.get("type") or "", JOINT_TYPES)
-            if joint.get("type") not in JOINT_TYPES
-            else None
-        )
+        if joint.get("type") not in JOINT_TYPES:
+            kind = near(joint.get("type") or "", JOINT_TYPES)
+        else:
+            kind = None
         if kind is not None:
             yield _word_with_value(joint, "type", kind, "the joint type")
         yield from _misspelt_ends(joint, misspelt, links, children)
@@ -182,11 +181,10 @@ def _readable_vectors(root: Element) -> Iterator[Word]:
         given = {str(name): str(value) for name, value in element.attrib.items()}
         for name, text in given.items():
             count = len(PARTS.get(name, ()))
-            meant = (
-                readable_numbers(text, count)
-                if count > 1 and name in ATTRIBUTES[str(element.tag)]
-                else None
-            )
+            if count > 1 and name in ATTRIBUTES[str(element.tag)]:
+                meant = readable_numbers(text, count)
+            else:
+                meant = None
             if meant is None:
                 continue
             changed = {**given, name: " ".join(meant[:count])}

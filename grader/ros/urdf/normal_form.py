@@ -81,11 +81,9 @@ def written_form(root: Element | None, *, is_handed_out: bool = False) -> str:
     """
     children = list(root) if root is not None else []
     model = [child for child in children if child.tag in _MODEL]
-    return (
-        _hash([*map(_content, model)])
-        if model and (is_handed_out or len(model) < len(children))
-        else ""
-    )
+    if model and (is_handed_out or len(model) < len(children)):
+        return _hash([*map(_content, model)])
+    return ""
 
 
 def _hash(content: object) -> str:
@@ -125,9 +123,9 @@ class _Forms(NamedTuple):
 
     def of_link(self, link: Link, kept: Collection[str]) -> object:
         inertial = link.inertial
-        mass = (
-            (inertial.mass, inertial.inertia, *self._of_pose(inertial.origin)) if inertial else ()
-        )
+        mass: tuple[object, ...] = ()
+        if inertial:
+            mass = (inertial.mass, inertial.inertia, *self._of_pose(inertial.origin))
         shapes = _sorted(self._of_shapes(link.visuals)), _sorted(self._of_shapes(link.collisions))
         return link.name if link.name in kept else "", *shapes, _rounded(mass)
 
@@ -182,7 +180,9 @@ class _Forms(NamedTuple):
         if joint.type not in _TURNING:
             return ()
         axis = unit(joint.axis) if joint.axis is not None else None
-        return self._of_direction(axis) if axis is not None else joint.axis
+        if axis is not None:
+            return self._of_direction(axis)
+        return joint.axis
 
     def _of_direction(self, values: tuple[float, ...]) -> tuple[float, ...]:
         return tuple(round(value, self.decimals) + 0.0 for value in values)

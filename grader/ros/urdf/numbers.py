@@ -104,7 +104,9 @@ def _computed(piece: str) -> str | None:
         value = evaluate(piece, {"pi": pi}.__getitem__, Budget(_MAX_WORK))
     except (EvaluationFails, Undetermined, OutOfBudget, KeyError):
         return None
-    return f"{value:.12g}" if isinstance(value, int | float) and isfinite(value) else None
+    if isinstance(value, int | float) and isfinite(value):
+        return f"{value:.12g}"
+    return None
 
 
 def rgba(text: str) -> tuple[float, float, float, float] | None:
@@ -136,7 +138,9 @@ def is_version_one(text: str) -> bool:
 def _strtol(digits: str) -> int:
     # C stops at the largest long; Python refuses to convert thousands of digits.
     value = min(int(digits.lstrip("+-0")[:20] or "0"), _MAX_LONG)
-    return -value if digits[0] == "-" else value
+    if digits[0] == "-":
+        return -value
+    return value
 
 
 def _why_no_number(text: str) -> str:

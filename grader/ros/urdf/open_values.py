@@ -57,19 +57,15 @@ def _view_of_link(link: Link) -> Link:
 
 
 def _view_of_visual(visual: Visual) -> Visual:
-    return (
-        replace(visual, material=_view_of_material(visual.material))
-        if visual.material is not None
-        else visual
-    )
+    if visual.material is not None:
+        return replace(visual, material=_view_of_material(visual.material))
+    return visual
 
 
 def _view_of_material(material: Material) -> Material:
-    return (
-        _MaterialView(material)
-        if any(part.reason for part in material.unresolved.values())
-        else material
-    )
+    if any(part.reason for part in material.unresolved.values()):
+        return _MaterialView(material)
+    return material
 
 
 def _value_if_known(part: Link | Joint, field: str, value: _Value) -> _Value:

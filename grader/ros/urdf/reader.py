@@ -85,7 +85,9 @@ class Reading(NamedTuple):
     @property
     def elements(self) -> Element | None:
         """The element that the robot was read from, also where the text is not XML."""
-        return self.root if self.root is not None else self.recovered
+        if self.root is not None:
+            return self.root
+        return self.recovered
 
     @property
     def is_certain(self) -> bool:

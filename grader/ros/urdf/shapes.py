@@ -129,7 +129,9 @@ def straight_edges(geometry: Geometry) -> list[Vector]:
     """
     if isinstance(geometry, Box):
         return [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
-    return [(0.0, 0.0, 1.0)] if isinstance(geometry, Cylinder) else []
+    if isinstance(geometry, Cylinder):
+        return [(0.0, 0.0, 1.0)]
+    return []
 
 
 def bounding_radius(shape: Shape) -> float:
@@ -155,7 +157,9 @@ def shrunk(shape: Shape, scale: float) -> Shape:
 def _signed_half(size: float, component: float, tie: float) -> float:
     if abs(component) <= tie:
         return 0.0
-    return abs(size) / 2.0 if component > 0.0 else -abs(size) / 2.0
+    if component > 0.0:
+        return abs(size) / 2.0
+    return -abs(size) / 2.0
 
 
 class Mismatch(NamedTuple):
@@ -173,7 +177,9 @@ class Mismatch(NamedTuple):
     def largest(self) -> float:
         """The largest of the differences in metres; NaN where they overflow."""
         three = (self.apart, self.size, self.turn)
-        return max(three) if sum(three) < inf else nan
+        if sum(three) < inf:
+            return max(three)
+        return nan
 
 
 def mismatch(

@@ -54,9 +54,8 @@ def _of_included(workspace: Workspace, launch: Launch, owner: str) -> Iterator[F
     for passed in launch.passed:
         names = known()["launch_arguments"].get(passed.path)
         if names is not None:
-            yield from (
-                Definition("launch argument", name, passed.location, owner) for name in names
-            )
+            for name in names:
+                yield Definition("launch argument", name, passed.location, owner)
         elif not workspace.has_file(passed.path):
             yield Open("launch argument", owner)
 

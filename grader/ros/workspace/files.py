@@ -67,9 +67,10 @@ def _named(workspace: Workspace) -> Iterator[_Named]:
     """Yield the paths that are named."""
     for package, own, launch in workspace.launches:
         # From the folder of the sources, a launch file finds what is beside it.
-        beside = (
-            "" if own in package.installed.values() else f"{package.share}{posixpath.dirname(own)}/"
-        )
+        if own in package.installed.values():
+            beside = ""
+        else:
+            beside = f"{package.share}{posixpath.dirname(own)}/"
         for text, at, is_read, is_output in _texts_of(workspace, launch):
             for path in _PATH.findall(text or ""):
                 is_beside = bool(beside) and path.startswith(f"{PREFIX}/{beside}")
@@ -91,11 +92,9 @@ def _texts_of(
     """Yield the texts of a launch file that may name files, whether they are used, and whether own
     nodes get them.
     """
-    yield from (
-        (value, passed.location, True, False)
-        for passed in launch.passed
-        for _, value in passed.values
-    )
+    for passed in launch.passed:
+        for _, value in passed.values:
+            yield (value, passed.location, True, False)
     for node in launch.nodes:
         # The launch file that includes it may never start it, whatever the arguments.
         is_read = node.when is not False or not node.included_by
@@ -105,9 +104,8 @@ def _texts_of(
             yield given.path, given.location, is_read, False
             values = (it for it in given.values.values() if isinstance(it.value, str))
             yield from ((it.value, it.location, is_read, is_own) for it in values)
-    yield from (
-        (reference.path, reference.location, True, False) for reference in launch.references
-    )
+    for reference in launch.references:
+        yield (reference.path, reference.location, True, False)
 
 
 def _fault_of(
@@ -196,7 +194,9 @@ def _of_folders(
     pairs = [
         it for it in zip(target.split("/"), elsewhere.split("/"), strict=True) if it[0] != it[1]
     ]
-    return corrections(pairs[0][0], at, pairs[0][1], start) if len(pairs) == 1 else ()
+    if len(pairs) == 1:
+        return corrections(pairs[0][0], at, pairs[0][1], start)
+    return ()
 
 
 def _of_install(setup: Installation, own: str, start: Location) -> tuple[Correction, ...]:
@@ -244,9 +244,10 @@ def _models(workspace: Workspace) -> Iterator[Fact]:
     for file in workspace.sdf_files:
         for element in file.root.iter("uri"):
             name = (element.text or "").strip().removeprefix("model://").partition("/")[0]
-            meant = (
-                near(name, models) if (element.text or "").strip().startswith("model://") else None
-            )
+            if (element.text or "").strip().startswith("model://"):
+                meant = near(name, models)
+            else:
+                meant = None
             if meant is not None and name not in models:
                 at = file.location(element)
                 message = f"there is no model {name!r}; did you mean {meant!r}?"

@@ -69,7 +69,9 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _place(location: LazyLocation | None) -> Location:
-    return location.resolve() if location is not None else Location("", 1, 1)
+    if location is not None:
+        return location.resolve()
+    return Location("", 1, 1)
 
 
 def _openings(workspace: Workspace) -> Iterator[Fact]:

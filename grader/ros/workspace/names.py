@@ -180,9 +180,10 @@ def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mism
     is_sure = not is_open and (meant is not None or not use.optional)
     if use.optional and meant is None:
         return None
-    guess = (
-        f"; did you mean {quoted(meant)} ({place_text(known[meant])})?" if meant is not None else ""
-    )
+    if meant is not None:
+        guess = f"; did you mean {quoted(meant)} ({place_text(known[meant])})?"
+    else:
+        guess = ""
     message = f"{use.said}: there is no {use.kind} {quoted(use.name)}{guess}"
     related = known[meant] if meant is not None else None
     either = corrections(use.name, use.location, meant, related)

@@ -270,11 +270,9 @@ def _type_of(value: Any) -> str:
     """Return the type that ROS 2 gives a value, in words; empty where it is not known."""
     if isinstance(value, list | tuple):
         kinds = {_type_of(it) for it in value}
-        return (
-            f"a list of {kinds.pop().partition(' ')[2]}s"
-            if len(kinds) == 1 and kinds != {""}
-            else ""
-        )
+        if len(kinds) == 1 and kinds != {""}:
+            return f"a list of {kinds.pop().partition(' ')[2]}s"
+        return ""
     return _TYPES.get(type(value), "")
 
 
@@ -304,9 +302,10 @@ def _required(workspace: Workspace, package: Package, node: StartedNode) -> Iter
         )
         for name in [it for it in needed if it not in found.values and not found.unknown]:
             guess = closest(name, found.values)
-            either = (
-                corrections(guess, found.values[guess].location, name) if guess is not None else ()
-            )
+            if guess is not None:
+                either = corrections(guess, found.values[guess].location, name)
+            else:
+                either = ()
             there = f"; did you mean it by {guess!r}?" if guess is not None else ""
             message = (
                 f"{node.executable} stops without the parameter {name}, which it does not "

@@ -51,11 +51,10 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
             yield Mismatch("programs", reason, node.location, corrections=either)
         elif owner is not None:
             yield from _not_executed(owner, node)
-        names = (
-            known()["programs"].get(node.package, [node.executable])
-            if owner is None
-            else [node.executable]
-        )
+        if owner is None:
+            names = known()["programs"].get(node.package, [node.executable])
+        else:
+            names = [node.executable]
         if node.executable not in names:
             reason, meant = _unknown_program(node.package, node.executable, names)
             either = corrections(node.executable, node.location, meant)

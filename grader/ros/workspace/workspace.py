@@ -103,9 +103,9 @@ class Workspace:
     @property
     def launched(self) -> Iterator[tuple[int, StartedNode]]:
         """The nodes, each with the number of the launch file that starts it on its own."""
-        yield from (
-            (number, node) for number, (_, launch) in enumerate(self.roots) for node in launch.nodes
-        )
+        for number, (_, launch) in enumerate(self.roots):
+            for node in launch.nodes:
+                yield (number, node)
 
     @cached_property
     def yaml_files(self) -> Mapping[str, YamlNode | YamlFault]:
@@ -131,9 +131,9 @@ class Workspace:
     @property
     def trees(self) -> Iterator[tuple[str, YamlNode]]:
         """The YAML files that are read, with their paths."""
-        yield from (
-            (path, node) for path, node in self.yaml_files.items() if isinstance(node, YamlNode)
-        )
+        for path, node in self.yaml_files.items():
+            if isinstance(node, YamlNode):
+                yield (path, node)
 
     @cached_property
     def sdf_files(self) -> tuple[XmlFile, ...]:
@@ -161,7 +161,9 @@ class Workspace:
             and not urdf.loaded.undetermined
             and urdf.loaded.verdict != "rejected"
         )
-        return urdf.loaded.robot if isinstance(urdf, Read) and is_known else None
+        if isinstance(urdf, Read) and is_known:
+            return urdf.loaded.robot
+        return None
 
     @property
     def has_controller_manager(self) -> bool:
@@ -176,7 +178,9 @@ class Workspace:
     def robot_root(self) -> Element | None:
         """The <robot> of the expanded robot."""
         urdf = self.urdf
-        return urdf.loaded.root if isinstance(urdf, Read) and self.robot is not None else None
+        if isinstance(urdf, Read) and self.robot is not None:
+            return urdf.loaded.root
+        return None
 
     @cached_property
     def python_nodes(self) -> Mapping[str, PythonNodes]:
@@ -194,9 +198,9 @@ class Workspace:
     def _positions(self) -> Mapping[Element, int]:
         """The position of each element of the robot in document order."""
         root = self.robot_root
-        return (
-            {element: tag for tag, element in enumerate(root.iter("*"))} if root is not None else {}
-        )
+        if root is not None:
+            return {element: tag for tag, element in enumerate(root.iter("*"))}
+        return {}
 
     @cached_property
     def command_interfaces(self) -> Mapping[str, tuple[frozenset[str], Location]] | None:
@@ -221,11 +225,10 @@ class Workspace:
             *macros, rest = text.split("</xacro:macro>")
             text = "".join([*(_without_macro(it, called) for it in macros), rest])
         written = len(_SYSTEM.findall(text))
-        systems = (
-            len(list(self.robot_root.iterchildren("ros2_control")))
-            if self.robot_root is not None
-            else -1
-        )
+        if self.robot_root is not None:
+            systems = len(list(self.robot_root.iterchildren("ros2_control")))
+        else:
+            systems = -1
         return written <= systems and not self.has_other_robots
 
     def python_node(self, node: StartedNode) -> PythonNode | None:
@@ -233,30 +236,33 @@ class Workspace:
         is known.
         """
         owner = self.package_of(node)
-        found = (
-            self.python_nodes[owner.name]
-            if owner is not None and owner.name in self.python_nodes
-            else None
-        )
-        programs = (
-            [it for it in found.programs if it.name == node.executable] if found is not None else []
-        )
-        return programs[0].nodes[0] if len(programs) == 1 and len(programs[0].nodes) == 1 else None
+        if owner is not None and owner.name in self.python_nodes:
+            found = self.python_nodes[owner.name]
+        else:
+            found = None
+        if found is not None:
+            programs = [it for it in found.programs if it.name == node.executable]
+        else:
+            programs = []
+        if len(programs) == 1 and len(programs[0].nodes) == 1:
+            return programs[0].nodes[0]
+        return None
 
     def package_of(self, node: StartedNode) -> Package | None:
         """Return the package of the workspace whose program a node is."""
-        return self.packages[0].find(node.package) if self.packages else None
+        if self.packages:
+            return self.packages[0].find(node.package)
+        return None
 
     def name_of(self, node: StartedNode) -> str | None:
         """Return the name that a node has, without its namespace; None where it is not known."""
         if node.node_name is None or node.node_name:
             return node.node_name
         own = self.python_node(node)
-        return (
-            own.name
-            if own is not None
-            else known()["node_names"].get(f"{node.package}/{node.executable}")
-        )
+        if own is not None:
+            return own.name
+        names: Mapping[str, str] = known()["node_names"]
+        return names.get(f"{node.package}/{node.executable}")
 
     def children_of(self, name: str) -> frozenset[str]:
         """Return the nodes that a node of another package makes in its process, and that read
@@ -310,7 +316,9 @@ class Workspace:
         """
         inside = posixpath.normpath(path).removeprefix(f"{PREFIX}/")
         holding = [package for package in self.packages if inside in package.installed]
-        return holding[0].path(holding[0].installed[inside]) if holding else None
+        if holding:
+            return holding[0].path(holding[0].installed[inside])
+        return None
 
     @cached_property
     def parameter_files(self) -> Mapping[str, list[StartedNode]]:
@@ -458,7 +466,9 @@ def _without_macro(text: str, called: Collection[str]) -> str:
     """Return a text, which ends where a macro ends, without the macro if nothing calls it."""
     before, _, macro = text.partition("<xacro:macro")
     name = _NAME.search(macro.partition(">")[0])
-    return before if name is not None and name[1] not in called else text
+    if name is not None and name[1] not in called:
+        return before
+    return text
 
 
 def _blank(found: re.Match[str]) -> str:

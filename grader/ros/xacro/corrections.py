@@ -113,9 +113,10 @@ class Corrections:
             and line > 0
             and source.text[line - 1] == "\n"
         )
-        removed = (
-            source.edit(line, end + len(newline), "") if is_alone else source.edit(start, end, "")
-        )
+        if is_alone:
+            removed = source.edit(line, end + len(newline), "")
+        else:
+            removed = source.edit(start, end, "")
         return (source.edit(first, first, f"{block}{newline}{indent}"), removed), node.place.at()
 
     def _included(self, child: XacroNode, tag: str | None) -> list[XacroNode]:
@@ -150,11 +151,9 @@ class Corrections:
         if edits:
             problem = f"there is no property {unknown.name}; a text needs quotes: '{unknown.name}'"
             return _correction(edits, location)._replace(problem=problem)
-        return (
-            self._respelt(place, attribute, unknown, is_of_element=of_element)
-            if unknown.meant
-            else None
-        )
+        if unknown.meant:
+            return self._respelt(place, attribute, unknown, is_of_element=of_element)
+        return None
 
     def _respelt(
         self, place: ScopePlace, attribute: str | None, unknown: UnknownName, *, is_of_element: bool
@@ -173,7 +172,9 @@ class Corrections:
                 )
         edits = _rename(place, attribute, unknown.name, meant)
         sentence = f"the {unknown.kind} {quoted(unknown.name)} is read as {quoted(meant)}"
-        return Correction(edits, sentence, place.at(attribute), is_of_element) if edits else None
+        if edits:
+            return Correction(edits, sentence, place.at(attribute), is_of_element)
+        return None
 
     def _uses(self, name: str) -> int:
         """Return how many attributes use a name in an expression, or give an argument of this
@@ -290,11 +291,15 @@ def _marked(text: str, known: Iterable[str]) -> str:
     def marked(found: re.Match[str]) -> str:
         name = found["brace"] or found["paren"]
         if name is not None:
-            return f"${{{name}}}" if name in known else found[0]
+            if name in known:
+                return f"${{{name}}}"
+            return found[0]
         bare = found["bare"] or ""
         ends = [len(bare), *(at.start() for at in reversed([*re.finditer("_", bare)]))]
         end = next((end for end in ends if bare[:end] in known), 0)
-        return f"${{{bare[:end]}}}{bare[end:]}" if end else found[0]
+        if end:
+            return f"${{{bare[:end]}}}{bare[end:]}"
+        return found[0]
 
     return _UNMARKED.sub(marked, text)
 

@@ -263,11 +263,9 @@ class Expander:
         return len(self._listed) > known
 
     def _place(self, place: ScopePlace, scope: XacroScope | None = None) -> ScopePlace:
-        return (
-            place
-            if place.calls is not None
-            else ScopePlace(place.source, place.tag, self.calls, scope)
-        )
+        if place.calls is not None:
+            return place
+        return ScopePlace(place.source, place.tag, self.calls, scope)
 
     def _element(self, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
         self.budget.charge(_OF_ELEMENT, len(node.tag))

@@ -327,8 +327,6 @@ def _name(tag: str) -> str:
 
 
 def _attributes(attributes: dict[str, str]) -> dict[str, str]:
-    return (
-        attributes
-        if ":" not in "".join(attributes)
-        else {_name(name): it for name, it in attributes.items()}
-    )
+    if ":" not in "".join(attributes):
+        return attributes
+    return {_name(name): it for name, it in attributes.items()}

@@ -61,7 +61,9 @@ def _dotify(value: Value) -> Value:
 def _dot(value: Value) -> Value:
     if isinstance(value, dict):
         return DottedDict({key: _dot(item) for key, item in value.items()})
-    return [_dot(item) for item in value] if isinstance(value, list) else value
+    if isinstance(value, list):
+        return [_dot(item) for item in value]
+    return value
 
 
 def document_functions(
@@ -102,7 +104,9 @@ def _tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]
     if not _PLAIN_SEPARATORS.fullmatch(sep):
         raise Undetermined("tokenize with these separators is not supported")
     parts = re.split(f"[{sep}]", text)
-    return [part for part in parts if part] if skip_empty else parts
+    if skip_empty:
+        return [part for part in parts if part]
+    return parts
 
 
 def _fatal(*parts: Value) -> Value:

@@ -126,9 +126,10 @@ def bind_defaults(
             continue
         if parameter.is_forwarded and texts.is_bound(parameter.name, caller):
             holder = caller.holder(parameter.name)
-            definition = (
-                holder.properties[parameter.name].definition if holder is not None else None
-            )
+            if holder is not None:
+                definition = holder.properties[parameter.name].definition
+            else:
+                definition = None
             texts.check_name(parameter.name, macro.body.place, "params")
             inner.bind(parameter.name, texts.find(parameter.name, caller), definition=definition)
         elif parameter.default is not None:

@@ -142,7 +142,9 @@ class XacroScope:
     def bound(self, name: str) -> Value | None:
         """Return what a name stands for without evaluating it; None if nothing binds it."""
         holder = self.holder(name)
-        return holder.properties[name].value if holder is not None else None
+        if holder is not None:
+            return holder.properties[name].value
+        return None
 
     @property
     def top(self) -> "XacroScope":

@@ -34,9 +34,10 @@ def _needed(node: XacroNode, name: str) -> str:
     """Return an attribute that xacro requires."""
     if name not in node.attributes:
         given = [other for other in node.attributes if near(other, [name])]
-        unknown = (
-            UnknownName(given[0], {name: None}, "attribute", name) if len(given) == 1 else None
-        )
+        if len(given) == 1:
+            unknown = UnknownName(given[0], {name: None}, "attribute", name)
+        else:
+            unknown = None
         raise TagFails(f"<{node.tag}> has no attribute {name}", unknown)
     return node.attributes[name]
 
@@ -155,7 +156,9 @@ def _boolean(value: Value, text: str) -> bool:
     if not isinstance(value, str):
         return bool(value)
     try:
-        return BOOLEANS[value] if value in BOOLEANS else bool(int(value))
+        if value in BOOLEANS:
+            return BOOLEANS[value]
+        return bool(int(value))
     except ValueError:
         raise TagFails(
             f'the condition "{text}" gives "{value}", which is neither true nor false'
@@ -195,9 +198,10 @@ def _property(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes)
     target = _target(given.get("scope"), name, symbols)
     texts.check_name(name, node.place)
     if is_lazy or text is None:
-        definition = (
-            Definition(name, text, node.place, attribute, target) if text is not None else None
-        )
+        if text is not None:
+            definition = Definition(name, text, node.place, attribute, target)
+        else:
+            definition = None
         target.bind(name, value, is_lazy=True, definition=definition)
     else:
         texts.bind(target, name, text, symbols, node.place, attribute)

@@ -116,7 +116,9 @@ class Texts:
 
     def written(self, value: Value) -> str:
         """Return the text of a value. Raises Undetermined, OutOfBudget."""
-        return value if isinstance(value, str) else str_of(self._budget.checked(value))
+        if isinstance(value, str):
+            return value
+        return str_of(self._budget.checked(value))
 
     def text(self, text: str, scope: XacroScope) -> str:
         """Return the value of a text as it is written into the expanded file."""
@@ -227,20 +229,21 @@ class Texts:
         if text.startswith("eval "):
             raise Undetermined("$(eval ...) is not supported: use ${...}")
         if (command in ("env", "optenv") and args) or text == "cwd":
-            what = (
-                f"the environment variable {args[0]}" if args else "the folder in which xacro runs"
-            )
+            if args:
+                what = f"the environment variable {args[0]}"
+            else:
+                what = "the folder in which xacro runs"
             raise Undetermined(f"{what} is known only at run time")
         if "$" in text or "(" in text:
             raise EvaluationFails(f"$({text}): no $ and no ( can be inside of $(...)")
         if command not in ("find", "arg") or len(args) != 1:
             raise EvaluationFails(f"$({text}): expected $(find PACKAGE) or $(arg NAME)")
-        found = self._charge(self.share(args[0]) if command == "find" else self.argument(args[0]))
-        return (
-            _NESTED_FIND.sub(lambda nested: self.share(nested[1]), found)
-            if "$(" in found
-            else found
+        found: str = self._charge(
+            self.share(args[0]) if command == "find" else self.argument(args[0])
         )
+        if "$(" in found:
+            return _NESTED_FIND.sub(lambda nested: self.share(nested[1]), found)
+        return found
 
     def share(self, package: str) -> str:
         """Return the text that $(find package) gives."""

@@ -109,19 +109,18 @@ class Files:
         if path.startswith(("/", "../")) or path == "..":
             raise Undetermined(f"{text} is outside the submission")
         renamed = path + self._extra_ending()
-        return (
-            renamed
-            if path not in self._workspace.paths and renamed in self._workspace.paths
-            else path
-        )
+        if path not in self._workspace.paths and renamed in self._workspace.paths:
+            return renamed
+        return path
 
     def _extra_ending(self) -> str:
         """Return what an upload without the package added to the innermost file's name: .txt of
         a.xacro.txt.
         """
-        added = (
-            _ADDED.fullmatch(posixpath.basename(self.open[-1])) if self._workspace.is_part else None
-        )
+        if self._workspace.is_part:
+            added = _ADDED.fullmatch(posixpath.basename(self.open[-1]))
+        else:
+            added = None
         return added[1] if added is not None else ""
 
     def _share_path(self, package: str, inside: str) -> str:
@@ -132,11 +131,9 @@ class Files:
         )
         if folder is None and source is None:
             raise Undetermined(f"the package {package} is not part of the submission")
-        return (
-            source
-            if source is not None
-            else posixpath.normpath(posixpath.join(folder or "", inside))
-        )
+        if source is not None:
+            return source
+        return posixpath.normpath(posixpath.join(folder or "", inside))
 
     def read(self, path: str) -> bytes:
         """Return the bytes of a file. Raises FileFails for one that does not exist,
@@ -198,11 +195,10 @@ class Files:
         source = Source(path, data.decode("utf-8", "replace"))
         self._budget.charge(1, len(data))
         repaired = repair(source.text)
-        edits = (
-            tuple(source.edit(*change) for change in repaired.changes)
-            if not repaired.is_lossy
-            else ()
-        )
+        if not repaired.is_lossy:
+            edits = tuple(source.edit(*change) for change in repaired.changes)
+        else:
+            edits = ()
         conflicts = find_conflicts(source.text)
         assumed = (
             "; ".join(found.message for found in repaired.assumed[:3])

@@ -205,9 +205,13 @@ def _add_text(children: _Children, text: str | None) -> None:
 def _tag(element: Element) -> str:
     tag = str(element.tag)
     if tag[0] != "{":
-        return tag.replace(_STAND_IN, ":", 1) if tag.startswith(_UNDECLARED_TAG) else tag
+        if tag.startswith(_UNDECLARED_TAG):
+            return tag.replace(_STAND_IN, ":", 1)
+        return tag
     local = tag.rpartition("}")[2]
-    return f"{element.prefix}:{local}" if element.prefix else local
+    if element.prefix:
+        return f"{element.prefix}:{local}"
+    return local
 
 
 def _attributes(element: Element) -> dict[str, str]:

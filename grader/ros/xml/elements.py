@@ -51,7 +51,9 @@ def matches_value(text: str, expected: _Scalar, tolerance: float) -> bool:
     wanted = xml_text(expected)
     one, other = text.strip().lower(), wanted.strip().lower()
     if "true" in (one, other) or "false" in (one, other):
-        return one == other if one not in _BOOLEANS else _BOOLEANS[one] == _BOOLEANS.get(other)
+        if one not in _BOOLEANS:
+            return one == other
+        return _BOOLEANS[one] == _BOOLEANS.get(other)
     actual, numbers = numbers_in(text), numbers_in(wanted)
     if actual and numbers:
         pairs = zip(actual, numbers, strict=False)
@@ -65,7 +67,9 @@ def xml_text(value: _Scalar) -> str:
     """Return a value as XML writes it."""
     if isinstance(value, bool):
         return str(value).lower()
-    return value if isinstance(value, str) else f"{value:.12g}"
+    if isinstance(value, str):
+        return value
+    return f"{value:.12g}"
 
 
 def readable(text: str) -> str:

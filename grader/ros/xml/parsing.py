@@ -101,11 +101,9 @@ def parse_xml(data: bytes) -> Element:
 
 def make_element(tag: str, attributes: dict[str, str], parent: Element | None = None) -> Element:
     """Return a new element, which becomes the last child of its parent."""
-    return (
-        etree.Element(tag, attributes)
-        if parent is None
-        else etree.SubElement(parent, tag, attributes)
-    )
+    if parent is None:
+        return etree.Element(tag, attributes)
+    return etree.SubElement(parent, tag, attributes)
 
 
 def read_document(data: bytes, path: str) -> XmlDocument:

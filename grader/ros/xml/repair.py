@@ -255,11 +255,10 @@ class _Repairer:
             attributes = {key: decode(value[1]), **attributes}
         is_value_lost = "=" in rest and not attributes
         self._is_lossy |= is_value_lost
-        what = (
-            f"with {enumerated(list(map(short, attributes)))}"
-            if attributes
-            else "without attributes"
-        )
+        if attributes:
+            what = f"with {enumerated(list(map(short, attributes)))}"
+        else:
+            what = "without attributes"
         self._assume(
             f"<{short(name)}> is read {what}", found.start(), name if is_value_lost else ""
         )
@@ -284,11 +283,10 @@ class _Repairer:
     def _start(self, tag: Tag) -> None:
         if self._robot is None:
             self._robot = tag.offset
-        parents = (
-            {"robot"}
-            if tag.name in _TOP
-            else {name for name, tags in CHILDREN.items() if tag.name in tags}
-        )
+        if tag.name in _TOP:
+            parents = {"robot"}
+        else:
+            parents = {name for name, tags in CHILDREN.items() if tag.name in tags}
         around = [opened.name for opened in self._open]
         if (
             around
@@ -434,7 +432,9 @@ def _other_attribute(tag: str, given: set[str], value: str) -> str:
     absent = [name for name in known if name not in given and _is_value_of(name, value)]
     needed = [name for name in absent if name in REQUIRED.get(tag, ())]
     found = needed or absent
-    return found[0] if len(found) == 1 else ""
+    if len(found) == 1:
+        return found[0]
+    return ""
 
 
 def _is_value_of(attribute: str, value: str) -> bool:
@@ -465,5 +465,7 @@ def broken_tag(text: str, start: int) -> str:
         read_tag(text, start, lambda *_: None)
     except MalformedTagError:
         found = _BROKEN.match(text, start)
-        return found[0].rstrip() if found is not None else ""
+        if found is not None:
+            return found[0].rstrip()
+        return ""
     return ""

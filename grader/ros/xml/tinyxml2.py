@@ -115,7 +115,9 @@ class _References:
             self._decimal = self._decimal or self._number(_DECIMAL, 10)
             first, code = self._decimal
             complete = first > offset + 1 and source[first - 1 : first] == b"#"
-        return (_encode(code), self._semicolon + 1 - offset) if complete else (b"&", 1)
+        if complete:
+            return (_encode(code), self._semicolon + 1 - offset)
+        return (b"&", 1)
 
     def _number(self, digits: bytes, radix: int) -> tuple[int, int]:
         # TinyXML2 10 multiplies in 32 bits and adds in 64, so very long numbers overflow.
@@ -156,7 +158,9 @@ def _spell(match: re.Match[str]) -> str:
     code = ord(match[0])
     if 0xDC80 <= code <= 0xDCFF:
         return f"\\x{code - 0xDC00:02x}"
-    return chr(0x2400 + code) if code < 0x20 else f"\\u{code:04x}"
+    if code < 0x20:
+        return chr(0x2400 + code)
+    return f"\\u{code:04x}"
 
 
 # --- Tags
@@ -184,7 +188,9 @@ class Tag(NamedTuple):
     @property
     def xml_name(self) -> str:
         """Its name in XML, which may have a prefix."""
-        return self.name if all(map(_is_plain, self.name.split(":", 1))) else "_"
+        if all(map(_is_plain, self.name.split(":", 1))):
+            return self.name
+        return "_"
 
     @property
     def xml(self) -> str:

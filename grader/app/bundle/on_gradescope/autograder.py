@@ -100,7 +100,9 @@ def _results_of(completed: _Completed, seconds: float) -> dict[str, Any] | None:
         return _nothing_graded(
             f"The grader could not grade your submission:\n\n{_messages(completed.errors)}"
         )
-    return _report(completed.output) if completed.code in _GRADED else None
+    if completed.code in _GRADED:
+        return _report(completed.output)
+    return None
 
 
 def _nothing_graded(why: str) -> dict[str, Any]:
@@ -134,9 +136,9 @@ def _report(output: bytes) -> dict[str, Any] | None:
         found = json.loads(output.decode(), parse_constant=_refuse_constant)
     except (ValueError, RecursionError):
         return None
-    return (
-        found if isinstance(found, dict) and isinstance(found.get("score"), int | float) else None
-    )
+    if isinstance(found, dict) and isinstance(found.get("score"), int | float):
+        return found
+    return None
 
 
 def _refuse_constant(constant: str) -> float:

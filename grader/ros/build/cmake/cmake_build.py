@@ -109,7 +109,9 @@ class Build:
             is_there = not path or self.listing.real(path) is not None
         except Undetermined:
             return None
-        return None if not is_there and ignored_part(path) else is_there
+        if not is_there and ignored_part(path):
+            return None
+        return is_there
 
     def exists(self, text: str) -> bool | None:
         """Return whether a file or folder of the package exists; None where that is not known."""
@@ -389,11 +391,10 @@ class Build:
             elif state is None:
                 self._leave_open(Unknown(f"{text} is not a file of the package", command.at))
             elif state or "OPTIONAL" not in options:
-                reason = (
-                    "it is a folder: write install(DIRECTORY ...)"
-                    if state
-                    else "there is no such file"
-                )
+                if state:
+                    reason = "it is a folder: write install(DIRECTORY ...)"
+                else:
+                    reason = "there is no such file"
                 hint = "" if state else did_you_mean(path or "", self.listing.files)
                 self.stop(reason, command.at, path or text, hint)
 
@@ -429,9 +430,10 @@ class Build:
                 did_you_mean(path, self.listing.folders),
             )
         else:
-            above = (
-                target if text.endswith("/") else posixpath.join(target, posixpath.basename(path))
-            )
+            if text.endswith("/"):
+                above = target
+            else:
+                above = posixpath.join(target, posixpath.basename(path))
             for file in self._below(path, patterns):
                 self._copy(
                     posixpath.join(path, file),

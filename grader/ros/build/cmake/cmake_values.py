@@ -68,7 +68,9 @@ class Values:
         """Return what the arguments of a command stand for; None if one is not known."""
         texts = self.texts(command.arguments)
         known = [text for text in texts if isinstance(text, str)]
-        return known if len(known) == len(texts) else None
+        if len(known) == len(texts):
+            return known
+        return None
 
     def first(self, command: Command) -> Text:
         """Return what the first argument of a command stands for; an empty text without any."""
@@ -79,11 +81,9 @@ class Values:
         if argument.kind in ("bracket", "paren"):
             return [argument.text]
         text = self._value(argument.text, argument.at)
-        return (
-            [text]
-            if isinstance(text, Unknown) or argument.kind == "quoted"
-            else [*split_list(text)]
-        )
+        if isinstance(text, Unknown) or argument.kind == "quoted":
+            return [text]
+        return [*split_list(text)]
 
     def _value(self, text: str, at: Position) -> Text:
         """Return a text with the values of variables, whose names may be made of variables."""
@@ -103,11 +103,9 @@ class Values:
                 stack[-1].append(piece[0])
         found = joined(part for parts in stack for part in parts)
         self.budget.charge(1, len(text) if isinstance(found, Unknown) else len(found))
-        return (
-            Unknown("a value is too long", at)
-            if isinstance(found, str) and len(found) > _MAX_TEXT
-            else found
-        )
+        if isinstance(found, str) and len(found) > _MAX_TEXT:
+            return Unknown("a value is too long", at)
+        return found
 
     def lookup(self, name: str, at: Position) -> Text:
         """Return the value of a variable: an empty text if it is certainly not set."""
@@ -115,9 +113,9 @@ class Values:
             return self.variables[name]
         of_packages = (f"{package}_" for package in self.packages)
         is_foreign = name.lower().startswith((*known_words("foreign"), *of_packages))
-        return (
-            Unknown(f"the value of {name} is not known", at) if self.is_opaque or is_foreign else ""
-        )
+        if self.is_opaque or is_foreign:
+            return Unknown(f"the value of {name} is not known", at)
+        return ""
 
     def assign(self, name: str, value: Text) -> None:
         """Set a variable; to what is not known if the command may not run."""

@@ -42,17 +42,26 @@ class Condition:
     def holds(self) -> bool | None:
         """Return whether it holds; None if that is not known."""
         found = self._either(0)
-        return found if self._index == len(self._tokens) else None
+        if self._index == len(self._tokens):
+            return found
+        return None
 
     def _peek(self) -> Text | None:
-        return self._tokens[self._index][0] if self._index < len(self._tokens) else None
+        if self._index < len(self._tokens):
+            return self._tokens[self._index][0]
+        return None
 
     def _either(self, depth: int) -> bool | None:
         found = self._both(depth)
         while self._peek() == "OR":
             self._index += 1
             other = self._both(depth)
-            found = True if found or other else (None if None in (found, other) else False)
+            if found or other:
+                found = True
+            elif None in (found, other):
+                found = None
+            else:
+                found = False
         return found
 
     def _both(self, depth: int) -> bool | None:
@@ -60,7 +69,12 @@ class Condition:
         while self._peek() == "AND":
             self._index += 1
             other = self._negated(depth)
-            found = False if False in (found, other) else (None if None in (found, other) else True)
+            if False in (found, other):
+                found = False
+            elif None in (found, other):
+                found = None
+            else:
+                found = True
         return found
 
     def _negated(self, depth: int) -> bool | None:
@@ -85,21 +99,25 @@ class Condition:
         text, is_plain = first
         if is_plain and text in _UNARY and self._peek() not in (None, "AND", "OR", ")"):
             operand = self._next()
-            return self._test(str(text), operand[0]) if operand is not None else None
+            if operand is not None:
+                return self._test(str(text), operand[0])
+            return None
         word = self._peek()
         if isinstance(word, str) and (
             word in _COMPARE or word.startswith(("STR", "VERSION_", "MATCHES", "IN_LIST"))
         ):
             self._index += 1
             second = self._next()
-            return (
-                self._compare(self._operand(*first), word, second) if second is not None else None
-            )
+            if second is not None:
+                return self._compare(self._operand(*first), word, second)
+            return None
         return self._truth(text, is_plain)
 
     def _next(self) -> tuple[Text, bool] | None:
         self._index += 1
-        return self._tokens[self._index - 1] if self._index <= len(self._tokens) else None
+        if self._index <= len(self._tokens):
+            return self._tokens[self._index - 1]
+        return None
 
     def _operand(self, text: Text, is_plain: bool) -> Text:
         """Return a text, or the value of the variable that it names."""
@@ -114,7 +132,9 @@ class Condition:
         if constant is not None or not is_plain:
             return bool(constant)
         value = self._values.lookup(text, self._at)
-        return None if isinstance(value, Unknown) else not _is_false(value)
+        if isinstance(value, Unknown):
+            return None
+        return not _is_false(value)
 
     def _test(self, word: str, operand: Text) -> bool | None:
         if isinstance(operand, Unknown):

@@ -124,11 +124,10 @@ def _arguments(source: Source, offset: int) -> tuple[tuple[Argument, ...], int]:
         offset = _skip(text, offset)
         match = _ARGUMENT.match(text, offset)
         if match is None:
-            reason = (
-                "a quote is not closed"
-                if text[offset : offset + 1] == '"'
-                else "a parenthesis is not closed"
-            )
+            if text[offset : offset + 1] == '"':
+                reason = "a quote is not closed"
+            else:
+                reason = "a parenthesis is not closed"
             raise CMakeFault(reason, _position(source, start))
         offset = match.end()
         kind: Literal["paren", "bracket", "quoted", "unquoted"] = match.lastgroup  # type: ignore[assignment]
