@@ -83,18 +83,11 @@ _NO_PACKAGES = frozenset(
         "site_scons",
     }
 )
-# PEP 440, as packaging.version has it; the name and value of an entry point, as importlib.metadata
-# has them.
-_VERSION = re.compile(
-    r"\s*v?(?:\d+!)?\d+(?:\.\d+)*(?:[-_.]?(?:alpha|a|beta|b|preview|pre|c|rc)[-_.]?\d*)?"
-    r"(?:-\d+|[-_.]?(?:post|rev|r)[-_.]?\d*)?(?:[-_.]?dev[-_.]?\d*)?(?:\+[a-z0-9]+(?:[-_.][a-z0-9]+)*)?\s*",
-    re.IGNORECASE,
-)
+# What nearly every setup.py has needs no packaging, whose import takes a tenth of reading a package.
+_PLAIN_VERSION = re.compile(r"[0-9]+(?:\.[0-9]+)*")
+_PLAIN_REQUIREMENT = re.compile(r"[A-Za-z0-9]+(?:[_-][A-Za-z0-9]+)*")
+# The name and value of an entry point, as importlib.metadata has them.
 _ENTRY_POINT = re.compile(r"\s*[^=\s][^=]*=\s*[\w.]+\s*(?::\s*[\w.]+\s*)?(?:\[.*\]\s*)?")
-_REQUIREMENT = re.compile(
-    r"\s*[A-Za-z0-9](?:[\w.-]*[A-Za-z0-9])?(?:\[[\w, "
-    r"-]*\])?(?:\s*(?:[<>~!=]=?|===)\s*[\w.*+!-]+\s*,?)*\s*"
-)
 _TEXTS = (
     "name",
     "description",
@@ -574,7 +567,33 @@ def _is_list(value: Value) -> bool:
 def _are_requirements(value: Value) -> bool:
     if isinstance(value, str):
         value = [value] if value else []
-    return _is_list(value) and all(map(_REQUIREMENT.fullmatch, value))
+    return _is_list(value) and all(map(_is_requirement, value))
+
+
+def _is_requirement(text: str) -> bool:
+    """Return whether setuptools accepts the text of a requirement (PEP 508)."""
+    if _PLAIN_REQUIREMENT.fullmatch(text):
+        return True
+    from packaging.requirements import InvalidRequirement, Requirement
+
+    try:
+        Requirement(text)
+    except InvalidRequirement:
+        return False
+    return True
+
+
+def _is_version(text: str) -> bool:
+    """Return whether setuptools accepts the text of a version (PEP 440)."""
+    if _PLAIN_VERSION.fullmatch(text):
+        return True
+    from packaging.version import InvalidVersion, Version
+
+    try:
+        Version(text)
+    except InvalidVersion:
+        return False
+    return True
 
 
 # Whether setuptools certainly accepts the value of an argument.
@@ -598,7 +617,7 @@ _USUAL: Mapping[str, Callable[[Value], bool]] = {
 def _version_findings(kwargs: Mapping[str, Value], at: Position) -> Iterator[_Finding]:
     version = kwargs.get("version")
     if isinstance(version, str):
-        if version and not _VERSION.fullmatch(version):
+        if version and not _is_version(version):
             yield f"the version {version!r} is not valid: write numbers with dots, such as 0.1.0"
     elif not isinstance(version, int | float | None):
         yield unknown_in(version) or Unknown("this version is not evaluated", at)
