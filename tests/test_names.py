@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.base.names import near
+from grader.base.names import closest, near
 from tests.examples import examples
 
 SAME = [
@@ -55,3 +55,20 @@ def test_the_nearest_is_another_known_name(name: str, known: set[str]) -> None:
     assert found is None or (
         found in known - {name} and [*filter(str.isdigit, found)] == [*filter(str.isdigit, name)]
     )
+
+
+@pytest.mark.parametrize(
+    ("name", "known", "suggestion"),
+    [
+        ("wheel_left_joint", ["right_wheel_joint", "left_wheel_joint"], "left_wheel_joint"),
+        ("wheel_left_joint", ["right_wheel_joint"], None),
+        ("front_wheel", ["rear_wheel"], None),
+        ("link_4", ["link_0"], None),
+        ("lft_wheel", ["left_wheel"], "left_wheel"),
+        ("xzy", ["xyz"], "xyz"),
+        ("joint_base_lidar", ["base_lidar_join", "base_lidar_joint"], "base_lidar_joint"),
+    ],
+)
+def test_a_suggestion_is_no_sibling(name: str, known: list[str], suggestion: str | None) -> None:
+    """The same words in another order win over other letters, and a name of another side or number is never offered."""
+    assert closest(name, known) == suggestion

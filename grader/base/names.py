@@ -8,7 +8,7 @@ from grader.base.text import quoted
 
 _MAX_CANDIDATES = 300
 _MAX_KNOWN = 1000
-_MARGIN = 0.1  # of difflib's ratios
+_LIKENESS, _MARGIN = 0.7, 0.1  # of difflib's ratios
 MAX_LENGTH = 60  # characters of names that are compared
 _CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
 _WORD = re.compile(r"\d+|[^\W\d_]+")
@@ -60,41 +60,55 @@ _DISTINCT = frozenset(
 )
 
 
-def closest(name: str, known: Iterable[str]) -> str | None:
-    """Return the known name that is most like this one, or None if none is close."""
-    from difflib import get_close_matches  # imported late: most files have no misspelt name
+def closest(
+    name: str, known: Iterable[str], *, likeness: float = _LIKENESS, is_clear: bool = False
+) -> str | None:
+    """Return the known name that is most like this one, or None if none is close.
+
+    The first step that finds a name decides: the same words in another order; the most similar text
+    by difflib; the same letters in another order. The name of a sibling is never returned: one with
+    another number, or another word of side, place or measure.
+
+    Args:
+        name: The name that is not known.
+        known: The known names; of more than 300 those that begin or end alike are compared.
+        likeness: The smallest ratio of difflib.
+        is_clear: Whether no other known name may be nearly as similar.
+    """
+    from difflib import SequenceMatcher, get_close_matches  # late: few files have a misspelt name
 
     if len(name) > MAX_LENGTH:
         return None
-    lower = name.lower()
-    others = (
-        other for other in sorted(known, reverse=True) if other != name and len(other) <= MAX_LENGTH
-    )
-    candidates = {other.lower(): other for other in others}
-    if len(candidates) > _MAX_CANDIDATES:  # comparing is slow: keep those that begin or end alike
-        alike = (
-            other for other in candidates if other[:3] == lower[:3] or other[-3:] == lower[-3:]
-        )
-        candidates = {other: candidates[other] for other in islice(alike, _MAX_CANDIDATES)}
-    matches = get_close_matches(lower, candidates, n=1, cutoff=0.7)
+    lower, words, sides = name.lower(), sorted(_words(name)), _sides(name)
+    candidates: dict[str, str] = {}
+    for other in sorted(known, reverse=True):
+        if other != name and len(other) <= MAX_LENGTH:
+            candidates[other.lower()] = other
+    if len(candidates) > _MAX_CANDIDATES:  # comparing is slow
+        alike = (it for it in candidates if it[:3] == lower[:3] or it[-3:] == lower[-3:])
+        candidates = {it: candidates[it] for it in islice(alike, _MAX_CANDIDATES)}
+    siblings = [it for it, other in candidates.items() if _are_siblings(sides, _sides(other))]
+    for sibling in siblings:
+        del candidates[sibling]
+    matches = [it for it in candidates if len(words) > 1 and sorted(_words(it)) == words]
+    if not matches:
+        matches = get_close_matches(lower, candidates, n=2, cutoff=likeness)
+        ratios = [SequenceMatcher(None, lower, it).ratio() for it in matches if is_clear]
+        if len(ratios) > 1 and ratios[0] - ratios[1] <= _MARGIN:
+            return None
     if not matches:  # difflib rates swapped letters in short names too low, such as xzy for xyz
-        matches = [other for other in candidates if sorted(other) == sorted(lower)]
+        matches = [it for it in candidates if sorted(it) == sorted(lower)]
     return candidates[matches[0]] if matches else None
 
 
-def clearly_closest(name: str, known: Iterable[str]) -> str | None:
-    """Return the known name that is most like this one, if no other one is nearly as like it."""
-    from difflib import SequenceMatcher  # imported late, as above
+def _sides(name: str) -> list[str]:
+    """Return the numbers and the words of side, place and measure in a name."""
+    return sorted(word for word in _words(name) if word.isdigit() or word in _DISTINCT)
 
-    names = list(known)
-    first = closest(name, names)
-    second = closest(name, (it for it in names if it != first))
-    if first is None or second is None:
-        return first
-    ratios = [SequenceMatcher(None, name.lower(), it.lower()).ratio() for it in (first, second)]
-    if ratios[0] - ratios[1] > _MARGIN:
-        return first
-    return None
+
+def _are_siblings(sides: list[str], others: list[str]) -> bool:
+    """Return whether two names differ in the numbers or sides that both of them have."""
+    return len(sides) == len(others) and sides != others
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
@@ -140,13 +154,11 @@ def are_of_one_side(name: str, other: str) -> bool:
     any order.
     """
     words = _words(name), _words(other)
-    first, second = (sorted(it for it in each if it.isdigit() or it in _DISTINCT) for each in words)
     pairs: Iterable[tuple[str, str]] = ()
     if len(words[0]) == len(words[1]) and sorted(words[0]) != sorted(words[1]):
         pairs = zip(*words, strict=True)
-    return first == second and not any(
-        one != known and _are_distinct(one, known) for one, known in pairs
-    )
+    is_other = any(one != known and _are_distinct(one, known) for one, known in pairs)
+    return _sides(name) == _sides(other) and not is_other
 
 
 def _words(name: str) -> list[str]:

@@ -83,7 +83,7 @@ _NO_PACKAGES = frozenset(
         "site_scons",
     }
 )
-# What nearly every setup.py has needs no packaging, whose import takes a tenth of reading a package.
+# Most files need no packaging, whose import takes a tenth of reading a package.
 _PLAIN_VERSION = re.compile(r"[0-9]+(?:\.[0-9]+)*")
 _PLAIN_REQUIREMENT = re.compile(r"[A-Za-z0-9]+(?:[_-][A-Za-z0-9]+)*")
 # The name and value of an entry point, as importlib.metadata has them.

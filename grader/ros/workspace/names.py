@@ -5,7 +5,7 @@ somewhere.
 from collections.abc import Iterable, Mapping
 from typing import Literal, NamedTuple, get_args
 
-from grader.base.names import are_of_one_side, clearly_closest, near
+from grader.base.names import are_of_one_side, closest, near
 from grader.base.source import Location
 from grader.base.text import quoted
 
@@ -176,7 +176,7 @@ def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mism
     meant = near(use.name, known, "link" if use.kind == "frame" else use.kind)
     if is_open and meant is None:
         return None
-    meant = meant or clearly_closest(use.name, known)
+    meant = meant or closest(use.name, known, is_clear=True)
     is_sure = not is_open and (meant is not None or not use.optional)
     if use.optional and meant is None:
         return None
