@@ -107,8 +107,15 @@ def _sides(name: str) -> list[str]:
 
 
 def _are_siblings(sides: list[str], others: list[str]) -> bool:
-    """Return whether two names differ in the numbers or sides that both of them have."""
-    return len(sides) == len(others) and sides != others
+    """Return whether two names differ in the numbers or sides that both of them have. Numbers of
+    another length may be mistyped.
+    """
+    if len(sides) != len(others):
+        return False
+    for side, other in zip(sides, others, strict=True):
+        if side != other and side.isdigit() == other.isdigit():
+            return not side.isdigit() or len(side) == len(other)
+    return False
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
