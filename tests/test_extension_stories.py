@@ -175,8 +175,8 @@ def test_a_new_rubric(project: Path) -> None:
 
 def test_a_new_format(project: Path) -> None:
     """A format is a module, a row of the registry, a row of the documentation and a line of the changelog."""
-    (project / "grader/report/line.py").write_text(FORMAT, encoding="utf-8")
-    row, last = '    LINE = "line", "line:render_line"', '"svg:render_svg"\n'
+    (project / "grader/report/writers/line.py").write_text(FORMAT, encoding="utf-8")
+    row, last = '    LINE = "line", "writers.line:render_line"', '"writers.svg:render_svg"\n'
     replace(project / "grader/report/formats.py", last, f"{last}{row}\n")
     replace(
         project / "docs/command-line.md",
