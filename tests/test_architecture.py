@@ -1,6 +1,7 @@
 """A module imports from lower packages and rooms only, and there is no cycle."""
 
 import ast
+from collections import Counter
 from collections.abc import Iterator
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from grader.lab.checks.registry import own_checks
+from tests.prose import COMPREHENSIONS, Prose, size
 
 ROOT = Path(__file__).parent.parent / "grader"
 # The packages, and the rooms inside each of them, from the bottom: what stands in one string does
@@ -94,6 +96,24 @@ LIBRARIES = {
     "pebble": {"workers"},
     "distributed": {"workers"},
     "csv": {"classroom.tables"},
+}
+
+
+# How dense the code may be: see `tests/prose.py`. A limit may only get lower.
+LIMITS = {
+    "nodes": 480_419,
+    "nodes of a simple statement, mean": 15.0,
+    "nodes of a simple statement, 90th percentile": 26,
+    "comprehensions for each 1,000 nodes": 6.0,
+    "conditional expressions for each 1,000 nodes": 3.3,
+    "comprehensions that hold another": 20,
+    "conditional expressions that hold another": 0,
+    "simple statements with several comprehensions": 15,
+    "packed functions over 300 nodes": 10,
+    "packed functions over 200 nodes": 80,
+    "small private functions that are used once": 15,
+    "code that reads a message": 0,
+    "names of ros that other packages import": 150,
 }
 
 
@@ -251,3 +271,61 @@ def used_names(path: Path) -> Iterator[str]:
                 yield from (
                     f"{package}.{text.replace(':', '.')}" for package in ("grader", "grader.report")
                 )
+
+
+@cache
+def prose() -> Prose:
+    """Return the code of the grader, which is parsed once."""
+    return Prose(MODULES)
+
+
+def figures_of_prose() -> dict[str, float]:
+    """Return the figures of how dense the code is."""
+    code = prose()
+    sizes = [size(statement) for statement in code.simple_statements]
+    nodes = sum(code.kinds.values())
+    comprehensions = sum(code.kinds[kind] for kind in COMPREHENSIONS)
+    return {
+        "nodes": nodes,
+        "nodes of a simple statement, mean": sum(sizes) / len(sizes),
+        "nodes of a simple statement, 90th percentile": sizes[len(sizes) * 9 // 10],
+        "comprehensions for each 1,000 nodes": 1000 * comprehensions / nodes,
+        "conditional expressions for each 1,000 nodes": 1000 * code.kinds[ast.IfExp] / nodes,
+        "comprehensions that hold another": len(code.holding(COMPREHENSIONS)),
+        "conditional expressions that hold another": len(code.holding((ast.IfExp,))),
+        "simple statements with several comprehensions": code.crowded_statements(),
+        "packed functions over 300 nodes": sum(it.is_packed(300) for it in code.functions),
+        "packed functions over 200 nodes": sum(it.is_packed(200) for it in code.functions),
+        "small private functions that are used once": len(code.tiny_functions()),
+        "code that reads a message": len(code.comparisons_of_messages()),
+        "names of ros that other packages import": len(names_from_ros()),
+    }
+
+
+def names_from_ros() -> set[tuple[str, str]]:
+    """Return the modules of `ros` with the names that other packages import from them."""
+    pairs = set()
+    for module, path in MODULES.items():
+        if module.startswith("grader.ros."):
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("grader.ros."):
+                pairs |= {(str(node.module), alias.name) for alias in node.names}
+    return pairs
+
+
+@pytest.mark.slow
+def test_the_code_gets_no_denser() -> None:
+    """No figure is above its limit, and no limit is far above its figure: limits only get tighter."""
+    figures = figures_of_prose()
+    assert figures.keys() == LIMITS.keys()
+    assert {name: value for name, value in figures.items() if value > LIMITS[name]} == {}
+    assert {name: value for name, value in figures.items() if value < 0.9 * LIMITS[name] - 2} == {}
+
+
+def test_names_are_unique() -> None:
+    """No two classes have one name, nor two modules of one package."""
+    assert prose().repeated_class_names() == {}
+    modules = [path for path in MODULES.values() if path.stem != "__init__"]
+    names = Counter((path.relative_to(ROOT).parts[0], path.stem) for path in modules)
+    assert [name for name, count in names.items() if count > 1] == []
