@@ -198,14 +198,20 @@ def _outcome(subjects: _Subjects, fact: Fact) -> Outcome:
     """
     check = find_check(fact.check)
     assert check is not None
-    _, read = read_toml(f"it = {toml_literal(fact.arguments)}".encode(), Path())
-    given = {name: check.parameters[name].type.parse(value) for name, value in read["it"].items()}
-    given = without_selectors(given, subjects["robot"]) if "robot" in subjects else given
+    # The arguments are read as those of a rubric are: -0.0 and 1.0 change.
+    _, table = read_toml(f"it = {toml_literal(fact.arguments)}".encode(), Path())
+    given = {}
+    for name, value in table["it"].items():
+        given[name] = check.parameters[name].type.parse(value)
+    if "robot" in subjects:
+        given = without_selectors(given, subjects["robot"])
     usual, _ = _USUAL.get(fact.check, ({}, ""))
-    arguments = {
-        name: str(it).lower() if isinstance(it, bool) else it for name, it in fact.args.items()
-    }
-    submission = subjects["submission"].under(arguments) if arguments else subjects["submission"]
+    launch_arguments = {}
+    for name, value in fact.args.items():
+        launch_arguments[name] = str(value).lower() if isinstance(value, bool) else value
+    submission = subjects["submission"]
+    if launch_arguments:
+        submission = submission.under(launch_arguments)
     if fact.package:
         submission = submission.with_package(fact.package)
     known = {**subjects, "submission": submission, "package": submission.package}

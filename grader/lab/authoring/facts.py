@@ -5,7 +5,7 @@ Here are those of the robot: its file, links, joints and tree.
 """
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import permutations
 from math import degrees, isfinite
 from typing import Any, NamedTuple
@@ -305,7 +305,8 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
     the tips move.
     """
     robot = solution.robot
-    joints, root = robot.parent_joints.values(), robot.main_tree[0]
+    joints = robot.parent_joints.values()
+    root = robot.main_tree[0]
     words = words_of_foreign(solution.root)
     used = {joint.name: joint.child for joint in joints if joint.name in words}
     if used and not are_joints_free(solution):
@@ -313,30 +314,34 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
     fixed = (joint.child for joint in joints if joint.parent == root and joint.type == "fixed")
     rooted = _robot_fact("root_of_tree", link=root, holds=next(fixed, root))
     yield rooted
-    held = tuple(f"{joint.child} {check}" for joint in joints for check in ("held_by", "mimics"))
-    of_types = Carried(held, rooted.check, rooted.arguments)
+    # A wrong type of a joint is the mistake of another criterion.
+    of_types = Carried(_words_of_joints(joints, "held_by mimics"), rooted.check, rooted.arguments)
     moving = [joint for joint in joints if joint.type != "fixed"]
     kinds = Counter(joint.type for joint in moving)
-    numbers = {
-        "moving": sum(joint.mimic is None for joint in moving),
-        **{kind: kinds[kind] for kind in _COUNTED},
-    }
+    numbers = {"moving": sum(joint.mimic is None for joint in moving)}
+    for kind in _COUNTED:
+        numbers[kind] = kinds[kind]
     yield _robot_fact("counts", **numbers)._replace(carried=(of_types,))
-    inner = {joint.parent for joint in joints}
-    chains = {name: robot.chain(name) for name in robot.main_tree if name not in inner}
-    tips = [name for name, chain in chains.items() if any(joint.type != "fixed" for joint in chain)]
+    tips = _moving_tips(robot)
     if tips:
-        names = [repr(tip) for tip in tips[:_MAX_TIPS]]
-        title = (
-            f"{enumerated(names)} {'moves' if len(names) == 1 else 'move'} as in the reference "
-            "solution"
-        )
-        known = [
-            f"{joint.child} {check}"
-            for joint in joints
-            for check in ("frame_at", "joint_axis", "mimics")
-        ]
-        motion = _robot_fact("kinematics_match_reference", links=tips[:_MAX_TIPS], match="order")
-        yield motion._replace(
-            title=title, carried=(Carried(tuple(known), "counts", numbers), of_types)
-        )
+        verb = "moves" if len(tips) == 1 else "move"
+        title = f"{enumerated(list(map(repr, tips)))} {verb} as in the reference solution"
+        known = _words_of_joints(joints, "frame_at joint_axis mimics")
+        motion = _robot_fact("kinematics_match_reference", links=tips, match="order")
+        carried = (Carried(known, "counts", numbers), of_types)
+        yield motion._replace(title=title, carried=carried)
+
+
+def _words_of_joints(joints: Iterable[Joint], checks: str) -> tuple[str, ...]:
+    """Return the words of the facts that checks, with spaces between, say of the joints' links."""
+    return tuple(f"{joint.child} {check}" for joint in joints for check in checks.split())
+
+
+def _moving_tips(robot: Configuration) -> list[str]:
+    """Return the first links that hold no other one, and that a joint moves."""
+    inner = {joint.parent for joint in robot.parent_joints.values()}
+    tips = []
+    for name in robot.main_tree:
+        if name not in inner and any(joint.type != "fixed" for joint in robot.chain(name)):
+            tips.append(name)
+    return tips[:_MAX_TIPS]

@@ -113,14 +113,20 @@ def _places(text: str) -> Iterator[tuple[Element, str, int]]:
         root, source = document.root, document.source
     labels: dict[Element | None, str] = {}
     counts: Counter[str] = Counter()
-    for index, element in enumerate(root.iter("*") if root is not None else ()):
-        parent, (_, start) = element.getparent(), source.element(index)
-        is_named = parent is not None and (element.tag != "material" or parent.getparent() is None)
-        name = (element.get("name") or element.get("reference") or "") if is_named else ""
-        label = f"{text[start + 1 : name_end(text, start)]} {name}".strip()
-        label = f"{labels[parent]}/{label}" if labels.get(parent) else label
+    if root is None:
+        return
+    for index, element in enumerate(root.iter("*")):
+        parent = element.getparent()
+        _, start = source.element(index)
+        label = text[start + 1 : name_end(text, start)]
+        if parent is not None and (element.tag != "material" or parent.getparent() is None):
+            name = element.get("name") or element.get("reference") or ""
+            label = f"{label} {name}".strip()
+        if labels.get(parent):
+            label = f"{labels[parent]}/{label}"
         counts[label] += 1
-        label += f" {counts[label]}" if counts[label] > 1 else ""  # of equal siblings: visual 2
+        if counts[label] > 1:  # of equal siblings: visual 2
+            label += f" {counts[label]}"
         labels[element] = label if parent is not None else ""
         yield element, label, start
 
@@ -296,22 +302,21 @@ def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> Iterator
     for item in _entries(file):
         start, end = file.span(item)
         comma = re.compile(r"\s*,").match(file.text, end)
-        yield MutantEdit(
-            family, f"{label} {_short(file, item)}", start, comma.end() if comma else end, ""
-        )
+        if comma is not None:
+            end = comma.end()
+        yield MutantEdit(family, f"{label} {_short(file, item)}", start, end, "")
     for call in file.calls("add_action"):
         action = call.args[0] if call.args else call
         yield MutantEdit(family, f"{label} {_short(file, action)}", *file.span(call), "None")
-    for node in file.imports if is_setup else ():
-        yield MutantEdit(
-            "import deleted", f"{label} {file.segment(node)}", *file.span(node), "pass"
-        )
-    ignored = [*_for_people(file)]
+    if is_setup:
+        for node in file.imports:
+            place = f"{label} {file.segment(node)}"
+            yield MutantEdit("import deleted", place, *file.span(node), "pass")
+    ignored = list(_for_people(file))
     for text, start, end in file.literals:
         if text.strip() and not any(first <= start < last for first, last in ignored):
-            yield MutantEdit(
-                "string misspelt", f"{label} {text[:MAX_LABEL]}", start, end, misspelt(text)
-            )
+            place = f"{label} {text[:MAX_LABEL]}"
+            yield MutantEdit("string misspelt", place, start, end, misspelt(text))
 
 
 def _entries(file: PythonFile) -> Iterator[ast.expr]:

@@ -227,38 +227,42 @@ def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[F
     """Yield that a build installs the URDF, the launch and RViz files, and a file of each other
     folder.
     """
-    own = {
-        target: path
-        for target, path in package.installed.items()
-        if target.startswith(package.share)
-    }
-    elsewhere = {
-        path
-        for target, path in own.items()
-        if any(f"{target}/".startswith(f"{it}/") for it in named)
-    }
-    installed = [path for path in own.values() if path not in elsewhere]
-    launches = [
-        path for path in package.launch_files if path in installed or not path.startswith("test/")
-    ]
+    installed = []
+    elsewhere = set()  # other criteria name these
+    for target, path in package.installed.items():
+        if not target.startswith(package.share):
+            continue
+        installed.append(path)
+        if any(f"{target}/".startswith(f"{place}/") for place in named):
+            elsewhere.add(path)
+    installed = [path for path in installed if path not in elsewhere]
+    launches = []
+    for path in package.launch_files:
+        if path in installed or not path.startswith("test/"):
+            launches.append(path)
     kinds = {"urdf": [urdf] if urdf else [], "launch": launches, "rviz": package.rviz_files}
-    kinds = {
-        kind: [path for path in paths if path not in elsewhere] for kind, paths in kinds.items()
-    }
     for kind, paths in kinds.items():
-        for name in map(posixpath.basename, paths):
-            yield _package_fact("build_installs", name, kind=kind, name=name, despite_errors=True)
-    patterns = {
-        f"{folder}/*{posixpath.splitext(path)[1]}": None
-        for path in installed
-        if (folder := posixpath.dirname(path)) not in ("", "resource")
-        and path not in package.launch_files
-        and not path.endswith(_OWN_KINDS)
-    }
+        for path in paths:
+            if path not in elsewhere:
+                name = posixpath.basename(path)
+                yield _package_fact(
+                    "build_installs", name, kind=kind, name=name, despite_errors=True
+                )
     with_named = (Carried(("files names_agree",), "package_found", {"name": package.name}),)
-    for pattern in patterns:
+    for pattern in _patterns_of_others(package, installed):
         fact = _package_fact("installs_files", pattern, files=[pattern], despite_errors=True)
         yield fact._replace(carried=with_named)
+
+
+def _patterns_of_others(package: Package, installed: Iterable[str]) -> list[str]:
+    """Return a pattern for each folder and ending of files of other kinds, in the files' order."""
+    patterns: dict[str, None] = {}
+    for path in installed:
+        folder = posixpath.dirname(path)
+        is_own = path in package.launch_files or path.endswith(_OWN_KINDS)
+        if folder not in ("", "resource") and not is_own:
+            patterns[f"{folder}/*{posixpath.splitext(path)[1]}"] = None
+    return list(patterns)
 
 
 def _launch_facts(
@@ -267,17 +271,22 @@ def _launch_facts(
     """Yield what may be true of a launch file, which costs nothing if it starts nothing by a
     mistake of others.
     """
-    name, launch = posixpath.basename(path), package.launch(path)
+    name = posixpath.basename(path)
+    launch = package.launch(path)
     yield _package_fact("launch_found", name, name=name)
-    included = {posixpath.basename(it.path) for it in launch.passed}
-    others = tuple(
-        it for it in words_of_launches(submission) if it.split(" ")[-2] in included - {name}
-    )
-    found = Carried((*_builds(submission), *_STOPPING, *others), "launch_found", {"name": name})
-    after = found._replace(causes=(*found.causes, f"{prefix}{name} node_runs"))
-    if nodes := _nodes_that_start(launch):
-        yield _package_fact("node_runs", name, launch=name, nodes=nodes)._replace(carried=(found,))
-    yield from (it._replace(carried=(after,)) for it in _turned_facts(package, path))
+    included = {posixpath.basename(passed.path) for passed in launch.passed} - {name}
+    causes = [*_builds(submission), *_STOPPING]
+    for words in words_of_launches(submission):
+        if words.split(" ")[-2] in included:
+            causes.append(words)
+    found = Carried(tuple(causes), "launch_found", {"name": name})
+    after = found._replace(causes=(*causes, f"{prefix}{name} node_runs"))
+    nodes = _nodes_that_start(launch)
+    if nodes:
+        started = _package_fact("node_runs", name, launch=name, nodes=nodes)
+        yield started._replace(carried=(found,))
+    for turned in _turned_facts(package, path):
+        yield turned._replace(carried=(after,))
     if launch.named("urdf", "rviz", "include"):
         unread = after._replace(causes=(*after.causes, "parameters names_agree"))
         yield _package_fact("launch_finds_files", name, name=name)._replace(carried=(unread,))

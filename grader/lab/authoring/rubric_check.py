@@ -61,25 +61,27 @@ def reference_failures(rubric: Rubric) -> _Failures:
     Criteria with one message share a line.
     """
     assert rubric.solution is not None
-    failed: dict[Outcome, list[tuple[TomlPath, str]]] = {}
-    unearned = grade(rubric, rubric.solution.submission).unearned
-    own = [(_path_of(it.criterion), it.criterion.id, it.outcome) for it in unearned]
+    failures = []
+    for result in grade(rubric, rubric.solution.submission).unearned:
+        failures.append((_path_of(result.criterion), result.criterion.id, result.outcome))
+    failures += _carried_failures(rubric)
+    failures.sort(key=lambda failure: failure[0][1])
     unresolved = {path[1]: (path, line) for path, line in _unresolved_selectors(rubric)}
-    for path, name, outcome in sorted([*own, *_carried_failures(rubric)], key=lambda it: it[0][1]):
+    alike: dict[Outcome, list[tuple[TomlPath, str]]] = {}
+    for path, name, outcome in failures:
         if path[1] not in unresolved:
-            failed.setdefault(Outcome(outcome.status, outcome.message), []).append((path, name))
-    found = [*unresolved.values()]
-    for outcome, places in failed.items():
-        names, verb = (
-            enumerated([name for _, name in places]),
-            "fails" if len(places) == 1 else "fail",
-        )
-        found.append((places[0][0], f"{names} {verb} on the reference: {outcome.message}"))
-    undecided = sum(
-        len(places) for outcome, places in failed.items() if outcome.status == "pending"
-    )
-    is_failed = bool(unresolved) or undecided < sum(map(len, failed.values()))
-    return _Failures(_lines(rubric, found), is_failed, undecided)
+            alike.setdefault(Outcome(outcome.status, outcome.message), []).append((path, name))
+    lines = list(unresolved.values())
+    undecided = failed = 0
+    for outcome, places in alike.items():
+        names = enumerated([name for _, name in places])
+        verb = "fails" if len(places) == 1 else "fail"
+        lines.append((places[0][0], f"{names} {verb} on the reference: {outcome.message}"))
+        if outcome.status == "pending":
+            undecided += len(places)
+        else:
+            failed += len(places)
+    return _Failures(_lines(rubric, lines), bool(unresolved or failed), undecided)
 
 
 def _lines(rubric: Rubric, found: Iterable[tuple[TomlPath, str]]) -> tuple[str, ...]:

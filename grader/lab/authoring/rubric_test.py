@@ -250,30 +250,34 @@ class Trial:
 
     def equivalents(self) -> Iterator[Loss]:
         """Yield what each rewriting of the reference loses: most lose nothing."""
-        urdf = self.reference.urdf
-        if (
-            isinstance(urdf, Read)
-            and urdf.loaded.verdict == "clean"
-            and urdf.reading.root is not None
-        ):
-            has_places = any(
-                name.startswith("@") and not name.startswith(JOINT_OF)
-                for name in _names_in(self.rubric)
-            )
-            for found in equivalents(urdf.reading.root, RewritingRules(self.kept, has_places)):
-                submission = _rewritten(self.reference, urdf, found)
-                lost = self._lost(submission, self._must_pass(submission, found.family))
-                diff = _text_diff(self.robot_files[0], found.before, found.text) if lost else ""
-                yield Loss(found.family, lost, diff)
+        yield from self._robot_equivalents()
         for family, texts in file_equivalents(self.reference):
-            names = [
-                it.id for it in self.tested if family != EVERY_NODE or it.check.name != "entry_is"
-            ]
-            lost = self._lost(
-                with_files(self.reference, {path: it.encode() for path, it in texts.items()}), names
-            )
+            asked = self.tested
+            if family == EVERY_NODE:  # entry_is asks for the keys as they are written
+                asked = [criterion for criterion in asked if criterion.check.name != "entry_is"]
+            files = {path: text.encode() for path, text in texts.items()}
+            names = [criterion.id for criterion in asked]
+            lost = self._lost(with_files(self.reference, files), names)
             diffs = (_text_diff(path, self.text(path), text) for path, text in texts.items())
             yield Loss(family, lost, "\n".join(diffs))
+
+    def _robot_equivalents(self) -> Iterator[Loss]:
+        """Yield what each rewriting of the reference's robot loses."""
+        urdf = self.reference.urdf
+        if not isinstance(urdf, Read) or urdf.loaded.verdict != "clean":
+            return
+        root = urdf.reading.root
+        if root is None:
+            return
+        selectors = [name for name in _names_in(self.rubric) if name.startswith("@")]
+        has_places = not all(name.startswith(JOINT_OF) for name in selectors)
+        for equivalent in equivalents(root, RewritingRules(self.kept, has_places)):
+            submission = _rewritten(self.reference, urdf, equivalent)
+            lost = self._lost(submission, self._must_pass(submission, equivalent.family))
+            diff = ""
+            if lost:
+                diff = _text_diff(self.robot_files[0], equivalent.before, equivalent.text)
+            yield Loss(equivalent.family, lost, diff)
 
     def _lost(self, submission: Submission, names: Collection[str]) -> Mapping[str, str]:
         """Return the criteria that lose points, with their messages."""
@@ -428,27 +432,33 @@ def _counted(
         _survivor(trial, outcome.mutant) for outcome in graded if outcome.fate == "survived"
     ]
     failed = {name for outcome in graded for name in outcome.failed}
-    patterns = [pattern for row in trial.rubric.ignored for pattern in row.mutants]
-    tried, (unexamined, files) = [*trial.equivalents()], trial.unexamined()
+    unused = []
+    for row in trial.rubric.ignored:
+        for pattern in row.mutants:
+            if not any(_matches(mutant, pattern) for mutant in every):
+                unused.append(pattern)
+    faults = []
+    for outcome in graded:
+        if outcome.fate == "faulty":
+            diff = _mutant_diff(trial, outcome.mutant)
+            faults.append(Loss(outcome.mutant.id, outcome.faults, diff))
+    rewritings = list(trial.equivalents())
+    unexamined, files = trial.unexamined()
     return RubricTest(
         reference=trial.report,
         total=len(every),
         tried=len(graded),
         caught=fates["caught"],
         same=fates["same"],
-        survivors=tuple(it for it in survivors if not it.reason),
-        ignored=tuple(it for it in survivors if it.reason),
-        unused=tuple(it for it in patterns if not any(_matches(mutant, it) for mutant in every)),
-        idle=tuple(one.id for one in trial.tested if one.id not in failed),
+        survivors=tuple(survivor for survivor in survivors if not survivor.reason),
+        ignored=tuple(survivor for survivor in survivors if survivor.reason),
+        unused=tuple(unused),
+        idle=tuple(criterion.id for criterion in trial.tested if criterion.id not in failed),
         unexamined=tuple(unexamined),
         files=files,
-        faults=tuple(
-            Loss(it.mutant.id, it.faults, _mutant_diff(trial, it.mutant))
-            for it in graded
-            if it.fate == "faulty"
-        ),
-        equivalents=tuple(it.name for it in tried),
-        losses=tuple(it for it in tried if it.criteria),
+        faults=tuple(faults),
+        equivalents=tuple(loss.name for loss in rewritings),
+        losses=tuple(loss for loss in rewritings if loss.criteria),
         samples=samples,
     )
 

@@ -386,16 +386,20 @@ def rubric_schema() -> _Schema:
     """Return the JSON Schema of a rubric, with the arguments of every check, also of installed
     plug-ins.
     """
-    named = {name: usable_check(name) for name in check_names()}
-    checks = [check for check in named.values() if check is not None]
-    facts = [check.documentation.fact if check is not None else "" for check in named.values()]
-    schema, criterion = RUBRIC.schema, CRITERION.schema
+    names = check_names()
+    checks = []
+    facts = []
+    for name in names:
+        check = usable_check(name)
+        facts.append("" if check is None else check.documentation.fact)
+        if check is not None:
+            checks.append(check)
+    schema = RUBRIC.schema
+    criterion = CRITERION.schema
     carried = criterion["properties"]["carried"]
+    documented = {"enum": list(names), "x-taplo": {"docs": {"enumValues": facts}}}
     for row in (criterion, carried, carried["items"]):
-        row["properties"]["check"] |= {
-            "enum": list(named),
-            "x-taplo": {"docs": {"enumValues": facts}},
-        }
+        row["properties"]["check"] |= documented
         # In a row with allOf, taplo completes no key.
         row |= {"if": {"required": ["check"]}, "then": {"$ref": "#/$defs/arguments"}}
     # Only the loader knows which of the missing keys and arguments the defaults give.
@@ -406,18 +410,14 @@ def rubric_schema() -> _Schema:
         "properties": defaults,
         "additionalProperties": False,
     }
-    tables = [
-        KeyTable(check.name, {name: _argument_type(check, name) for name in check.parameters})
-        for check in checks
-    ]
-    definitions = {table.name: table.schema for table in tables}
-    chosen = [
-        ({"check": {"const": name}}, {"with": arguments}) for name, arguments in defaults.items()
-    ]
-    rules = [
-        {"if": {"properties": it, "required": ["check"]}, "then": {"properties": then}}
-        for it, then in chosen
-    ]
+    definitions = {}
+    for check in checks:
+        types = {name: _argument_type(check, name) for name in check.parameters}
+        definitions[check.name] = KeyTable(check.name, types).schema
+    rules = []
+    for name, arguments in defaults.items():
+        is_named = {"properties": {"check": {"const": name}}, "required": ["check"]}
+        rules.append({"if": is_named, "then": {"properties": {"with": arguments}}})
     definitions["arguments"] = {"allOf": rules}
     return {"$schema": _DRAFT, "title": "grader rubric", **schema, "$defs": definitions}
 

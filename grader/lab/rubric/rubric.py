@@ -246,14 +246,18 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
     """
     valid = _validate(data, path)
     rubric = valid.rubric
-    found = enumerate(zip(valid.criteria, valid.bound, valid.carried, strict=True))
-    criteria = (_make_criterion(position, *rows, answers=answers) for position, rows in found)
     adjusted = {name: Adjustment(**row) for name, row in valid.adjusted.items()}
+    criteria = []
+    rows = zip(valid.criteria, valid.bound, valid.carried, strict=True)
+    for position, (row, bound, carried) in enumerate(rows):
+        criterion = _make_criterion(position, row, bound, carried, answers=answers)
+        criteria.append(_adjust(criterion, adjusted))
+    parts = [Part(row["id"], row["title"], row.get("needs", "urdf")) for row in valid.parts]
     return Rubric(
         id=rubric["id"],
         title=rubric["title"],
-        parts=tuple(Part(row["id"], row["title"], row.get("needs", "urdf")) for row in valid.parts),
-        criteria=tuple(_adjust(row, adjusted) for row in criteria),
+        parts=tuple(parts),
+        criteria=tuple(criteria),
         urdf=rubric.get("urdf", _URDF),
         reference=rubric.get("reference", ""),
         data=data,

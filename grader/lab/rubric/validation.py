@@ -33,14 +33,13 @@ class Validation:
 
     def __init__(self, table: TomlRow) -> None:
         self._reader = TomlRowReader()
-        self._row, self._guess, self._complain = (
-            self._reader.row,
-            self._reader.guess,
-            self._reader.complain,
-        )
+        self._row = self._reader.row
+        self._guess = self._reader.guess
+        self._complain = self._reader.complain
         self.bound: list[BoundCheck] = []
         self.carried: list[list[BoundCarried]] = []
-        self._find_check, self._check_names = cache(find_check), cache(check_names)
+        self._find_check = cache(find_check)
+        self._check_names = cache(check_names)
         self.rubric = self._row((), table, keys.RUBRIC)
         self._defaults: TomlRow = {}
         self._default_arguments: dict[str, TomlRow] = {}
@@ -48,21 +47,21 @@ class Validation:
         self.parts = self._read_rows("part", keys.PART)
         self.criteria = self._read_rows("criterion", keys.CRITERION, self._defaults)
         self.evidence = self._read_rows("evidence", keys.EVIDENCE)
-        self.late = (
-            self._row(("late",), self.rubric["late"], keys.LATE) if "late" in self.rubric else None
-        )
-        self.ignored = [
-            self._row(("test", "ignore", index), row, keys.IGNORE)
-            for index, row in enumerate(
-                self._row(("test",), self.rubric.get("test", {}), keys.TEST).get("ignore", ())
-            )
-        ]
-        part_ids, positions = self._find_positions("part"), self._find_positions("criterion")
+        self.late: TomlRow | None = None
+        if "late" in self.rubric:
+            self.late = self._row(("late",), self.rubric["late"], keys.LATE)
+        self.ignored: list[TomlRow] = []
+        test = self._row(("test",), self.rubric.get("test", {}), keys.TEST)
+        for index, row in enumerate(test.get("ignore", ())):
+            self.ignored.append(self._row(("test", "ignore", index), row, keys.IGNORE))
+        part_ids = self._find_positions("part")
+        positions = self._find_positions("criterion")
         self._check_part(("defaults",), self._defaults, part_ids)
         self._check_criteria(part_ids, positions)
         for index, row in enumerate(self.evidence):
             self._check_part(("evidence", index), row, part_ids)
-        main, packages = self.rubric.get("package", ""), self.rubric.get("packages", ())
+        main = self.rubric.get("package", "")
+        packages = self.rubric.get("packages", ())
         if main and packages and main not in packages:
             self._complain(("package",), f"packages does not list the package {main!r}")
         self.adjusted = self._read_adjustments(positions)
@@ -150,21 +149,14 @@ class Validation:
                 "robot nor a package"
             )
             self._complain((*where, "args"), message)
-        links = [
-            *texts_in(
-                [value for key, value in row.get("with", {}).items() if key in LINK_ARGUMENTS]
-            )
-        ]
-        unknown = [
-            text
-            for text in (*row.get("at", ()), *links)
-            if text.startswith("@") and not is_selector(text)
-        ]
-        for name in (*unknown, *(text for text in links if text.startswith(JOINT_OF))):
-            self._complain(
-                where,
-                f"no link is named by {name!r}: write @root, @tip, or @moved:1, @moved:2 and so on",
-            )
+        arguments = row.get("with", {})
+        links = list(texts_in([arguments[key] for key in arguments if key in LINK_ARGUMENTS]))
+        places = [text for text in (*row.get("at", ()), *links) if text.startswith("@")]
+        unknown = [text for text in places if not is_selector(text)]
+        unknown += [text for text in links if text.startswith(JOINT_OF)]
+        for name in unknown:
+            message = "write @root, @tip, or @moved:1, @moved:2 and so on"
+            self._complain(where, f"no link is named by {name!r}: {message}")
         if "reference" in check.examined and not self.rubric.get("reference"):
             message = (
                 f"the check {check.name} compares with the reference solution: the rubric needs "
