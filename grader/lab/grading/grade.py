@@ -131,32 +131,29 @@ def _find_evidence(
     criterion names.
     """
     wanted = [evidence for evidence in rubric.evidence if evidence.part in chosen]
-    manual = [
-        row for row in rubric.criteria if row.part in chosen and row.check.function in MANUAL_CHECKS
-    ]
+    criteria = [row for row in rubric.criteria if row.part in chosen]
+    manual = [row for row in criteria if row.check.function in MANUAL_CHECKS]
     if not (wanted or manual):
         return (), ()
     from grader.lab.documents.evidence import as_evidence, find_evidence
 
-    names = [
-        tuple(dict.fromkeys((*evidence.names, *_names_in_criteria(evidence, rubric))))
-        for evidence in wanted
-    ]
-    known = {name for one in names for name in one}
-    shown = [row.arguments["names"] for row in manual if row.check.function is evidence_shown]
-    names += [own for own in shown if known.isdisjoint(own)]
-    found = [
-        find_evidence(submission.labelled_files, one, submission.readable_documents)
-        for one in names
-    ]
-    found_files = tuple(
-        EvidenceResult(evidence, *one) for evidence, one in zip(wanted, found, strict=False)
-    )
-    listed = {file.path for one in found for file in (*one.files, *one.possible)}
-    others = [
-        labelled for labelled in submission.labelled_files if labelled.file.path not in listed
-    ]
-    return found_files, as_evidence(others[:_MAX_PICTURES])
+    labelled_files = submission.labelled_files
+    results = []
+    known: set[str] = set()  # names of evidence that was searched
+    listed: set[str] = set()  # paths of files that are named
+    for evidence in wanted:
+        names = tuple(dict.fromkeys((*evidence.names, *_names_in_criteria(evidence, rubric))))
+        files = find_evidence(labelled_files, names, submission.readable_documents)
+        results.append(EvidenceResult(evidence, *files))
+        known.update(names)
+        listed.update(file.path for file in (*files.files, *files.possible))
+    for row in manual:
+        if row.check.function is evidence_shown and known.isdisjoint(row.arguments["names"]):
+            names = row.arguments["names"]
+            files = find_evidence(labelled_files, names, submission.readable_documents)
+            listed.update(file.path for file in (*files.files, *files.possible))
+    others = [labelled for labelled in labelled_files if labelled.file.path not in listed]
+    return tuple(results), as_evidence(others[:_MAX_PICTURES])
 
 
 def _names_in_criteria(evidence: Evidence, rubric: Rubric) -> tuple[str, ...]:
@@ -195,32 +192,32 @@ def _explain_by_convention(
     Both are empty if there is nothing to explain. The points stay: the lab says where its frames
     are. The note says that they are lost by one decision, not by many mistakes.
     """
-    lost = {
-        result.criterion.id
-        for result in results
-        if result.is_lost and result.criterion.check.subject == "robot"
-    }
-    found = _find_convention(rubric, submission) if len(lost) >= _MIN_OF_CONVENTION else None
-    if found is None or not isinstance(submission.urdf, Read):
+    lost = set()
+    passed = set()
+    decided = set()
+    for result in results:
+        name, subject = result.criterion.id, result.criterion.check.subject
+        if subject == "robot" and result.is_lost:
+            lost.add(name)
+        if subject in ("urdf", "robot"):
+            decided.add(name)
+            if result.outcome.status == "passed":
+                passed.add(name)
+    convention = _find_convention(rubric, submission) if len(lost) >= _MIN_OF_CONVENTION else None
+    if convention is None or not isinstance(submission.urdf, Read):
         return "", frozenset()
-    reading = submission.urdf.reading._replace(robot=found.robot)
+    reading = submission.urdf.reading._replace(robot=convention.robot)
     other = replace(submission, urdf=submission.urdf._replace(reading=reading))
-    decided = [result for result in results if result.criterion.check.subject in ("urdf", "robot")]
-    after = {
-        result.criterion.id: result
-        for result in decide(rubric, other, {it.criterion.id for it in decided})
-    }
-    before = {result.criterion.id for result in decided if result.outcome.status == "passed"}
-    gained = frozenset(name for name in lost if after[name].outcome.status == "passed")
-    if len(gained) < _MIN_OF_CONVENTION or any(
-        after[name].outcome.status != "passed" for name in before
-    ):
+    passed_after = {}
+    for result in decide(rubric, other, decided):
+        if result.outcome.status == "passed":
+            passed_after[result.criterion.id] = result.criterion.points
+    gained = frozenset(lost & passed_after.keys())
+    if len(gained) < _MIN_OF_CONVENTION or not passed <= passed_after.keys():
         return "", frozenset()
-    points = counted_points(sum((after[name].criterion.points for name in gained), Decimal(0)))
-    return (
-        f"everything is {found.description} relative to the handout: one decision, {points}",
-        gained,
-    )
+    points = counted_points(sum((passed_after[name] for name in gained), Decimal(0)))
+    decision = f"one decision, {points}"
+    return f"everything is {convention.description} relative to the handout: {decision}", gained
 
 
 def _find_convention(rubric: Rubric, submission: Submission) -> "Convention | None":

@@ -34,32 +34,33 @@ class Subjects:
         """`arguments` are those of launch files, under which the submission and the reference
         are examined.
         """
+        solution = rubric.solution if rubric.compares_with_reference else None
+        if arguments:
+            submission = submission.under(arguments)
+            solution = solution.under(arguments) if solution is not None else None
         self._rubric = rubric
         self._under: dict[tuple[tuple[str, str], ...], Subjects] = {}
-        self.submission = submission = submission.under(arguments) if arguments else submission
+        self.submission = submission
         self.problems: tuple[Problem, ...] = ()
         self.robot: Configuration | None = None
         self.source: Source | None = None
         self._known: dict[Subject, object] = {"submission": submission}
         self._posed: dict[tuple[tuple[str, float], ...], Configuration] = {}
-        if rubric.solution is not None and rubric.compares_with_reference:
-            solution = rubric.solution.under(arguments) if arguments else rubric.solution
+        if solution is not None:
             self._known["reference"] = self._with_transforms(solution.robot, solution)
         if isinstance(submission.urdf, Read):
-            urdf = submission.urdf.reading
-            self.source = urdf.source
-            self.problems = tuple(
-                it for it in urdf.problems if not (urdf.is_meant and it.kind.effect == "rejects")
-            )
-            self.robot = (
-                Configuration(urdf.robot, is_guarded=bool(urdf.unresolved))
-                if urdf.robot is not None
-                else None
-            )
-            examined = urdf._replace(robot=self.robot.robot) if self.robot is not None else urdf
-            self._known["urdf"] = submission.urdf.as_it_stands or examined
-        if self.robot is not None:
-            self._known["robot"] = self.robot = self._with_transforms(self.robot, submission)
+            reading = submission.urdf.reading
+            self.source = reading.source
+            self.problems = reading.problems
+            if reading.is_meant:  # what ROS 2 rejects is corrected
+                remaining = [it for it in reading.problems if it.kind.effect != "rejects"]
+                self.problems = tuple(remaining)
+            if reading.robot is not None:
+                robot = Configuration(reading.robot, is_guarded=bool(reading.unresolved))
+                reading = reading._replace(robot=robot.robot)
+                self.robot = self._with_transforms(robot, submission)
+                self._known["robot"] = self.robot
+            self._known["urdf"] = submission.urdf.as_it_stands or reading
 
     def _with_transforms(
         self, robot: Configuration, owner: Submission | ReferenceSolution
