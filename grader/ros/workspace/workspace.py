@@ -396,6 +396,13 @@ class Workspace:
             reasons.append("the arguments of a spawner are not evaluated")
         return next(iter(reasons), "")
 
+    def parameters_given(
+        self, package: Package, node: StartedNode, *, is_python: bool | None = False
+    ) -> NodeParameters:
+        """Return the parameters that a node gets, whose launch file is in a package."""
+        opened = partial(open_meant, package)
+        return parameters_of(node, opened, self.name_of(node) or "", is_python=is_python)
+
     def wildcard_places(self, node: StartedNode) -> frozenset[Location]:
         """Return the places of parameters that a file gives to every node."""
         trees = [self.installed_yaml(given.path) for given in node.parameters or () if given.path]
