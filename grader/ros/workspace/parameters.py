@@ -166,8 +166,12 @@ def _unread_sections(
     children: set[str] = set()
     for name in names:
         children |= workspace.children_of(name)
-    unread = [key for key in sections if key not in children]
-    return [key for key in unread if not any(fnmatchcase(name, key) for name in names)]
+    unread = []
+    for key in sections:
+        is_read = key in children or any(fnmatchcase(name, key) for name in names)
+        if not is_read:
+            unread.append(key)
+    return unread
 
 
 def _is_passed_to_include(workspace: Workspace, path: str) -> bool:
