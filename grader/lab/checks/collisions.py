@@ -21,7 +21,7 @@ from grader.lab.checks.toml_types import NonNegative, RadiusAndLength, Size
 from grader.lab.checks.visuals import MAX_SHAPES, file_name, visuals
 from grader.ros.urdf.kinematics import Configuration, placed_by
 from grader.ros.urdf.model import Box, Collision, Cylinder, Geometry, Mesh, Origin, Sphere, Visual
-from grader.ros.urdf.shapes import Mismatch, Shape, is_empty, mismatch, turn_between
+from grader.ros.urdf.shapes import Shape, ShapeDifference, is_empty, mismatch, turn_between
 from grader.ros.urdf.transforms import IDENTITY, Vector, minus
 
 ABOUT = {
@@ -125,7 +125,7 @@ def collides_as(
         robot.pose(relative_to or link, relative_to=link), Origin(xyz or _ZERO, rpy or _ZERO)
     )
 
-    def off(collision: Collision) -> Mismatch | None:
+    def off(collision: Collision) -> ShapeDifference | None:
         if isinstance(collision.geometry, Mesh):
             return None
         T_link_shape, is_turned = placed_by(IDENTITY, collision.origin), rpy is not None
@@ -173,11 +173,11 @@ def _solid_collisions(robot: Configuration, link: str, expected: str) -> tuple[C
     return solid
 
 
-def _fits(off: Mismatch | None, tolerance: float) -> bool:
+def _fits(off: ShapeDifference | None, tolerance: float) -> bool:
     return off is not None and off.largest <= tolerance + SLACK
 
 
-def _mismatch(visual: Visual, collision: Collision, tolerance: float) -> Mismatch | None:
+def _mismatch(visual: Visual, collision: Collision, tolerance: float) -> ShapeDifference | None:
     """Return how far two shapes differ; None for shapes of different kinds, and for different
     meshes.
     """
@@ -189,7 +189,7 @@ def _mismatch(visual: Visual, collision: Collision, tolerance: float) -> Mismatc
         return None
     angle = turn_between(T_link_a.rotation, T_link_b.rotation)
     apart = hypot(*minus(T_link_a.translation, T_link_b.translation))
-    return Mismatch(apart, 0.0, 0.0 if angle <= _MESH_ANGLE else inf, angle)
+    return ShapeDifference(apart, 0.0, 0.0 if angle <= _MESH_ANGLE else inf, angle)
 
 
 def _judge_unmatched(
@@ -223,13 +223,13 @@ def _judge_unmatched(
     )
 
 
-def _rank_mismatch(off: Mismatch | None) -> tuple[bool, float]:
+def _rank_mismatch(off: ShapeDifference | None) -> tuple[bool, float]:
     """Return the order of pairs: those of one kind first, then by the difference."""
     return off is None, 0.0 if off is None else min(off.apart + off.size + min(off.turn, 1e9), inf)
 
 
 def _fail_with_nearest(
-    message: str, nearest: Collision, off: Mismatch | None, tolerance: float
+    message: str, nearest: Collision, off: ShapeDifference | None, tolerance: float
 ) -> Outcome:
     """Return a failure that says how the nearest shape differs from the one that should be, at the
     place to look at.

@@ -29,7 +29,7 @@ from grader.ros.xacro.corrections import (
     values_of_other_calls,
 )
 from grader.ros.xacro.expansion import ExpandedSource
-from grader.ros.xacro.scopes import Definition, Key, ScopePlace, XacroFails, XacroScope
+from grader.ros.xacro.scopes import Key, ScopePlace, XacroDefinition, XacroFails, XacroScope
 from grader.ros.xacro.texts import Texts
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 
@@ -144,7 +144,7 @@ def _find_text(place: ScopePlace, attribute: str, scope: XacroScope) -> _Written
     return None
 
 
-def _definition_text(definition: Definition) -> _Written | None:
+def _definition_text(definition: XacroDefinition) -> _Written | None:
     """Return the text that a name is defined with: of a parameter's default the part of
     `params`.
     """
@@ -353,7 +353,7 @@ class _Rewriter:
         """Return whether a YAML file gives a text."""
         return any(_LOADED.match(it.text) for it in self.definitions(text))
 
-    def _of_name(self, name: str, scope: XacroScope) -> Definition | None:
+    def _of_name(self, name: str, scope: XacroScope) -> XacroDefinition | None:
         holder = scope.holder(name)
         if holder is not None:
             return holder.properties[name].definition
@@ -372,7 +372,7 @@ class _Rewriter:
                     waiting.append(found[definition.key])
         return list(found.values())
 
-    def _named(self, text: _Written) -> Iterator[Definition]:
+    def _named(self, text: _Written) -> Iterator[XacroDefinition]:
         for expression in _EXPRESSION.findall(text.text):
             for name in _NAME.findall(expression):
                 definition = self._of_name(name, text.scope)

@@ -82,10 +82,11 @@ def _matching_points(
 def _quarter_turns() -> Iterator[Rotation]:
     """Yield the 24 rotations that lay the axes over each other, no rotation first."""
     for order, signs in product(permutations(range(3)), product((1.0, -1.0), repeat=3)):
-        rows = [
-            [sign if column == axis else 0.0 for column in range(3)]
-            for axis, sign in zip(order, signs, strict=True)
-        ]
+        rows = []
+        for axis, sign in zip(order, signs, strict=True):
+            row = [0.0, 0.0, 0.0]
+            row[axis] = sign
+            rows.append(row)
         (a, b, c), (d, e, f), (g, h, i) = rows
         if a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) > 0.0:
             yield a, b, c, d, e, f, g, h, i

@@ -33,32 +33,27 @@ def least_edge_overlap(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -
     """
     rotation = np.array(T_a_b.rotation).reshape(3, 3)
     straight = np.array([*straight_edges(a), *map(T_a_b.rotate, straight_edges(b))]).T
-    sides = ((a, np.eye(3)), (b, rotation))
-    rims = [
-        (frame[:, :2], _all_around(shape.radius))
-        for shape, frame in sides
-        if isinstance(shape, Cylinder)
-    ]
+    rims: list[tuple[_Array, _Array]] = []  # the plane of each, and the directions of its edges
+    for shape, frame in ((a, np.eye(3)), (b, rotation)):
+        if isinstance(shape, Cylinder):
+            rims.append((frame[:, :2], _all_around(shape.radius)))
     best = straight[:, 0]
     for _ in range(3):
-        lines = [plane @ np.array((np.cos(turns), np.sin(turns))) for plane, turns in rims]
-        normals = np.concatenate(
-            [_cross_products(p, q) for p, q in combinations([straight, *lines], 2)], axis=1
-        )
+        lines = [straight]
+        for plane, turns in rims:
+            lines.append(plane @ np.array((np.cos(turns), np.sin(turns))))
+        products = [_cross_products(p, q) for p, q in combinations(lines, 2)]
+        normals = np.concatenate(products, axis=1)
         lengths = np.sqrt((normals * normals).sum(axis=0))
         lengths[lengths <= _ROUNDING] = np.inf  # parallel lines span no normal
         normals /= lengths
-        overlaps = (
-            _half_widths(a, normals)
-            + _half_widths(b, rotation.T @ normals)
-            - abs(T_a_b.translation @ normals)
-        )
+        widths = _half_widths(a, normals) + _half_widths(b, rotation.T @ normals)
+        overlaps = widths - abs(T_a_b.translation @ normals)
         overlaps[lengths == np.inf] = np.inf
         best = normals[:, overlaps.argmin()]
-        rims = [
-            (plane, _angles_near(turns, atan2(best @ plane[:, 0], -(best @ plane[:, 1]))))
-            for plane, turns in rims
-        ]
+        for number, (plane, turns) in enumerate(rims):
+            nearest = atan2(best @ plane[:, 0], -(best @ plane[:, 1]))
+            rims[number] = plane, _angles_near(turns, nearest)
     x, y, z = best.tolist()
     return (x, y, z)
 

@@ -2,8 +2,6 @@
 names they refer to.
 """
 
-from itertools import islice
-
 from grader.base.text import quoted
 from grader.ros.urdf import urdf_problems
 from grader.ros.urdf.diagnostics import FULL_TURN, ElementReader, Problems, first_children
@@ -13,6 +11,7 @@ from grader.ros.urdf.model import (
     Joint,
     Limit,
     Mimic,
+    Origin,
     Robot,
     SafetyController,
 )
@@ -33,42 +32,40 @@ def read_joint(element: Element, problems: Problems) -> Joint:
     name, kind = element.get("name", ""), element.get("type", "")
     label = quoted(name)
     if element.get("name") is None:
-        problems.add(
-            urdf_problems.JOINT_WITHOUT_NAME, f"this joint has no name; {_REJECTED}", element
-        )
+        message = f"this joint has no name; {_REJECTED}"
+        problems.add(urdf_problems.JOINT_WITHOUT_NAME, message, element)
     _check_type(element, kind, label, problems)
     inside = first_children(element)
     parent = _link_name(element, inside, "parent", label, problems)
     child = _link_name(element, inside, "child", label, problems)
-    reader = ElementReader(problems, urdf_problems.BAD_JOINT_ORIGIN)
-    origin = reader.origin(inside.get("origin"))
+    origin_reader = ElementReader(problems, urdf_problems.BAD_JOINT_ORIGIN)
+    origin: Origin | None = origin_reader.origin(inside.get("origin"))
+    if origin_reader.failed:
+        origin = None
     axis = _read_axis(element, inside.get("axis"), kind, problems)
     limit = _read_limit(element, inside.get("limit"), kind, problems)
     if kind in ("floating", "planar"):
         how = "does not publish it" if kind == "floating" else "treats it as fixed"
         message = f"joint {label} is {kind}: robot_state_publisher {how}"
         problems.add(urdf_problems.UNPUBLISHED_JOINT, message, element, "type")
-    axis_at = problems.location(inside["axis"]) if "axis" in inside else None
     unresolved = problems.parts(element)
-    is_open = "" in unresolved  # then a missing element may be there all the same
-    frame = None if reader.failed or (is_open and "origin" not in inside) else origin
-    axis = None if is_open and "axis" not in inside else axis
+    if "" in unresolved:  # then a missing element may be there all the same
+        origin = origin if "origin" in inside else None
+        axis = axis if "axis" in inside else None
     return Joint(
-        name,
-        kind,
-        parent,
-        child,
-        frame,
-        axis,
-        limit,
-        _read_mimic(inside["mimic"], problems) if "mimic" in inside else None,
-        _read_dynamics(inside["dynamics"], problems) if "dynamics" in inside else None,
-        _read_safety(inside["safety_controller"], problems)
-        if "safety_controller" in inside
-        else None,
-        _read_calibration(inside["calibration"], problems) if "calibration" in inside else None,
+        name=name,
+        type=kind,
+        parent=parent,
+        child=child,
+        origin=origin,
+        axis=axis,
+        limit=limit,
+        mimic=_read_mimic(inside.get("mimic"), problems),
+        dynamics=_read_dynamics(inside.get("dynamics"), problems),
+        safety_controller=_read_safety(inside.get("safety_controller"), problems),
+        calibration=_read_calibration(inside.get("calibration"), problems),
         location=problems.location(element),
-        axis_location=axis_at,
+        axis_location=problems.location(inside["axis"]) if "axis" in inside else None,
         unresolved=unresolved,
     )
 
@@ -88,13 +85,12 @@ def _link_name(
     element: Element, inside: dict[str, Element], role: str, label: str, problems: Problems
 ) -> str:
     """Return the link that a joint names as its parent or child; empty if it names none."""
-    named = inside.get(role)
-    link = named.get("link") if named is not None else None
+    end = inside.get(role)
+    link = end.get("link") if end is not None else None
     if not link:
         message = f'joint {label} has no {role} link (<{role} link="..."/>); {_REJECTED}'
-        problems.add(
-            urdf_problems.NO_PARENT_OR_CHILD, message, element if named is None else named, "link"
-        )
+        at = element if end is None else end
+        problems.add(urdf_problems.NO_PARENT_OR_CHILD, message, at, "link")
     return link or ""
 
 
@@ -162,7 +158,9 @@ def _check_degrees(limit: Element, ends: dict[str, float], problems: Problems) -
             return
 
 
-def _read_mimic(element: Element, problems: Problems) -> Mimic | None:
+def _read_mimic(element: Element | None, problems: Problems) -> Mimic | None:
+    if element is None:
+        return None
     reader = ElementReader(problems, urdf_problems.BAD_MIMIC)
     joint = element.get("joint")
     if joint is None:
@@ -173,7 +171,9 @@ def _read_mimic(element: Element, problems: Problems) -> Mimic | None:
     return Mimic(joint, multiplier, offset, problems.location(element))
 
 
-def _read_dynamics(element: Element, problems: Problems) -> Dynamics | None:
+def _read_dynamics(element: Element | None, problems: Problems) -> Dynamics | None:
+    if element is None:
+        return None
     reader = ElementReader(problems, urdf_problems.BAD_DYNAMICS)
     if "damping" not in element.attrib and "friction" not in element.attrib:
         reader.fail("<dynamics> has neither damping nor friction", element)
@@ -185,7 +185,9 @@ def _read_dynamics(element: Element, problems: Problems) -> Dynamics | None:
     )
 
 
-def _read_safety(element: Element, problems: Problems) -> SafetyController:
+def _read_safety(element: Element | None, problems: Problems) -> SafetyController | None:
+    if element is None:
+        return None
     reader = ElementReader(problems, urdf_problems.BAD_SAFETY)
     return SafetyController(
         reader.number(element, "k_velocity"),
@@ -196,63 +198,56 @@ def _read_safety(element: Element, problems: Problems) -> SafetyController:
     )
 
 
-def _read_calibration(element: Element, problems: Problems) -> Calibration:
+def _read_calibration(element: Element | None, problems: Problems) -> Calibration | None:
+    if element is None:
+        return None
     reader = ElementReader(problems, urdf_problems.BAD_CALIBRATION)
-    rising, falling = (
-        reader.number(element, name) if name in element.attrib else None
-        for name in ("rising", "falling")
-    )
+    rising = reader.number(element, "rising") if "rising" in element.attrib else None
+    falling = reader.number(element, "falling") if "falling" in element.attrib else None
     return Calibration(rising, falling, problems.location(element))
 
 
 def check_references(robot: Robot, problems: Problems) -> None:
     """Report links and joints that do not exist, and mimic joints that follow themselves."""
-    links, joints = [link.name for link in robot.links], [joint.name for joint in robot.joints]
-    is_link_open, is_joint_open = (
-        any("@name" in it.unresolved for it in every) for every in (robot.links, robot.joints)
-    )
+    links = [link.name for link in robot.links]
+    joints = [joint.name for joint in robot.joints]
+    # A link or joint whose name is open may be any of those that are missing.
+    is_link_open = any("@name" in link.unresolved for link in robot.links)
+    is_joint_open = any("@name" in joint.unresolved for joint in robot.joints)
     for joint in robot.joints:
-        for role, name in (("parent", joint.parent), ("child", joint.child)):
-            if name and not robot.has_link(name) and not is_link_open:
-                guess = problems.did_you_mean(name, links)
-                guess = (
-                    guess or f"; the links are: {', '.join(map(quoted, islice(links, _MAX_NAMED)))}"
-                )
-                message = (
-                    f"the {role} link {quoted(name)} of joint {quoted(joint.name)} does not exist"
-                )
-                message += f"; ROS 2 rejects the file{guess}"
-                problems.add(
-                    urdf_problems.UNKNOWN_LINK,
-                    message,
-                    _child_element(joint, role, problems),
-                    "link",
-                )
-        if joint.mimic is not None and not robot.has_joint(joint.mimic.joint) and not is_joint_open:
-            guess = problems.did_you_mean(joint.mimic.joint, joints)
+        if not is_link_open:
+            _check_ends(robot, joint, links, problems)
+        mimic = joint.mimic
+        if mimic is not None and not is_joint_open and not robot.has_joint(mimic.joint):
             message = (
-                f"joint {quoted(joint.name)} mimics {quoted(joint.mimic.joint)}, which does not "
-                f"exist{guess}"
+                f"joint {quoted(joint.name)} mimics {quoted(mimic.joint)}, which does not "
+                f"exist{problems.did_you_mean(mimic.joint, joints)}"
             )
-            problems.add(
-                urdf_problems.MIMIC_TARGET,
-                message,
-                _child_element(joint, "mimic", problems),
-                "joint",
-            )
+            at = _child_element(joint, "mimic", problems)
+            problems.add(urdf_problems.MIMIC_TARGET, message, at, "joint")
     if not is_joint_open:
         _check_controlled_joints(robot, joints, problems)
     for loop in _mimic_loops(robot):
+        steps = " -> ".join(map(quoted, (*loop[:_MAX_STEPS], loop[0])))
+        message = f"joint {quoted(loop[0])} mimics itself: {steps}"
+        at = _child_element(robot.joint(loop[0]), "mimic", problems)
+        problems.add(urdf_problems.MIMIC_TARGET, message, at, "joint")
+
+
+def _check_ends(robot: Robot, joint: Joint, links: list[str], problems: Problems) -> None:
+    """Report the links of a joint that do not exist."""
+    for role, name in (("parent", joint.parent), ("child", joint.child)):
+        if not name or robot.has_link(name):
+            continue
+        guess = problems.did_you_mean(name, links)
+        if not guess:
+            guess = f"; the links are: {', '.join(map(quoted, links[:_MAX_NAMED]))}"
         message = (
-            f"joint {quoted(loop[0])} mimics itself: "
-            f"{' -> '.join(map(quoted, (*loop[:_MAX_STEPS], loop[0])))}"
+            f"the {role} link {quoted(name)} of joint {quoted(joint.name)} does not exist; "
+            f"{_REJECTED}{guess}"
         )
-        problems.add(
-            urdf_problems.MIMIC_TARGET,
-            message,
-            _child_element(robot.joint(loop[0]), "mimic", problems),
-            "joint",
-        )
+        at = _child_element(joint, role, problems)
+        problems.add(urdf_problems.UNKNOWN_LINK, message, at, "link")
 
 
 def _check_controlled_joints(robot: Robot, joints: list[str], problems: Problems) -> None:

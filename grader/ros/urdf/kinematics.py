@@ -6,7 +6,6 @@ from collections.abc import Collection, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import takewhile
 from math import isfinite, nan
 from typing import NamedTuple, overload
 
@@ -53,17 +52,16 @@ class _Frames:
         self._robot, self._parents, self._given = robot, parents, given
         self._mimicked: dict[str, float] = {}  # the positions of mimic joints
         self._known: dict[str, _Frame] = {}
-        self._loops: dict[
-            str, str
-        ] = {}  # links on or below a loop of joints, with one link's name for the loop
+        # links on or below a loop of joints, with one link's name for the loop
+        self._loops: dict[str, str] = {}
 
     def of(self, link: str) -> _Frame:
         """Return the frame of a link; raises MissingElement where it is not there, or in no
         tree.
         """
-        found = self._known.get(link)
-        if found is not None:
-            return found
+        frame = self._known.get(link)
+        if frame is not None:
+            return frame
         return self._solve(link)
 
     def _solve(self, link: str) -> _Frame:
@@ -136,11 +134,11 @@ def _undefined_pose(joint: Joint, robot: Robot) -> MissingElement:
             joint.unresolved[part].check()
     at = joint.axis_location and joint.axis_location._replace(attribute="xyz")
     if joint.origin is None:
-        reason, at = (
-            "the joint's origin cannot be read",
-            joint.location and joint.location._replace(inside="origin"),
-        )
-        at = joint.unresolved["origin"].location if "origin" in joint.unresolved else at
+        reason = "the joint's origin cannot be read"
+        if "origin" in joint.unresolved:
+            at = joint.unresolved["origin"].location
+        else:
+            at = joint.location and joint.location._replace(inside="origin")
     elif joint.axis is None:
         reason = "the joint's axis cannot be read"
     elif unit(joint.axis) is None:
@@ -158,15 +156,14 @@ def _undefined_pose(joint: Joint, robot: Robot) -> MissingElement:
 
 def _mimic_leaders(joint: Joint, robot: Robot) -> Iterable[Joint]:
     """Return a joint, the joint that it mimics, the one that this mimics, and so on."""
-    found = {joint.name: joint}
-    while (
-        joint.mimic is not None
-        and joint.mimic.joint not in found
-        and robot.has_joint(joint.mimic.joint)
-    ):
-        joint = robot.joint(joint.mimic.joint)
-        found[joint.name] = joint
-    return found.values()
+    chain = {joint.name: joint}
+    while joint.mimic is not None:
+        name = joint.mimic.joint
+        if name in chain or not robot.has_joint(name):
+            break
+        joint = robot.joint(name)
+        chain[joint.name] = joint
+    return chain.values()
 
 
 def placed_by(T_frame_parent: Transform, origin: Origin) -> Transform:
@@ -259,21 +256,23 @@ class Configuration:
     """
 
     known: Robot  # as it was read: its open values can be read
-    positions: Mapping[str, float] = field(
-        default_factory=dict
-    )  # radians or metres; the other joints are at 0
-    is_guarded: bool = field(
-        default=False, kw_only=True
-    )  # reading what is open in `robot` raises NotDecided
+    # radians or metres; the other joints are at 0
+    positions: Mapping[str, float] = field(default_factory=dict)
+    # reading what is open in `robot` raises NotDecided
+    is_guarded: bool = field(default=False, kw_only=True)
+    # what `at` hands on, as it does not change with positions
+    _shared: _Views | None = field(default=None, kw_only=True)
     _relative: dict[tuple[str, str | None], Transform] = field(default_factory=dict, init=False)
 
     def __post_init__(self) -> None:
+        if self._shared is not None:
+            return  # `at` makes it of a robot that moves, at positions of its joints
         for name, position in self.positions.items():
             _check_position(self.known.joint(name), position)
 
     @cached_property
     def _views(self) -> _Views:
-        return _views_of(self.known, is_guarded=self.is_guarded)
+        return self._shared or _views_of(self.known, is_guarded=self.is_guarded)
 
     @cached_property
     def _frames(self) -> _Frames:
@@ -329,10 +328,10 @@ class Configuration:
         Raises MissingElement where there is no such link, no chain of joints between the two, or no
         defined pose (an axis of length zero, an origin that cannot be read).
         """
-        known = self._relative.get((link, relative_to))
-        if known is None:
-            known = self._relative[link, relative_to] = self._solve_relative(link, relative_to)
-        return known
+        pose = self._relative.get((link, relative_to))
+        if pose is None:
+            pose = self._relative[link, relative_to] = self._solve_relative(link, relative_to)
+        return pose
 
     def _solve_relative(self, link: str, relative_to: str | None) -> Transform:
         if relative_to == link:
@@ -366,22 +365,18 @@ class Configuration:
         """Whether each joint connects two links that are there: none of them may be meant for
         another link.
         """
-        robot = self.known
-        return all(
-            map(
-                robot.has_link,
-                (end for joint in robot.joints for end in (joint.parent, joint.child)),
-            )
-        )
+        has_link = self.known.has_link
+        return all(has_link(joint.parent) and has_link(joint.child) for joint in self.known.joints)
 
     def axis(self, joint: str | Joint) -> Vector:
         """Return the unit axis of a joint in its child link's frame; raises MissingElement if it
         has no direction.
         """
-        found = self.joint(joint) if isinstance(joint, str) else joint
-        direction = unit(found.axis) if found.axis is not None else None
+        if isinstance(joint, str):
+            joint = self.joint(joint)
+        direction = unit(joint.axis) if joint.axis is not None else None
         if direction is None:
-            raise _undefined_pose(found, self.robot)
+            raise _undefined_pose(joint, self.robot)
         return direction
 
     @overload
@@ -424,9 +419,9 @@ class Configuration:
         up, down = self.chain(one), self.chain(other)
         if self.root_of(one) != self.root_of(other):
             self.pose(other, relative_to=one)
-        shared = sum(
-            1 for _ in takewhile(lambda pair: pair[0] is pair[1], zip(up, down, strict=False))
-        )
+        shared = 0
+        while shared < min(len(up), len(down)) and up[shared] is down[shared]:
+            shared += 1
         return (*reversed(up[shared:]), *down[shared:])
 
     def moving_joint(self, link: str) -> Joint:
@@ -454,16 +449,14 @@ class Configuration:
         """Return the same robot with one joint elsewhere; raises ValueError for a position that it
         cannot have.
         """
-        found = self.joint(joint) if isinstance(joint, str) else joint
-        _check_position(found, position)
-        return self.at({**self.positions, found.name: position})
+        if isinstance(joint, str):
+            joint = self.joint(joint)
+        _check_position(joint, position)
+        return self.at({**self.positions, joint.name: position})
 
     def at(self, positions: Mapping[str, float]) -> "Configuration":
         """Return the same robot with its joints at other positions, which are not validated."""
-        posed = Configuration(self.known, is_guarded=self.is_guarded)
-        object.__setattr__(posed, "positions", positions)
-        object.__setattr__(posed, "_views", self._views)  # which positions do not change
-        return posed
+        return Configuration(self.known, positions, is_guarded=self.is_guarded, _shared=self._views)
 
     def displacement(self, link: str, joint: Joint, angle: float, *, relative_to: str) -> Transform:
         """Return the motion of points on a link when a turning or sliding joint moves by `angle`

@@ -157,15 +157,14 @@ def _cycles(edges: _Edges, links: list[str]) -> list[list[Joint]]:
             *names, _ = error.args[1]
         else:
             break
+        # The loop begins with the link that is first in the file.
         first = names.index(min(names, key=rank.__getitem__))
         ring = [*names[first:], *names[:first], names[first]]
-        in_ring, steps = set(ring), pairwise(ring)
-        cycles.append(
-            [
-                next(joint for joint in edges[parent] if joint.child == child)
-                for parent, child in steps
-            ]
-        )
+        cycle = []
+        for parent, child in pairwise(ring):
+            cycle.append(next(joint for joint in edges[parent] if joint.child == child))
+        cycles.append(cycle)
+        in_ring = set(ring)
         links = [link for link in links if link not in in_ring]
     return cycles
 
@@ -174,50 +173,50 @@ def _report_cycle(
     cycle: list[Joint], reachable: set[str], problems: Problems, *, has_root: bool
 ) -> None:
     shown = [*cycle[:_MAX_NAMED], *cycle[-1:]] if len(cycle) > _MAX_NAMED else cycle
-    steps = " -> ".join(quoted(joint.parent) for joint in shown) + f" -> {quoted(cycle[0].parent)}"
+    first = cycle[0].parent
+    steps = "".join(f"{quoted(joint.parent)} -> " for joint in shown) + quoted(first)
     names = ", ".join(quoted(joint.name) for joint in shown)
     loop = f"joint {names} forms a loop" if len(cycle) == 1 else f"joints {names} form a loop"
-    element = problems.element(cycle[0])
-    if cycle[0].parent in reachable:
-        problems.add(
-            urdf_problems.CYCLE,
-            f"{loop}: {steps}; ROS 2 follows it without end and crashes",
-            element,
-        )
+    if first in reachable:
+        kind = urdf_problems.CYCLE
+        message = f"{loop}: {steps}; ROS 2 follows it without end and crashes"
     elif has_root:
+        kind = urdf_problems.DETACHED_CYCLE
         message = f"{loop} that is detached from the robot: {steps}; ROS 2 ignores these links"
-        problems.add(urdf_problems.DETACHED_CYCLE, message, element)
     else:
-        problems.add(
-            urdf_problems.NO_ROOT,
-            f"there is no root link: {loop}: {steps}; ROS 2 rejects the file",
-            element,
-        )
+        kind = urdf_problems.NO_ROOT
+        message = f"there is no root link: {loop}: {steps}; ROS 2 rejects the file"
+    problems.add(kind, message, problems.element(cycle[0]))
 
 
 def _check_roots(
     robot: Robot, roots: list[str], edges: _Edges, links: dict[str, Element], problems: Problems
 ) -> None:
-    explained = {joint.child for joint in robot.joints if not robot.has_link(joint.parent)}
-    unknown = [joint.child for joint in robot.joints if not robot.has_link(joint.child)]
-    explained |= {problems.closest(child, links) or "" for child in unknown}
-    explained |= {
-        link.name for link in robot.links if "@name" in link.unresolved
-    }  # any joint may have it as its child
+    """Report the links that no joint connects to the robot, but for those that another problem
+    explains.
+    """
+    explained: set[str] = set()
+    for joint in robot.joints:
+        if not robot.has_link(joint.parent):
+            explained.add(joint.child)
+        if not robot.has_link(joint.child):
+            explained.add(problems.closest(joint.child, links) or "")
+    # Any joint may have a link of an open name as its child.
+    explained |= {link.name for link in robot.links if "@name" in link.unresolved}
     is_child_open = any("child" in joint.unresolved for joint in robot.joints)
-    if is_child_open or len([name for name in roots if name not in explained]) < 2:
+    if is_child_open or sum(name not in explained for name in roots) < 2:
         return
+    main = roots[0]
     if len(roots) <= _MAX_ROOTS:
-        sizes = {name: len(_reachable([name], edges)) for name in roots}
-    else:
-        sizes = {}
-    main = max(roots, key=lambda name: sizes.get(name, 0))
+        main = max(roots, key=lambda name: len(_reachable([name], edges)))
     others = [name for name in roots if name != main and name not in explained]
     named = enumerated([*map(quoted, others)], _MAX_ROOTS)
     verb, them = ("is", "it") if len(others) == 1 else ("are", "them")
     all_roots = ", ".join(map(quoted, [main, *others][:_MAX_ROOTS]))
-    reason = f"no joint has {them} as its child (the roots are {all_roots})"
-    message = f"{named} {verb} not connected to the robot: {reason}; ROS 2 rejects the file"
+    message = (
+        f"{named} {verb} not connected to the robot: no joint has {them} as its child "
+        f"(the roots are {all_roots}); ROS 2 rejects the file"
+    )
     problems.add(urdf_problems.TWO_ROOTS, message, links[others[0]], "name")
 
 
@@ -272,12 +271,12 @@ def selected_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
 
     Raises MissingElement where there is no such link, NotDecided where several could be meant.
     """
-    found = _SELECTOR.fullmatch(name)
-    if found is None or robot.has_link(name):
+    match = _SELECTOR.fullmatch(name)
+    if match is None or robot.has_link(name):
         return name
     robot.check_complete()
-    if found[2] is not None:
-        link = robot.link(found[2]).name
+    if match[2] is not None:
+        link = robot.link(match[2]).name
         if link not in parents:
             raise MissingElement("joint", name, message=f"no joint holds {quoted(link)}")
         return parents[link].name
@@ -287,11 +286,11 @@ def selected_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
     if name == "@root":
         return root
     most = max(place.depth for place in places.values())
-    if found[1] is None:
+    if match[1] is None:
         inner = {parents[link].parent for link in places if link != root}
         tips = {link for link, place in places.items() if place.depth == most and link not in inner}
         return _only_link(robot, tips, name)
-    return _only_link(robot, _links_moved_by(places, parents, int(found[1]), most, name), name)
+    return _only_link(robot, _links_moved_by(places, parents, int(match[1]), most, name), name)
 
 
 def selected_or_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:

@@ -65,13 +65,12 @@ def with_volume(elements: Iterable[Visual | Collision]) -> list[tuple[Geometry, 
     its origin.
     """
     placed = dict.fromkeys((element.geometry, element.origin) for element in elements)
-    return [
-        (shape, origin) for shape, origin in placed if not is_empty(shape) and _has_volume(shape)
-    ]
-
-
-def _has_volume(shape: Geometry) -> bool:
-    return isinstance(shape, Mesh) or volume(shape) > 0.0
+    shapes = []
+    for shape, origin in placed:
+        has_volume = isinstance(shape, Mesh) or volume(shape) > 0.0
+        if has_volume and not is_empty(shape):
+            shapes.append((shape, origin))
+    return shapes
 
 
 def together(bodies: Iterable[MassProperties]) -> MassProperties:
@@ -80,8 +79,10 @@ def together(bodies: Iterable[MassProperties]) -> MassProperties:
     """
     every = list(bodies)
     mass = sum(body.mass for body in every)
-    x, y, z = (sum(body.mass * body.centre[axis] for body in every) / mass for axis in range(3))
-    moved = (shifted(body.inertia, body.mass, minus(body.centre, (x, y, z))) for body in every)
+    x = sum(body.mass * body.centre[0] for body in every) / mass
+    y = sum(body.mass * body.centre[1] for body in every) / mass
+    z = sum(body.mass * body.centre[2] for body in every) / mass
+    moved = [shifted(body.inertia, body.mass, minus(body.centre, (x, y, z))) for body in every]
     return MassProperties(mass, (x, y, z), _tensor(map(sum, zip(*moved, strict=True))))
 
 

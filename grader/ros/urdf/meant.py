@@ -226,16 +226,21 @@ def _pasted_children(root: Element, robot: Robot) -> Iterator[Word]:
     """Yield the child that a second joint has by mistake: the one link that no joint names should
     be there.
     """
-    named = {name for joint in robot.joints for name in (joint.parent, joint.child)}
-    lonely = [link.name for link in robot.links if link.name not in named]
     counts = Counter(joint.child for joint in robot.joints)
+    named = {*counts, *(joint.parent for joint in robot.joints)}
+    lonely = [link.name for link in robot.links if link.name not in named]
     doubled = [child for child, count in counts.items() if count == 2]
     if len(lonely) != 1 or len(doubled) != 1:
         return
-    ends = [(joint, joint.find("child")) for joint in root.iterchildren("joint")]
-    own = [(joint, end) for joint, end in ends if end is not None and end.get("link") == doubled[0]]
-    named_after = [end for joint, end in own if lonely[0] in (joint.get("name") or "")]
-    for end in (named_after if len(named_after) == 1 else [end for _, end in own])[-1:]:
+    ends = []  # where the two joints name their child
+    named_after = []  # those of joints that are named after the lonely link
+    for joint in root.iterchildren("joint"):
+        end = joint.find("child")
+        if end is not None and end.get("link") == doubled[0]:
+            ends.append(end)
+            if lonely[0] in (joint.get("name") or ""):
+                named_after.append(end)
+    for end in (named_after if len(named_after) == 1 else ends)[-1:]:
         yield _word_with_value(end, "link", lonely[0], "the child")
 
 
@@ -243,20 +248,16 @@ def _repeated_names(root: Element) -> Iterator[Word]:
     """Yield a name that is given twice, where one other name is used and not given: the later one
     should have it.
     """
-    used = {
-        "link": [
-            end.get("link") for end in root.iterfind("joint/*") if end.tag in ("parent", "child")
-        ],
-        "joint": [mimic.get("joint") for mimic in root.iterfind("joint/mimic")],
-    }
-    for tag, names in used.items():
-        given = Counter(element.get("name") for element in root.iterchildren(tag))
-        repeated = [name for name, count in given.items() if name is not None and count > 1]
-        missing = [name for name in dict.fromkeys(names) if name and name not in given]
-        if len(repeated) == len(missing) == 1 and given[repeated[0]] == 2:
-            *_, later = (
-                element for element in root.iterchildren(tag) if element.get("name") == repeated[0]
-            )
+    ends = [end for end in root.iterfind("joint/*") if end.tag in ("parent", "child")]
+    used_links = dict.fromkeys(end.get("link") for end in ends)
+    used_joints = dict.fromkeys(mimic.get("joint") for mimic in root.iterfind("joint/mimic"))
+    for tag, used in (("link", used_links), ("joint", used_joints)):
+        named = [(element.get("name"), element) for element in root.iterchildren(tag)]
+        counts = Counter(name for name, _ in named)
+        repeated = [name for name, count in counts.items() if name is not None and count > 1]
+        missing = [name for name in used if name and name not in counts]
+        if len(repeated) == len(missing) == 1 and counts[repeated[0]] == 2:
+            later = [element for name, element in named if name == repeated[0]][-1]
             yield _word_with_value(later, "name", missing[0], f"the second {tag}")
 
 

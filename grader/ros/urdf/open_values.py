@@ -37,17 +37,19 @@ def guarded(robot: Robot, parents: Mapping[str, Joint]) -> tuple[Robot, dict[str
     is open which ones there are.
     """
     joints = tuple(_JointView(joint) if joint.unresolved else joint for joint in robot.joints)
-    links, materials = (
-        tuple(map(_view_of_link, robot.links)),
-        tuple(map(_view_of_material, robot.materials)),
+    view = replace(
+        robot,
+        links=tuple(map(_view_of_link, robot.links)),
+        joints=joints,
+        materials=tuple(map(_view_of_material, robot.materials)),
     )
-    found = replace(robot, links=links, joints=joints, materials=materials)
-    views = {
-        view.known.child: view for view in joints if parents.get(view.known.child) is view.known
-    }
-    return _IncompleteRobot(found) if robot.incomplete else found, {
-        child: views[child] for child in parents
-    }
+    view_by_child: dict[str, Joint] = {}
+    for joint in joints:
+        child = joint.known.child
+        if parents.get(child) is joint.known:
+            view_by_child[child] = joint
+    view_parents = {child: view_by_child[child] for child in parents}
+    return _IncompleteRobot(view) if robot.incomplete else view, view_parents
 
 
 def _view_of_link(link: Link) -> Link:
@@ -73,30 +75,37 @@ def _value_if_known(part: Link | Joint, field: str, value: _Value) -> _Value:
     open.
     """
     key = _KEYS.get(field, field)
-    found = part.unresolved.get(key)
+    unresolved = part.unresolved.get(key)
     # What the file does not give may be among unknown children. A visual that is known counts, even
     # if there are more.
-    if found is None and (field == "collisions" or not value):
-        found = part.unresolved.get("")
-    if found is None:
+    if unresolved is None and (field == "collisions" or not value):
+        unresolved = part.unresolved.get("")
+    if unresolved is None:
         return value
-    found.check()
+    unresolved.check()
     if field in _OF_PLACE:
         return value
-    kind, owner = ("joint", part.child) if isinstance(part, Joint) else ("link", part.name)
+    if isinstance(part, Joint):
+        kind, owner = "joint", part.child
+    else:
+        kind, owner = "link", part.name
     message = f"xacro cannot expand the {key} of {kind} {quoted(part.name)}"
-    raise MissingElement(key, owner, message=message, location=found.location)
+    raise MissingElement(key, owner, message=message, location=unresolved.location)
 
 
 def _field_if_known(field: str) -> Any:
-    """Return the property of a view that is this field of what it shows."""
+    """Return the property of a view that is this field of what it shows, unless it is open."""
     return property(lambda view: _value_if_known(view, field, getattr(view.known, field)))
 
 
-def _copy_fields(view: object, known: object, *names: str) -> None:
-    """Give a view fields of what it shows, which are never open; it is frozen as that is."""
-    for name in names:
-        object.__setattr__(view, name, getattr(known, name))
+def _closed_field(field: str) -> Any:
+    """Return the property of a view that is this field of what it shows, which is never open."""
+    return property(lambda view: getattr(view.known, field))
+
+
+def _show(view: object, known: object) -> None:
+    """Set what a view shows, its only field, as the constructors of frozen dataclasses do."""
+    object.__setattr__(view, "_known", known)
 
 
 class _MaterialView(Material):
@@ -104,10 +113,19 @@ class _MaterialView(Material):
     read.
     """
 
-    __slots__ = ()
+    __slots__ = ("_known",)
+    _known: Material
 
     def __init__(self, known: Material) -> None:
-        _copy_fields(self, known, "name", "location", "unresolved")
+        _show(self, known)
+
+    @property
+    def known(self) -> Material:
+        return self._known
+
+    name = _closed_field("name")
+    location = _closed_field("location")
+    unresolved = _closed_field("unresolved")
 
     @property
     def rgba(self) -> tuple[float, float, float, float]:
@@ -118,7 +136,8 @@ class _MaterialView(Material):
         raise self._undecided()
 
     def _undecided(self) -> NotDecided:
-        return NotDecided(next(part.reason for part in self.unresolved.values() if part.reason))
+        reasons = (part.reason for part in self.known.unresolved.values())
+        return NotDecided(next(filter(None, reasons)))
 
 
 class _LinkView(Link):
@@ -128,12 +147,14 @@ class _LinkView(Link):
     _known: Link
 
     def __init__(self, known: Link) -> None:
-        object.__setattr__(self, "_known", known)
-        _copy_fields(self, known, "location", "unresolved")
+        _show(self, known)
 
     @property
     def known(self) -> Link:
         return self._known
+
+    location = _closed_field("location")
+    unresolved = _closed_field("unresolved")
 
     name = _field_if_known("name")
     visuals = _field_if_known("visuals")
@@ -148,12 +169,15 @@ class _JointView(Joint):
     _known: Joint
 
     def __init__(self, known: Joint) -> None:
-        object.__setattr__(self, "_known", known)
-        _copy_fields(self, known, "location", "axis_location", "unresolved")
+        _show(self, known)
 
     @property
     def known(self) -> Joint:
         return self._known
+
+    location = _closed_field("location")
+    axis_location = _closed_field("axis_location")
+    unresolved = _closed_field("unresolved")
 
     name = _field_if_known("name")
     type = _field_if_known("type")
@@ -173,12 +197,20 @@ class _IncompleteRobot(Robot):
     one by one.
     """
 
-    __slots__ = ()
+    __slots__ = ("_known",)
+    _known: Robot
 
     def __init__(self, known: Robot) -> None:
-        _copy_fields(
-            self, known, "name", "materials", "rejected", "incomplete", "_links", "_joints"
-        )
+        _show(self, known)
+
+    @property
+    def known(self) -> Robot:
+        return self._known
+
+    name = _closed_field("name")
+    materials = _closed_field("materials")
+    rejected = _closed_field("rejected")
+    incomplete = _closed_field("incomplete")
 
     @property
     def links(self) -> tuple[Link, ...]:
@@ -188,12 +220,18 @@ class _IncompleteRobot(Robot):
     def joints(self) -> tuple[Joint, ...]:
         raise NotDecided(self.incomplete)
 
+    def link(self, name: str) -> Link:
+        return self._known.link(name)
+
+    def joint(self, name: str) -> Joint:
+        return self._known.joint(name)
+
     def has_link(self, name: str) -> bool:
-        if name not in self._links:
+        if not self._known.has_link(name):
             self.check_complete()
         return True
 
     def has_joint(self, name: str) -> bool:
-        if name not in self._joints:
+        if not self._known.has_joint(name):
             self.check_complete()
         return True

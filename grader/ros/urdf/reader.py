@@ -268,17 +268,16 @@ def _why_incomplete(document: XmlDocument, robot: Robot) -> str:
     of one is unknown.
     """
     root = document.root if document.root is not None else document.recovered
-    of_root = document.unresolved.get(root) if root is not None else None
-    if of_root is not None and of_root.content:
-        return of_root.content
-    parts = [
-        *(link.unresolved for link in robot.links),
-        *(joint.unresolved for joint in robot.joints),
-    ]
-    named = (
-        found[key].reason for found in parts for key in ("@name", "parent", "child") if key in found
-    )
-    return next(filter(None, named), "")
+    unresolved = document.unresolved.get(root) if root is not None else None
+    if unresolved is not None and unresolved.content:
+        return unresolved.content
+    parts_of_elements = [link.unresolved for link in robot.links]
+    parts_of_elements += [joint.unresolved for joint in robot.joints]
+    for parts in parts_of_elements:
+        for key in ("@name", "parent", "child"):
+            if key in parts and parts[key].reason:
+                return parts[key].reason
+    return ""
 
 
 def _read_joints(root: Element, problems: Problems) -> tuple[Joint, ...]:
@@ -314,14 +313,13 @@ def find_xacro(text: str) -> int | None:
     """
     if "$" not in text and "xacro:" not in text:
         return None
-    comments = list(_comment_spans(text))
-    outside = zip(
-        [0, *(end for _, end in comments)],
-        [*(start for start, _ in comments), len(text)],
-        strict=True,
-    )
-    found = next(filter(None, (_XACRO.search(text, *span) for span in outside)), None)
-    return found.start() if found is not None else None
+    outside = 0  # where the text begins that is after the last comment
+    for start, end in (*_comment_spans(text), (len(text), len(text))):
+        match = _XACRO.search(text, outside, start)
+        if match is not None:
+            return match.start()
+        outside = end
+    return None
 
 
 def _check_text(problems: Problems, *, is_expanded: bool) -> None:

@@ -19,9 +19,8 @@ Shape = Box | Cylinder | Sphere
 
 # relative to its length; a direction that leans less from a face's normal means the whole face
 _TIE = 1e-9
-_CORNERS = tuple(
-    product((1.0,), (1.0, -1.0), (1.0, -1.0))
-)  # the signs of four; the others are opposite to these
+# the signs of four corners of a box; the others are opposite to these
+_CORNERS = tuple(product((1.0,), (1.0, -1.0), (1.0, -1.0)))
 
 
 class UnknownShape(ValueError):
@@ -162,7 +161,7 @@ def _signed_half(size: float, component: float, tie: float) -> float:
     return -abs(size) / 2.0
 
 
-class Mismatch(NamedTuple):
+class ShapeDifference(NamedTuple):
     """The differences of two shapes in metres: how far the centres are apart, the largest
     difference of a size, and how far the turn of one against the other moves a point of the
     surface. `angle` is that turn in degrees.
@@ -184,22 +183,24 @@ class Mismatch(NamedTuple):
 
 def mismatch(
     a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, tolerance: float, *, turned: bool = True
-) -> Mismatch | None:
+) -> ShapeDifference | None:
     """Return how two shapes differ, with as few differences beyond a tolerance as their symmetries
     allow.
 
     None for shapes of different kinds. Without `turned`, their orientations do not count.
     """
     apart = hypot(*minus(T_w_a.translation, T_w_b.translation))
-    found = [
-        Mismatch(apart, *(way if turned else (way[0], 0.0, 0.0)))
-        for way in _differences_by_pose(a, T_w_a, b, T_w_b)
-    ]
-    return min(
-        found,
-        key=lambda way: (not way.size <= tolerance) + (not way.turn <= tolerance),
-        default=None,
-    )
+    differences = []
+    for size, turn, angle in _differences_by_pose(a, T_w_a, b, T_w_b):
+        if turned:
+            differences.append(ShapeDifference(apart, size, turn, angle))
+        else:
+            differences.append(ShapeDifference(apart, size, 0.0, 0.0))
+
+    def count_beyond(difference: ShapeDifference) -> int:
+        return (not difference.size <= tolerance) + (not difference.turn <= tolerance)
+
+    return min(differences, key=count_beyond, default=None)
 
 
 def turn_between(one: Rotation, other: Rotation) -> float:
@@ -224,17 +225,22 @@ def _differences_by_pose(
             lean = _nearest_chord(T_w_a.rotate(AXES[2]), T_w_b.rotate(AXES[2]))
             yield size, hypot(*lean) * hypot(a.radius, a.length / 2.0), _chord_angle(lean)
         case Box(), Box():
-            ours, theirs = ([T.rotate(axis) for axis in AXES] for T in (T_w_a, T_w_b))
-            for order in permutations(range(3)):
-                size = max(
-                    _size_difference(edge, b.size[other])
-                    for edge, other in zip(a.size, order, strict=True)
-                )
-                leans = [
-                    _nearest_chord(axis, theirs[other])
-                    for axis, other in zip(ours, order, strict=True)
-                ]
-                yield size, _corner_motion(a.size, leans), max(map(_chord_angle, leans))
+            yield from _box_differences(a, T_w_a, b, T_w_b)
+
+
+def _box_differences(
+    a: Box, T_w_a: Transform, b: Box, T_w_b: Transform
+) -> Iterator[tuple[float, float, float]]:
+    """Yield the size, turn and angle of the difference for each order of a box's edges."""
+    axes_of_a = [T_w_a.rotate(axis) for axis in AXES]
+    axes_of_b = [T_w_b.rotate(axis) for axis in AXES]
+    for order in permutations(range(3)):
+        sizes: list[float] = []
+        leans: list[Vector] = []
+        for one, other in enumerate(order):
+            sizes.append(_size_difference(a.size[one], b.size[other]))
+            leans.append(_nearest_chord(axes_of_a[one], axes_of_b[other]))
+        yield max(sizes), _corner_motion(a.size, leans), max(map(_chord_angle, leans))
 
 
 def _size_difference(one: float, other: float) -> float:
@@ -256,15 +262,13 @@ def _corner_motion(size: Vector, leans: list[Vector]) -> float:
     """Return how far the farthest corner of a box moves if the directions of its edges change by
     these vectors.
     """
-    return max(
-        hypot(
-            *(
-                sum(
-                    s * edge / 2.0 * lean[k]
-                    for s, edge, lean in zip(signs, size, leans, strict=True)
-                )
-                for k in range(3)
-            )
-        )
-        for signs in _CORNERS
-    )
+    motions = []
+    for signs in _CORNERS:
+        x = y = z = 0.0
+        for sign, edge, lean in zip(signs, size, leans, strict=True):
+            half = sign * edge / 2.0
+            x += half * lean[0]
+            y += half * lean[1]
+            z += half * lean[2]
+        motions.append(hypot(x, y, z))
+    return max(motions)

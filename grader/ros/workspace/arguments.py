@@ -22,32 +22,26 @@ def argument_facts(workspace: Workspace) -> Iterator[Fact]:
     """
     for package, path, launch in workspace.launches:
         start = Location(package.path(path), 1, 1)
-        for owner in [target for target, source in package.installed.items() if source == path]:
-            yield from (
-                Definition("launch argument", name, start, owner) for name in launch.declared
-            )
+        for owner, source in package.installed.items():
+            if source != path:
+                continue
+            for name in launch.declared:
+                yield Definition("launch argument", name, start, owner)
             text = package.tree.files[path].read(_MAX_LAUNCH).decode("utf-8", "replace")
-            used = {name for found in _CONFIGURATION.findall(text) for name in found if name}
-            yield from (Definition("launch argument", name, start, owner) for name in used)
-            yield from _of_included(workspace, launch, owner)
+            used = {match[1] or match[2] for match in _CONFIGURATION.finditer(text)}
+            for name in used:
+                yield Definition("launch argument", name, start, owner)
+            yield from _included_arguments(workspace, launch, owner)
             if launch.more:
                 yield Open("launch argument", owner)
     for owner, names in known()["launch_arguments"].items():
-        yield from (
-            Definition("launch argument", name, Location(owner, 1, 1), owner) for name in names
-        )
-    for _, _, launch in workspace.launches:
-        for passed in launch.passed:
-            if workspace.has_file(passed.path) or passed.path in known()["launch_arguments"]:
-                for name, _ in passed.values:
-                    said = f"the include of {passed.path.rpartition('/')[2]}"
-                    yield Use(
-                        "launch argument", name, passed.location, said, passed.path, optional=True
-                    )
-    yield from _of_xacro(workspace)
+        for name in names:
+            yield Definition("launch argument", name, Location(owner, 1, 1), owner)
+    yield from _passed_arguments(workspace)
+    yield from _xacro_arguments(workspace)
 
 
-def _of_included(workspace: Workspace, launch: Launch, owner: str) -> Iterator[Fact]:
+def _included_arguments(workspace: Workspace, launch: Launch, owner: str) -> Iterator[Fact]:
     """Yield the arguments of launch files that are not submitted, which a launch file passes on by
     including them.
     """
@@ -60,17 +54,28 @@ def _of_included(workspace: Workspace, launch: Launch, owner: str) -> Iterator[F
             yield Open("launch argument", owner)
 
 
-def _of_xacro(workspace: Workspace) -> Iterator[Fact]:
+def _passed_arguments(workspace: Workspace) -> Iterator[Use]:
+    """Yield the arguments that launch files pass to those that they include."""
+    for _, _, launch in workspace.launches:
+        for passed in launch.passed:
+            path = passed.path
+            if workspace.has_file(path) or path in known()["launch_arguments"]:
+                said = f"the include of {path.rpartition('/')[2]}"
+                for name, _ in passed.values:
+                    yield Use("launch argument", name, passed.location, said, path, optional=True)
+
+
+def _xacro_arguments(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the arguments that xacro files declare, and those that launch files pass to xacro."""
     for source in workspace.xacro_sources:
-        for found in _XACRO_ARGUMENT.finditer(source.text):
-            yield Definition("xacro argument", found[1], source.at(found.start(1)))
+        for match in _XACRO_ARGUMENT.finditer(source.text):
+            yield Definition("xacro argument", match[1], source.at(match.start(1)))
         if any(workspace.packages[0].find(name) is None for name in _FIND.findall(source.text)):
             yield Open("xacro argument")  # of files that are included from other packages
     for _, _, launch in workspace.launches:
         for file in launch.named("urdf", "read"):
             path = (file.path or "").removeprefix(f"{PREFIX}/")
             if file.by == "xacro" and workspace.has_file(path):
+                said = "Command of xacro"
                 for name, _ in file.arguments:
-                    yield Use(
-                        "xacro argument", name, file.location, "Command of xacro", optional=True
-                    )
+                    yield Use("xacro argument", name, file.location, said, optional=True)

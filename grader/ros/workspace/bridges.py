@@ -5,16 +5,13 @@ has.
 import posixpath
 import re
 from collections.abc import Iterator
-from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from grader.base.names import closest
 from grader.base.source import Location
 from grader.base.text import enumerated, quoted
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode
 from grader.ros.known.known import known
-from grader.ros.launch.node_parameters import parameters_of
-from grader.ros.package.installed_files import open_meant
 from grader.ros.workspace.gazebo import BRIDGE, GazeboTopic, gazebo_topics, roots
 from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections, place_text
 from grader.ros.workspace.workspace import Workspace
@@ -59,53 +56,58 @@ def bridge_rows(workspace: Workspace) -> Iterator[_BridgeRow]:
     """Yield the rows of bridges in YAML files, and those in the arguments of bridges."""
     for path, tree in workspace.trees:
         is_used = any(posixpath.basename(path) in text for text in workspace.launch_texts)
-        for row in tree.items:
-            yield from _row_in_yaml(row, is_used=is_used)
+        for item in tree.items:
+            row = _row_in_yaml(item, is_used=is_used)
+            if row is not None:
+                yield row
     for _, node in workspace.nodes:
         for word in node.arguments or () if node.package == BRIDGE else ():
-            found = _ARGUMENT.fullmatch(word or "")
-            if found is not None:
-                name, types, at = (
-                    found["topic"].strip("/"),
-                    _types_of(found["ros"], found["gz"]),
-                    node.location,
-                )
+            match = _ARGUMENT.fullmatch(word or "")
+            if match is not None:
+                topic, at = match["topic"].strip("/"), node.location
                 yield _BridgeRow(
-                    name,
-                    name,
-                    *types,
-                    _DIRECTIONS[found["direction"]],
-                    at,
-                    at,
-                    at,
-                    at,
+                    ros=topic,
+                    gz=topic,
+                    ros_type=_newer_ros_type(match["ros"]),
+                    gz_type=_newer_gz_type(match["gz"]),
+                    direction=_DIRECTIONS[match["direction"]],
+                    location=at,
+                    ros_type_location=at,
+                    gz_type_location=at,
+                    direction_location=at,
                     is_used=True,
                 )
 
 
-def _types_of(ros: str, gz: str) -> tuple[str, str]:
-    return ros.replace("/", "."), _OLDER_FORM.sub("gz.msgs", gz)
+def _newer_ros_type(written: str) -> str:
+    return written.replace("/", ".")
 
 
-def _row_in_yaml(row: YamlNode, *, is_used: bool) -> Iterator[_BridgeRow]:
+def _newer_gz_type(written: str) -> str:
+    return _OLDER_FORM.sub("gz.msgs", written)
+
+
+def _row_in_yaml(row: YamlNode, *, is_used: bool) -> _BridgeRow | None:
     both = row.get("topic_name")
     ros, gz = row.get("ros_topic_name") or both, row.get("gz_topic_name") or both
     ros_type, gz_type = row.get("ros_type_name"), row.get("gz_type_name")
-    if (
-        ros is None
-        or gz is None
-        or ros_type is None
-        or gz_type is None
-        or not ros.text
-        or not gz.text
-    ):
-        return
+    if ros is None or gz is None or not ros.text or not gz.text:
+        return None
+    if ros_type is None or gz_type is None:
+        return None
     direction = row.get("direction")
-    way = _BOTH if direction is None else direction.text or _BOTH
-    names = ros.text.strip("/"), gz.text.strip("/")
-    types = _types_of(ros_type.text or "", gz_type.text or "")
-    places = gz.location, ros_type.location, gz_type.location, (direction or gz).location
-    yield _BridgeRow(*names, *types, way, *places, is_used)
+    return _BridgeRow(
+        ros=ros.text.strip("/"),
+        gz=gz.text.strip("/"),
+        ros_type=_newer_ros_type(ros_type.text or ""),
+        gz_type=_newer_gz_type(gz_type.text or ""),
+        direction=(direction.text if direction is not None else None) or _BOTH,
+        location=gz.location,
+        ros_type_location=ros_type.location,
+        gz_type_location=gz_type.location,
+        direction_location=(direction or gz).location,
+        is_used=is_used,
+    )
 
 
 def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -120,16 +122,17 @@ def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
     if not rows:
         return
     topics = list(gazebo_topics(workspace))
-    of_images = [node for _, node in workspace.nodes if node.package == "ros_gz_image"]
-    images = {(word or "").strip("/") for node in of_images for word in node.arguments or ()}
-    bridged, defined = {row.gz for row in rows} | images, _defined(workspace)
-    unused = [it for it in topics if it.name not in bridged]
+    named, bridged = _named_topics(workspace), {row.gz for row in rows}
+    for _, node in workspace.nodes:
+        if node.package == "ros_gz_image":
+            bridged |= {(word or "").strip("/") for word in node.arguments or ()}
+    unused = [topic for topic in topics if topic.name not in bridged]
     is_known = not _is_open(workspace)
     for row in rows:
         yield Compared("topics")
-        same = [it for it in topics if it.name == row.gz]
-        yield from _conversions(row, {f"gz.msgs.{it.type}" for it in same})
-        if row.gz in defined:
+        same = [topic for topic in topics if topic.name == row.gz]
+        yield from _conversions(row, {f"gz.msgs.{topic.type}" for topic in same})
+        if row.gz in named:
             yield from _contradictions(row, same)
         elif not row.gz.startswith(("world/", "model/")) and "$" not in row.gz:
             yield from _not_there(row, unused, is_known=is_known)
@@ -140,88 +143,90 @@ def bridge_files(workspace: Workspace) -> set[str]:
     """Return the files with rows that launch files give to bridges, by their paths in the
     submission.
     """
-    bridges = [node for _, node in workspace.nodes if node.package == BRIDGE]
-    given = [it.values.get("config_file") for node in bridges for it in node.parameters or ()]
-    paths = [it.value for it in given if it is not None]
-    passed = [
-        it for _, launch in workspace.roots for it in launch.passed if f"/{BRIDGE}/" in it.path
-    ]
-    paths += [value for it in passed for name, value in it.values if name == "config_file"]
-    return {
-        found
-        for path in paths
-        if isinstance(path, str) and (found := workspace.source_of(path)) is not None
-    }
+    paths: list[Any] = []
+    for _, node in workspace.nodes:
+        for given in node.parameters or () if node.package == BRIDGE else ():
+            value = given.values.get("config_file")
+            if value is not None:
+                paths.append(value.value)
+    for _, launch in workspace.roots:
+        for passed in launch.passed:
+            if f"/{BRIDGE}/" in passed.path:
+                paths += [value for name, value in passed.values if name == "config_file"]
+    files = {workspace.source_of(path) for path in paths if isinstance(path, str)}
+    return {file for file in files if file is not None}
 
 
-def _conversions(row: _BridgeRow, of_gazebo: set[str]) -> Iterator[Mismatch]:
+def _conversions(row: _BridgeRow, gazebo_types: set[str]) -> Iterator[Mismatch]:
     """Yield that no bridge converts a type into the other one, and that the time of ROS is sent to
     Gazebo.
 
     Where the topics of Gazebo have the type of the row, the other one is wrong.
     """
-    kinds = known()["bridge_types"]
-    fitting = [f"gz.msgs.{it}" for it in kinds.get(row.ros_type, ())]
+    fitting = _fitting_types(row)
     if fitting and row.gz_type not in fitting:
-        ros = row.ros_type.replace(".", "/")
-        message = f"the bridge does not convert {ros} and {row.gz_type or 'an empty type'}"
+        ros_type = row.ros_type.replace(".", "/")
         plain = row.gz_type.removeprefix("gz.msgs.")
-        meant = [name.replace(".", "/") for name, own in kinds.items() if plain in own]
-        if of_gazebo == {row.gz_type} and meant:
-            wrong, at = ros, row.ros_type_location
+        meant = []
+        if gazebo_types == {row.gz_type}:
+            for kind, converted in known()["bridge_types"].items():
+                if plain in converted:
+                    meant.append(kind.replace(".", "/"))
+        if meant:
+            wrong, at = ros_type, row.ros_type_location
         else:
             wrong, meant, at = row.gz_type, fitting[:1], row.gz_type_location
         either = corrections(wrong, at, meant[0]) if wrong and len(meant) == 1 else ()
-        yield Mismatch(
-            "topics",
-            f"{message}; write {enumerated(meant, word='or')}",
-            at,
-            None,
-            row.is_used,
-            either,
+        message = (
+            f"the bridge does not convert {ros_type} and {row.gz_type or 'an empty type'}; "
+            f"write {enumerated(meant, word='or')}"
         )
+        yield Mismatch("topics", message, at, None, row.is_used, either)
     if row.gz_type == "gz.msgs.Clock" and row.direction == _TO_GAZEBO:
         message = (
             f"the bridge sends the time of ROS to Gazebo: the clock is Gazebo's, so write {_TO_ROS}"
         )
-        yield _in_direction(row, message, _TO_ROS)
+        yield _wrong_direction(row, message, _TO_ROS)
 
 
-def _in_direction(
-    row: _BridgeRow, message: str, right: str, at: Location | None = None
+def _fitting_types(row: _BridgeRow) -> list[str]:
+    """Return the types of Gazebo that a bridge converts into the type of a row in ROS."""
+    return [f"gz.msgs.{kind}" for kind in known()["bridge_types"].get(row.ros_type, ())]
+
+
+def _wrong_direction(
+    row: _BridgeRow, message: str, right: str, related: Location | None = None
 ) -> Mismatch:
     """Return that a row has the wrong direction, with the right one; in an argument it is a
     character.
     """
-    where = row.direction_location
-    either = corrections(row.direction, where, right) if where != row.location else ()
-    return Mismatch("topics", message, where, at, row.is_used, either)
+    at = row.direction_location
+    either = corrections(row.direction, at, right) if at != row.location else ()
+    return Mismatch("topics", message, at, related, row.is_used, either)
 
 
 def _contradictions(row: _BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mismatch]:
     """Yield that a topic of Gazebo is bridged in the other direction, or has messages of another
     type.
     """
-    inputs = {it.is_input for it in topics}
-    wrong, right = (_TO_ROS, _TO_GAZEBO) if inputs == {True} else (_TO_GAZEBO, _TO_ROS)
-    if topics and len(inputs) == 1 and row.direction == wrong:
-        done = "reads it" if inputs == {True} else "publishes it"
-        at = topics[0].location
+    if not topics:
+        return
+    at = topics[0].location
+    wrong, right, done = _TO_GAZEBO, _TO_ROS, "publishes it"
+    if topics[0].is_input:
+        wrong, right, done = _TO_ROS, _TO_GAZEBO, "reads it"
+    are_alike = len({topic.is_input for topic in topics}) == 1
+    if are_alike and row.direction == wrong:
         message = (
             f"the topic {row.gz} is bridged {wrong}, but Gazebo {done} ({place_text(at)}): "
             f"write {right}"
         )
-        yield _in_direction(row, message, right, at)
-    fitting = [f"gz.msgs.{it}" for it in known()["bridge_types"].get(row.ros_type, ())]
-    if (
-        topics
-        and row.gz_type in fitting
-        and all(f"gz.msgs.{it.type}" != row.gz_type for it in topics)
-    ):
-        at = topics[0].location
+        yield _wrong_direction(row, message, right, at)
+    types = [f"gz.msgs.{topic.type}" for topic in topics]
+    # That no bridge converts the type is another mistake.
+    if row.gz_type in _fitting_types(row) and row.gz_type not in types:
         message = (
-            f"the topic {row.gz} of Gazebo has gz.msgs.{topics[0].type} ({place_text(at)}), not "
-            f"{row.gz_type}"
+            f"the topic {row.gz} of Gazebo has {types[0]} ({place_text(at)}), not {row.gz_type}"
         )
         yield Mismatch("topics", message, row.gz_type_location, at, row.is_used)
 
@@ -230,77 +235,74 @@ def _not_there(row: _BridgeRow, unused: list[GazeboTopic], *, is_known: bool) ->
     """Yield that Gazebo does not have the topic of a row, while no row has one of the same type
     that it has.
     """
-    fitting = {
-        it.name: it
-        for it in unused
-        if f"gz.msgs.{it.type}" == row.gz_type and it.is_input != row.is_published
-    }
+    fitting: dict[str, Location] = {}
+    for topic in unused:
+        if f"gz.msgs.{topic.type}" == row.gz_type and topic.is_input != row.is_published:
+            fitting[topic.name] = topic.location
     if fitting:
         meant = closest(row.gz, fitting) or min(fitting)
-        at = fitting[meant].location
+        at = fitting[meant]
         what = "no sensor publishes" if row.is_published else "nothing reads"
         message = (
             f"{what} {quoted(row.gz)} in Gazebo; did you mean {quoted(meant)} ({place_text(at)})?"
         )
         is_sure = row.is_used and is_known and len(fitting) == 1
-        yield Mismatch(
-            "topics",
-            message,
-            row.location,
-            at,
-            is_sure,
-            corrections(row.gz, row.location, meant, at),
-        )
+        either = corrections(row.gz, row.location, meant, at)
+        yield Mismatch("topics", message, row.location, at, is_sure, either)
 
 
 def _clocks(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Mismatch]:
     """Yield that nodes wait for the time of the simulation, and no bridge takes it from Gazebo."""
-    bridges = [node for _, node in workspace.nodes if node.package == BRIDGE]
-    own = [row for row in rows if row.is_used]
-    if not bridges or not own or any(row.ros == "clock" for row in rows) or _is_open(workspace):
+    used = [row for row in rows if row.is_used]
+    has_bridge = any(node.package == BRIDGE for _, node in workspace.nodes)
+    has_clock = any(row.ros == "clock" for row in rows)
+    if not has_bridge or not used or has_clock or _is_open(workspace):
         return
-    included = [passed.path for _, launch in workspace.roots for passed in launch.passed]
-    if any(not workspace.source_of(path) and "/ros_gz_sim/" not in path for path in included):
-        return
+    for _, launch in workspace.roots:
+        for passed in launch.passed:
+            if not workspace.source_of(passed.path) and "/ros_gz_sim/" not in passed.path:
+                return  # what it includes may have a bridge
     for package, node in workspace.nodes:
-        given = parameters_of(
-            node, partial(open_meant, package), workspace.name_of(node) or "", is_python=None
-        ).values
-        found = given.get("use_sim_time")
-        if found is not None and str(found.value).lower() == "true" and node.when:
+        given = workspace.parameters_given(package, node, is_python=None)
+        sim_time = given.values.get("use_sim_time")
+        if sim_time is not None and str(sim_time.value).lower() == "true" and node.when:
             message = (
                 f"{node.executable} waits for the time of the simulation, but no bridge takes "
                 "clock from Gazebo"
             )
-            yield Mismatch("topics", message, found.location, own[0].location)
+            yield Mismatch("topics", message, sim_time.location, used[0].location)
             return
 
 
-def _defined(workspace: Workspace) -> set[str]:
+def _named_topics(workspace: Workspace) -> set[str]:
     """Return every topic that the robot, models and worlds name, and those that Gazebo derives from
     them.
     """
-    defined: set[str] = set()
+    topics: set[str] = set()
     for root, _ in roots(workspace):
         for element in root.iter("*"):
             text = (element.text or "").strip().strip("/")
             if str(element.tag).endswith("topic") and text:
-                beside = [posixpath.join(posixpath.dirname(text), name) for name in _DERIVED]
-                defined |= {text, *beside, *(f"{text}/{name}" for name in _DERIVED)}
-    return defined
+                topics.add(text)
+                for name in _DERIVED:
+                    topics.add(posixpath.join(posixpath.dirname(text), name))
+                    topics.add(f"{text}/{name}")
+    return topics
 
 
 def _is_open(workspace: Workspace) -> bool:
     """Return whether there may be other sensors and bridges than those that were read."""
-    is_whole = workspace.robot is not None and not workspace.has_other_robots
-    if not is_whole or any(launch.more for _, _, launch in workspace.launches):
+    if workspace.robot is None or workspace.has_other_robots:
         return True
-    arguments = [
-        node.arguments for _, node in workspace.nodes if node.package in (BRIDGE, "ros_gz_image")
-    ]
-    if any(words is None or None in words for words in arguments):
+    if any(launch.more for _, _, launch in workspace.launches):
         return True
-    models = [
-        it.findtext("uri") or "" for file in workspace.sdf_files for it in file.root.iter("include")
-    ]
-    return any(uri.rpartition("/")[2].lower() not in _WITHOUT_SENSORS for uri in models)
+    for _, node in workspace.nodes:
+        is_known = node.arguments is not None and None not in node.arguments
+        if node.package in (BRIDGE, "ros_gz_image") and not is_known:
+            return True
+    for file in workspace.sdf_files:
+        for include in file.root.iter("include"):
+            model = (include.findtext("uri") or "").rpartition("/")[2]
+            if model.lower() not in _WITHOUT_SENSORS:
+                return True
+    return False

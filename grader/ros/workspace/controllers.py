@@ -73,17 +73,18 @@ def _sections(workspace: Workspace) -> Iterator[tuple[tuple[str, ...], YamlNode]
 
 def defined_controllers(workspace: Workspace) -> Iterator[Controller]:
     """Yield the controllers that parameter files define, with their types."""
-    for keys, node in _sections(workspace):
-        own = keys[-1].rpartition("/")[2]
-        is_manager = own == MANAGER and isinstance(node.value, dict)
-        for name, inner in (
-            node.value.items() if is_manager and isinstance(node.value, dict) else [(own, node)]
-        ):
-            kind = inner.get("type")
-            if (
-                kind is not None and kind.text is not None and "/" in kind.text
-            ):  # or in its own section, for a spawner
-                yield Controller(name, kind, kind.location, inner.get("params_file") is not None)
+    for keys, section in _sections(workspace):
+        name = keys[-1].rpartition("/")[2]
+        # The type is in a section of the controller manager, or in their own, for a spawner.
+        if name == MANAGER and isinstance(section.value, dict):
+            defined = section.value
+        else:
+            defined = {name: section}
+        for controller, node in defined.items():
+            kind = node.get("type")
+            if kind is not None and kind.text is not None and "/" in kind.text:
+                has_file = node.get("params_file") is not None
+                yield Controller(controller, kind, kind.location, has_file)
 
 
 def controller_endpoints(
@@ -94,32 +95,33 @@ def controller_endpoints(
     """
     if node.executable != "ros2_control_node" or node.namespace is None or node.remaps is None:
         return
-    spawners = [
-        it
-        for number, it in workspace.launched
-        if number == launch and it.executable in SPAWNERS and it.when
-    ]
-    spawned = {
-        it.node_name: it.remaps or ()
-        for spawner in spawners
-        for it in controllers_of(spawner) or ()
-    }
-    unstamped = {
-        keys[-1]
-        for keys, section in _sections(workspace)
-        if section.get("use_stamped_vel") is not None
-    }
+    remaps = _remaps_of_spawned(workspace, launch)
+    # With this parameter, the type of a topic depends on its value.
+    for keys, section in _sections(workspace):
+        if section.get("use_stamped_vel") is not None:
+            remaps.pop(keys[-1], None)
     for controller in defined_controllers(workspace):
-        if controller.name not in spawned or controller.name in unstamped:
+        name = controller.name
+        if name not in remaps:
             continue
-        own = replace(
-            node, node_name=controller.name, remaps=(*spawned[controller.name], *node.remaps)
-        )
+        started = replace(node, node_name=name, remaps=(*remaps[name], *node.remaps))
         for kind, topics in known()["controller_topics"].get(controller.type.text, {}).items():
-            for name, message in topics.items():
-                topic = own.topic(f"~/{name}")
+            for own_name, message in topics.items():
+                topic = started.topic(f"~/{own_name}")
                 if topic is not None:
                     yield topic, Endpoint(kind, message, topic, controller.location)
+
+
+def _remaps_of_spawned(
+    workspace: Workspace, launch: int
+) -> dict[str | None, tuple[tuple[str, ...], ...]]:
+    """Return the remappings of the controllers that the spawners of a launch file start."""
+    remaps: dict[str | None, tuple[tuple[str, ...], ...]] = {}
+    for number, spawner in workspace.launched:
+        if number == launch and spawner.executable in SPAWNERS and spawner.when:
+            for controller in controllers_of(spawner) or ():
+                remaps[controller.node_name] = controller.remaps or ()
+    return remaps
 
 
 def _type_facts(workspace: Workspace, controller: Controller) -> Iterator[Fact]:
@@ -127,24 +129,23 @@ def _type_facts(workspace: Workspace, controller: Controller) -> Iterator[Fact]:
     are known.
     """
     types, written = known()["controllers"], controller.type.text or ""
-    package = written.partition("/")[0]
-    if (
-        written in types
-        or any(it.name == package for it in workspace.packages)
-        or workspace.has_plugin(written)
-    ):
+    package, _, class_name = written.partition("/")
+    if written in types or workspace.has_plugin(written):
         return
-    same = [it for it in types if it.partition("/")[2] == written.partition("/")[2]]
-    similar = closest(written, same) or (same[0] if len(same) == 1 else closest(written, types))
-    is_known = any(name.startswith(f"{package}/") for name in types)
+    if any(own.name == package for own in workspace.packages):
+        return
+    same_class = [kind for kind in types if kind.partition("/")[2] == class_name]
+    similar = closest(written, same_class)
+    if similar is None:
+        similar = same_class[0] if len(same_class) == 1 else closest(written, types)
+    is_known = any(kind.startswith(f"{package}/") for kind in types)
     if is_known or similar is not None:
         guess = f"; did you mean {similar!r}?" if similar is not None else ""
         message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
-        is_sure = is_known or near(written, same) is not None
-        either = corrections(written, controller.location, similar)
-        yield Mismatch(
-            "controllers", message, controller.location, is_sure=is_sure, corrections=either
-        )
+        is_sure = is_known or near(written, same_class) is not None
+        at = controller.location
+        either = corrections(written, at, similar)
+        yield Mismatch("controllers", message, at, is_sure=is_sure, corrections=either)
 
 
 def _section_facts(
@@ -159,18 +160,13 @@ def _section_facts(
         if needed and "**" not in sections and not controller.has_file:
             message = (
                 f"the controller {controller.name!r} has no parameters: there is no key "
-                f"{controller.name}"
+                f"{controller.name} with ros__parameters"
             )
-            either = _of_sections(workspace, controller, sections)
-            yield Mismatch(
-                "controllers",
-                f"{message} with ros__parameters",
-                controller.location,
-                corrections=either,
-            )
+            either = _section_corrections(workspace, controller, sections)
+            yield Mismatch("controllers", message, controller.location, corrections=either)
         return
-    for key in [it for it in needed if it.endswith("s")]:
-        given = section.get(key)
+    for key in needed:
+        given = section.get(key) if key.endswith("s") else None
         if given is not None and given.text:
             message = (
                 f"{controller.name}.{key} is given a string; the controller stops without a "
@@ -178,9 +174,12 @@ def _section_facts(
             )
             yield Mismatch("controllers", message, given.location)
     claimed: dict[str, Location] = {}
-    for joint, names in _needed_in(section, needed):
-        yield from _interface_facts(workspace, controller, joint, names)
-        for name in [f"{joint.text}/{it}" for it in names] if len(needed) <= _MAX_KEYS else ():
+    for joint, interfaces in _needed_in(section, needed):
+        yield from _interface_facts(workspace, controller, joint, interfaces)
+        if len(needed) > _MAX_KEYS:
+            continue
+        for interface in interfaces:
+            name = f"{joint.text}/{interface}"
             before = claimed.setdefault(name, joint.location)
             if before != joint.location:
                 message = (
@@ -190,7 +189,7 @@ def _section_facts(
                 yield Mismatch("controllers", message, joint.location, before)
 
 
-def _of_sections(
+def _section_corrections(
     workspace: Workspace, controller: Controller, sections: Mapping[str, YamlNode]
 ) -> tuple[Correction, ...]:
     """Return the correction of the name of a controller above its parameters, or of the key
@@ -199,16 +198,14 @@ def _of_sections(
     meant = closest(controller.name, sections)
     if meant is not None:
         return corrections(meant, sections[meant].location, controller.name, controller.location)
-    own = [node for _, tree in workspace.trees if (node := tree.get(controller.name)) is not None]
-    keys = [it for node in own if isinstance(node.value, dict) for it in node.value.items()]
-    return next(
-        (
-            corrections(key, node.location, PARAMETERS)
-            for key, node in keys
-            if is_misspelt_key(key, node)
-        ),
-        (),
-    )
+    for _, tree in workspace.trees:
+        section = tree.get(controller.name)
+        if section is None or not isinstance(section.value, dict):
+            continue
+        for key, node in section.value.items():
+            if is_misspelt_key(key, node):
+                return corrections(key, node.location, PARAMETERS)
+    return ()
 
 
 def _needed_in(
@@ -231,14 +228,13 @@ def needed_interfaces(workspace: Workspace) -> frozenset[str]:
     """Return the command interfaces that controllers need, each as joint/interface."""
     sections = {keys[-1].rpartition("/")[2]: node for keys, node in _sections(workspace)}
     types = known()["controllers"]
-    found = (
-        (sections.get(it.name), types.get(it.type.text, {}))
-        for it in defined_controllers(workspace)
-    )
-    needed = [_needed_in(section, kinds) for section, kinds in found if section is not None]
-    return frozenset(
-        f"{joint.text}/{name}" for each in needed for joint, names in each for name in names
-    )
+    needed: set[str] = set()
+    for controller in defined_controllers(workspace):
+        section = sections.get(controller.name)
+        if section is not None:
+            for joint, names in _needed_in(section, types.get(controller.type.text, {})):
+                needed |= {f"{joint.text}/{name}" for name in names}
+    return frozenset(needed)
 
 
 def _interface_facts(
@@ -250,36 +246,27 @@ def _interface_facts(
     interfaces, name = workspace.command_interfaces or {}, joint.text or ""
     message = f"{controller.name} needs the command interface {name}"
     if name in interfaces:
-        own, at = interfaces[name]
-        there = f"<ros2_control> has {', '.join(sorted(own)) or 'none'} ({place_text(at)})"
-        for missing in [it for it in needed if it not in own]:
-            either = corrections(missing, joint.location, near(missing, own), at)
-            yield Mismatch(
-                "controllers",
-                f"{message}/{missing}; {there}",
-                joint.location,
-                at,
-                corrections=either,
-            )
-    elif (
-        workspace.has_all_interfaces
-        and interfaces
-        and all(_is_joint(workspace, it) for it in [name, *interfaces])
-    ):
-        for missing in needed[:1]:
-            text = f"{message}/{missing}; <ros2_control> has no joint {name!r}"
-            yield Mismatch("controllers", text, joint.location)
-
-
-def _is_joint(workspace: Workspace, name: str) -> bool:
-    return workspace.robot is not None and workspace.robot.has_joint(name)
+        offered, at = interfaces[name]
+        there = f"<ros2_control> has {', '.join(sorted(offered)) or 'none'} ({place_text(at)})"
+        for missing in needed:
+            if missing not in offered:
+                either = corrections(missing, joint.location, near(missing, offered), at)
+                text = f"{message}/{missing}; {there}"
+                yield Mismatch("controllers", text, joint.location, at, corrections=either)
+        return
+    if not interfaces or workspace.robot is None or not workspace.has_all_interfaces:
+        return
+    # Names that are no joints of the robot are mistakes of frames.
+    if needed and all(map(workspace.robot.has_joint, [name, *interfaces])):
+        text = f"{message}/{needed[0]}; <ros2_control> has no joint {name!r}"
+        yield Mismatch("controllers", text, joint.location)
 
 
 def _action_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the controllers whose actions own nodes ask for."""
     for _, node in workspace.nodes:
-        own = workspace.python_node(node)
-        for endpoint in own.endpoints if own is not None else ():
+        python_node = workspace.python_node(node)
+        for endpoint in python_node.endpoints if python_node is not None else ():
             topic = node.topic(endpoint.name or "") if endpoint.kind == "action client" else None
             controller, _, action = (topic or "").rpartition("/")
             if action in known()["controller_actions"]:

@@ -3,13 +3,14 @@ them.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from grader.base.names import near
 from grader.base.source import Location
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.ros.known.known import known
+from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import Package
 from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections
 from grader.ros.workspace.workspace import Workspace
@@ -24,63 +25,85 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
     for package in workspace.packages:
         if package.manifest is None or package.manifest.refusals:
             continue
-        declared = {*package.manifest.dependencies, *package.names}
-        declared |= {name for it in declared for name in known()["metapackages"].get(it, ())}
-        others = [package.find(name) for name in declared]
-        brought = {
-            name
-            for it in others
-            if it is not None and it.manifest
-            for name in it.manifest.dependencies
-        }
+        declared = _declared(package)
         used: dict[str, Location] = {}
         for name, at in _used(workspace, package):
-            used.setdefault(name, at)
-        yield from (Compared("dependencies") for _ in used)
+            if name not in used:
+                used[name] = at
+                yield Compared("dependencies")
+        brought: set[str] = set()  # by the packages of the workspace that are declared
+        for name in declared:
+            dependency = package.find(name)
+            if dependency is not None and dependency.manifest:
+                brought |= {*dependency.manifest.dependencies}
+        start = package.manifest.name_location
         for name, at in used.items():
-            if name not in declared:
-                meant, start = near(name, declared), package.manifest.name_location
-                guess = f"; did you mean {meant!r}?" if meant is not None else ""
-                message = (
-                    f"package.xml of {package.name!r} does not declare {name!r}, which is used "
-                    f"here{guess}"
-                )
-                # rosdep installs what packages need that are declared.
-                is_sure = name not in brought
-                either = corrections(name, at, meant, start if meant not in used else None)
-                yield Mismatch("dependencies", message, at, start, is_sure, either)
+            if name in declared:
+                continue
+            meant = near(name, declared)
+            guess = f"; did you mean {meant!r}?" if meant is not None else ""
+            message = (
+                f"package.xml of {package.name!r} does not declare {name!r}, which is used "
+                f"here{guess}"
+            )
+            # rosdep installs what packages need that are declared.
+            is_sure = name not in brought
+            either = corrections(name, at, meant, start if meant not in used else None)
+            yield Mismatch("dependencies", message, at, start, is_sure, either)
+
+
+def _declared(package: Package) -> set[str]:
+    """Return the dependencies of a package, those that its metapackages bring, and the package."""
+    assert package.manifest is not None
+    declared = {*package.manifest.dependencies, *package.names}
+    for name in [*declared]:
+        declared |= {*known()["metapackages"].get(name, ())}
+    return declared
 
 
 def _used(workspace: Workspace, package: Package) -> Iterator[tuple[str, Location]]:
     """Yield the packages that are used, and where."""
     for owner, _, launch in workspace.launches:
         if owner is package:
-            yield from (
-                (node.package, node.location) for node in launch.nodes if not node.included_by
-            )
-            paths = ((passed.path.split("/"), passed.location) for passed in launch.passed)
-            yield from (
-                (parts[1], at) for parts, at in paths if parts[0] == "share" and len(parts) > 1
-            )
-    own = {it.name for it in workspace.packages}
+            yield from _launched(launch)
+    names = {other.name for other in workspace.packages}
     for source in workspace.sources_of(package, (".xacro", ".urdf")):
-        named = (
-            (found[1] or found[2], source.at(found.start()))
-            for found in _FIND.finditer(source.text)
-        )
-        # A misspelt own package is a mistake of files.
-        yield from (
-            (name, at) for name, at in named if near(name, own) is None or package.depends_on(name)
-        )
-    modules = {part.removesuffix(".py") for path in package.tree.files for part in path.split("/")}
+        for match in _FIND.finditer(source.text):
+            name = match[1] or match[2]
+            # A misspelt own package is a mistake of files.
+            if near(name, names) is None or package.depends_on(name):
+                yield name, source.at(match.start())
+    yield from _imported(workspace, package, names)
+    for path, tree in workspace.trees:
+        if package.holds(path):
+            for _, section in sections_in(tree):
+                yield from _controller_packages(section)
+
+
+def _launched(launch: Launch) -> Iterator[tuple[str, Location]]:
+    """Yield the packages whose programs or launch files a launch file starts."""
+    for node in launch.nodes:
+        if not node.included_by:
+            yield node.package, node.location
+    for passed in launch.passed:
+        folder, _, inside = passed.path.partition("/")
+        if folder == "share" and inside:
+            yield inside.partition("/")[0], passed.location
+
+
+def _imported(
+    workspace: Workspace, package: Package, names: Collection[str]
+) -> Iterator[tuple[str, Location]]:
+    """Yield the packages of ROS 2 or of the workspace that the Python files of a package import."""
+    modules = set()  # of the package, as far as their names say
+    for path in package.tree.files:
+        modules |= {part.removesuffix(".py") for part in path.split("/")}
     for source in workspace.sources_of(package, (".py",)):
-        for found in _IMPORT.finditer(source.text):
-            is_ros = found[1] in own or found[1].endswith("_msgs") or found[1] in _OF_ROS
-            if is_ros and found[1] not in modules:
-                yield found[1], source.at(found.start(1))
-    for tree in (tree for path, tree in workspace.trees if package.holds(path)):
-        for _, section in sections_in(tree):
-            yield from _controller_packages(section)
+        for match in _IMPORT.finditer(source.text):
+            name = match[1]
+            is_ros = name in names or name.endswith("_msgs") or name in _OF_ROS
+            if is_ros and name not in modules:
+                yield name, source.at(match.start(1))
 
 
 def _controller_packages(section: YamlNode) -> Iterator[tuple[str, Location]]:

@@ -35,21 +35,21 @@ _PATH = re.compile(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
 def file_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the paths at which a build of the workspace installs no file."""
     seen: set[tuple[str, Location]] = set()
-    for package, path, at, is_read, is_output in _named(workspace):
-        yield Compared("files", posixpath.normpath(path).removeprefix(f"{PREFIX}/"))
-        if (path, at) not in seen:
-            seen.add((path, at))
-            for fact in _fault_of(workspace, package, path, at, is_output=is_output):
-                yield (
-                    fact._replace(is_sure=fact.is_sure and is_read)
-                    if isinstance(fact, Mismatch)
-                    else fact
-                )
+    for named in _named_paths(workspace):
+        yield Compared("files", posixpath.normpath(named.path).removeprefix(f"{PREFIX}/"))
+        if (named.path, named.location) in seen:
+            continue
+        seen.add((named.path, named.location))
+        for fact in _fault_of(workspace, named):
+            if isinstance(fact, Mismatch) and not named.is_read:
+                yield fact._replace(is_sure=False)
+            else:
+                yield fact
     yield from _map_images(workspace)
     yield from _models(workspace)
 
 
-class _Named(NamedTuple):
+class _NamedPath(NamedTuple):
     """A path below the prefix, with the package whose file names it, and whether it is certainly
     looked for.
 
@@ -63,70 +63,74 @@ class _Named(NamedTuple):
     is_output: bool = False
 
 
-def _named(workspace: Workspace) -> Iterator[_Named]:
+def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
     """Yield the paths that are named."""
     for package, own, launch in workspace.launches:
+        beside = None
         # From the folder of the sources, a launch file finds what is beside it.
-        if own in package.installed.values():
-            beside = ""
-        else:
-            beside = f"{package.share}{posixpath.dirname(own)}/"
-        for text, at, is_read, is_output in _texts_of(workspace, launch):
-            for path in _PATH.findall(text or ""):
-                is_beside = bool(beside) and path.startswith(f"{PREFIX}/{beside}")
-                yield _Named(package, path, at, is_read and not is_beside, is_output)
+        if own not in package.installed.values():
+            beside = f"{PREFIX}/{package.share}{posixpath.dirname(own)}/"
+        for text in _texts_of(workspace, launch):
+            for path in _PATH.findall(text.text or ""):
+                is_beside = beside is not None and path.startswith(beside)
+                is_read = text.is_read and not is_beside
+                yield _NamedPath(package, path, text.location, is_read, text.is_output)
     for package in workspace.packages:
         for source in workspace.sources_of(package, (".xacro", ".urdf", ".yaml")):
-            of_robot = source.path.endswith(".yaml") or source.path in (
-                workspace.robot_files or (source.path,)
+            is_read = (
+                source.path.endswith(".yaml")
+                or not workspace.robot_files
+                or source.path in workspace.robot_files
             )
-            for found in (*_FIND.finditer(source.text), *_PACKAGE.finditer(source.text)):
-                yield _Named(
-                    package, f"{SHARE}/{found[1]}/{found[2]}", source.at(found.start()), of_robot
-                )
+            for match in (*_FIND.finditer(source.text), *_PACKAGE.finditer(source.text)):
+                path = f"{SHARE}/{match[1]}/{match[2]}"
+                yield _NamedPath(package, path, source.at(match.start()), is_read)
 
 
-def _texts_of(
-    workspace: Workspace, launch: Launch
-) -> Iterator[tuple[str | None, Location, bool, bool]]:
-    """Yield the texts of a launch file that may name files, whether they are used, and whether own
-    nodes get them.
-    """
+class _Text(NamedTuple):
+    """A text of a launch file that may name files, and whether it is certainly used."""
+
+    text: str | None
+    location: Location
+    is_read: bool = True
+    is_output: bool = False  # whether an own node gets it, which may write the file
+
+
+def _texts_of(workspace: Workspace, launch: Launch) -> Iterator[_Text]:
+    """Yield the texts of a launch file that may name files."""
     for passed in launch.passed:
         for _, value in passed.values:
-            yield (value, passed.location, True, False)
+            yield _Text(value, passed.location)
     for node in launch.nodes:
         # The launch file that includes it may never start it, whatever the arguments.
         is_read = node.when is not False or not node.included_by
         is_own = workspace.package_of(node) is not None
-        yield from ((word, node.location, is_read, is_own) for word in node.arguments or ())
+        for word in node.arguments or ():
+            yield _Text(word, node.location, is_read, is_own)
         for given in node.parameters or ():
-            yield given.path, given.location, is_read, False
-            values = (it for it in given.values.values() if isinstance(it.value, str))
-            yield from ((it.value, it.location, is_read, is_own) for it in values)
+            yield _Text(given.path, given.location, is_read)
+            for parameter in given.values.values():
+                if isinstance(parameter.value, str):
+                    yield _Text(parameter.value, parameter.location, is_read, is_own)
     for reference in launch.references:
-        yield (reference.path, reference.location, True, False)
+        yield _Text(reference.path, reference.location)
 
 
-def _fault_of(
-    workspace: Workspace, package: Package, path: str, at: Location, *, is_output: bool
-) -> Iterator[Fact]:
+def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
     """Yield that no file is installed at a path, if this is certain."""
-    name, rest = share_parts(path)
+    package, at = named.package, named.location
+    name, rest = share_parts(named.path)
     owner = package.find(name)
     if owner is None:
-        meant = near(name, [it.name for it in workspace.packages])
+        meant = near(name, [other.name for other in workspace.packages])
         if meant is not None and not package.depends_on(name):
             message = f"there is no package {name!r}; did you mean {meant!r}?"
             yield Mismatch("files", message, at, corrections=corrections(name, at, meant))
         return
     target = f"share/{name}/{rest}"
-    if (
-        not rest
-        or rest in known()["written"]
-        or target in owner.installed
-        or any(it.startswith(f"{target}/") for it in owner.installed)
-    ):
+    if not rest or rest in known()["written"] or target in owner.installed:
+        return
+    if any(path.startswith(f"{target}/") for path in owner.installed):
         return
     if not workspace.means_one(package, name):
         yield Undecided("files", f"several packages are named {name!r}")
@@ -138,7 +142,7 @@ def _fault_of(
     if inside in owner.tree.folders:
         yield from _no_folder(owner, inside, f"a build installs no {target}", at)
     else:
-        yield _not_there(owner, target, at, is_output=is_output)
+        yield _not_there(owner, target, at, is_output=named.is_output)
 
 
 def _not_there(owner: Package, target: str, at: Location, *, is_output: bool) -> Mismatch:
@@ -146,21 +150,16 @@ def _not_there(owner: Package, target: str, at: Location, *, is_output: bool) ->
     setup, name = owner.installation, posixpath.basename(target)
     assert setup is not None
     start = Location(setup.source.path, 1, 1)
-    found, missing = look_up(owner, target), f"a build installs no {target}"
-    if found.state == "elsewhere":
-        message = f"{missing}: it installs the file as {found.path}"
-        return Mismatch(
-            "files", message, at, corrections=_of_folders(target, found.path, at, start)
-        )
-    if found.state == "not installed":
-        either, called_at = _of_install(setup, found.path, start), setup.location(setup.called_at)
-        return Mismatch(
-            "files",
-            f"{missing}: no {setup.entry} names {found.path}",
-            at,
-            called_at,
-            corrections=either,
-        )
+    source, missing = look_up(owner, target), f"a build installs no {target}"
+    if source.state == "elsewhere":
+        message = f"{missing}: it installs the file as {source.path}"
+        either = _folder_corrections(target, source.path, at, start)
+        return Mismatch("files", message, at, corrections=either)
+    if source.state == "not installed":
+        message = f"{missing}: no {setup.entry} names {source.path}"
+        either = _install_corrections(setup, source.path, start)
+        called_at = setup.location(setup.called_at)
+        return Mismatch("files", message, at, called_at, corrections=either)
     meant = closest(name, map(posixpath.basename, owner.tree.files))
     guess = f"; did you mean {meant!r}?" if meant else ""
     message = f"{missing}: the package has no file {name!r}{guess}"
@@ -169,21 +168,21 @@ def _not_there(owner: Package, target: str, at: Location, *, is_output: bool) ->
 
 
 def _no_folder(owner: Package, inside: str, missing: str, at: Location) -> Iterator[Mismatch]:
-    """Yield where else a build installs what is in a folder, if anywhere. CMake also makes folders
-    that stay empty.
-    """
+    """Yield where else a build installs what is in a folder, if anywhere."""
     setup = owner.installation
     assert setup is not None
-    other = next((it for it in owner.installed.items() if it[1].startswith(f"{inside}/")), None)
+    # CMake also makes folders that stay empty.
     may_be_made = setup.is_cmake and posixpath.basename(inside) in setup.source.text
-    if other is not None:
-        message = f"{missing}: it installs {other[1]} as {other[0]}"
-        yield Mismatch("files", message, at, is_sure=not may_be_made)
-    elif not may_be_made:
+    for target, source in owner.installed.items():
+        if source.startswith(f"{inside}/"):
+            message = f"{missing}: it installs {source} as {target}"
+            yield Mismatch("files", message, at, is_sure=not may_be_made)
+            return
+    if not may_be_made:
         yield Mismatch("files", f"{missing}: it installs no file of the folder {inside}", at)
 
 
-def _of_folders(
+def _folder_corrections(
     target: str, elsewhere: str, at: Location, start: Location
 ) -> tuple[Correction, ...]:
     """Return the correction of the one folder in which a path differs from that at which the file
@@ -191,64 +190,61 @@ def _of_folders(
     """
     if target.count("/") != elsewhere.count("/"):
         return ()
-    pairs = [
-        it for it in zip(target.split("/"), elsewhere.split("/"), strict=True) if it[0] != it[1]
-    ]
-    if len(pairs) == 1:
-        return corrections(pairs[0][0], at, pairs[0][1], start)
-    return ()
+    pairs = zip(target.split("/"), elsewhere.split("/"), strict=True)
+    differing = [(own, other) for own, other in pairs if own != other]
+    if len(differing) != 1:
+        return ()
+    [(own, other)] = differing
+    return corrections(own, at, other, start)
 
 
-def _of_install(setup: Installation, own: str, start: Location) -> tuple[Correction, ...]:
+def _install_corrections(setup: Installation, file: str, start: Location) -> tuple[Correction, ...]:
     """Return the correction of a path in setup.py or CMakeLists.txt that does not exist, into one
     that has the file.
     """
-    wrong = [it.path for it in setup.stops] + [posixpath.dirname(it.pattern) for it in setup.empty]
-    pairs = ((path.rstrip("/"), closest(path, [own, posixpath.dirname(own)])) for path in wrong)
-    return next((corrections(path, start, meant) for path, meant in pairs if meant is not None), ())
+    wrong = [stop.path for stop in setup.stops]
+    wrong += [posixpath.dirname(empty.pattern) for empty in setup.empty]
+    for path in wrong:
+        meant = closest(path, [file, posixpath.dirname(file)])
+        if meant is not None:
+            return corrections(path.rstrip("/"), start, meant)
+    return ()
 
 
 def _map_images(workspace: Workspace) -> Iterator[Fact]:
     """Yield the images of maps that are not there."""
+    files = workspace.tree.files
     for path, tree in workspace.trees:
         image = tree.get("image")
-        if (
-            image is None
-            or not image.text
-            or tree.get("resolution") is None
-            or image.text.startswith("/")
-        ):
+        if image is None or not image.text or tree.get("resolution") is None:
             continue
         wanted = posixpath.normpath(posixpath.join(posixpath.dirname(path), image.text))
-        files = workspace.tree.files
-        if wanted not in files:
-            folder = posixpath.dirname(wanted)
-            meant = closest(
-                posixpath.basename(wanted),
-                [posixpath.basename(it) for it in files if posixpath.dirname(it) == folder],
-            )
-            guess = f"; did you mean {meant!r}?" if meant else ""
-            message = f"the image of the map, {image.text!r}, does not exist{guess}"
-            either = corrections(posixpath.basename(wanted), image.location, meant)
-            yield Mismatch("files", message, image.location, corrections=either)
+        if image.text.startswith("/") or wanted in files:
+            continue
+        folder, name = posixpath.split(wanted)
+        beside = [file for file in files if posixpath.dirname(file) == folder]
+        meant = closest(name, map(posixpath.basename, beside))
+        guess = f"; did you mean {meant!r}?" if meant else ""
+        message = f"the image of the map, {image.text!r}, does not exist{guess}"
+        either = corrections(name, image.location, meant)
+        yield Mismatch("files", message, image.location, corrections=either)
 
 
 def _models(workspace: Workspace) -> Iterator[Fact]:
     """Yield models that worlds include, and whose names are similar to those of the workspace."""
-    files = [path for package in workspace.packages for path in package.tree.files]
-    models = {
-        posixpath.basename(posixpath.dirname(it))
-        for it in files
-        if it.endswith(("/model.sdf", "/model.config"))
-    }
+    models = set()
+    for package in workspace.packages:
+        for path in package.tree.files:
+            if path.endswith(("/model.sdf", "/model.config")):
+                models.add(posixpath.basename(posixpath.dirname(path)))
     for file in workspace.sdf_files:
         for element in file.root.iter("uri"):
-            name = (element.text or "").strip().removeprefix("model://").partition("/")[0]
-            if (element.text or "").strip().startswith("model://"):
-                meant = near(name, models)
-            else:
-                meant = None
-            if meant is not None and name not in models:
+            text = (element.text or "").strip()
+            name = text.removeprefix("model://").partition("/")[0]
+            if not text.startswith("model://") or name in models:
+                continue
+            meant = near(name, models)
+            if meant is not None:
                 at = file.location(element)
                 message = f"there is no model {name!r}; did you mean {meant!r}?"
                 yield Mismatch("files", message, at, corrections=corrections(name, at, meant))

@@ -65,7 +65,7 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
             for value in values_in(tree):
                 yield from _in_yaml(value, is_of_controller=not controllers.isdisjoint(value.keys))
     yield from _in_robot(workspace)
-    yield from _of_odometry(workspace, robot)
+    yield from _odometry_frames(workspace, robot)
 
 
 def _place(location: LazyLocation | None) -> Location:
@@ -154,25 +154,27 @@ def _in_robot(workspace: Workspace) -> Iterator[Fact]:
         yield from _in_system(workspace, system)
 
 
-def _of_odometry(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
+def _odometry_frames(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
     """Yield the frames that systems of Gazebo publish: those that they name, and by default those
     below the model's.
     """
-    words = [
-        pairwise(node.arguments or ()) for _, node in workspace.nodes if node.executable == "create"
-    ]
-    created = {name for pairs in words for option, name in pairs if option == "-name" and name}
-    links = [link.name for link in robot.links]
+    created = set()  # the names of the models that launch files create
+    for _, node in workspace.nodes:
+        if node.executable == "create":
+            options = pairwise(node.arguments or ())
+            created |= {name for option, name in options if option == "-name" and name}
+    defaults = [*_DEFAULT_FRAMES, *(link.name for link in robot.links)]
     for root, place in roots(workspace):
-        for plugin in [it for it in root.iter("plugin") if system_of(it) in _ODOMETRY]:
-            named = [(it.text or "").strip() for it in plugin.iterchildren(*_ODOMETRY_FRAMES)]
-            around = {it.get("name", "") for it in plugin.iterancestors("robot", "model")}
-            below = [
-                f"{model}/{name}"
-                for model in sorted(around | created)
-                for name in (*_DEFAULT_FRAMES, *links)
-            ]
-            yield from (Definition("frame", name, place(plugin)) for name in (*named, *below))
+        for plugin in root.iter("plugin"):
+            if system_of(plugin) not in _ODOMETRY:
+                continue
+            at = place(plugin)
+            for element in plugin.iterchildren(*_ODOMETRY_FRAMES):
+                yield Definition("frame", (element.text or "").strip(), at)
+            around = {model.get("name", "") for model in plugin.iterancestors("robot", "model")}
+            for model in sorted(around | created):
+                for frame in defaults:
+                    yield Definition("frame", f"{model}/{frame}", at)
 
 
 def _in_system(workspace: Workspace, system: Element) -> Iterator[Fact]:

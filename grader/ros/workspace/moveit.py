@@ -22,20 +22,13 @@ def moveit_facts(workspace: Workspace) -> Iterator[Fact]:
     for _, tree in workspace.trees:
         for key in _TABLES_OF_JOINTS:
             table = tree.get(key)
-            for name, node in (
-                table.value.items() if table is not None and isinstance(table.value, dict) else ()
-            ):
-                yield Use("joint", name, node.location, key)
+            if table is not None and isinstance(table.value, dict):
+                for name, node in table.value.items():
+                    yield Use("joint", name, node.location, key)
         if isinstance(tree.value, dict):
-            groups = {
-                name: node
-                for name, node in tree.value.items()
-                if node.get("kinematics_solver") is not None
-            }
-            yield from (
-                Use("group", name, node.location, "kinematics_solver")
-                for name, node in groups.items()
-            )
+            for name, node in tree.value.items():
+                if node.get("kinematics_solver") is not None:
+                    yield Use("group", name, node.location, "kinematics_solver")
         manager = tree.get(_MANAGER)
         if manager is not None:
             yield from _controllers(workspace, manager)
@@ -46,64 +39,63 @@ def _controllers(workspace: Workspace, manager: YamlNode) -> Iterator[Fact]:
     actions.
     """
     names = manager.get("controller_names")
+    # Without definitions, the robot's driver has the controllers.
+    are_defined = next(defined_controllers(workspace), None) is not None
     for node in names.items if names is not None else ():
         name = node.text or ""
         section = manager.get(name)
         if section is None:
             continue  # a list of plugins without its section
-        if (
-            next(defined_controllers(workspace), None) is not None
-        ):  # else the robot's driver has them
-            may_be_another = workspace.has_other_robots  # with a driver that has its controllers
-            yield Use(
-                "controller", name, node.location, "controller_names", optional=may_be_another
-            )
+        if are_defined:
+            # Another robot may have a driver with its controllers.
+            is_optional = workspace.has_other_robots
+            yield Use("controller", name, node.location, "controller_names", optional=is_optional)
         joints = section.get("joints")
         for joint in joints.items if joints is not None else ():
             yield Use("joint", joint.text or "", joint.location, f"{name}.joints")
         yield from _other_joints(workspace, name, joints)
-        kind, action = section.get("type"), section.get("action_ns")
-        wanted = _ACTIONS.get(kind.text or "") if kind is not None else None
-        if wanted is not None and action is not None and action.text not in ("", wanted):
-            message = (
-                f"{name}.action_ns is {action.text!r}; the action of its controller is {wanted!r}"
-            )
-            either = corrections(action.text or "", action.location, wanted)
-            yield Mismatch(
-                "controllers",
-                message,
-                action.location,
-                kind.location if kind else None,
-                True,
-                either,
-            )
+        yield from _other_action(name, section)
+
+
+def _other_action(name: str, section: YamlNode) -> Iterator[Mismatch]:
+    """Yield that MoveIt sends the goals of a controller to an action that it does not have."""
+    kind, action = section.get("type"), section.get("action_ns")
+    if kind is None or action is None:
+        return
+    wanted = _ACTIONS.get(kind.text or "")
+    if wanted is not None and action.text not in ("", wanted):
+        message = f"{name}.action_ns is {action.text!r}; the action of its controller is {wanted!r}"
+        either = corrections(action.text or "", action.location, wanted)
+        yield Mismatch("controllers", message, action.location, kind.location, corrections=either)
 
 
 def _other_joints(workspace: Workspace, name: str, joints: YamlNode | None) -> Iterator[Mismatch]:
     """Yield that MoveIt gives a controller other joints than it has, all of which are in the
     robot.
     """
-    sections = [
-        section
-        for _, tree in workspace.trees
-        for keys, section in sections_in(tree)
-        if keys[-1:] == (name,)
-    ]
-    types = [it.type.text or "" for it in defined_controllers(workspace) if it.name == name]
-    key = "joint" if any(it.endswith("/GripperActionController") for it in types) else "joints"
-    theirs = sections[0].get(key) if len(sections) == 1 else None
-    if joints is None or theirs is None or workspace.robot is None:
+    sections: list[YamlNode] = []
+    for _, tree in workspace.trees:
+        sections += [section for keys, section in sections_in(tree) if keys[-1:] == (name,)]
+    if joints is None or len(sections) != 1 or workspace.robot is None:
         return
-    own, other = ({it.text or "" for it in node.items or [node]} for node in (joints, theirs))
-    following = {
-        it.name for it in workspace.robot.joints if it.mimic is not None
-    }  # MoveIt sends no goals for them
-    differing = sorted((own ^ other) - following)
-    if own and other and differing and all(map(workspace.robot.has_joint, differing)):
+    types = [each.type.text or "" for each in defined_controllers(workspace) if each.name == name]
+    is_gripper = any(kind.endswith("/GripperActionController") for kind in types)
+    controlled = sections[0].get("joint" if is_gripper else "joints")
+    if controlled is None:
+        return
+    by_moveit, by_controller = _joint_names(joints), _joint_names(controlled)
+    # MoveIt sends no goals for joints that follow others.
+    following = {joint.name for joint in workspace.robot.joints if joint.mimic is not None}
+    differing = sorted((by_moveit ^ by_controller) - following)
+    if not by_moveit or not by_controller or not differing:
+        return
+    if all(map(workspace.robot.has_joint, differing)):
         message = (
-            f"{name}.joints: MoveIt and the controller ({place_text(theirs.location)}) have "
-            "other joints"
+            f"{name}.joints: MoveIt and the controller ({place_text(controlled.location)}) have "
+            f"other joints: {', '.join(differing)}"
         )
-        yield Mismatch(
-            "controllers", f"{message}: {', '.join(differing)}", joints.location, theirs.location
-        )
+        yield Mismatch("controllers", message, joints.location, controlled.location)
+
+
+def _joint_names(node: YamlNode) -> set[str]:
+    return {joint.text or "" for joint in node.items or [node]}

@@ -23,7 +23,7 @@ _NO_DEPENDENCY = _warning("REF008", "Package that package.xml does not declare")
 _SIMILAR = _warning("REF009", "Name that is similar to one that is defined")
 _UNUSED = _warning("REF010", "File that no other file names")
 
-_OF_FAMILY: Mapping[Family, Kind] = {
+_KINDS: Mapping[Family, Kind] = {
     "files": _NO_FILE,
     "frames": _NO_FRAME,
     "controllers": _NO_CONTROLLER,
@@ -36,16 +36,13 @@ _OF_FAMILY: Mapping[Family, Kind] = {
 NAME_CATALOGUE = kinds_in(globals().values())
 
 
-def name_problems(found: Agreement) -> tuple[Problem, ...]:
+def name_problems(agreement: Agreement) -> tuple[Problem, ...]:
     """Return what does not agree as problems, in the order of files and lines."""
-    problems = [
-        Problem(
-            _OF_FAMILY[it.family] if it.is_sure else _SIMILAR, it.message, it.location, it.family
-        )
-        for it in found.mismatches
-    ]
-    unused = [
-        Problem(_UNUSED, "no other file of the workspace names this file", at, "files")
-        for at in found.unused
-    ]
-    return (*problems, *unused)
+    problems = []
+    for wrong in agreement.mismatches:
+        kind = _KINDS[wrong.family] if wrong.is_sure else _SIMILAR
+        problems.append(Problem(kind, wrong.message, wrong.location, wrong.family))
+    for at in agreement.unused:
+        message = "no other file of the workspace names this file"
+        problems.append(Problem(_UNUSED, message, at, "files"))
+    return tuple(problems)

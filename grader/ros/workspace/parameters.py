@@ -3,7 +3,7 @@ nodes declare them.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from functools import partial
 from itertools import chain
@@ -28,6 +28,7 @@ from grader.ros.package.python_nodes import PythonNode
 from grader.ros.workspace.bridges import bridge_files
 from grader.ros.workspace.names import (
     Compared,
+    Correction,
     Definition,
     Fact,
     Mismatch,
@@ -55,9 +56,9 @@ _NOT_LISTS = ("plugin_lib_names",)
 
 def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield what parameter files have for nodes, what own nodes declare, and lists of plugins."""
-    of_bridges = bridge_files(workspace)
+    files_of_bridges = bridge_files(workspace)
     for path, tree in workspace.yaml_files.items():
-        if isinstance(tree, YamlFault) and path not in of_bridges:
+        if isinstance(tree, YamlFault) and path not in files_of_bridges:
             is_sure = path in workspace.parameter_files
             yield Mismatch(
                 "parameters", f"this is not YAML: {tree}", tree.location, is_sure=is_sure
@@ -67,27 +68,35 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from _file_given(workspace, path, nodes)
     yield from _controllers_given(workspace)
     for package, node in workspace.nodes:
-        own = workspace.python_node(node)
-        if own is not None:
-            yield from _declared(workspace, package, node, own)
+        python_node = workspace.python_node(node)
+        if python_node is not None:
+            yield from _declared(workspace, package, node, python_node)
     yield from _without_time(workspace)
     for path in workspace.parameter_files:
         yield from _filters(workspace.yaml_files.get(path))
     for package, node in workspace.nodes:
         yield from _required(workspace, package, node)
-    sections = {
+    yield from _plugins(workspace)
+
+
+def _plugins(workspace: Workspace) -> Iterator[Fact]:
+    """Yield what lists of plugins name, and plugins that pluginlib does not know as they are
+    written.
+    """
+    sections_by_file = {
         path: frozenset(_sections(tree)) for path, tree in workspace.trees if is_parameters(tree)
     }
     for path, tree in workspace.trees:
-        if is_parameters(tree) or "controller_names" in tree.source.text:
-            # A file that may be given along with others may leave sections to them.
-            others = (
-                it
-                for other, it in sections.items()
-                if other != path and not _is_given_alone(workspace, path)
-            )
-            yield from _plugin_lists(tree, frozenset().union(*others))
-            yield from _plugin_names(tree)
+        if path not in sections_by_file and "controller_names" not in tree.source.text:
+            continue
+        elsewhere: set[tuple[str, str]] = set()
+        # A file that may be given along with others may leave sections to them.
+        if not _is_given_alone(workspace, path):
+            for other, sections in sections_by_file.items():
+                if other != path:
+                    elsewhere |= sections
+        yield from _plugin_lists(tree, elsewhere)
+        yield from _plugin_names(tree)
 
 
 def _sections(node: YamlNode, above: str = "") -> Iterator[tuple[str, str]]:
@@ -99,10 +108,12 @@ def _sections(node: YamlNode, above: str = "") -> Iterator[tuple[str, str]]:
 
 
 def _is_given_alone(workspace: Workspace, path: str) -> bool:
-    nodes = workspace.parameter_files.get(path, ())
-    return any(
-        sum(bool(it.path or it.unknown) for it in node.parameters or ()) == 1 for node in nodes
-    )
+    """Return whether a node gets no other file, and none that is not known, beside this one."""
+    for node in workspace.parameter_files.get(path, ()):
+        files = [given for given in node.parameters or () if given.path or given.unknown]
+        if len(files) == 1:
+            return True
+    return False
 
 
 def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -> Iterator[Fact]:
@@ -110,48 +121,66 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
     is not.
     """
     tree = workspace.yaml_files.get(path)
-    # A container gives it to the components that are loaded into it.
-    if not isinstance(tree, YamlNode) or any(
-        node.package in ("ros_gz_bridge", "rclcpp_components") for node in nodes
-    ):
+    if not isinstance(tree, YamlNode):
+        return
+    # A container gives the file to the components that are loaded into it.
+    if any(node.package in ("ros_gz_bridge", "rclcpp_components") for node in nodes):
         return
     yield from _misplaced(tree)
-    names = [(node, workspace.name_of(node)) for node in nodes]
     sections = {keys[-1].rpartition("/")[2]: keys for keys, _ in sections_in(tree) if keys}
-    read = [name for _, name in names if name is not None]
-    if len(read) < len(names) or not sections:
+    names = [workspace.name_of(node) for node in nodes]
+    known_names = [name for name in names if name is not None]
+    if len(known_names) < len(nodes):
+        return  # any section may be theirs
+    unread = _unread_sections(workspace, sections, known_names)
+    lacking = set()
+    for name in known_names:
+        if not any(fnmatchcase(name, key) for key in sections):
+            lacking.add(name)
+    if not lacking or not unread:
         return
-    own = {child for name in read for child in workspace.children_of(name)}
-    unread = [
-        key
-        for key in sections
-        if key not in own and not any(fnmatchcase(name, key) for name in read)
-    ]
-    is_passed = any(
-        workspace.source_of(value or "") == path
-        for _, _, launch in workspace.launches
-        for passed in launch.passed
-        for _, value in passed.values
-    )
-    lacking = {
-        name for name in read if not any(fnmatchcase(name, key) or key == "**" for key in sections)
-    }
-    for node, name in names:
-        if name in lacking and unread:
-            meant = near(name or "", unread)
-            is_known = (
-                workspace.package_of(node) is not None or node.package in known()["without_frames"]
-            )
-            if meant is None and (is_passed or not is_known):
-                continue  # the others may be of nodes that are not submitted
-            key, is_one = meant or unread[0], meant is not None or len(unread) == len(lacking) == 1
-            message = (
-                f"there are parameters for {key}, but none for the node {name!r}, which gets "
-                "this file"
-            )
-            at = tree.key_location(*sections[key])
-            either = corrections(key, at, name if is_one else None, node.location)
-            yield Mismatch("parameters", message, at, node.location, True, either)
+    is_passed = _is_passed_to_include(workspace, path)
+    for node, name in zip(nodes, known_names, strict=True):
+        meant = near(name, unread)
+        is_known = (
+            workspace.package_of(node) is not None or node.package in known()["without_frames"]
+        )
+        # Without a similar name, the sections may be those of nodes that are not submitted.
+        if name not in lacking or (meant is None and (is_passed or not is_known)):
+            continue
+        key = meant or unread[0]
+        at = tree.key_location(*sections[key])
+        message = (
+            f"there are parameters for {key}, but none for the node {name!r}, which gets this file"
+        )
+        is_only_pair = len(unread) == len(lacking) == 1
+        renamed = name if meant is not None or is_only_pair else None
+        either = corrections(key, at, renamed, node.location)
+        yield Mismatch("parameters", message, at, node.location, corrections=either)
+
+
+def _unread_sections(
+    workspace: Workspace, sections: Iterable[str], names: Sequence[str]
+) -> list[str]:
+    """Return the keys of sections that neither the nodes of these names nor their children read."""
+    children: set[str] = set()
+    for name in names:
+        children |= workspace.children_of(name)
+    unread = []
+    for key in sections:
+        is_read = key in children or any(fnmatchcase(name, key) for name in names)
+        if not is_read:
+            unread.append(key)
+    return unread
+
+
+def _is_passed_to_include(workspace: Workspace, path: str) -> bool:
+    """Return whether a launch file passes a parameter file to another one that it includes."""
+    for _, _, launch in workspace.launches:
+        for passed in launch.passed:
+            if any(workspace.source_of(value or "") == path for _, value in passed.values):
+                return True
+    return False
 
 
 def _controllers_given(workspace: Workspace) -> Iterator[Fact]:
@@ -199,65 +228,75 @@ def _misplaced(tree: YamlNode) -> Iterator[Fact]:
 
 
 def _declared(
-    workspace: Workspace, package: Package, node: StartedNode, own: PythonNode
+    workspace: Workspace, package: Package, node: StartedNode, python_node: PythonNode
 ) -> Iterator[Fact]:
     """Yield the parameters that a node of the workspace declares, reads and is given."""
     owner = f"{node.package}/{node.executable}"
-    for it in own.parameters:
-        if it.name is None:
+    for parameter in python_node.parameters:
+        if parameter.name is None:
             yield Open("parameter", owner)
-        elif it.is_declared:
-            yield Definition("parameter", it.name, it.location, owner)
-    yield from (Definition("parameter", name, own.location, owner) for name in _OF_EVERY_NODE)
-    if own.doubts:
+        elif parameter.is_declared:
+            yield Definition("parameter", parameter.name, parameter.location, owner)
+    for name in _OF_EVERY_NODE:
+        yield Definition("parameter", name, python_node.location, owner)
+    if python_node.doubts:
         yield Open("parameter", owner)
-    for it in own.parameters:
-        if it.name is not None and not it.is_declared:
-            yield Use("parameter", it.name, it.location, "get_parameter", owner)
-    found = parameters_of(
-        node, partial(open_meant, package, absent_are_empty=True), own.name or "", is_python=True
-    )
-    if found.unknown:
-        yield Undecided("parameters", found.unknown)
-    wide = workspace.wildcard_places(node)
-    for name, value in found.values.items():
-        if value.location not in wide and not name.startswith("qos_overrides."):
-            yield Use(
-                "parameter", name, value.location, f"the node {workspace.name_of(node)!r}", owner
-            )
-    yield from _types_given(own, found.values)
+    for parameter in python_node.parameters:
+        if parameter.name is not None and not parameter.is_declared:
+            yield Use("parameter", parameter.name, parameter.location, "get_parameter", owner)
+    yield from _given(workspace, package, node, python_node)
 
 
-def _types_given(own: PythonNode, values: Mapping[str, ParameterValue]) -> Iterator[Mismatch]:
+def _given(
+    workspace: Workspace, package: Package, node: StartedNode, python_node: PythonNode
+) -> Iterator[Fact]:
+    """Yield the parameters that a node of the workspace is given."""
+    owner = f"{node.package}/{node.executable}"
+    opened = partial(open_meant, package, absent_are_empty=True)
+    given = parameters_of(node, opened, python_node.name or "", is_python=True)
+    if given.unknown:
+        yield Undecided("parameters", given.unknown)
+    # What a file gives to every node need not be declared by this one.
+    for_all = workspace.wildcard_places(node)
+    for name, value in given.values.items():
+        if value.location not in for_all and not name.startswith("qos_overrides."):
+            said = f"the node {workspace.name_of(node)!r}"
+            yield Use("parameter", name, value.location, said, owner)
+    yield from _types_given(python_node, given.values)
+
+
+def _types_given(node: PythonNode, values: Mapping[str, ParameterValue]) -> Iterator[Mismatch]:
     """Yield the values of other types than a node declares."""
-    for it in [it for it in own.parameters if it.is_declared and it.is_plain]:
-        given = values.get(it.name or "")
-        if given is not None:
-            yield from _of_other_type(
-                it.name or "", given, it.default, it.location, is_sure=not own.doubts
+    for parameter in node.parameters:
+        name = parameter.name or ""
+        if parameter.is_declared and parameter.is_plain and name in values:
+            yield from _other_type(
+                name,
+                values[name],
+                parameter.default,
+                parameter.location,
+                is_sure=not node.doubts,
             )
 
 
 def _without_time(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield that a parameter file gives `use_sim_time`, which every node declares, no boolean."""
-    for found in chain.from_iterable(workspace.parameter_owners.values()):
-        if (given := found.values.get("use_sim_time")) is not None:
-            yield from _of_other_type("use_sim_time", given, default=True, at=None)
+    for given in chain.from_iterable(workspace.parameter_owners.values()):
+        value = given.values.get("use_sim_time")
+        if value is not None:
+            yield from _other_type("use_sim_time", value, default=True, at=None)
 
 
-def _of_other_type(
+def _other_type(
     name: str, given: ParameterValue, default: Any, at: Location | None, *, is_sure: bool = True
 ) -> Iterator[Mismatch]:
     """Yield that a parameter file gives a parameter a value of another type than the node
     declares.
     """
     declared, actual = _type_of(default), _type_of(given.value)
-    if (
-        declared
-        and actual
-        and declared != actual
-        and given.location.path.endswith((".yaml", ".yml"))
-    ):
+    if not declared or not actual or declared == actual:
+        return
+    if given.location.path.endswith((".yaml", ".yml")):
         there = f" ({place_text(at)})" if at is not None else ""
         message = (
             f"the parameter {name!r} is given {actual}; its node declares {declared}{there}, "
@@ -296,31 +335,32 @@ def _required(workspace: Workspace, package: Package, node: StartedNode) -> Iter
     them.
     """
     needed = known()["required_parameters"].get(f"{node.package}/{node.executable}", ())
-    if needed and node.arguments == ():
-        found = parameters_of(
-            node, partial(open_meant, package), workspace.name_of(node) or "", is_python=False
+    if not needed or node.arguments != ():
+        return
+    given = workspace.parameters_given(package, node)
+    for name in needed:
+        if name in given.values or given.unknown:
+            continue
+        guess = closest(name, given.values)
+        either: tuple[Correction, ...] = ()
+        there = ""
+        if guess is not None:
+            either = corrections(guess, given.values[guess].location, name)
+            there = f"; did you mean it by {guess!r}?"
+        message = (
+            f"{node.executable} stops without the parameter {name}, which it does not get{there}"
         )
-        for name in [it for it in needed if it not in found.values and not found.unknown]:
-            guess = closest(name, found.values)
-            if guess is not None:
-                either = corrections(guess, found.values[guess].location, name)
-            else:
-                either = ()
-            there = f"; did you mean it by {guess!r}?" if guess is not None else ""
-            message = (
-                f"{node.executable} stops without the parameter {name}, which it does not "
-                f"get{there}"
-            )
-            yield Mismatch("parameters", message, node.location, corrections=either)
-        robot = found.values.get("robot_description")
-        text = robot.value.strip() if robot is not None and isinstance(robot.value, str) else ""
-        if robot is not None and text and not text.startswith("<"):
+        yield Mismatch("parameters", message, node.location, corrections=either)
+    robot = given.values.get("robot_description")
+    if robot is not None and isinstance(robot.value, str):
+        text = robot.value.strip()
+        if text and not text.startswith("<"):
             advice = "give it the content of the file, not the path"
             message = f"robot_description is no XML, so {node.executable} stops: {advice}"
             yield Mismatch("parameters", message, robot.location)
 
 
-def _plugin_lists(tree: YamlNode, elsewhere: frozenset[tuple[str, str]]) -> Iterator[Fact]:
+def _plugin_lists(tree: YamlNode, elsewhere: Collection[tuple[str, str]]) -> Iterator[Fact]:
     """Yield the entries of lists of plugins that have no section beside them, and none at the same
     place elsewhere.
     """
@@ -329,42 +369,49 @@ def _plugin_lists(tree: YamlNode, elsewhere: frozenset[tuple[str, str]]) -> Iter
         above, node = waiting.pop()
         if not isinstance(node.value, dict):
             continue
-        waiting += [(f"{above}/{key.strip('/')}", inner) for key, inner in node.value.items()]
-        sections = {
-            key: inner.location
-            for key, inner in node.value.items()
-            if isinstance(inner.value, dict)
-        }
+        sections: dict[str, Location] = {}
         for key, inner in node.value.items():
-            if not sections or key in _NOT_LISTS or not (key in _LISTS or key.endswith("_plugins")):
+            waiting.append((f"{above}/{key.strip('/')}", inner))
+            if isinstance(inner.value, dict):
+                sections[key] = inner.location
+        for key, inner in node.value.items():
+            is_list = key in _LISTS or key.endswith("_plugins")
+            if not sections or not is_list or key in _NOT_LISTS:
                 continue
-            texts = [(it.text or "", it.location) for it in inner.items]
-            if inner.text is not None and key == "observation_sources":
-                texts = [(word, inner.location) for word in inner.text.split()]
             owner = f"{tree.source.path}:{inner.location.line}"
-            yield from (
-                Definition("plugin section", name, at, owner) for name, at in sections.items()
-            )
-            for text, at in texts:
-                if text and "/" not in text and "::" not in text and (above, text) not in elsewhere:
-                    yield Use("plugin section", text, at, key, owner)
+            for name, at in sections.items():
+                yield Definition("plugin section", name, at, owner)
+            for name, at in _listed(key, inner):
+                if (above, name) not in elsewhere:
+                    yield Use("plugin section", name, at, key, owner)
+
+
+def _listed(key: str, node: YamlNode) -> Iterator[tuple[str, Location]]:
+    """Yield the names of sections in a list of plugins; a name with a separator is a class."""
+    texts = [(item.text or "", item.location) for item in node.items]
+    if node.text is not None and key == "observation_sources":
+        texts = [(word, node.location) for word in node.text.split()]
+    for text, at in texts:
+        if text and "/" not in text and "::" not in text:
+            yield text, at
 
 
 def _plugin_names(tree: YamlNode) -> Iterator[Fact]:
     """Yield plugins that are written with other separators than pluginlib knows them by."""
     names = {_SEPARATORS.sub("::", name): name for name in known()["plugins"]}
-    values = [it for it in values_in(tree) if it.keys[-1:] == ("plugin",)]
+    values = [value for value in values_in(tree) if value.keys[-1:] == ("plugin",)]
     older = tuple(known()["slash_before_jazzy"])
     # A file for an older release, which other launch files may choose, writes all of these with a
     # slash.
-    is_of_jazzy = any(
-        "::" in (it.node.text or "") and (it.node.text or "").startswith(older) for it in values
-    )
+    is_for_jazzy = False
+    for value in values:
+        text = value.node.text or ""
+        is_for_jazzy |= "::" in text and text.startswith(older)
     for value in values:
         text = value.node.text or ""
         meant = names.get(_SEPARATORS.sub("::", text))
         if meant is not None and meant != text:
             message = f"{value.said}: there is no plugin {text!r}; did you mean {meant!r}?"
-            is_sure = is_of_jazzy or not text.startswith(older)
+            is_sure = is_for_jazzy or not text.startswith(older)
             at = value.node.location
             yield Mismatch("parameters", message, at, None, is_sure, corrections(text, at, meant))

@@ -4,6 +4,7 @@ manager looks after.
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from typing import NamedTuple
 
 from grader.base.errors import InputError
 from grader.base.names import closest, near
@@ -40,26 +41,30 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
             continue
         owner = package.find(node.package)
         if owner is not None:
-            yield Compared("programs")
-        setup = owner.installation if owner is not None else None
-        if setup is not None and setup.unread:
-            yield Undecided("programs", setup.unread)
-        if owner is not None and owner.has_program(node.package, node.executable) is False:
-            reason, meant = _why_no_program(owner, node.executable)
-            start = Location(owner.path(CMAKE if owner.is_cmake else SETUP), 1, 1)
-            either = corrections(node.executable, node.location, meant, start)
-            yield Mismatch("programs", reason, node.location, corrections=either)
-        elif owner is not None:
-            yield from _not_executed(owner, node)
-        if owner is None:
-            names = known()["programs"].get(node.package, [node.executable])
-        else:
-            names = [node.executable]
-        if node.executable not in names:
-            reason, meant = _unknown_program(node.package, node.executable, names)
-            either = corrections(node.executable, node.location, meant)
-            yield Mismatch("programs", reason, node.location, corrections=either)
+            yield from _own_program(owner, node)
+            continue
+        programs = known()["programs"].get(node.package)
+        if programs is not None and node.executable not in programs:
+            missing = _missing_program(node.package, node.executable, programs)
+            either = corrections(node.executable, node.location, missing.meant)
+            yield Mismatch("programs", missing.message, node.location, corrections=either)
     yield from _lifecycle(workspace)
+
+
+def _own_program(owner: Package, node: StartedNode) -> Iterator[Fact]:
+    """Yield that a package of the workspace does not have the program of a node, or that Linux
+    cannot execute it.
+    """
+    yield Compared("programs")
+    if owner.installation is not None and owner.installation.unread:
+        yield Undecided("programs", owner.installation.unread)
+    if owner.has_program(node.package, node.executable) is False:
+        missing = _why_no_program(owner, node.executable)
+        start = Location(owner.path(CMAKE if owner.is_cmake else SETUP), 1, 1)
+        either = corrections(node.executable, node.location, missing.meant, start)
+        yield Mismatch("programs", missing.message, node.location, corrections=either)
+    else:
+        yield from _not_executed(owner, node)
 
 
 def _entry_points(package: Package) -> Iterator[Fact]:
@@ -77,81 +82,80 @@ def _not_executed(package: Package, node: StartedNode) -> Iterator[Mismatch]:
     """Yield that Linux cannot execute a script: its first line has to name the interpreter, and end
     without CR.
     """
-    copies = package.installation.copies if package.installation is not None else ()
-    started = [it.source for it in copies if it.target == f"lib/{package.name}/{node.executable}"]
-    for source in [it for it in started if it.endswith(".py")]:
+    target = f"lib/{package.name}/{node.executable}"
+    for copy in package.installation.copies if package.installation is not None else ():
+        if copy.target != target or not copy.source.endswith(".py"):
+            continue
         with suppress(InputError):
-            line, _, _ = (
-                package.tree.files[source].read(_MAX_FIRST_LINE, first=True).partition(b"\n")
-            )
-            if line.startswith(b"#!") and not line.endswith(b"\r"):
+            start = package.tree.files[copy.source].read(_MAX_FIRST_LINE, first=True)
+            line = start.partition(b"\n")[0]
+            if not line.startswith(b"#!"):
+                wrong = "is not #!/usr/bin/env python3"
+            elif line.endswith(b"\r"):
+                wrong = "ends as on Windows, with CR LF"
+            else:
                 continue
-            wrong = (
-                "ends as on Windows, with CR LF"
-                if line.startswith(b"#!")
-                else "is not #!/usr/bin/env python3"
-            )
             message = f"Linux cannot execute {node.executable}: its first line {wrong}"
-            yield Mismatch("programs", message, Location(package.path(source), 1, 1), node.location)
+            at = Location(package.path(copy.source), 1, 1)
+            yield Mismatch("programs", message, at, node.location)
 
 
-def _why_no_program(package: Package, name: str) -> tuple[str, str | None]:
-    """Return that ros2 run does not find a program, and where it is installed, or which there are;
-    what is meant.
+class _MissingProgram(NamedTuple):
+    """Why a package has no program of a name, and the name of the program that may be meant."""
+
+    message: str
+    meant: str | None = None
+
+
+def _why_no_program(package: Package, name: str) -> _MissingProgram:
+    """Return that ros2 run does not find a program, and where it is installed, or which there
+    are.
     """
-    setup, entries = package.installation, [entry.name for entry in entry_points(package)]
-    folder = setup.scripts_folder if setup is not None else ""
+    setup, home = package.installation, f"lib/{package.name}"
+    entries = [entry.name for entry in entry_points(package)]
     if name in entries:
-        home = f"lib/{package.name}: see install_scripts of setup.cfg"
-        return f"a build installs {name!r} in {folder}, not in {home}", None
-    files = [*setup.programs, *(copy.target for copy in setup.copies)] if setup is not None else []
-    elsewhere = next((path for path in files if path.rpartition("/")[2] == name), None)
-    if elsewhere == f"lib/{package.name}/{name}":
-        return (
-            (
+        folder = setup.scripts_folder if setup is not None else ""
+        return _MissingProgram(
+            f"a build installs {name!r} in {folder}, not in {home}: see install_scripts of "
+            "setup.cfg"
+        )
+    installed = []
+    if setup is not None:
+        installed = [*setup.programs, *(copy.target for copy in setup.copies)]
+    for path in installed:
+        if path.rpartition("/")[2] != name:
+            continue
+        if path == f"{home}/{name}":
+            return _MissingProgram(
                 f"a build installs {name!r} without the right to execute it: write "
                 "install(PROGRAMS ...)"
-            ),
-            None,
-        )
-    if elsewhere is not None:
-        return (
-            f"a build installs {name!r} as {elsewhere}, but ros2 run looks in lib/{package.name}",
-            None,
-        )
-    names = sorted(
-        {
-            *(path.rpartition("/")[2] for path in files if path.startswith(f"lib/{package.name}/")),
-            *entries,
-        }
-    )
-    return _unknown_program(package.name, name, names)
+            )
+        return _MissingProgram(f"a build installs {name!r} as {path}, but ros2 run looks in {home}")
+    programs = [path for path in installed if path.startswith(f"{home}/")]
+    names = {*entries, *(path.rpartition("/")[2] for path in programs)}
+    return _missing_program(package.name, name, sorted(names))
 
 
-def _unknown_program(package: str, name: str, names: Sequence[str]) -> tuple[str, str | None]:
+def _missing_program(package: str, name: str, programs: Sequence[str]) -> _MissingProgram:
     """Return that a package has only programs of other names, and the one that may be meant."""
-    guess = closest(name, names) or near(name, names, "node")
-    there = f"; did you mean {guess!r}?" if guess else f"; it has {', '.join(names) or 'none'}"
-    return f"the package {package!r} has no program {name!r}{there}", guess
+    guess = closest(name, programs) or near(name, programs, "node")
+    there = f"did you mean {guess!r}?" if guess else f"it has {', '.join(programs) or 'none'}"
+    return _MissingProgram(f"the package {package!r} has no program {name!r}; {there}", guess)
 
 
 def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
     """Yield the nodes that lifecycle managers are told of, and all that are started."""
-    managers = [
-        (package, node)
-        for package, node in workspace.nodes
-        if node.executable == "lifecycle_manager"
-    ]
+    managers = [pair for pair in workspace.nodes if pair[1].executable == "lifecycle_manager"]
     if managers:
         yield from _started(workspace)
-    for package, node in managers:
-        found = parameters_of(node, package.open_installed, "lifecycle_manager")
-        given = found.values.get("node_names")
-        if found.unknown and given is None:
-            yield Undecided("programs", found.unknown)
-        if given is not None and isinstance(given.value, list):
-            for name in given.value:
-                yield Use("node", str(name).rpartition("/")[2], given.location, "node_names")
+    for package, manager in managers:
+        given = parameters_of(manager, package.open_installed, "lifecycle_manager")
+        names = given.values.get("node_names")
+        if given.unknown and names is None:
+            yield Undecided("programs", given.unknown)
+        if names is not None and isinstance(names.value, list):
+            for name in names.value:
+                yield Use("node", str(name).rpartition("/")[2], names.location, "node_names")
 
 
 def _started(workspace: Workspace) -> Iterator[Fact]:

@@ -2,8 +2,6 @@
 in vain.
 """
 
-from itertools import chain
-
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.workspace.gazebo import BRIDGE
@@ -32,39 +30,35 @@ _BY_OTHERS = (
 
 def may_be_published(workspace: Workspace, topic: str) -> bool:
     """Return whether something may publish a topic for which no publisher is known."""
-    first, last = topic.strip("/").partition("/")[0], topic.rpartition("/")[2]
+    name = topic.strip("/")
+    first, last = name.partition("/")[0], topic.rpartition("/")[2]
     if last in _BY_OTHERS or first in workspace.controllers:
         return True
     if any(launch.more for _, _, launch in workspace.launches):
         return True
-    root = workspace.robot_root
-    remapped = root.iter("remapping", "ros_topic") if root is not None else ()
-    texts = chain(
-        (tree.source.text for _, tree in workspace.trees), (it.text or "" for it in remapped)
-    )
     # A parameter, or a remapping of a plugin, may name what something publishes.
-    if any(topic.strip("/") in text for text in texts):
+    if any(name in tree.source.text for _, tree in workspace.trees):
         return True
+    if workspace.robot_root is not None:
+        for element in workspace.robot_root.iter("remapping", "ros_topic"):
+            if name in (element.text or ""):
+                return True
     return any(_may_publish(workspace, node, topic) for _, node in workspace.nodes)
 
 
 def _may_publish(workspace: Workspace, node: StartedNode, topic: str) -> bool:
     package = workspace.package_of(node)
-    if package is not None:
-        own = workspace.python_node(node)
-        if own is not None:
-            return bool(own.doubts) or any(
-                it.name is None for it in own.endpoints if it.kind == "publisher"
-            )
-        texts = [source.text for source in workspace.sources_of(package, _SOURCES)]
-        return (
-            not texts
-            or any(topic.rpartition("/")[2] in text for text in texts)
-            or _is_remapped_to(node, topic)
-        )
-    if node.package == BRIDGE:
-        return not _is_plain_bridge(workspace, node)
-    return node.package not in known()["without_frames"] or _is_remapped_to(node, topic)
+    if package is None:
+        if node.package == BRIDGE:
+            return not _is_plain_bridge(workspace, node)
+        return node.package not in known()["without_frames"] or _is_remapped_to(node, topic)
+    python_node = workspace.python_node(node)
+    if python_node is not None:
+        publishers = [each for each in python_node.endpoints if each.kind == "publisher"]
+        return bool(python_node.doubts) or any(each.name is None for each in publishers)
+    texts = [source.text for source in workspace.sources_of(package, _SOURCES)]
+    last = topic.rpartition("/")[2]
+    return not texts or any(last in text for text in texts) or _is_remapped_to(node, topic)
 
 
 def _is_remapped_to(node: StartedNode, topic: str) -> bool:
@@ -75,15 +69,11 @@ def _is_remapped_to(node: StartedNode, topic: str) -> bool:
 
 def _is_plain_bridge(workspace: Workspace, node: StartedNode) -> bool:
     """Return whether all topics of a bridge are known: those of its arguments and of its file."""
-    files = [
-        it
-        for given in node.parameters or ()
-        for name, it in given.values.items()
-        if name == "config_file"
-    ]
-    is_read = all(
-        isinstance(it.value, str) and workspace.source_of(it.value) in workspace.yaml_files
-        for it in files
-    )
+    for given in node.parameters or ():
+        file = given.values.get("config_file")
+        if file is not None:
+            path = workspace.source_of(file.value) if isinstance(file.value, str) else None
+            if path not in workspace.yaml_files:
+                return False
     words_are_known = node.arguments is not None and None not in node.arguments
-    return is_read and words_are_known and node.remaps == () and node.namespace in ("", "/")
+    return words_are_known and node.remaps == () and node.namespace in ("", "/")

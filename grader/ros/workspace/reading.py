@@ -52,8 +52,12 @@ def wrong_names(
     workspace: Workspace, family: Family, packages: Collection[Package]
 ) -> list[Mismatch]:
     """Return what certainly does not agree in some packages of a workspace."""
-    own = [it for it in read_agreement(workspace).mismatches if it.family == family and it.is_sure]
-    return [it for it in own if any(package.holds(it.location.path) for package in packages)]
+    wrong = []
+    for mismatch in read_agreement(workspace).mismatches:
+        is_wrong = mismatch.family == family and mismatch.is_sure
+        if is_wrong and any(package.holds(mismatch.location.path) for package in packages):
+            wrong.append(mismatch)
+    return wrong
 
 
 def read_facts(workspace: Workspace) -> Iterator[Fact]:

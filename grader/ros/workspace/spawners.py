@@ -29,16 +29,13 @@ def spawner_facts(workspace: Workspace) -> Iterator[Fact]:
         return
     if any(isinstance(tree, YamlFault) for tree in workspace.yaml_files.values()):
         yield Open("controller", reason="a parameter file cannot be read")
-    if (
-        not workspace.has_controller_manager
-    ):  # the robot's driver starts one, with controllers of its own
+    # Without a controller manager, the robot's driver starts one, with controllers of its own.
+    if not workspace.has_controller_manager:
         yield Open("controller")
     for _, node in workspace.nodes:
-        if (
-            _is_spawner(node)
-            and node.arguments is not None
-            and _is_defined_by_files(workspace, node.arguments)
-        ):
+        if not _is_spawner(node) or node.arguments is None:
+            continue
+        if _is_defined_by_files(workspace, node.arguments):
             for name in _named(node.arguments):
                 yield Use("controller", name, node.location, "spawner")
             yield from _managers_named(workspace, node)
@@ -77,16 +74,14 @@ def _managers_named(workspace: Workspace, spawner: StartedNode) -> Iterator[Fact
     """Yield the controller manager that a spawner waits for, where it surely stands for another
     one.
     """
-    given = [
-        word
-        for option, word in pairwise(spawner.arguments or ())
-        if option in ("-c", "--controller-manager")
-    ]
     managers = {
         workspace.name_of(node): node.location for _, node in workspace.nodes if _is_manager(node)
     }
-    for name in [(word or "").rpartition("/")[2] for word in given]:
-        meant = near(name, [it for it in managers if it]) if name not in managers else None
+    for option, word in pairwise(spawner.arguments or ()):
+        if option not in ("-c", "--controller-manager"):
+            continue
+        name = (word or "").rpartition("/")[2]
+        meant = near(name, filter(None, managers)) if name not in managers else None
         if meant is not None:
             at = managers[meant]
             message = (
@@ -107,59 +102,77 @@ def _without_type(
     """Yield the controllers whose types are in files, but in none that the controller manager or
     their spawner gets.
     """
-    managers = [it for it in launch.nodes if _is_manager(it) and it.when]
+    managers = [node for node in launch.nodes if _is_manager(node) and node.when]
     if len(managers) != 1:
         return
-    opened = partial(open_meant, package)
-    given = parameters_of(
-        managers[0], opened, workspace.name_of(managers[0]) or "", is_python=False
-    )
-    # In later releases, spawners hand on their own parameters.
-    spawners = [it for it in launch.nodes if _is_spawner(it) and it.when and it.parameters == ()]
-    plain = [it for it in spawners if not _is_typed(it.arguments or ())]
-    started = [it for spawner in plain for it in controllers_of(spawner) or ()]
-    own = {it.node_name: parameters_of(it, opened, is_python=False) for it in started}
-    typed = [
-        name
-        for name, it in own.items()
-        if it.unknown or "type" in it.values or f"{name}.type" in given.values
-    ]
-    files = [workspace.source_of(it.path) for it in managers[0].parameters or () if it.path]
-    lacking = [
-        it for it in controllers if it.name in {*own} - {*typed} and it.location.path not in files
-    ]
-    if lacking and not given.unknown:
-        names = enumerated(dict.fromkeys(quoted(it.name) for it in lacking), _MAX_NAMED)
-        place = place_text(lacking[0].location)
+    [manager] = managers
+    given = workspace.parameters_given(package, manager)
+    if given.unknown:
+        return
+    lacks_type: dict[str | None, bool] = {}  # by the names of the controllers that are started
+    for spawner in launch.nodes:
+        # In later releases, spawners hand on their own parameters.
+        is_plain = spawner.parameters == () and not _is_typed(spawner.arguments or ())
+        if not _is_spawner(spawner) or not spawner.when or not is_plain:
+            continue
+        for controller in controllers_of(spawner) or ():
+            own = parameters_of(controller, partial(open_meant, package), is_python=False)
+            has_type = "type" in own.values or f"{controller.node_name}.type" in given.values
+            lacks_type[controller.node_name] = not own.unknown and not has_type
+    files = [workspace.source_of(each.path) for each in manager.parameters or () if each.path]
+    lacking = [controller for controller in controllers if lacks_type.get(controller.name)]
+    lacking = [controller for controller in lacking if controller.location.path not in files]
+    if lacking:
+        at = lacking[0].location
         text = (
-            f"the controller manager is not given the parameters with the type of {names} ({place})"
+            "the controller manager is not given the parameters with the type of "
+            f"{_names_of(lacking)} ({place_text(at)})"
         )
-        yield Mismatch("controllers", text, managers[0].location, lacking[0].location)
+        yield Mismatch("controllers", text, manager.location, at)
+
+
+def _names_of(controllers: Sequence[Controller], word: str = "and") -> str:
+    names = dict.fromkeys(quoted(controller.name) for controller in controllers)
+    return enumerated(names, _MAX_NAMED, word)
 
 
 def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Iterator[Fact]:
     """Yield the controllers that publish, or those that move joints, where no spawner starts one of
     them.
     """
-    nodes = [node for _, node in workspace.nodes]
-    spawned = [controllers_of(node) for node in nodes if _is_spawner(node)]
-    texts = (*workspace.launch_texts, *workspace.python_texts)
-    is_known = not workspace.unknown_nodes and not any(map(_OTHER_STARTS.search, texts))
-    if not spawned or not is_known or not workspace.has_controller_manager:
+    spawned = _spawned(workspace)
+    if spawned is None or not workspace.has_controller_manager:
         return
-    names = {it.node_name for each in spawned for it in each or ()}
-    files = {*workspace.parameter_files, *workspace.controller_files}
-    own = [it for it in controllers if it.location.path in files]
-    others = [
-        it for it in nodes if it.package == MANAGER and not _is_manager(it) and not _is_spawner(it)
-    ]
-    if others or names - {it.name for it in controllers}:
+    if spawned - {controller.name for controller in controllers}:
         return  # a name may be misspelt
-    publishing = [it for it in own if (it.type.text or "").endswith("Broadcaster")]
-    for kind in (publishing, [it for it in own if it not in publishing]):
-        if kind and names.isdisjoint(it.name for it in kind):
-            text = (
-                "no spawner starts "
-                f"{enumerated(dict.fromkeys(quoted(it.name) for it in kind), _MAX_NAMED, 'or')}"
-            )
+    given_files = {*workspace.parameter_files, *workspace.controller_files}
+    publishing, moving = [], []
+    for controller in controllers:
+        if controller.location.path not in given_files:
+            continue
+        if (controller.type.text or "").endswith("Broadcaster"):
+            publishing.append(controller)
+        else:
+            moving.append(controller)
+    for kind in (publishing, moving):
+        if kind and spawned.isdisjoint(controller.name for controller in kind):
+            text = f"no spawner starts {_names_of(kind, 'or')}"
             yield Mismatch("controllers", text, kind[0].location)
+
+
+def _spawned(workspace: Workspace) -> set[str | None] | None:
+    """Return the controllers that spawners start; None without a spawner, or where something else
+    may start some.
+    """
+    texts = (*workspace.launch_texts, *workspace.python_texts)
+    if workspace.unknown_nodes or any(map(_OTHER_STARTS.search, texts)):
+        return None
+    spawned: set[str | None] = set()
+    has_spawner = False
+    for _, node in workspace.nodes:
+        if _is_spawner(node):
+            has_spawner = True
+            spawned |= {controller.node_name for controller in controllers_of(node) or ()}
+        elif node.package == MANAGER and not _is_manager(node):
+            return None
+    return spawned if has_spawner else None

@@ -20,18 +20,17 @@ def srdf_facts(workspace: Workspace) -> Iterator[Fact]:
     robot, files = workspace.robot, workspace.srdf_files
     if robot is None:
         return
-    is_one_of_several = workspace.has_other_robots or any(
+    may_be_of_others = workspace.has_other_robots or any(
         file.root.get("name") == robot.name for file in files
     )
     for file in files:
-        groups = file.root.iterchildren("group")
-        yield from (Definition("group", it.get("name", ""), file.location(it)) for it in groups)
-        if (
-            file.root.get("name") == robot.name or not is_one_of_several
-        ):  # else it describes another robot
-            yield from _names(file)
-            yield from _states(robot, file)
-            yield from _neighbours(robot, file)
+        for group in file.root.iterchildren("group"):
+            yield Definition("group", group.get("name", ""), file.location(group))
+        if file.root.get("name") != robot.name and may_be_of_others:
+            continue  # it describes another robot
+        yield from _names(file)
+        yield from _states(robot, file)
+        yield from _neighbours(robot, file)
 
 
 def _names(file: XmlFile) -> Iterator[Fact]:
@@ -77,14 +76,16 @@ def _neighbours(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
     """Yield links that a joint connects and whose collisions are compared, where most such pairs
     are disabled.
     """
-    disabled = {
-        frozenset((it.get("link1"), it.get("link2")))
-        for it in file.root.iterchildren("disable_collisions")
-    }
+    disabled = set()
+    for element in file.root.iterchildren("disable_collisions"):
+        disabled.add(frozenset((element.get("link1"), element.get("link2"))))
     solid = {link.name for link in robot.links if link.collisions}
-    pairs = [(it.parent, it.child) for it in robot.joints if {it.parent, it.child} <= solid]
-    missing = [pair for pair in pairs if frozenset(pair) not in disabled]
-    for parent, child in missing if 2 * len(missing) < len(pairs) else ():
+    pairs = [(joint.parent, joint.child) for joint in robot.joints]
+    pairs = [pair for pair in pairs if solid.issuperset(pair)]
+    compared = [pair for pair in pairs if frozenset(pair) not in disabled]
+    if 2 * len(compared) >= len(pairs):
+        return
+    for parent, child in compared:
         message = (
             f"a joint connects {quoted(parent)} and {quoted(child)}, but <disable_collisions> "
             "does not name them"

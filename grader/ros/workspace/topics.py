@@ -2,7 +2,7 @@
 and bridge rows.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from grader.base.names import closest
@@ -35,7 +35,7 @@ _WITHOUT_COMMANDS = (
 )
 
 
-class _Opened(NamedTuple):
+class _OpenedTopic(NamedTuple):
     """A publisher or subscription of a node as it is started, with the full name of its topic."""
 
     topic: str
@@ -44,7 +44,7 @@ class _Opened(NamedTuple):
     node: StartedNode
 
     @property
-    def of_controller(self) -> bool:
+    def is_of_controller(self) -> bool:
         """Return whether it is opened by a controller of ros2_control."""
         return self.node.executable == "ros2_control_node"
 
@@ -58,95 +58,113 @@ def topic_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield topics of own nodes that differ in type or quality of service, and remappings of names
     that no node has.
     """
-    opened: list[_Opened] = []
+    opened: list[_OpenedTopic] = []
     for launch, node in workspace.launched:
-        if node.when is not False:
-            of_controllers = controller_endpoints(workspace, launch, node)
-            opened += (_Opened(topic, endpoint, launch, node) for topic, endpoint in of_controllers)
-        own = workspace.python_node(node)
-        if own is None or node.when is False:
+        if node.when is False:
             continue
-        for endpoint in own.endpoints:
-            # What begins with ~ is below the name of the node.
-            is_plain = endpoint.name is not None and not endpoint.name.startswith("~")
-            topic = node.topic(endpoint.name or "") if is_plain else None
-            if topic is not None and endpoint.kind in ("publisher", "subscription"):
-                yield Compared("topics")
-                opened.append(_Opened(topic, endpoint, launch, node))
+        for topic, endpoint in controller_endpoints(workspace, launch, node):
+            opened.append(_OpenedTopic(topic, endpoint, launch, node))
+        for topic, endpoint in _endpoints(workspace, node):
+            yield Compared("topics")
+            opened.append(_OpenedTopic(topic, endpoint, launch, node))
         yield from _remappings(workspace, node)
-    publishers = [it for it in opened if it.endpoint.kind == "publisher"]
-    for it in opened:
-        if it.endpoint.kind == "subscription":
-            for other in [other for other in publishers if other.topic == it.topic]:
-                is_sure = it.launch == other.launch and it.is_started and other.is_started
-                yield from (found._replace(is_sure=is_sure) for found in _differences(it, other))
+    publishers = _opened_as("publisher", opened)
+    for subscription in _opened_as("subscription", opened):
+        for publisher in publishers:
+            if publisher.topic != subscription.topic:
+                continue
+            are_started = subscription.is_started and publisher.is_started
+            is_sure = are_started and subscription.launch == publisher.launch
+            for mismatch in _differences(subscription, publisher):
+                yield mismatch._replace(is_sure=is_sure)
     yield from _bridged_types(workspace, opened)
     yield from _unconnected(workspace, opened)
     yield from _unheard(workspace, opened)
 
 
-def _differences(subscription: _Opened, publisher: _Opened) -> Iterator[Mismatch]:
+def _endpoints(workspace: Workspace, node: StartedNode) -> Iterator[tuple[str, Endpoint]]:
+    """Yield the publishers and subscriptions of an own Python node, with the names of topics."""
+    python_node = workspace.python_node(node)
+    for endpoint in python_node.endpoints if python_node is not None else ():
+        # What begins with ~ is below the name of the node.
+        is_plain = endpoint.name is not None and not endpoint.name.startswith("~")
+        topic = node.topic(endpoint.name or "") if is_plain else None
+        if topic is not None and endpoint.kind in ("publisher", "subscription"):
+            yield topic, endpoint
+
+
+def _opened_as(kind: str, opened: Iterable[_OpenedTopic]) -> list[_OpenedTopic]:
+    return [each for each in opened if each.endpoint.kind == kind]
+
+
+def _differences(subscription: _OpenedTopic, publisher: _OpenedTopic) -> Iterator[Mismatch]:
     """Yield why a subscription does not get what a publisher of its topic sends."""
-    own, other = subscription.endpoint, publisher.endpoint
-    at = place_text(other.location)
-    if subscription.of_controller:
-        if own.type != other.type and other.type is not None:
-            there = f"the controller subscribes to it with {own.type} ({place_text(own.location)})"
-            message = f"the topic {publisher.topic} is published with {other.type}, but {there}"
-            yield Mismatch("topics", message, other.location, own.location)
-        return
-    if own.type is not None and other.type is not None and own.type != other.type:
-        message = (
-            f"the topic {subscription.topic} is subscribed to with {own.type}, but published "
-            f"with {other.type} ({at})"
-        )
-        yield Mismatch("topics", message, own.location, other.location)
-    for wanted, given, words in (
-        (own.qos.reliability, other.qos.reliability, ("reliable", "best_effort")),
-        (own.qos.durability, other.qos.durability, ("transient_local", "volatile")),
-    ):
-        if (wanted, given) == words:
+    reader, writer = subscription.endpoint, publisher.endpoint
+    if subscription.is_of_controller:
+        if reader.type != writer.type and writer.type is not None:
             message = (
-                f"the subscription of {subscription.topic} asks for {words[0]}, but its "
-                f"publisher is {words[1]} ({at})"
+                f"the topic {publisher.topic} is published with {writer.type}, but the controller "
+                f"subscribes to it with {reader.type} ({place_text(reader.location)})"
             )
-            yield Mismatch("topics", message, own.location, other.location)
+            yield Mismatch("topics", message, writer.location, reader.location)
+        return
+    at = place_text(writer.location)
+    if reader.type is not None and writer.type is not None and reader.type != writer.type:
+        message = (
+            f"the topic {subscription.topic} is subscribed to with {reader.type}, but published "
+            f"with {writer.type} ({at})"
+        )
+        yield Mismatch("topics", message, reader.location, writer.location)
+    incompatible = []  # what is asked for, and what is offered
+    if reader.qos.reliability == "reliable" and writer.qos.reliability == "best_effort":
+        incompatible.append(("reliable", "best_effort"))
+    if reader.qos.durability == "transient_local" and writer.qos.durability == "volatile":
+        incompatible.append(("transient_local", "volatile"))
+    for wanted, offered in incompatible:
+        message = (
+            f"the subscription of {subscription.topic} asks for {wanted}, but its "
+            f"publisher is {offered} ({at})"
+        )
+        yield Mismatch("topics", message, reader.location, writer.location)
 
 
-def _bridged_types(workspace: Workspace, opened: list[_Opened]) -> Iterator[Mismatch]:
+def _bridged_types(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator[Mismatch]:
     """Yield topics that a node and a bridge open with different types."""
     bridges = [node for _, node in workspace.nodes if node.package == BRIDGE]
     is_plain = all(node.remaps == () and node.namespace in ("", "/") for node in bridges)
-    for row in bridge_rows(workspace) if bridges and is_plain else ():
-        for own in [it for it in opened if it.topic == f"/{row.ros}" and not it.of_controller]:
-            is_met = row.is_published if own.endpoint.kind == "subscription" else row.is_read
-            if is_met and own.endpoint.type is not None and own.endpoint.type != row.ros_type:
+    if not bridges or not is_plain:
+        return
+    for row in bridge_rows(workspace):
+        for each in opened:
+            if each.topic != f"/{row.ros}" or each.is_of_controller:
+                continue
+            kind, at = each.endpoint.type, each.endpoint.location
+            is_met = row.is_published if each.endpoint.kind == "subscription" else row.is_read
+            if is_met and kind is not None and kind != row.ros_type:
                 done = "published" if row.is_published else "subscribed to"
-                there = f"{done} by the bridge with {row.ros_type} ({place_text(row.location)})"
-                message = f"the topic {own.topic} has {own.endpoint.type} here, but is {there}"
-                yield Mismatch(
-                    "topics",
-                    message,
-                    own.endpoint.location,
-                    row.location,
-                    row.is_used and own.is_started,
+                message = (
+                    f"the topic {each.topic} has {kind} here, but is {done} by the "
+                    f"bridge with {row.ros_type} ({place_text(row.location)})"
                 )
+                is_sure = row.is_used and each.is_started
+                yield Mismatch("topics", message, at, row.location, is_sure)
 
 
 def _remappings(workspace: Workspace, node: StartedNode) -> Iterator[Fact]:
     """Yield the names that a node has, and those that remappings of it alone replace."""
-    own = workspace.python_node(node)
-    if own is None or node.remaps is None:
+    python_node = workspace.python_node(node)
+    if python_node is None or node.remaps is None:
         return
     owner = f"{node.package}/{node.executable} {place_text(node.location)}"
-    if own.doubts or any(it.name is None for it in own.endpoints):
+    if python_node.doubts or any(endpoint.name is None for endpoint in python_node.endpoints):
         yield Open("topic", owner)
-    for endpoint in own.endpoints:
+    for endpoint in python_node.endpoints:
         if endpoint.name is not None:
             yield Definition("topic", _bare(endpoint.name), endpoint.location, owner)
-    shared = [
-        rule for _, other in workspace.nodes if other is not node for rule in other.remaps or ()
-    ]
+    shared: list[tuple[str, ...]] = []
+    for _, other in workspace.nodes:
+        if other is not node:
+            shared += other.remaps or ()
     for rule in node.remaps:
         name = _bare(rule[0])
         if rule not in shared and not name.startswith("__") and ":" not in name:
@@ -159,78 +177,74 @@ def _bare(name: str) -> str:
     return name.removeprefix("~").removeprefix("/")
 
 
-def _unconnected(workspace: Workspace, opened: list[_Opened]) -> Iterator[Fact]:
+def _unconnected(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator[Fact]:
     """Yield subscriptions to topics that nothing publishes, where a similar one is published and
     not subscribed to.
     """
     offers = list(_offers(workspace, opened))
-    topics = {it.topic for it in offers}
-    subscriptions = [it for it in opened if it.endpoint.kind == "subscription"]
-    subscribed = {it.topic for it in subscriptions}
-    unused = [it for it in offers if it.topic not in subscribed]
+    offered = {offer.topic for offer in offers}
+    subscriptions = _opened_as("subscription", opened)
+    subscribed = {subscription.topic for subscription in subscriptions}
+    unused = [offer for offer in offers if offer.topic not in subscribed]
     yield Open("topic")
-    yield from (Definition("topic", it.topic, it.location) for it in unused)
-    for own in [it for it in subscriptions if it.topic not in topics and not it.of_controller]:
-        alike = [it for it in unused if it.type == own.endpoint.type and own.launch in it.launches]
-        names = {it.topic for it in alike}
-        if (
-            len(names) == 1
-            and closest(own.topic, names)
-            and not may_be_published(workspace, own.topic)
-        ):
-            [meant], at = names, alike[0].location
-            if any(own.node.topic(rule[1]) == meant for rule in own.node.remaps or ()):
-                continue  # a remapping of another name, which is said of it
-            message = f"nothing publishes {own.topic}; did you mean {meant} ({place_text(at)})?"
-            either = corrections(own.topic, own.endpoint.location, meant, at)
-            yield Mismatch("topics", message, own.endpoint.location, at, corrections=either)
-        else:
-            yield Use("topic", own.topic, own.endpoint.location, "create_subscription")
+    for offer in unused:
+        yield Definition("topic", offer.topic, offer.location)
+    for subscription in subscriptions:
+        topic, endpoint, node = subscription.topic, subscription.endpoint, subscription.node
+        if topic in offered or subscription.is_of_controller:
+            continue
+        alike = [offer for offer in unused if offer.type == endpoint.type]
+        alike = [offer for offer in alike if subscription.launch in offer.launches]
+        names = {offer.topic for offer in alike}
+        is_one = len(names) == 1 and closest(topic, names)
+        if not is_one or may_be_published(workspace, topic):
+            yield Use("topic", topic, endpoint.location, "create_subscription")
+            continue
+        meant, at = alike[0].topic, alike[0].location
+        if any(node.topic(rule[1]) == meant for rule in node.remaps or ()):
+            continue  # a remapping of another name, which is said of it
+        message = f"nothing publishes {topic}; did you mean {meant} ({place_text(at)})?"
+        either = corrections(topic, endpoint.location, meant, at)
+        yield Mismatch("topics", message, endpoint.location, at, corrections=either)
 
 
-def _unheard(workspace: Workspace, opened: list[_Opened]) -> Iterator[Mismatch]:
+def _unheard(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator[Mismatch]:
     """Yield publishers that nothing subscribes to, where a controller waits for such messages on
     another topic.
     """
-    subscriptions = [it for it in opened if it.endpoint.kind == "subscription"]
-    publishers = [it for it in opened if it.endpoint.kind == "publisher" and not it.of_controller]
-    heard, spoken = {it.topic for it in subscriptions}, {it.topic for it in publishers}
-    unheard = [it for it in publishers if it.topic not in heard]
-    for waiting in [it for it in subscriptions if it.of_controller and it.topic not in spoken]:
-        own = [
-            it
-            for it in unheard
-            if it.launch == waiting.launch and it.endpoint.type == waiting.endpoint.type
-        ]
-        for publisher in own:
-            is_sure = (
-                publisher.is_started
-                and waiting.is_started
-                and _is_known(workspace, publisher.launch)
-            )
+    subscriptions = _opened_as("subscription", opened)
+    publishers = [each for each in _opened_as("publisher", opened) if not each.is_of_controller]
+    heard = {subscription.topic for subscription in subscriptions}
+    published = {publisher.topic for publisher in publishers}
+    unheard = [publisher for publisher in publishers if publisher.topic not in heard]
+    for waiting in subscriptions:
+        if not waiting.is_of_controller or waiting.topic in published:
+            continue
+        kind, place = waiting.endpoint.type, waiting.endpoint.location
+        fitting = [publisher for publisher in unheard if publisher.launch == waiting.launch]
+        fitting = [publisher for publisher in fitting if publisher.endpoint.type == kind]
+        for publisher in fitting:
+            are_started = publisher.is_started and waiting.is_started
+            is_sure = are_started and _is_known(workspace, publisher.launch)
             is_same = publisher.topic.rpartition("/")[2] == waiting.topic.rpartition("/")[2]
-            if is_same or (is_sure and len(own) == 1):
-                place = place_text(waiting.endpoint.location)
+            if is_same or (is_sure and len(fitting) == 1):
                 message = (
                     f"nothing subscribes to {publisher.topic}; did you mean {waiting.topic} "
-                    f"({place})?"
+                    f"({place_text(place)})?"
                 )
-                yield Mismatch(
-                    "topics",
-                    message,
-                    publisher.endpoint.location,
-                    waiting.endpoint.location,
-                    is_sure,
-                )
+                yield Mismatch("topics", message, publisher.endpoint.location, place, is_sure)
 
 
 def _is_known(workspace: Workspace, launch: int) -> bool:
     """Return whether all topics are known that the nodes of a launch file open."""
-    nodes = [node for number, node in workspace.launched if number == launch]
-    own = [workspace.python_node(node) for node in nodes if node.package not in _WITHOUT_COMMANDS]
-    return not workspace.roots[launch][1].unknown and all(
-        it is not None and not it.doubts for it in own
-    )
+    if workspace.roots[launch][1].unknown:
+        return False
+    for number, node in workspace.launched:
+        if number == launch and node.package not in _WITHOUT_COMMANDS:
+            python_node = workspace.python_node(node)
+            if python_node is None or python_node.doubts:
+                return False
+    return True
 
 
 class _Offer(NamedTuple):
@@ -242,10 +256,11 @@ class _Offer(NamedTuple):
     launches: frozenset[int]
 
 
-def _offers(workspace: Workspace, opened: list[_Opened]) -> Iterator[_Offer]:
-    for it in opened:
-        if it.endpoint.kind == "publisher":
-            yield _Offer(it.topic, it.endpoint.type, it.endpoint.location, frozenset({it.launch}))
+def _offers(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator[_Offer]:
+    for publisher in _opened_as("publisher", opened):
+        endpoint = publisher.endpoint
+        launches = frozenset({publisher.launch})
+        yield _Offer(publisher.topic, endpoint.type, endpoint.location, launches)
     launches = frozenset(number for number, node in workspace.launched if node.package == BRIDGE)
     for row in bridge_rows(workspace):
         if row.is_published:

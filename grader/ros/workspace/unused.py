@@ -40,27 +40,29 @@ def unused_files(workspace: Workspace) -> Iterator[Location]:
     """Yield the installed files whose names no other file of the workspace has, with or without the
     ending.
     """
-    words = {path: found for package in workspace.packages for path, found in _words(package)}
-    counts = Counter(word for found in words.values() for word in found)
+    words: dict[str, frozenset[bytes]] = {}
     for package in workspace.packages:
-        own = {path: words.get(package.path(path), frozenset()) for path in package.tree.files}
-        if any(_BY_USUAL_NAMES in found for found in own.values()):
+        words.update(_words(package))
+    counts: Counter[bytes] = Counter()
+    for words_of_file in words.values():
+        counts.update(words_of_file)
+    for package in workspace.packages:
+        files = [package.path(path) for path in package.tree.files]
+        if any(_BY_USUAL_NAMES in words.get(file, ()) for file in files):
             continue
         for path in sorted({*package.installed.values()} - {*package.launch_files}):
+            if not path.endswith(_KINDS) or "test" in path.split("/"):
+                continue
+            own_words = words.get(package.path(path), frozenset())
             stem = posixpath.basename(path).partition(".")[0].encode()
-            is_named = counts[stem] > (stem in own[path])
-            if (
-                path.endswith(_KINDS)
-                and not is_named
-                and not own[path] >= _OF_MAP
-                and "test" not in path.split("/")
-            ):
+            is_named = counts[stem] > (stem in own_words)
+            if not is_named and not own_words >= _OF_MAP:
                 yield Location(package.path(path), 1, 1)
 
 
 def _words(package: Package) -> Iterator[tuple[str, frozenset[bytes]]]:
     """Yield the words of each text of a package."""
-    for path in [it for it in package.tree.files if it.endswith(_TEXTS)]:
-        data = package.tree.read(path, _MAX_TEXT)
+    for path in package.tree.files:
+        data = package.tree.read(path, _MAX_TEXT) if path.endswith(_TEXTS) else None
         if data is not None:
             yield package.path(path), frozenset(_WORD.findall(data))

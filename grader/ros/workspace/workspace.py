@@ -4,7 +4,7 @@ the robot, nodes.
 
 import posixpath
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -34,8 +34,9 @@ _CALLED = re.compile(r"<xacro:(?:[\w-]+\.)*([\w-]+)")
 _FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
 _MAX_FILES = 60  # of one kind in a package
 _MAX_YAML = 512 * 1024  # bytes
-_OF_YAML = (".yaml", ".yml", ".py")
-_COMMENT = {False: re.compile(r"<!--.*?-->", re.DOTALL), True: re.compile(r"(?:^|(?<=\s))#[^\n]*")}
+_WITH_LINES = (".yaml", ".yml", ".py")  # files whose comments begin with #
+_COMMENT_LINE = re.compile(r"(?:^|(?<=\s))#[^\n]*")
+_XML_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,32 +55,30 @@ class Workspace:
         """The packages that a build of the workspace has: the best of each name, without those
         that colcon ignores.
         """
-        known = [it for it in self.found_packages if not it.ignored_by]
-        return tuple(
-            it
-            for it in known
-            if it.name in it.packages and it.packages[it.name].folder == it.folder
-        )
+        packages = []
+        for package in self.found_packages:
+            best = package.packages.get(package.name)
+            if not package.ignored_by and best is not None and best.folder == package.folder:
+                packages.append(package)
+        return tuple(packages)
 
     def means_one(self, package: Package, name: str) -> bool:
         """Return whether a name in a file of a package certainly means one package: its own, or
         the only one.
         """
-        others = (
-            it for it in self.found_packages if not it.ignored_by and not is_backup(it.folder)
-        )
-        return name in package.names or sum(it.name == name for it in others) < 2
+        if name in package.names:
+            return True
+        named = [other for other in self.found_packages if other.name == name]
+        return sum(not other.ignored_by and not is_backup(other.folder) for other in named) < 2
 
     @cached_property
     def launches(self) -> tuple[tuple[Package, str, Launch], ...]:
         """The launch files, each with its package and its path in it; without those of tests."""
-        return tuple(
-            (package, path, package.launch(path))
-            for package in self.packages
-            for path in [it for it in package.launch_files if not it.startswith("test/")][
-                :_MAX_FILES
-            ]
-        )
+        launches: list[tuple[Package, str, Launch]] = []
+        for package in self.packages:
+            paths = _without_tests(package.launch_files)
+            launches += [(package, path, package.launch(path)) for path in paths]
+        return tuple(launches)
 
     @cached_property
     def nodes(self) -> tuple[tuple[Package, StartedNode], ...]:
@@ -91,14 +90,15 @@ class Workspace:
     @cached_property
     def roots(self) -> tuple[tuple[Package, Launch], ...]:
         """The launch files that no other one includes, with their packages."""
-        included = {passed.path for _, _, launch in self.launches for passed in launch.passed}
-        return tuple(
-            (package, launch)
-            for package, path, launch in self.launches
-            if included.isdisjoint(
-                target for target, source in package.installed.items() if source == path
-            )
-        )
+        included: set[str] = set()
+        for _, _, launch in self.launches:
+            included |= {passed.path for passed in launch.passed}
+        found = []
+        for package, path, launch in self.launches:
+            targets = [target for target, source in package.installed.items() if source == path]
+            if included.isdisjoint(targets):
+                found.append((package, launch))
+        return tuple(found)
 
     @property
     def launched(self) -> Iterator[tuple[int, StartedNode]]:
@@ -112,21 +112,18 @@ class Workspace:
         """The YAML files that are no launch files, by their paths in the submission; or why one
         is not read.
         """
-        found: dict[str, YamlNode | YamlFault] = {}
+        files: dict[str, YamlNode | YamlFault] = {}
         for package in self.packages:
-            files = [
-                it
-                for it in package.tree.files
-                if it.endswith((".yaml", ".yml")) and not it.startswith("test/")
-            ]
-            paths = [it for it in files if it not in package.launch_files]
-            for path in paths[:_MAX_FILES]:
-                own, data = package.path(path), package.tree.read(path, _MAX_YAML)
+            paths = [path for path in package.tree.files if path.endswith((".yaml", ".yml"))]
+            for path in _without_tests(path for path in paths if path not in package.launch_files):
+                whole_path, data = package.path(path), package.tree.read(path, _MAX_YAML)
+                if data is None:
+                    continue
                 try:
-                    found |= {own: read_yaml(data, own)} if data is not None else {}
+                    files[whole_path] = read_yaml(data, whole_path)
                 except YamlFault as fault:
-                    found[own] = fault
-        return found
+                    files[whole_path] = fault
+        return files
 
     @property
     def trees(self) -> Iterator[tuple[str, YamlNode]]:
@@ -206,46 +203,43 @@ class Workspace:
     def command_interfaces(self) -> Mapping[str, tuple[frozenset[str], Location]] | None:
         """The command interfaces of joints in <ros2_control>; None without one."""
         root = self.robot_root
-        found: dict[str, tuple[frozenset[str], Location]] = {}
         systems = list(root.iterchildren("ros2_control")) if root is not None else []
-        for joint in (joint for system in systems for joint in system.iterchildren("joint")):
-            names = frozenset(it.get("name", "") for it in joint.iterchildren("command_interface"))
-            before, at = found.get(joint.get("name", ""), (frozenset[str](), self.place(joint)))
-            found[joint.get("name", "")] = (before | names, at)
-        return found if systems else None
+        if not systems:
+            return None
+        interfaces: dict[str, tuple[frozenset[str], Location]] = {}
+        for system in systems:
+            for joint in system.iterchildren("joint"):
+                name, added = joint.get("name", ""), joint.iterchildren("command_interface")
+                before, at = interfaces.get(name, (frozenset[str](), self.place(joint)))
+                interfaces[name] = (before.union(each.get("name", "") for each in added), at)
+        return interfaces
 
     @property
     def has_all_interfaces(self) -> bool:
         """Return whether `command_interfaces` are those of every robot, also under other
         arguments of xacro.
         """
-        text = "".join(it.text for it in self.xacro_sources)
+        if self.robot_root is None or self.has_other_robots:
+            return False
+        text = "".join(source.text for source in self.xacro_sources)
         called = {*_CALLED.findall(text)}
         if "call" not in called:  # <xacro:call macro="..."/> may compute the name
             *macros, rest = text.split("</xacro:macro>")
-            text = "".join([*(_without_macro(it, called) for it in macros), rest])
+            text = "".join(_without_macro(macro, called) for macro in macros) + rest
         written = len(_SYSTEM.findall(text))
-        if self.robot_root is not None:
-            systems = len(list(self.robot_root.iterchildren("ros2_control")))
-        else:
-            systems = -1
-        return written <= systems and not self.has_other_robots
+        return written <= len(list(self.robot_root.iterchildren("ros2_control")))
 
     def python_node(self, node: StartedNode) -> PythonNode | None:
         """Return the Python node of the workspace that a program starts, if it starts one that
         is known.
         """
         owner = self.package_of(node)
-        if owner is not None and owner.name in self.python_nodes:
-            found = self.python_nodes[owner.name]
-        else:
-            found = None
-        if found is not None:
-            programs = [it for it in found.programs if it.name == node.executable]
-        else:
-            programs = []
-        if len(programs) == 1 and len(programs[0].nodes) == 1:
-            return programs[0].nodes[0]
+        if owner is None or owner.name not in self.python_nodes:
+            return None
+        programs = self.python_nodes[owner.name].programs
+        started = [program for program in programs if program.name == node.executable]
+        if len(started) == 1 and len(started[0].nodes) == 1:
+            return started[0].nodes[0]
         return None
 
     def package_of(self, node: StartedNode) -> Package | None:
@@ -268,9 +262,8 @@ class Workspace:
         """Return the nodes that a node of another package makes in its process, and that read
         its parameters.
         """
-        return frozenset(known()["children"].get(name, ())) | (
-            self.typed_sections if name == MANAGER else frozenset()
-        )
+        children = frozenset(known()["children"].get(name, ()))
+        return children | self.typed_sections if name == MANAGER else children
 
     @cached_property
     def controllers(self) -> frozenset[str]:
@@ -282,22 +275,16 @@ class Workspace:
     @cached_property
     def typed_sections(self) -> frozenset[str]:
         """The names of controllers and others that parameter files give a type."""
-        sections = [
-            (keys, section) for _, tree in self.trees for keys, section in sections_in(tree)
-        ]
-        own = {
-            keys[-1].rpartition("/")[2]
-            for keys, section in sections
-            if keys and section.get("type") is not None
-        }
-        named = {
-            name
-            for _, section in sections
-            if isinstance(section.value, dict)
-            for name, inner in section.value.items()
-            if inner.get("type") is not None
-        }
-        return frozenset(own | named)
+        names: set[str] = set()
+        for _, tree in self.trees:
+            for keys, section in sections_in(tree):
+                if keys and section.get("type") is not None:
+                    names.add(keys[-1].rpartition("/")[2])
+                if isinstance(section.value, dict):
+                    for name, inner in section.value.items():
+                        if inner.get("type") is not None:
+                            names.add(name)
+        return frozenset(names)
 
     def has_file(self, path: str) -> bool:
         """Return whether a build of the workspace installs a file at a path below the prefix."""
@@ -307,17 +294,17 @@ class Workspace:
         """Return the YAML file that is installed at a path, which begins with the prefix's
         stand-in.
         """
-        found = self.yaml_files.get(self.source_of(path) or "")
-        return found if isinstance(found, YamlNode) else None
+        tree = self.yaml_files.get(self.source_of(path) or "")
+        return tree if isinstance(tree, YamlNode) else None
 
     def source_of(self, path: str) -> str | None:
         """Return the file of the submission that is installed at a path, which begins with the
         prefix's stand-in.
         """
         inside = posixpath.normpath(path).removeprefix(f"{PREFIX}/")
-        holding = [package for package in self.packages if inside in package.installed]
-        if holding:
-            return holding[0].path(holding[0].installed[inside])
+        for package in self.packages:
+            if inside in package.installed:
+                return package.path(package.installed[inside])
         return None
 
     @cached_property
@@ -325,39 +312,40 @@ class Workspace:
         """The parameter files, by their paths in the submission, with the nodes that are given
         them.
         """
-        found: dict[str, list[StartedNode]] = {}
+        nodes: dict[str, list[StartedNode]] = {}
         for _, node in self.nodes:
             for given in node.parameters or ():
                 path = self.source_of(given.path) if given.path and given.is_plain else None
                 if path is not None:
-                    found.setdefault(path, []).append(node)
-        return found
+                    nodes.setdefault(path, []).append(node)
+        return nodes
 
     @cached_property
     def parameter_owners(self) -> Mapping[str, list[NodeParameters]]:
         """The parameters that nodes and controllers are given, by their names without
         namespaces.
         """
-        found: dict[str, list[NodeParameters]] = {}
+        owners: dict[str, list[NodeParameters]] = {}
         for package, launch in self.roots:
-            managers = [it for it in launch.nodes if self.name_of(it) == MANAGER]
             opened = partial(open_meant, package, absent_are_empty=True)
+            # What a controller manager and Gazebo are given, its controllers get too.
+            shared: list[GivenParameters] = []
             for node in launch.nodes:
-                name, own = self.name_of(node), self.python_node(node)
-                if (name is not None and node.package != MANAGER) or node in managers:
-                    given = parameters_of(
-                        node, opened, name or "", is_python=own is not None or None
-                    )
-                    found.setdefault(name or "", []).append(given)
-                for controller in (
-                    (controllers_of(node) or ()) if node.executable in SPAWNERS else ()
-                ):
-                    before = [it for manager in managers for it in manager.parameters or ()]
-                    files = (*before, *self._simulated, *(controller.parameters or ()))
+                if self.name_of(node) == MANAGER:
+                    shared += node.parameters or ()
+            shared += self._simulated
+            for node in launch.nodes:
+                name = self.name_of(node)
+                if name == MANAGER or (name is not None and node.package != MANAGER):
+                    is_python = True if self.python_node(node) is not None else None
+                    given = parameters_of(node, opened, name, is_python=is_python)
+                    owners.setdefault(name, []).append(given)
+                for controller in _spawned_by(node):
+                    files = (*shared, *(controller.parameters or ()))
                     started = replace(controller, parameters=files)
                     given = parameters_of(started, opened, is_python=False)
-                    found.setdefault(controller.node_name or "", []).append(given)
-        return found
+                    owners.setdefault(controller.node_name or "", []).append(given)
+        return owners
 
     @property
     def _simulated(self) -> Iterator[GivenParameters]:
@@ -372,41 +360,43 @@ class Workspace:
         """The parameter files, by their paths in the submission, that Gazebo and spawners give
         controllers.
         """
-        spawned = (
-            it
-            for _, node in self.nodes
-            if node.executable in SPAWNERS
-            for it in controllers_of(node) or ()
-        )
-        given = (
-            *self._simulated,
-            *(it for controller in spawned for it in controller.parameters or ()),
-        )
-        paths = (self.source_of(it.path) for it in given if it.path)
+        given = [*self._simulated]
+        for _, node in self.nodes:
+            for controller in _spawned_by(node):
+                given += controller.parameters or ()
+        paths = {self.source_of(each.path) for each in given if each.path}
         return frozenset(path for path in paths if path is not None)
 
     @cached_property
     def unknown_nodes(self) -> str:
         """Why launch files may start more nodes or controllers; empty where they do not."""
-        reasons = [it.message for _, launch in self.roots for it in launch.unknown]
-        reasons += [launch.unread for _, launch in self.roots if launch.unread]
-        if any(
-            node.executable in SPAWNERS and controllers_of(node) is None for _, node in self.nodes
-        ):
-            reasons.append("the arguments of a spawner are not evaluated")
-        return next(iter(reasons), "")
+        for _, launch in self.roots:
+            for unknown in launch.unknown:
+                return unknown.message
+        for _, launch in self.roots:
+            if launch.unread:
+                return launch.unread
+        for _, node in self.nodes:
+            if node.executable in SPAWNERS and controllers_of(node) is None:
+                return "the arguments of a spawner are not evaluated"
+        return ""
+
+    def parameters_given(
+        self, package: Package, node: StartedNode, *, is_python: bool | None = False
+    ) -> NodeParameters:
+        """Return the parameters that a node gets, whose launch file is in a package."""
+        opened = partial(open_meant, package)
+        return parameters_of(node, opened, self.name_of(node) or "", is_python=is_python)
 
     def wildcard_places(self, node: StartedNode) -> frozenset[Location]:
         """Return the places of parameters that a file gives to every node."""
-        trees = [self.installed_yaml(given.path) for given in node.parameters or () if given.path]
-        wide = [
-            section
-            for tree in trees
-            if tree is not None
-            for keys, section in sections_in(tree)
-            if not keys or any(key.strip("/") in ("*", "**") for key in keys)
-        ]
-        return frozenset(value.node.location for section in wide for value in values_in(section))
+        places: set[Location] = set()
+        for given in node.parameters or ():
+            tree = self.installed_yaml(given.path) if given.path else None
+            for keys, section in sections_in(tree) if tree is not None else ():
+                if not keys or any(key.strip("/") in ("*", "**") for key in keys):
+                    places |= {value.node.location for value in values_in(section)}
+        return frozenset(places)
 
     def has_plugin(self, name: str) -> bool:
         """Return whether a package describes a plugin of this name for pluginlib."""
@@ -415,16 +405,16 @@ class Workspace:
 
     def sources_of(self, package: Package, endings: tuple[str, ...]) -> Iterator[Source]:
         """Yield the texts of the files of a package with these endings, without those of tests."""
-        return self._sources(package, [it for it in package.tree.files if it.endswith(endings)])
+        paths = [path for path in package.tree.files if path.endswith(endings)]
+        return self._sources(package, paths)
 
-    def _sources(self, package: Package, paths: Sequence[str]) -> Iterator[Source]:
-        for path in [it for it in paths if not it.startswith("test/")][:_MAX_FILES]:
+    def _sources(self, package: Package, paths: Iterable[str]) -> Iterator[Source]:
+        for path in _without_tests(paths):
             data = package.tree.read(path, _MAX_YAML)
             if data is not None:
                 text = data.decode("utf-8", "replace")
-                yield Source(
-                    package.path(path), _COMMENT[path.endswith(_OF_YAML)].sub(_blank, text)
-                )
+                comment = _COMMENT_LINE if path.endswith(_WITH_LINES) else _XML_COMMENT
+                yield Source(package.path(path), comment.sub(_blank, text))
 
     @cached_property
     def robot_files(self) -> frozenset[str] | None:
@@ -437,29 +427,38 @@ class Workspace:
     @cached_property
     def xacro_sources(self) -> tuple[Source, ...]:
         """The texts of the xacro files and URDFs."""
-        return tuple(
-            it for package in self.packages for it in self.sources_of(package, (".xacro", ".urdf"))
-        )
+        sources: list[Source] = []
+        for package in self.packages:
+            sources += self.sources_of(package, (".xacro", ".urdf"))
+        return tuple(sources)
 
     @cached_property
     def launch_texts(self) -> tuple[str, ...]:
         """The texts of the launch files, of those of ROS 1 too."""
-        sources = [
-            source
-            for package in self.packages
-            for source in self._sources(package, package.launch_files)
-        ]
-        sources += [
-            source for package in self.packages for source in self.sources_of(package, (".launch",))
-        ]
+        sources: list[Source] = []
+        for package in self.packages:
+            sources += self._sources(package, package.launch_files)
+        for package in self.packages:
+            sources += self.sources_of(package, (".launch",))
         return tuple(source.text for source in sources)
 
     @cached_property
     def python_texts(self) -> tuple[str, ...]:
         """The texts of the Python files."""
-        return tuple(
-            it.text for package in self.packages for it in self.sources_of(package, (".py",))
-        )
+        sources: list[Source] = []
+        for package in self.packages:
+            sources += self.sources_of(package, (".py",))
+        return tuple(source.text for source in sources)
+
+
+def _without_tests(paths: Iterable[str]) -> list[str]:
+    """Return the paths of a package's files that are read: no tests, and not too many."""
+    return [path for path in paths if not path.startswith("test/")][:_MAX_FILES]
+
+
+def _spawned_by(node: StartedNode) -> Sequence[StartedNode]:
+    """Return the controllers that a node starts, if it is a spawner whose arguments are known."""
+    return (controllers_of(node) or ()) if node.executable in SPAWNERS else ()
 
 
 def _without_macro(text: str, called: Collection[str]) -> str:

@@ -41,7 +41,7 @@ _UNMARKED = re.compile(
 )
 
 
-class Correction(NamedTuple):
+class XacroCorrection(NamedTuple):
     """Edits after which xacro does not refuse something, and what they assume."""
 
     edits: Edits
@@ -64,13 +64,13 @@ class Corrections:
     def __init__(self, files: Files, budget: Budget) -> None:
         self._files, self._budget = files, budget
 
-    def of(self, refusal: Refusal) -> Correction | None:
+    def of(self, refusal: Refusal) -> XacroCorrection | None:
         """Return the correction of what is refused; None if several can be meant."""
         error, place, attribute = refusal
         location = place.at(attribute)
         unknown = error.unknown if isinstance(error, XacroFails) else None
         if isinstance(error, XmlFails) and error.repair:
-            return Correction(error.repair, error.assumed, location, is_of_element=True)
+            return XacroCorrection(error.repair, error.assumed, location, is_of_element=True)
         parameters = self._parameters(refusal)
         if parameters:
             return _correction(parameters, location, is_of_element=True)
@@ -127,7 +127,7 @@ class Corrections:
 
     def _of_unknown(
         self, place: ScopePlace, attribute: str | None, unknown: UnknownName
-    ) -> Correction | None:
+    ) -> XacroCorrection | None:
         location, of_element = place.at(attribute), unknown.kind != "property"
         moved = self.moved(unknown)
         if moved is not None:
@@ -139,7 +139,9 @@ class Corrections:
                 f"the {unknown.kind} {unknown.name} is defined in line {moved[1].line}, below "
                 "its use: move it up"
             )
-            return Correction(moved[0], sentence, moved[1], is_of_element=True, problem=problem)
+            return XacroCorrection(
+                moved[0], sentence, moved[1], is_of_element=True, problem=problem
+            )
         prefixed = [
             tuple(tags_of(node.place, node.tag, f"xacro:{node.tag}"))
             for node in self.nodes()
@@ -157,7 +159,7 @@ class Corrections:
 
     def _respelt(
         self, place: ScopePlace, attribute: str | None, unknown: UnknownName, *, is_of_element: bool
-    ) -> Correction | None:
+    ) -> XacroCorrection | None:
         """Return the correction of a name where it is used, or where it is defined if nothing
         uses it as defined.
         """
@@ -167,13 +169,13 @@ class Corrections:
             edits = _rename(*definition, meant, unknown.name) if not self._uses(meant) else ()
             if edits:
                 sentence = f"the {unknown.kind} {quoted(meant)} is read as {quoted(unknown.name)}"
-                return Correction(
+                return XacroCorrection(
                     edits, sentence, definition[0].at(definition[1]), is_of_element=True
                 )
         edits = _rename(place, attribute, unknown.name, meant)
         sentence = f"the {unknown.kind} {quoted(unknown.name)} is read as {quoted(meant)}"
         if edits:
-            return Correction(edits, sentence, place.at(attribute), is_of_element)
+            return XacroCorrection(edits, sentence, place.at(attribute), is_of_element)
         return None
 
     def _uses(self, name: str) -> int:
@@ -345,10 +347,12 @@ def _with_value(place: ScopePlace, name: str, new: str) -> Edits:
     return (source.edit(found.start, found.end, f"{before}{new}{after}"),)
 
 
-def _correction(edits: Edits, location: Location, *, is_of_element: bool = False) -> Correction:
+def _correction(
+    edits: Edits, location: Location, *, is_of_element: bool = False
+) -> XacroCorrection:
     """Return a correction that is where the first edit is."""
     at = Location(edits[0].path, edits[0].line, edits[0].column)
-    return Correction(
+    return XacroCorrection(
         edits, sentence_of(edits), location if location[:3] == at[:3] else at, is_of_element
     )
 

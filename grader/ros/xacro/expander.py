@@ -10,7 +10,7 @@ from grader.base.text import enumerated, quoted
 from grader.ros.python.budget import CHARACTERS, Budget, OutOfBudget
 from grader.ros.python.values import EvaluationFails, Undetermined, Value
 from grader.ros.xacro import xacro_problems
-from grader.ros.xacro.corrections import Correction, Corrections, Refusal
+from grader.ros.xacro.corrections import Corrections, Refusal, XacroCorrection
 from grader.ros.xacro.functions import document_functions, read_yaml_values
 from grader.ros.xacro.macros import MacroError
 from grader.ros.xacro.scopes import Reported, ScopePlace, XacroFails, XacroScope
@@ -31,7 +31,7 @@ class TagFails(XacroFails):
     """A xacro tag with a missing or wrong attribute."""
 
 
-class Open(NamedTuple):
+class UndeterminedUse(NamedTuple):
     """Something that cannot be determined statically, and where it is used."""
 
     reason: str
@@ -94,8 +94,10 @@ class Expander:
         self.own_tags = [tag.removeprefix("xacro:") for tag in handlers]
         self.problems: list[Problem] = []
         self.warnings: list[Problem] = []  # what xacro writes to stderr, and notes
-        self.corrections: list[Correction] = []  # of what is refused, where they surely are meant
-        self.undetermined: list[Open] = []
+        self.corrections: list[
+            XacroCorrection
+        ] = []  # of what is refused, where they surely are meant
+        self.undetermined: list[UndeterminedUse] = []
         self.refused: list[Refusal] = []  # what hints may correct, and where
         self.calls: tuple[tuple[str, ScopePlace], ...] = ()
         self._meant = Corrections(files, budget)
@@ -196,7 +198,7 @@ class Expander:
             return "" if isinstance(error, EvaluationFails) else message
         location = self._place(place).at(attribute)
         if not isinstance(error, EvaluationFails):
-            self.undetermined.append(Open(message, location))
+            self.undetermined.append(UndeterminedUse(message, location))
             return message
         refusal = (error, place, attribute)
         self.refused.append(refusal)

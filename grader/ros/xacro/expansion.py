@@ -19,10 +19,10 @@ from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.values import EvaluationFails, Undetermined
 from grader.ros.xacro import xacro_problems
 from grader.ros.xacro.corrections import Corrections, Refusal, sentence_of
-from grader.ros.xacro.expander import STOPS, Expander, Open
+from grader.ros.xacro.expander import STOPS, Expander, UndeterminedUse
 from grader.ros.xacro.tags import CALL, HANDLERS
 from grader.ros.xacro.texts import OtherArguments, Texts
-from grader.ros.xacro.xacro_files import Files, Workspace
+from grader.ros.xacro.xacro_files import Files, SurroundingFiles
 from grader.ros.xacro.xacro_nodes import XacroNode, read_nodes, recovered_nodes
 from grader.ros.xml.parsing import (
     Element,
@@ -139,7 +139,7 @@ class _Expansion(NamedTuple):
     root: Element | None
     source: Source
     problems: tuple[Problem, ...]  # what xacro refuses
-    undetermined: tuple[Open, ...]  # what cannot be determined statically
+    undetermined: tuple[UndeterminedUse, ...]  # what cannot be determined statically
     unresolved: Mapping[Element, Unresolved]  # the elements that are not known completely
     recovered: Element | None = None
     is_meant: bool = False
@@ -164,7 +164,7 @@ class _Expansion(NamedTuple):
 def expand(
     data: bytes,
     path: str,
-    workspace: Workspace,
+    workspace: SurroundingFiles,
     arguments: Mapping[str, str | None],
     others: OtherArguments = "default",
     edits: Edits = (),
@@ -213,7 +213,7 @@ def _by_path(edits: Iterable[Edit]) -> dict[str, Edits]:
 def _expand(
     data: bytes,
     path: str,
-    workspace: Workspace,
+    workspace: SurroundingFiles,
     arguments: Mapping[str, str | None],
     others: OtherArguments,
     edits: Mapping[str, Edits],
@@ -227,7 +227,7 @@ def _expand(
         problem = Problem(xacro_problems.XACRO_NOT_XML, f"{error}; {STOPS}", plain.at(0))
         return _Expansion(None, plain, (problem,), (), {}), None
     except (Undetermined, OutOfBudget) as error:
-        return _Expansion(None, plain, (), (Open(str(error), plain.at(0)),), {}), None
+        return _Expansion(None, plain, (), (UndeterminedUse(str(error), plain.at(0)),), {}), None
     if source is None:
         return _Expansion(None, plain, refused, (), {}), None
     files = Files(workspace, path, edits)

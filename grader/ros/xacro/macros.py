@@ -6,7 +6,7 @@ from typing import NamedTuple
 from grader.base.names import near
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import Undetermined
-from grader.ros.xacro.scopes import Definition, UnknownName, XacroFails, XacroScope
+from grader.ros.xacro.scopes import UnknownName, XacroDefinition, XacroFails, XacroScope
 from grader.ros.xacro.texts import Texts
 from grader.ros.xacro.xacro_nodes import XacroNode
 
@@ -110,7 +110,7 @@ def bind_blocks(
                     f"this call of the macro {macro.name} has no element for {parameter.name}",
                     lacking=(parameter.name,),
                 )
-            definition = Definition(parameter.name, "", macro.body.place, "params", inner)
+            definition = XacroDefinition(parameter.name, "", macro.body.place, "params", inner)
             inner.bind(parameter.name, waiting.pop(0), definition=definition)
     if waiting:
         raise MacroError(f"the macro {macro.name} takes no element <{waiting[0].tag}> here")

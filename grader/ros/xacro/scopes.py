@@ -44,7 +44,7 @@ _NAMED_IN = {"name": "name", "value": "name", "default": "name", "params": "para
 Key = tuple[str, int, str, str]
 
 
-class Definition(NamedTuple):
+class XacroDefinition(NamedTuple):
     """Where a name got its value: the text in an attribute, and the scope in which it is
     evaluated.
     """
@@ -102,7 +102,7 @@ class _Property:
 
     __slots__ = ("definition", "failure", "is_lazy", "is_open", "value")
 
-    def __init__(self, value: Value, *, is_lazy: bool, definition: Definition | None) -> None:
+    def __init__(self, value: Value, *, is_lazy: bool, definition: XacroDefinition | None) -> None:
         value = _literal(value)
         self.value = value
         self.is_lazy = is_lazy and isinstance(value, str)
@@ -193,7 +193,7 @@ class XacroScope:
         value: Value,
         *,
         is_lazy: bool = False,
-        definition: Definition | None = None,
+        definition: XacroDefinition | None = None,
     ) -> None:
         """Give a name a value, or a text that is evaluated lazily."""
         self.properties[name] = _Property(value, is_lazy=is_lazy, definition=definition)

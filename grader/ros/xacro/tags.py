@@ -18,10 +18,10 @@ from grader.ros.xacro.macros import (
 )
 from grader.ros.xacro.scopes import (
     BOOLEANS,
-    Definition,
     IncludedNames,
     Reported,
     UnknownName,
+    XacroDefinition,
     XacroScope,
 )
 from grader.ros.xacro.xacro_files import FileFails
@@ -62,7 +62,7 @@ def _define_macro(expander: Expander, node: XacroNode, _: XacroNode, scopes: Sco
         expander.warn(xacro_problems.XACRO_PREFIXED, message, node.place, "name")
     macro = Macro(name, node, read_parameters(node.attributes.get("params", ""), expander.budget))
     scopes.macros.bind(
-        name, macro, definition=Definition(name, "", node.place, "name", scopes.symbols)
+        name, macro, definition=XacroDefinition(name, "", node.place, "name", scopes.symbols)
     )
 
 
@@ -199,7 +199,7 @@ def _property(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes)
     texts.check_name(name, node.place)
     if is_lazy or text is None:
         if text is not None:
-            definition = Definition(name, text, node.place, attribute, target)
+            definition = XacroDefinition(name, text, node.place, attribute, target)
         else:
             definition = None
         target.bind(name, value, is_lazy=True, definition=definition)
@@ -260,7 +260,7 @@ def _arg(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes) -> N
         expander.texts.arguments[name] = None
     if name not in expander.texts.arguments:
         expander.texts.arguments[name] = expander.texts.text(default, scopes.symbols)
-        expander.texts.defaults[name] = Definition(
+        expander.texts.defaults[name] = XacroDefinition(
             name, default, node.place, "default", scopes.symbols
         )
 

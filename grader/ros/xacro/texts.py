@@ -18,12 +18,12 @@ from grader.ros.python.values import (
 )
 from grader.ros.xacro.functions import GLOBALS
 from grader.ros.xacro.scopes import (
-    Definition,
     Known,
     Reported,
     ReportFailure,
     ScopePlace,
     UnknownName,
+    XacroDefinition,
     XacroFails,
     XacroScope,
 )
@@ -73,7 +73,7 @@ class Texts:
         """
         self.arguments = arguments
         self.other_arguments: OtherArguments = "default"
-        self.defaults: dict[str, Definition] = {}  # of arguments that have no other value
+        self.defaults: dict[str, XacroDefinition] = {}  # of arguments that have no other value
         # why a name may be bound that is not known
         self.names_open: EvaluationFails | Undetermined | None = None
         self._budget = budget
@@ -195,7 +195,7 @@ class Texts:
         except Undetermined as error:  # xacro evaluates it even if nothing uses it
             self._report(error, place, attribute)
             failure = error
-        target.bind(name, value, definition=Definition(name, text, place, attribute, scope))
+        target.bind(name, value, definition=XacroDefinition(name, text, place, attribute, scope))
         target.properties[name].failure = failure
 
     def _piece(self, piece: re.Match[str], scope: XacroScope) -> Value:

@@ -28,7 +28,7 @@ _OF_FILE, _OF_NAME = (
 )  # what looking for one, and comparing its name with another one, are charged
 
 
-class Workspace(Protocol):
+class SurroundingFiles(Protocol):
     """The files around a xacro file: those of its submission."""
 
     @property
@@ -71,7 +71,7 @@ class XmlFails(EvaluationFails):
 class Files:
     """The files that are open while a document is expanded, innermost last."""
 
-    def __init__(self, workspace: Workspace, path: str, edits: Mapping[str, Edits]) -> None:
+    def __init__(self, workspace: SurroundingFiles, path: str, edits: Mapping[str, Edits]) -> None:
         """`edits` correct the files before they are read, by their paths."""
         self._workspace, self._budget, self._edits = workspace, workspace.budget, edits
         self.open = [path]
