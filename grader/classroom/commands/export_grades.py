@@ -2,7 +2,7 @@
 feedback for an LMS.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import ROUND_FLOOR, Decimal
 from pathlib import Path
@@ -122,17 +122,17 @@ def _exported(request: ExportRequest, book: Gradebook, terminal: Terminal) -> Fi
         return Filled(render_class_json(book).encode())
     if request.into is None:
         return Filled()
-    form, lab, shown = (
-        FORMS[request.target],
-        (book.rubric.title, book.rubric.id),
-        printable_path(request.into),
-    )
+    form = FORMS[request.target]
     options = FillOptions(
-        book.maximum, lab, request.column, request.any_maximum, request.only, shown
+        out_of=book.maximum,
+        names=(book.rubric.title, book.rubric.id),
+        column=request.column,
+        any_maximum=request.any_maximum,
+        only=request.only,
+        shown=printable_path(request.into),
     )
-    grades = [
-        _class_grade(book, one, request, has_comment="comment" in form.columns) for one in book
-    ]
+    has_comment = "comment" in form.columns
+    grades = [_class_grade(book, grade, request, has_comment=has_comment) for grade in book]
     filled = fill(read_capped(request.into, SIZE_LIMIT, advice=""), grades, form, options)
     for line in filled.lines:
         terminal.warn(line)
@@ -172,40 +172,40 @@ def _feedback(
     from grader.classroom.reports import class_reports
 
     kind = Format(request.feedback_format)
-    name, grades = (
-        f"report.{kind.ending}",
-        [one for one in book if one.stored is not None or one.has_final],
-    )
-    if request.target == "canvas":
-        paths, without = canvas_names(
-            [(one.student, one.stored.paths if one.stored else ()) for one in grades], name
-        )
-    else:
-        students = [one.student for one in grades]
-        if request.into is not None:
-            students = [one._replace(moodle=numbers.get(one.key, "")) for one in students]
-        paths, without = moodle_names(students, name)
-    files = {key: str(number) for number, key in enumerate(paths)}
+    report_name = f"report.{kind.ending}"
+    grades = [grade for grade in book if grade.stored is not None or grade.has_final]
+    names_in_zip, without = _names_in_zip(request, grades, numbers, report_name)
+    files = {key: str(number) for number, key in enumerate(names_in_zip)}
     with TemporaryDirectory() as folder:
         run = class_reports.ReportRun(book.folder, Path(folder), (kind,))
         without |= class_reports.render_reports(run, files, terminal)
-        written = {
-            key: Path(folder, f"{file}.{kind.ending}")
-            for key, file in files.items()
-            if key not in without
-        }
-        zipped, left = write_feedback(
-            {key: path.read_bytes() for key, path in written.items()}, paths, name
-        )
-    for line in by_reason(
-        ("without feedback", key, why) for key, why in {**without, **left}.items()
-    ):
+        reports = dict[str, bytes]()
+        for key, file in files.items():
+            if key not in without:
+                reports[key] = Path(folder, f"{file}.{kind.ending}").read_bytes()
+    zipped, different = write_feedback(reports, names_in_zip, report_name)
+    without |= different
+    for line in by_reason(("without feedback", key, why) for key, why in without.items()):
         terminal.warn(line)
-    terminal.warn(
-        f"{counted(len(written) - len(left), 'report')} in "
-        f"{printable_path(request.feedback or Path())}"
-    )
+    written = counted(len(reports) - len(different), "report")
+    terminal.warn(f"{written} in {printable_path(request.feedback or Path())}")
     return zipped
+
+
+def _names_in_zip(
+    request: ExportRequest, grades: Sequence[StudentGrade], numbers: Mapping[str, str], report: str
+) -> tuple[dict[str, str], dict[str, str]]:
+    """Return the names of the reports for the LMS by student, and why a student has none."""
+    if request.target == "canvas":
+        submissions = []
+        for grade in grades:
+            paths = grade.stored.paths if grade.stored else ()
+            submissions.append((grade.student, paths))
+        return canvas_names(submissions, report)
+    students = [grade.student for grade in grades]
+    if request.into is not None:  # its rows have the numbers of this assignment
+        students = [student._replace(moodle=numbers.get(student.key, "")) for student in students]
+    return moodle_names(students, report)
 
 
 def _refuse_options(request: ExportRequest) -> None:
@@ -213,23 +213,25 @@ def _refuse_options(request: ExportRequest) -> None:
     be replaced.
     """
     into, output, feedback = request.into, request.output, request.feedback
-    for option, given in {"--into": into, "--feedback": feedback, "--excel": request.excel}.items():
-        if given and request.target not in _TARGETS[option]:
+    given = {"--into": into, "--feedback": feedback, "--excel": request.excel}
+    for option, targets in _TARGETS.items():
+        if given[option] and request.target not in targets:
             raise GraderError(
-                f"export {request.target} takes no {option}: it is for "
-                f"{enumerated(_TARGETS[option])}"
+                f"export {request.target} takes no {option}: it is for {enumerated(targets)}"
             )
     if request.target in FORMS and into is None and (output or not feedback):
         raise GraderError(
             f"export {request.target} fills in a file that the LMS exported: give it with --into"
         )
-    if into is not None and (is_stdout(into) if output is None else is_same_file(output, into)):
-        why = "--into reads it, and rows without a grade would be lost"
-        raise GraderError(f"cannot write {printable_path(into)}: {why}; choose another file")
-    if feedback is not None and (
-        feedback.is_symlink() or (feedback.exists() and not is_zipfile(feedback))
-    ):
-        shown = printable_path(feedback)
-        raise InputError(
-            f"cannot write {shown}: it is a symlink, or exists and is no zip; name another file"
-        )
+    if into is not None:
+        is_replaced = is_stdout(into) if output is None else is_same_file(output, into)
+        if is_replaced:
+            why = "--into reads it, and rows without a grade would be lost"
+            raise GraderError(f"cannot write {printable_path(into)}: {why}; choose another file")
+    if feedback is not None:
+        is_no_zip = feedback.exists() and not is_zipfile(feedback)
+        if is_no_zip or feedback.is_symlink():
+            raise InputError(
+                f"cannot write {printable_path(feedback)}: it is a symlink, or exists and is no "
+                "zip; name another file"
+            )

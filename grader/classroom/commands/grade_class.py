@@ -123,42 +123,55 @@ class _ClassInputs:
 def _read_inputs(options: ClassRequest, warn: Warn) -> _ClassInputs:
     """Return the inputs of a run; raise InputError and RubricError. Nothing is written."""
     usual = load_rubric(options.usual_rubric)
-    rubric = load_rubric(options.rubric) if options.rubric is not None else None
-    folder = options.gradebook or Path(f"{(rubric or usual).id}-grades")
+    named_rubric = load_rubric(options.rubric) if options.rubric is not None else None
+    folder = options.gradebook or Path(f"{(named_rubric or usual).id}-grades")
     is_new = not names.is_gradebook(folder)
     names.check_free(folder)
     settings = ClassSettings() if is_new else read_settings(folder)
-    if rubric is None:
-        rubric = usual if is_new else load_rubric(folder / settings.rubric)
+    rubric = named_rubric or usual
+    if named_rubric is None and not is_new:
+        rubric = load_rubric(folder / settings.rubric)
         if options.usual_rubric != DEFAULT_RUBRIC and usual.id != rubric.id:
             warn(
                 f"{printable_path(folder)} keeps its rubric {rubric.id}, not {usual.id}: "
                 "name it with --rubric"
             )
-    elif (recorded := settings.rubric_id) not in ("", rubric.id):
+    elif named_rubric is not None and settings.rubric_id not in ("", rubric.id):
         raise InputError(
-            f"{printable_path(folder)} is the gradebook of {recorded}, not of {rubric.id}: "
-            "name another folder"
+            f"{printable_path(folder)} is the gradebook of {settings.rubric_id}, not of "
+            f"{rubric.id}: name another folder"
         )
     if not (options.paths or settings.submissions):
         raise InputError("name the PATH of the submissions, a folder or the zip of an LMS")
-    if options.due is None and (due := settings.deadline(folder)) is not None:
-        warn(f"deadline of the last run: {time_text(due, due.tzinfo)} (--due changes it)")
-    if options.roster is None:
-        names.check_roster(folder, settings)
-    roster_file = options.roster or (folder / names.ROSTER)
-    roster = None
-    if options.roster or roster_file.exists():
-        roster = read_roster(_read_csv(roster_file), printable_path(roster_file))
+    last_due = settings.deadline(folder) if options.due is None else None
+    if last_due is not None:
+        time = time_text(last_due, last_due.tzinfo)
+        warn(f"deadline of the last run: {time} (--due changes it)")
+    roster = _read_roster(options.roster, folder, settings)
     inputs = _ClassInputs(folder, _updated(options, settings, folder, rubric), rubric, roster)
-    if not options.paths and (
-        gone := [printable_path(root) for root in inputs.near_roots if not root.exists()]
-    ):
+    if not options.paths:
+        _check_roots(inputs.near_roots)
+    return inputs
+
+
+def _read_roster(file: Path | None, folder: Path, settings: ClassSettings) -> Roster | None:
+    """Return the roster in a file, else that of the gradebook, if it has one."""
+    if file is None:
+        names.check_roster(folder, settings)
+        file = folder / names.ROSTER
+        if not file.exists():
+            return None
+    return read_roster(_read_csv(file), printable_path(file))
+
+
+def _check_roots(roots: Iterable[Path]) -> None:
+    """Raise InputError if class folders of the last run are gone."""
+    gone = [printable_path(root) for root in roots if not root.exists()]
+    if gone:
         raise InputError(
             f"{enumerated(gone)} of the last run cannot be found: name the new PATH; of "
             "several sections, name all"
         )
-    return inputs
 
 
 def _updated(
@@ -170,24 +183,25 @@ def _updated(
     paths = tuple(relative(path, folder) for path in options.paths or ())
     if {*paths} <= {*settings.submissions}:
         paths = ()  # a section alone: the others stay
+    due = read_time(options.due).isoformat() if options.due else None
     given: dict[str, Any] = {  # None where the option is not given
-        "due": read_time(options.due).isoformat() if options.due else None,
+        "due": due,
         "layout": options.layout,
         "assignment": options.assignment,
-        "ignore": tuple(options.ignore) if options.ignore else None,
-        "parts": tuple(options.part) if options.part else None,
+        "ignore": tuple(options.ignore or ()) or None,
+        "parts": tuple(options.part or ()) or None,
         "arguments": read_arguments(options.arg or ()) or None,
         "max_size": options.max_size,
         "submissions": paths or None,
     }
-    settings = replace(
-        settings, **{name: value for name, value in given.items() if value is not None}
-    )
+    changed = {name: value for name, value in given.items() if value is not None}
+    settings = replace(settings, **changed)
     if options.ignore_file or not settings.handed_out:
-        own = tuple(_handed_out(options.ignore_file or (), rubric))
-        settings = replace(
-            settings, handed_out=(*own, *reference_hashes(rubric.data, str(rubric.path)))
-        )
+        handed_out = [
+            *_handed_out(options.ignore_file or (), rubric),
+            *reference_hashes(rubric.data, str(rubric.path)),
+        ]
+        settings = replace(settings, handed_out=tuple(handed_out))
     return settings
 
 
@@ -208,16 +222,20 @@ def _keep_inputs(inputs: _ClassInputs, options: ClassRequest, warn: Warn) -> _Cl
     """
     folder, settings, rubric = inputs.folder, inputs.settings, inputs.rubric
     if options.roster is not None:
-        data, file = _read_csv(options.roster), folder / names.ROSTER
-        _warn_of_edits(file, (settings.roster_hash, sha256_of(data)), options.roster, warn)
-        save_bytes(file, data, inputs.roots, _PRIVATE)
-        settings = replace(settings, roster_hash=sha256_of(data))
+        roster, copy = _read_csv(options.roster), folder / names.ROSTER
+        roster_hash = sha256_of(roster)
+        _warn_of_edits(copy, (settings.roster_hash, roster_hash), options.roster, warn)
+        save_bytes(copy, roster, inputs.roots, _PRIVATE)
+        settings = replace(settings, roster_hash=roster_hash)
     if options.rubric is not None or not settings.rubric:
-        _warn_of_edits(
-            folder / settings.rubric, (settings.rubric_hash, rubric.sha256), rubric.path, warn
+        known = (settings.rubric_hash, rubric.sha256)
+        _warn_of_edits(folder / settings.rubric, known, rubric.path, warn)
+        settings = replace(
+            settings,
+            rubric=_copy_rubric(folder, rubric),
+            rubric_id=rubric.id,
+            rubric_hash=rubric.sha256,
         )
-        copy = _copy_rubric(folder, rubric)
-        settings = replace(settings, rubric=copy, rubric_id=rubric.id, rubric_hash=rubric.sha256)
     if not (folder / CLASS_FILE).exists() or settings != read_settings(folder):
         save(folder / CLASS_FILE, settings_text(settings), inputs.roots, _PRIVATE)
     return replace(inputs, settings=settings, rubric=load_rubric(folder / settings.rubric))
@@ -237,21 +255,22 @@ def _copy_rubric(folder: Path, rubric: Rubric) -> str:
     """Copy a rubric and its reference into a gradebook, placed to each other as before; return
     where it is.
     """
-    target, own = folder / names.RUBRIC, rubric.path.resolve()
-    files = [
-        file for file in files_of(str(rubric.path)) if file.name != rubric.answers and file.exists()
-    ]
-    near = [
-        file.resolve()
-        for file in files
-        if not Path(rubric.reference).is_absolute() or file == rubric.path
-    ]
-    base = Path(os.path.commonpath([file.parent for file in near]))
-    found = {path for file in near for path in (file, *file.rglob("*")) if path.is_file()} - {own}
-    copies = {
-        target / path.relative_to(base): path for path in found if path.parent.name != "__pycache__"
-    }
-    copies[target / own.relative_to(base)] = own  # when all that it needs is there
+    target, rubric_file = folder / names.RUBRIC, rubric.path.resolve()
+    is_movable = not Path(rubric.reference).is_absolute()
+    sources = []
+    for file in files_of(str(rubric.path)):
+        is_copied = file.name != rubric.answers and file.exists()
+        if is_copied and (is_movable or file == rubric.path):
+            sources.append(file.resolve())
+    base = Path(os.path.commonpath([file.parent for file in sources]))
+    copies = dict[Path, Path]()
+    for source in sources:
+        for path in (source, *source.rglob("*")):
+            if path.is_file() and path.parent.name != "__pycache__":
+                copies[target / path.relative_to(base)] = path
+    copy = target / rubric_file.relative_to(base)
+    copies.pop(copy, None)
+    copies[copy] = rubric_file  # last: when all that it needs is there
     try:
         for place, path in copies.items():
             place.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -261,7 +280,7 @@ def _copy_rubric(folder: Path, rubric: Rubric) -> str:
                 path.unlink()
     except OSError as error:
         raise InputError(f"cannot write {printable_path(target)}: {error.strerror}") from None
-    return (target / own.relative_to(base)).relative_to(folder).as_posix()
+    return copy.relative_to(folder).as_posix()
 
 
 def grade_class(request: ClassRequest, terminal: Terminal) -> str:
@@ -271,33 +290,26 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     gc.enable()  # unlike other commands, this one may run for long
     if not isfinite(request.timeout):
         raise InputError(f"--timeout takes a number of seconds, not {request.timeout}")
-    warn, inputs = terminal.warn, _read_inputs(request, terminal.warn)
-    folder, rubric, settings = inputs.folder, inputs.rubric, inputs.settings
+    inputs = _read_inputs(request, terminal.warn)
+    folder, rubric = inputs.folder, inputs.rubric
     if request.due and rubric.late is None:
-        no_late = f"because the rubric {rubric.id} has no [late]: only the days late are shown"
-        warn(f"--due has no effect on grades, {no_late}")
+        terminal.warn(
+            f"--due has no effect on grades, because the rubric {rubric.id} has no [late]: only "
+            "the days late are shown"
+        )
     if request.reports is not None:
         refuse_report_folder(request.reports, inputs.roots)
-    layout, lab = (settings.layout, settings.assignment), (rubric.id, rubric.folders)
-    intake = read_class(inputs.near_roots, inputs.roster, *layout, *lab, settings.ignore)
-    warn(
-        f"{counted(len({(one.root, one.paths) for one in intake.submissions}), 'submission')}, "
-        f"layout {intake.layout}"
-    )
-    for lines in (intake.notes, intake.unmatched, [f"ignored: {line}" for line in intake.ignored]):
-        for line in first_lines(lines, _MAX_LINES):
-            warn(printable(line))
+    intake = _read_class(inputs, terminal.warn)
     refuse_symlinks(folder, inputs.roots)
     names.make_gradebook(folder)
     with names.batch_lock(folder):
         results = Results(folder / names.RESULTS)
         _check_same_class(folder, results, intake)
         if results.runs and results.runs[-1].rubric != rubric.sha256:
-            with suppress(
-                GraderError
-            ):  # such as that of an old rubric that an edit broke: then it is not compared
+            # An old rubric that an edit broke raises: then its grades are not compared.
+            with suppress(GraderError):
                 results = append_run(Gradebook(folder)) or results
-        inputs = _keep_inputs(inputs, request, warn)
+        inputs = _keep_inputs(inputs, request, terminal.warn)
         table, done = _grade(request, inputs, results, intake, terminal)
     formats = tuple(request.report_format or ())
     if request.reports is not None and not formats:
@@ -313,19 +325,40 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     return draw(table.print, terminal.screen())
 
 
+def _read_class(inputs: _ClassInputs, warn: Warn) -> Intake:
+    """Return the submissions of the class, and say what was found."""
+    settings, rubric = inputs.settings, inputs.rubric
+    intake = read_class(
+        inputs.near_roots,
+        inputs.roster,
+        settings.layout,
+        settings.assignment,
+        rubric.id,
+        rubric.folders,
+        settings.ignore,
+    )
+    works = {(submission.root, submission.paths) for submission in intake.submissions}
+    warn(f"{counted(len(works), 'submission')}, layout {intake.layout}")
+    ignored = [f"ignored: {line}" for line in intake.ignored]
+    for lines in (intake.notes, intake.unmatched, ignored):
+        for line in first_lines(lines, _MAX_LINES):
+            warn(printable(line))
+    return intake
+
+
 def _ending(folder: Path, table: ClassTable, layout: str) -> str:
     """Return where the grades are, how many students need attention, and the next command."""
-    is_only = [file.parent.resolve() for file in Path().glob(f"*/{CLASS_FILE}")] == [
-        folder.resolve()
-    ]
+    gradebooks = [file.parent.resolve() for file in Path().glob(f"*/{CLASS_FILE}")]
     lms = layout if layout in FORMS else "csv"
-    command = f"grader {'review' if table.open else f'export {lms}'}"
-    option = "" if is_only else f" --gradebook {shell_quoted(folder)}"
-    if table.attention:
-        attention = f" · {table.attention} need{'s' * (table.attention == 1)} attention"
-    else:
-        attention = ""
-    return f"grades: {printable_path(folder / names.GRADES)}{attention} · next: {command}{option}"
+    command = "grader review" if table.open else f"grader export {lms}"
+    if gradebooks != [folder.resolve()]:
+        command += f" --gradebook {shell_quoted(folder)}"
+    parts = [f"grades: {printable_path(folder / names.GRADES)}"]
+    if table.attention == 1:
+        parts.append("1 needs attention")
+    elif table.attention:
+        parts.append(f"{table.attention} need attention")
+    return " · ".join([*parts, f"next: {command}"])
 
 
 def _grade(
@@ -337,12 +370,16 @@ def _grade(
 ) -> tuple[ClassTable, Progress]:
     """Grade what has no current result, append the run, and write the grades of the class."""
     folder, rubric, settings = inputs.folder, inputs.rubric, inputs.settings
-    roots, arguments = tuple(map(str, inputs.roots)), dict(settings.arguments)
     shared = ClassContext(
-        roots, rubric.data, str(rubric.path.resolve()), settings.max_size, settings.parts, arguments
+        tuple(map(str, inputs.roots)),
+        rubric.data,
+        str(rubric.path.resolve()),
+        settings.max_size,
+        settings.parts,
+        dict(settings.arguments),
     )
     context = _context(inputs)
-    present = dict.fromkeys(one.student.key for one in intake.submissions)
+    present = dict.fromkeys(submission.student.key for submission in intake.submissions)
     with ResultsWriter(folder / names.RESULTS, results.end) as writer:
         batch = Batch(results, writer, shared, context)
         done = _batch(request, inputs, batch, intake, terminal)
@@ -374,13 +411,11 @@ def _grade(
 def _context(inputs: _ClassInputs) -> str:
     """Return the hash of all that results depend on besides the submissions."""
     folder, settings = inputs.folder, inputs.settings
-    copies = sorted(
-        path for path in (folder / names.RUBRIC).rglob("*") if path.is_file()
-    )  # with the reference
-    reference = sha256_of(
-        repr([(path.relative_to(folder).as_posix(), path.read_bytes()) for path in copies]).encode()
-    )
+    # The copy of the rubric has the reference with it.
+    files = sorted(path for path in (folder / names.RUBRIC).rglob("*") if path.is_file())
+    contents = [(path.relative_to(folder).as_posix(), path.read_bytes()) for path in files]
     options = settings.parts, sorted(settings.arguments.items()), settings.max_size
+    reference = sha256_of(repr(contents).encode())
     return digest_of(inputs.rubric.sha256, reference, *options, __version__, _FORMAT)
 
 
@@ -404,9 +439,8 @@ def _batch(
 def _executor(request: ClassRequest, inputs: _ClassInputs) -> Iterator[tuple[Executor, int]]:
     """Open what runs the tasks; yield it with the number of tasks at a time."""
     if request.cluster is None:
-        with Processes(
-            workers := request.jobs or processors(), request.timeout, preload=PRELOAD
-        ) as local:
+        workers = request.jobs or processors()
+        with Processes(workers, request.timeout, preload=PRELOAD) as local:
             yield local, workers
         return
     from grader.workers.cluster import Cluster

@@ -50,44 +50,39 @@ def snapshot(folder: Path, number: int | None) -> _Snapshot:
     InputError.
     """
     book = Gradebook(folder)
-    grades = {
-        one.student.key: (one.student.name, one.published, one.is_marked_early) for one in book
-    }
-    results, run = (
-        book.results,
-        book.run_with({key: total for key, (_, total, _) in grades.items()}),
-    )
+    student_names, published, early = dict[str, str](), dict[str, Decimal | None](), set[str]()
+    for grade in book:
+        key = grade.student.key
+        student_names[key], published[key] = grade.student.name, grade.published
+        if grade.is_marked_early:
+            early.add(key)
+    results, run = book.results, book.run_with(published)
     if number is not None:
         if not 0 < number <= run.run:
             raise InputError(f"{printable_path(folder)} has no run {number}: it has 1 to {run.run}")
         results = Results(folder / names.RESULTS, number)
         run = results.runs[-1]
-    early = frozenset(key for key, (_, _, is_early) in grades.items() if is_early)
-    return _Snapshot(run, results, {key: name for key, (name, _, _) in grades.items()}, early)
+    return _Snapshot(run, results, student_names, frozenset(early))
 
 
 def changes(before: _Snapshot, after: _Snapshot) -> Iterator[Change]:
     """Yield the students for whom something changed, in the order of their keys."""
-    runs = (before.run, after.run)
-    keys = sorted(
-        {
-            *before.results.students,
-            *after.results.students,
-            *(key for run in runs for key in run.students),
-        }
-    )
-    for key, old, new in zip(
-        keys, before.results.each(keys), after.results.each(keys), strict=True
-    ):
-        first, last = (_points(one.run.total(key)) for one in (before, after))
-        criteria = [*_points_changes(old, new)] if old is not None and new is not None else []
-        why = [*_reasons(old, new, before.run, after.run)]
-        if not (criteria or first != last or (old is None) != (new is None)):
-            why.clear()
-        elif not why:
-            why.append(
-                "it was graded again" if criteria else "marks, the roster or the deadline changed"
-            )
+    keys = {*before.results.students, *after.results.students}
+    keys.update(before.run.students, after.run.students)
+    order = sorted(keys)
+    results = zip(order, before.results.each(order), after.results.each(order), strict=True)
+    for key, old, new in results:
+        first, last = _points(before.run.total(key)), _points(after.run.total(key))
+        criteria = list[PointsChange]()
+        if old is not None and new is not None:
+            criteria += _points_changes(old, new)
+        why = list[str]()
+        if criteria or first != last or (old is None) != (new is None):
+            why += _reasons(old, new, before.run, after.run)
+            if not why and criteria:
+                why.append("it was graded again")
+            elif not why:
+                why.append("marks, the roster or the deadline changed")
         if key in after.early:
             why.append(Reason.EARLY_MARK)
         if why:

@@ -78,11 +78,11 @@ class ReviewItem(NamedTuple):
         """A text that tells whether the item is as a page shows it, without the names of its
         students.
         """
-        shown = (
-            (one.student.key, one.stored.digest, one.mark and one.mark._replace(place=""))
-            for one in self.members
-        )
-        return digest_of(self.criterion.id, [*shown], *(other.view for other in self.also))
+        shown = []
+        for member in self.members:
+            mark = member.mark and member.mark._replace(place="")
+            shown.append((member.student.key, member.stored.digest, mark))
+        return digest_of(self.criterion.id, shown, *(other.view for other in self.also))
 
     @property
     def all(self) -> "tuple[ReviewItem, ...]":
@@ -112,12 +112,16 @@ class ReviewFilter(NamedTuple):
         """Return the students of an item that are shown; those in `kept` whatever their state
         is.
         """
-        return tuple(
-            one
-            for one in (item.members if self.criterion in ("", item.criterion.id) else ())
-            if (self.state in ("", one.state) or (one.student.key, item.criterion.id) in kept)
-            and (not self.section or plain(self.section) == plain(one.student.section))
-        )
+        if self.criterion not in ("", item.criterion.id):
+            return ()
+        members = []
+        for member in item.members:
+            is_kept = (member.student.key, item.criterion.id) in kept
+            has_state = self.state in ("", member.state)
+            has_section = not self.section or plain(self.section) == plain(member.student.section)
+            if has_section and (has_state or is_kept):
+                members.append(member)
+        return tuple(members)
 
 
 def review_items(
@@ -131,36 +135,33 @@ def review_items(
     mark or an excuse, unless `with_final`. Students of one submission have the same answers.
     Numbers and order of anonymous students reveal no names.
     """
-    groups: defaultdict[Place, list[ReviewStudent]] = defaultdict(list)
     keys = sorted(book.keys, key=digest_of) if is_anonymous else book.keys
-    order, counting = {key: at for at, key in enumerate(keys, 1)}, book.marks.counting
-    stored = [
-        one
-        for one in book.results.all()
-        if one.verdict != "unreadable" and one.student in book.run.totals
+    numbers = {key: number for number, key in enumerate(keys, 1)}
+    counting, comments = book.marks.counting, book.marks.comments
+    results = [
+        stored
+        for stored in book.results.all()
+        if stored.verdict != "unreadable" and stored.student in book.run.totals
     ]
     # Several files are a submission named after the student, so digests of members differ, and with
-    # them the keys:
-    of_files = {
-        (one.root, one.paths): one.answers for one in stored
-    }  # in any order of the items the same
-    for one in sorted(stored, key=lambda one: order[one.student]):
-        answers = of_files[one.root, one.paths]
-        student, number = book.student(one.student, one), order[one.student] if is_anonymous else 0
-        for name in one.results if with_final or (one.student, TOTAL) not in counting else ():
-            mark = counting.get((one.student, name))
-            if name in answers or mark is not None:
-                member = ReviewStudent(
-                    student, one, mark or book.marks.comments.get((one.student, name)), number
-                )
-                groups[name, answers.get(name, one.digest)].append(member)
+    # them the keys. Those of one member serve all, whatever the order of the items.
+    answers_of_files = {(stored.root, stored.paths): stored.answers for stored in results}
     rows = {row.id: row for row in book.rubric.criteria if row.adjustment is None}
-    items = (
-        ReviewItem(rows[name], answer, (*some,))
-        for (name, answer), some in groups.items()
-        if name in rows
-    )
-    return {
-        one.place: one
-        for one in sorted(items, key=lambda one: (one.criterion.position, not one.answer))
-    }
+    groups: defaultdict[Place, list[ReviewStudent]] = defaultdict(list)
+    for stored in sorted(results, key=lambda stored: numbers[stored.student]):
+        if (stored.student, TOTAL) in counting and not with_final:
+            continue
+        answers = answers_of_files[stored.root, stored.paths]
+        student = book.student(stored.student, stored)
+        number = numbers[stored.student] if is_anonymous else 0
+        for name in stored.results:
+            mark = counting.get((stored.student, name))
+            if name in rows and (name in answers or mark is not None):
+                counting_mark = mark or comments.get((stored.student, name))
+                member = ReviewStudent(student, stored, counting_mark, number)
+                groups[name, answers.get(name, stored.digest)].append(member)
+    items = [
+        ReviewItem(rows[name], answer, tuple(members)) for (name, answer), members in groups.items()
+    ]
+    items.sort(key=lambda item: (item.criterion.position, not item.answer))
+    return {item.place: item for item in items}

@@ -18,6 +18,14 @@ COUNTS = ("passed", "failed", "skipped", "pending", "errored", "carried", "marke
 _TENTHS, _MAX_MISTAKES = 10, 20
 
 
+class _Mistake(NamedTuple):
+    """A mistake of one student."""
+
+    student: str
+    message: str
+    off: float = 0.0  # by how much, in metres, where this is measured
+
+
 class _Summary(NamedTuple):
     """The grades of some students: their number, mean and median."""
 
@@ -73,94 +81,112 @@ class ClassStatistics(NamedTuple):
 
 def statistics(book: Gradebook, grades: Iterable[StudentGrade]) -> ClassStatistics:
     """Return the statistics of the grades of a class."""
-    every = list(grades)
+    everyone = list(grades)
     enrolled = [
-        one for one in every if one.student.is_on_roster and (one.has_final or not one.is_gone)
+        grade
+        for grade in everyone
+        if grade.student.is_on_roster and (grade.has_final or not grade.is_gone)
     ]
-    counted = [one for one in enrolled if one.is_counted]
-    most = book.maximum
-    sections, tenths = defaultdict[str, list[Decimal]](list), [list[str]() for _ in range(_TENTHS)]
-    for one in counted:
-        total = one.total or Decimal(0)
-        sections[one.student.section].append(total)
-        tenths[max(0, min(_TENTHS - 1, int(total * _TENTHS // (most or 1))))].append(
-            one.student.key
-        )
-    attention: dict[Reason, list[tuple[str, str]]] = {reason: [] for reason in Reason}
-    for one in every:
-        for reason, detail in one.concerns.items():
-            attention[reason].append((one.student.key, detail))
-    present = [one.stored for one in every if one.stored is not None and not one.is_gone]
+    counted = [grade for grade in enrolled if grade.is_counted]
+    present = [grade.stored for grade in everyone if grade.stored is not None and not grade.is_gone]
+    totals = list[Decimal]()
+    sections = defaultdict[str, list[Decimal]](list)
+    tenths = [list[str]() for _ in range(_TENTHS)]
+    for grade in counted:
+        total = grade.total or Decimal(0)
+        totals.append(total)
+        sections[grade.student.section].append(total)
+        tenth = int(total * _TENTHS // (book.maximum or 1))
+        tenths[max(0, min(_TENTHS - 1, tenth))].append(grade.student.key)
+    summaries = dict[str, _Summary]()
+    if len(sections) > 1:
+        summaries = {name: summary(section) for name, section in sorted(sections.items())}
+    criteria, mistakes = _criteria_figures(book, counted)
     return ClassStatistics(
-        book.rubric,
-        most,
-        dict(sorted(Counter(one.status for one in enrolled).items())),
-        summary(one.total or Decimal(0) for one in counted) if counted else None,
-        sum(one.obstacle is not None for one in counted),
-        sum(one.late.days > 0 and not one.has_final for one in enrolled),
-        tenths,
-        *_criteria_figures(book, counted),
-        {name: summary(values) for name, values in sorted(sections.items())}
-        if len(sections) > 1
-        else {},
-        {reason: those for reason, those in attention.items() if those},
-        equal_work(present, book.settings.handed_out),
-        {one.student.key: one.student.name for one in every},
+        rubric=book.rubric,
+        maximum=book.maximum,
+        statuses=dict(sorted(Counter(grade.status for grade in enrolled).items())),
+        all=summary(totals) if totals else None,
+        open=sum(grade.obstacle is not None for grade in counted),
+        late=sum(grade.late.days > 0 and not grade.has_final for grade in enrolled),
+        tenths=tenths,
+        criteria=criteria,
+        mistakes=mistakes,
+        sections=summaries,
+        attention=_attention(everyone),
+        equal=equal_work(present, book.settings.handed_out),
+        names={grade.student.key: grade.student.name for grade in everyone},
     )
+
+
+def _attention(grades: Iterable[StudentGrade]) -> dict[Reason, list[tuple[str, str]]]:
+    """Return the students who need attention, each with details, by reason in the order of
+    urgency.
+    """
+    concerned = defaultdict[Reason, list[tuple[str, str]]](list)
+    for grade in grades:
+        for reason, detail in grade.concerns.items():
+            concerned[reason].append((grade.student.key, detail))
+    return {reason: concerned[reason] for reason in Reason if reason in concerned}
 
 
 def summary(totals: Iterable[Decimal]) -> _Summary:
     """Return the figures of some grades, of at least one."""
-    found = sorted(totals)
-    count = len(found)
-    return _Summary(
-        count, sum(found, Decimal(0)) / count, (found[(count - 1) // 2] + found[count // 2]) / 2
-    )
+    values = sorted(totals)
+    count = len(values)
+    median = (values[(count - 1) // 2] + values[count // 2]) / 2
+    return _Summary(count, sum(values, Decimal(0)) / count, median)
 
 
 def _criteria_figures(
     book: Gradebook, grades: Iterable[StudentGrade]
 ) -> tuple[list[CriterionFigures], list[_CommonMistake]]:
     """Return the figures of the criteria, and the most common mistakes."""
-    counts, earned = defaultdict[str, Counter[str]](Counter), defaultdict[str, Decimal](Decimal)
-    mistakes = defaultdict[tuple[str, str], list[tuple[str, str, float]]](list)
+    counts = defaultdict[str, Counter[str]](Counter)
+    earned = defaultdict[str, Decimal](Decimal)
+    # By criterion and message; what is measured has a message of its own for each student.
+    mistakes = defaultdict[tuple[str, str], list[_Mistake]](list)
     for grade in grades:
         for result in grade.results:
             name = result.criterion.id
-            for kind in result.kinds:
-                counts[name][kind] += 1
+            counts[name].update(result.kinds)
             earned[name] += result.points
-            if result.mistake:
-                off = result.outcome.measured
-                if isinstance(off, float | int):
-                    mistakes[name, ""].append((grade.student.key, result.mistake, off))
-                else:
-                    mistakes[name, result.mistake].append((grade.student.key, result.mistake, 0))
-    common = sorted(mistakes.items(), key=lambda item: (-len(item[1]), item[0]))[:_MAX_MISTAKES]
-    rows = [
-        CriterionFigures(row, counts[row.id], _share(row, counts[row.id], earned[row.id]))
-        for row in book.criteria
-    ]
-    return rows, [
-        _CommonMistake(name, _words(those), sorted(key for key, *_ in those))
-        for (name, _), those in common
-    ]
+            if not result.mistake:
+                continue
+            measured = result.outcome.measured
+            if isinstance(measured, float | int):
+                mistake = _Mistake(grade.student.key, result.mistake, measured)
+                mistakes[name, ""].append(mistake)
+            else:
+                mistake = _Mistake(grade.student.key, result.mistake)
+                mistakes[name, result.mistake].append(mistake)
+    rows = []
+    for criterion in book.criteria:
+        share = _share(criterion, counts[criterion.id], earned[criterion.id])
+        rows.append(CriterionFigures(criterion, counts[criterion.id], share))
+    by_number = sorted(mistakes.items(), key=lambda item: (-len(item[1]), item[0]))
+    common = []
+    for (name, _), equal in by_number[:_MAX_MISTAKES]:
+        students = sorted(mistake.student for mistake in equal)
+        common.append(_CommonMistake(name, _words(equal), students))
+    return rows, common
 
 
-def _words(those: Sequence[tuple[str, str, float]]) -> str:
+def _words(mistakes: Sequence[_Mistake]) -> str:
     """Return what students did wrong: in the same words, or how far they are off."""
-    if len({words for _, words, _ in those}) == 1:
-        return those[0][1]
-    least, most = (in_millimetres(pick(off for *_, off in those)) for pick in (min, max))
+    if len({mistake.message for mistake in mistakes}) == 1:
+        return mistakes[0].message
+    distances = [mistake.off for mistake in mistakes]
+    least, most = in_millimetres(min(distances)), in_millimetres(max(distances))
     if least == most:
         return f"{most} off"
     return f"{least.removesuffix(' mm')} to {most} off"
 
 
-def _share(row: Criterion, found: Counter[str], earned: Decimal) -> float | None:
-    decided = found["decided"]
-    if not decided or row.adjustment is not None:
+def _share(criterion: Criterion, counts: Counter[str], earned: Decimal) -> float | None:
+    decided = counts["decided"]
+    if not decided or criterion.adjustment is not None:
         return None
-    if row.points:
-        return float(earned / row.points / decided)
-    return found["passed"] / decided
+    if criterion.points:
+        return float(earned / criterion.points / decided)
+    return counts["passed"] / decided

@@ -152,24 +152,21 @@ def readings_of(name: str, layout: str) -> list[NamedPath]:
     return [one for one in found if _NAME_IN_CANVAS.fullmatch(one.student.name)]
 
 
-def _read_path(found: re.Match[str]) -> NamedPath:
-    text = {
-        "name": found.string[: found.start()],
-        **dict.fromkeys(("canvas", "moodle", "login"), ""),
-    }
-    text |= found.groupdict(default="")
-    name, canvas, moodle = text["name"], text["canvas"], text["moodle"]
-    key = text["login"] or "_".join(word for word in (name, canvas, moodle) if word)
+def _read_path(match: re.Match[str]) -> NamedPath:
+    text = match.groupdict(default="")
+    name = text.get("name", match.string[: match.start()])
+    canvas, moodle = text.get("canvas", ""), text.get("moodle", "")
+    ids = [word for word in (name, canvas, moodle) if word]
+    key = text.get("login") or "_".join(ids)
     student = Student(key, name, canvas=canvas, moodle=moodle)
     if "plugin" in text:
-        return NamedPath(found.string, student, plugin=text["plugin"], file=text["file"])
-    upload, is_late = int(text["upload"] or 0), bool(text["late"]) or found[0].startswith("LATE")
+        return NamedPath(match.string, student, plugin=text["plugin"], file=text["file"])
     return NamedPath(
-        found.string,
+        match.string,
         student,
-        upload=upload,
+        upload=int(text["upload"] or 0),
         file=text["file"] or "text_entry.html",
-        is_late=is_late,
+        is_late=bool(text["late"]) or match[0].startswith("LATE"),
     )
 
 
@@ -182,45 +179,51 @@ def entries_of(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
         yield from _folders(folder)
         return
     readings = {name: readings_of(name, layout) for name in folder.names}
-    folder.ignore(name for name, found in readings.items() if not found)
-    first = min(
-        (found[0].upload for found in readings.values() if len(found) == 1 and found[0].upload),
-        default=0,
-    )
-    for found in readings.values():
-        possible = [one for one in found if not 0 < one.upload * _MAX_GROWTH < first] or found
-        for one in possible[-1:]:
-            users = tuple(other.student.canvas for other in possible)
-            if len(users) > 1:
-                student = one.student._replace(canvas="", aliases=users)
-            else:
-                student = one.student
-            yield one._replace(student=student)
+    folder.ignore(name for name, entries in readings.items() if not entries)
+    certain = [entries[0].upload for entries in readings.values() if len(entries) == 1]
+    first = min(filter(None, certain), default=0)
+    for entries in readings.values():
+        possible = [
+            entry for entry in entries if not 0 < entry.upload * _MAX_GROWTH < first
+        ] or entries
+        if not possible:
+            continue
+        last = possible[-1]
+        if len(possible) == 1:
+            yield last
+        else:
+            users = tuple(entry.student.canvas for entry in possible)
+            yield last._replace(student=last.student._replace(canvas="", aliases=users))
 
 
 def names_in(children: Children) -> dict[str, re.Match[str]]:
     """Return the names of the layout `folders` in a folder, each with what it tells; a folder
     ends in a slash.
     """
-    names = [f"{name}/" for name in children.folders if name not in BUILD_FOLDERS] + children.files
-    return {name: found for name in names if (found := _PATTERNS["folders"].fullmatch(name))}
+    folders = [f"{name}/" for name in children.folders if name not in BUILD_FOLDERS]
+    matches = {}
+    for name in folders + children.files:
+        match = _PATTERNS["folders"].fullmatch(name)
+        if match is not None:
+            matches[name] = match
+    return matches
 
 
 def _folders(folder: ClassFolder) -> Iterator[NamedPath]:
     """Yield each folder, archive and URDF, without the prefix of the assignment in its name."""
     read = names_in(folder.children)
     folder.ignore(name for name in folder.names if not {name, f"{name}/"} & read.keys())
-    logins = {found["login"] for found in read.values()}
-    prefix, tops = (
-        _prefix(logins, folder),
-        {found["login"] for found in read.values() if not found["upload"]},
-    )
-    for name, found in read.items():
-        login, upload = found["login"], int(found["upload"] or 0)
-        if upload and login not in tops and not folder.people.knows(_without(prefix, login)):
-            login = name.removesuffix(found["ending"])  # Team (1) and Team (2) are two teams
-        own = _without(prefix, login)
-        yield NamedPath(name.rstrip("/"), Student(own, login=own), login, upload, found["ending"])
+    logins = {match["login"] for match in read.values()}
+    first_uploads = {match["login"] for match in read.values() if not match["upload"]}
+    prefix = _prefix(logins, folder)
+    for name, match in read.items():
+        login, ending = match["login"], match["ending"]
+        upload = int(match["upload"] or 0)
+        is_known = login in first_uploads or folder.people.knows(_without(prefix, login))
+        if upload and not is_known:
+            login = name.removesuffix(ending)  # Team (1) and Team (2) are two teams
+        student = _without(prefix, login)
+        yield NamedPath(name.rstrip("/"), Student(student, login=student), login, upload, ending)
 
 
 def _without(prefix: str, name: str) -> str:
@@ -308,19 +311,18 @@ def _student_paths(top: ClassFolder, team: str) -> Iterator[NamedPath]:
     """Yield the submissions of the students in the lab folders of a team."""
     for lab in filter(top.labs.is_lab, top.children.folders):
         below = top.inside(lab)
-        if names := _students(below, team, lab_words(lab)):
-            others = {*below.children.folders}.difference(names)
-            below.ignore(others, "is named like a part of a submission")
-            children = below.children._replace(
-                folders=[name for name in below.children.folders if name in names]
-            )
-            for entry in entries_of(
-                replace(below, children=children, people=People(()), lab=""), "folders"
-            ):
-                name, path = entry.student.login, f"{team}/{lab}/{entry.path}"
-                yield entry._replace(
-                    path=path, student=Student(f"{team}/{name}", name, login=name, group=team)
-                )
+        names = _students(below, team, lab_words(lab))
+        if not names:
+            continue
+        others = {*below.children.folders}.difference(names)
+        below.ignore(others, "is named like a part of a submission")
+        folders = [name for name in below.children.folders if name in names]
+        children = below.children._replace(folders=folders)
+        inner = replace(below, children=children, people=People(()), lab="")
+        for entry in entries_of(inner, "folders"):
+            name, path = entry.student.login, f"{team}/{lab}/{entry.path}"
+            student = Student(f"{team}/{name}", name, login=name, group=team)
+            yield entry._replace(path=path, student=student)
 
 
 def _students(lab: ClassFolder, team: str, words: Collection[str]) -> set[str]:
@@ -331,14 +333,18 @@ def _students(lab: ClassFolder, team: str, words: Collection[str]) -> set[str]:
     alone stays with the rest of the repository.
     """
     people, folders = lab.people, lab.children.folders
-    read = names_in(lab.children).items()
-    known = {name.rstrip("/") for name, found in read if people.knows(found["login"], team)}
+    known = set[str]()
+    for name, match in names_in(lab.children).items():
+        if people.knows(match["login"], team):
+            known.add(name.rstrip("/"))
     others = {name for name in folders if name not in known and not is_part(name, words)}
-    is_package = any(lab.listing.has(f"{lab.start}{name}/package.xml") for name in folders)
-    are_students = not (people.students or is_package) and 1 < len(others) == len(folders)
-    if not (lab.is_explicit or known or are_students):
-        return set()
     is_alone = bool(known) and len(lab.entries) == 1 == len(people.members(team))
     if is_alone or not PACKAGE_FILES.isdisjoint(lab.children.files):
         return set()
-    return known | others
+    if lab.is_explicit or known:
+        return known | others
+    are_alike = 1 < len(others) == len(folders)
+    if people.students or not are_alike:
+        return set()
+    is_package = any(lab.listing.has(f"{lab.start}{name}/package.xml") for name in folders)
+    return set() if is_package else others

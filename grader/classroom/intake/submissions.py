@@ -7,11 +7,10 @@ Submissions are matched with students by the roster's column `submission`, ids, 
 
 import os
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from hashlib import sha256
-from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
@@ -397,23 +396,25 @@ class _Owners:
     def _at(self, place: str) -> Iterator[ClassSubmission]:
         """Yield what is at a place in the class folders, and no submission by itself."""
         for root, (listing, name) in enumerate(self.roots):
-            path = place.removeprefix(f"{name}/") if len(self.roots) > 1 else place
-            inner = (
-                (listing.children(one.rpartition("/")[0]), one.rpartition("/")[2])
-                for one in (path, *parents(path))
-            )
-            is_here = len(self.roots) == 1 or path != place
-            if is_here and all(
-                part in children.folders + children.files for children, part in inner
-            ):  # no symlink
+            path = place
+            if len(self.roots) > 1:
+                path = place.removeprefix(f"{name}/")
+                if path == place:
+                    continue
+            if all(_is_listed(listing, part) for part in (path, *parents(path))):
                 yield ClassSubmission(Student(""), root, (path,))
 
     def _shown(self, one: ClassSubmission, path: str = "") -> str:
         """Return a path as a person can write it on the roster, of several class folders with
         the name of its own.
         """
-        top = f"{self.roots[one.root][1]}/" if len(self.roots) > 1 else ""
-        return _plain_path(top + (path or one.paths[0]))
+        return _plain_path(self._path(one, path or one.paths[0]))
+
+    def _path(self, submission: ClassSubmission, path: str) -> str:
+        """Return a path with the name of its class folder if there are several."""
+        if len(self.roots) == 1:
+            return path
+        return f"{self.roots[submission.root][1]}/{path}"
 
     def _list(self, one: ClassSubmission, students: Sequence[int], *, is_contested: bool) -> None:
         """List a submission without an owner, and what assigns it; a contested one is not
@@ -435,42 +436,46 @@ class _Owners:
         """Return what was found, of a student on the roster only the LMS's name and ids: other
         names are anyone's.
         """
-        students, found = self.people.students, list[ClassSubmission]()
+        students = self.people.students
         unclear = frozenset(students[index].key for index in self._unclear - self._owned.keys())
+        submissions = list[ClassSubmission]()
         while self._owned:  # of a large class not all is kept twice
-            index, one = self._owned.popitem()
-            name = "" if one.student.canvas else one.student.name
-            own = one.student._replace(key=students[index].key, name=name, login="")
-            found.append(one._replace(student=own))
-        twice = {
-            one
-            for one, other in pairwise(sorted(one.student.key for one in self._visitors))
-            if one == other
-        }
-        taken = {plain(one.key) for one in students}
-        for one in self._visitors:
-            key, is_chosen = one.student.key, bool(one.student.canvas or one.student.aliases)
-            if key in twice or not key.isprintable() or plain(key) in taken:
-                key = _path_key(
-                    f"{self.roots[one.root][1]}/{one.paths[0]}"
-                    if len(self.roots) > 1
-                    else one.paths[0]
-                )
-            name = "" if is_chosen else one.student.name
-            visitor = one.student._replace(
-                key=key, name=name, aliases=(), is_on_roster=not self._has_roster
-            )
-            found.append(one if visitor == one.student else one._replace(student=visitor))
-        found.sort(key=lambda one: one.student.key)
-        ignored = first_lines(sorted(self.ignored), _MAX_LINES)
+            index, submission = self._owned.popitem()
+            claim = submission.student
+            name = "" if claim.canvas else claim.name
+            owner = claim._replace(key=students[index].key, name=name, login="")
+            submissions.append(submission._replace(student=owner))
+        counts = Counter(visitor.student.key for visitor in self._visitors)
+        taken = {plain(student.key) for student in students}
+        for submission in self._visitors:
+            key = submission.student.key
+            if counts[key] > 1 or not key.isprintable() or plain(key) in taken:
+                key = _path_key(self._path(submission, submission.paths[0]))
+            visitor = self._visitor(submission.student, key)
+            if visitor == submission.student:
+                submissions.append(submission)
+            else:
+                submissions.append(submission._replace(student=visitor))
+        submissions.sort(key=lambda submission: submission.student.key)
+        unmatched, ignored = sorted(self._unmatched), first_lines(sorted(self.ignored), _MAX_LINES)
         return Intake(
-            layout,
-            found,
-            unclear,
-            tuple(sorted(self._unmatched)),
-            tuple(self.notes),
-            tuple(ignored),
+            layout, submissions, unclear, tuple(unmatched), tuple(self.notes), tuple(ignored)
         )
+
+    def _visitor(self, claim: Student, key: str) -> Student:
+        """Return the student of a submission that nobody on the roster owns; the student may have
+        chosen the name where Canvas has an id.
+        """
+        has_lms_id = bool(claim.canvas or claim.aliases)
+        name = "" if has_lms_id else claim.name
+        return claim._replace(key=key, name=name, aliases=(), is_on_roster=not self._has_roster)
+
+
+def _is_listed(listing: ClassListing, path: str) -> bool:
+    """Return whether a path is a file or a folder, and no symlink."""
+    top, _, name = path.rpartition("/")
+    children = listing.children(top)
+    return name in children.folders or name in children.files
 
 
 def _plain_path(path: str) -> str:

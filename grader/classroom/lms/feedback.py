@@ -105,20 +105,17 @@ def _words_of(text: str) -> str:
 
 def moodle_names(students: Collection[Student], report: str) -> _Names:
     """Return the paths of files called `report`, by the participant numbers of students."""
-    names, without, counts = (
-        dict[str, str](),
-        dict[str, str](),
-        Counter(student.moodle for student in students),
-    )
+    names, without = dict[str, str](), dict[str, str]()
+    counts = Counter(student.moodle for student in students)
     for student in students:
-        if student.moodle and counts[student.moodle] == 1:
-            names[student.key] = f"Participant_{student.moodle}_assignfeedback_file_/{report}"
-        elif student.moodle:
-            without[student.key] = f"another student has participant number {student.moodle}, too"
-        else:
+        if not student.moodle:
             without[student.key] = (
                 "has no participant number, and no row of a grading worksheet (--into)"
             )
+        elif counts[student.moodle] > 1:
+            without[student.key] = f"another student has participant number {student.moodle}, too"
+        else:
+            names[student.key] = f"Participant_{student.moodle}_assignfeedback_file_/{report}"
     return names, without
 
 
@@ -126,29 +123,27 @@ def canvas_names(submissions: Collection[tuple[Student, tuple[str, ...]]], repor
     """Return the names for students and the paths of their files; a group that has the same files
     shares one.
     """
-    names, users, ending = (
-        dict[str, str](),
-        defaultdict[tuple[str, ...], set[str]](set),
-        PurePosixPath(report).suffix,
-    )
+    ending = PurePosixPath(report).suffix
+    users = defaultdict[tuple[str, ...], set[str]](set)
     for student, paths in submissions:
         users[paths].add(student.canvas)
+    names, without = dict[str, str](), dict[str, str]()
     for student, paths in submissions:
-        files = [
-            PurePosixPath(path).name
-            for path in paths
-            if path.lower().endswith((ending, *_ARCHIVES))
-        ]
-        if certain := [file for file in files if _is_certain(file, users[paths])]:
+        files = []
+        for path in paths:
+            file = PurePosixPath(path).name
+            if path.lower().endswith((ending, *_ARCHIVES)) and _is_certain(file, users[paths]):
+                files.append(file)
+        if files:  # a report rather than an archive
             names[student.key] = min(
-                certain, key=lambda file: (not file.lower().endswith(ending), file)
+                files, key=lambda file: (not file.lower().endswith(ending), file)
             )
-    why = f"submitted no {ending} file or archive with the Canvas user id in its name"
-    without = {
-        student.key: why if paths else "nothing was submitted"
-        for student, paths in submissions
-        if student.key not in names
-    }
+        elif paths:
+            without[student.key] = (
+                f"submitted no {ending} file or archive with the Canvas user id in its name"
+            )
+        else:
+            without[student.key] = "nothing was submitted"
     return names, without
 
 
@@ -161,11 +156,16 @@ def write_feedback(
     contents = defaultdict[str, set[bytes]](set)
     for key, data in reports.items():
         contents[names[key]].add(data)
-    why = "the members of the group have different reports, and Canvas gives one to all of them"
-    without = {key: why for key in reports if len(contents[names[key]]) > 1}
-    files = {
-        name: _packed(name, report, *found) for name, found in contents.items() if len(found) == 1
-    }
+    files, without = dict[str, bytes](), dict[str, str]()
+    for key, data in reports.items():
+        name = names[key]
+        if len(contents[name]) == 1:
+            files[name] = _packed(name, report, data)
+        else:
+            without[key] = (
+                "the members of the group have different reports, and Canvas gives one to all of "
+                "them"
+            )
     return zip_of(files), without
 
 

@@ -20,7 +20,6 @@ from grader.classroom.roster.roster import Student, plain
 from grader.classroom.roster.typed_names import number_in
 from grader.classroom.tables import Table, TableRow, read_table
 
-_Note = tuple[str, str, str]  # a kind, which begins the message, who is concerned, and why
 _OPEN, _KEPT, _REFUSED = "without a grade", "kept the comment", "the LMS would refuse the grade"
 _UNKNOWN, _MISSING = "in the file, but not in the class", "in the class, but not in the file"
 _TEST_STUDENT = re.compile(
@@ -31,6 +30,14 @@ _POINTS_ROW = "Points Possible"  # in the first cell, of Canvas
 _THOUSANDS = re.compile(r"\s|[.,](?=.*[.,])")  # in 1.000,00: the last comma or point is decimal
 _COMMA, _WORDS = r"[0-9],[0-9]{1,2}$", r"[^\W\d_]+|\d+"
 _MAX_CHANGES, _MAX_REASONS, _MAX_NAMED, _MAX_COLUMNS = 40, 50, 3, 20
+
+
+class _Note(NamedTuple):
+    """What a person should know about the grade of a student."""
+
+    kind: str  # which begins the message; empty for a change of a grade
+    who: str
+    why: str
 
 
 class PublishedGrade(NamedTuple):
@@ -77,46 +84,59 @@ class _GradeFile(NamedTuple):
     maximum: str
 
     def changed(self, row: TableRow, grade: PublishedGrade) -> tuple[TableRow | None, list[_Note]]:
-        """Return a row with its grade and comment, or None; and notes on it, a change's without a
-        kind.
-        """
+        """Return a row with its grade and comment, or None; and notes on it."""
         new, who = _grade_text(grade, self), self.who(row)
-        at, comment_at = self.roles["grade"], self.roles.get("comment")
-        if why := next(self._why_not(row, new, grade.why_open or "has no grade"), None):
-            return None, [(why[0], who, why[1])]
-        notes, old, comment = list[_Note](), row.value(at), row.value(comment_at)
-        if old.casefold() != new.casefold() and (
-            number_in(old) is None or number_in(old) != number_in(new)
-        ):
+        obstacle = next(self._obstacles(row, new, grade.why_open or "has no grade"), None)
+        if obstacle is not None:
+            kind, why = obstacle
+            return None, [_Note(kind, who, why)]
+        notes = list[_Note]()
+        grade_column, comment_column = self.roles["grade"], self.roles.get("comment")
+        old, comment = row.value(grade_column), row.value(comment_column)
+        if not _is_same_grade(old, new):
             if old.casefold() not in _NOT_GRADED:
-                notes.append(("", who, f"was {old}, becomes {new}"))
-            row = self.table.changed(row, at, new)
-        if comment_at is not None and grade.comment not in ("", comment):
+                notes.append(_Note("", who, f"was {old}, becomes {new}"))
+            row = self.table.changed(row, grade_column, new)
+        if comment_column is not None and grade.comment not in ("", comment):
             if not comment or is_own_comment(comment):
-                return self.table.changed(row, comment_at, grade.comment), notes
-            notes.append((_KEPT, who, f"a person wrote or changed it in {self.form.lms}"))
+                return self.table.changed(row, comment_column, grade.comment), notes
+            why = f"a person wrote or changed it in {self.form.lms}"
+            notes.append(_Note(_KEPT, who, why))
         return row, notes
 
-    def _why_not(self, row: TableRow, new: str, why_open: str) -> Iterator[tuple[str, str]]:
+    def _obstacles(self, row: TableRow, new: str, why_open: str) -> Iterator[tuple[str, str]]:
         """Yield why a row cannot get a grade, each reason with its kind."""
-        titles = self.table.titles
+        titles, lms = self.table.titles, self.form.lms
         if not new:
             yield _OPEN, why_open
         if len(row.cells) != len(titles):
             yield _OPEN, f"the row has {len(row.cells)} cells and the header {len(titles)}"
         for role, words in self.form.locked.items():
-            cell = row.value(self.roles.get(role))
-            if cell.casefold() in words.split() and cell.casefold() != new.casefold():
-                yield _OPEN, f"{titles[self.roles[role]]!r} is {cell!r} in {self.form.lms}"
-        if self.form.above and (number_in(new) or 0) > (number_in(self.maximum) or 0):
-            yield (
-                _REFUSED,
-                f"{new} points are above the maximum of {self.maximum}: {self.form.above}",
-            )
+            column = self.roles.get(role)
+            cell = row.value(column)
+            is_locked = cell.casefold() in words.split() and cell.casefold() != new.casefold()
+            if column is not None and is_locked:
+                yield _OPEN, f"{titles[column]!r} is {cell!r} in {lms}"
+        points, maximum = number_in(new) or 0, number_in(self.maximum) or 0
+        if self.form.above and points > maximum:
+            above = f"{new} points are above the maximum of {self.maximum}"
+            yield _REFUSED, f"{above}: {self.form.above}"
 
     def who(self, row: TableRow) -> str:
         """Return the number of a row, and the name or an id of its student."""
         return f"row {row.number}, {next(filter(None, self.people[row]))}"
+
+    def only_column(self, rows: Sequence[TableRow]) -> list[TableRow]:
+        """Return rows without the columns of other assignments."""
+        columns = {*self.roles.values()}
+        for column, title in enumerate(self.table.titles):
+            if title.lower() in self.form.kept:
+                columns.add(column)
+        shortened = []
+        for row in rows:
+            cells = [cell for column, cell in enumerate(row.cells) if column in columns]
+            shortened.append(row._replace(cells=tuple(cells)))
+        return shortened
 
 
 def fill(data: bytes, grades: Sequence[PublishedGrade], form: Form, options: FillOptions) -> Filled:
@@ -124,64 +144,69 @@ def fill(data: bytes, grades: Sequence[PublishedGrade], form: Form, options: Fil
     such a file.
     """
     file = _read_grade_file(data, form, options)
-    people, titles = [*file.people.values()], file.table.titles
-    header = titles[file.roles["grade"]]
+    header = file.table.titles[file.roles["grade"]]
     warnings = _check_maximum(file.maximum, f"{header!r} in {form.lms}", options)
-    of_row = _match_rows(people, [one.student for one in grades], form.lms)
-    rows: dict[TableRow, TableRow | None] = {row: row for row in file.table.rows}
+    people = list(file.people.values())
+    grade_of_row = _match_rows(people, [grade.student for grade in grades], form.lms)
+    removed, changed = set[TableRow](), dict[TableRow, TableRow]()
     notes = list[_Note]()
-    for index, (row, one) in enumerate(file.people.items()):
-        rows[row] = None
-        if index in of_row:
-            rows[row], some = file.changed(row, grades[of_row[index]])
-            notes += some
-        elif not _TEST_STUDENT.fullmatch(one.name or one.login):
-            notes.append((_UNKNOWN, file.who(row), "matches no student for certain"))
-    rest = [grades[at] for at in sorted({*range(len(grades))}.difference(of_row.values()))]
-    missing = (one for one in rest if _grade_text(one, file))
-    notes += (
-        (_MISSING, named(*one.student[:2]), "has a grade or an excuse, but matches no row")
-        for one in missing
-    )
-    kept = [row for row in rows.values() if row is not None]
-    graded = [rows[row] is not row for row in file.people if rows[row] is not None]
+    for index, (row, person) in enumerate(file.people.items()):
+        new_row = None
+        if index in grade_of_row:
+            new_row, row_notes = file.changed(row, grades[grade_of_row[index]])
+            notes += row_notes
+        elif not _TEST_STUDENT.fullmatch(person.name or person.login):
+            notes.append(_Note(_UNKNOWN, file.who(row), "matches no student for certain"))
+        if new_row is None:
+            removed.add(row)
+        elif new_row is not row:
+            changed[row] = new_row
+    matched = set(grade_of_row.values())
+    for index, grade in enumerate(grades):
+        if index not in matched and _grade_text(grade, file):
+            who = named(grade.student.key, grade.student.name)
+            notes.append(_Note(_MISSING, who, "has a grade or an excuse, but matches no row"))
+    rows = [changed.get(row, row) for row in file.table.rows if row not in removed]
     if options.only and "maximum" not in file.roles:
-        places = {
-            *file.roles.values(),
-            *(at for at, title in enumerate(titles) if title.lower() in form.kept),
-        }
-        kept = [
-            row._replace(cells=tuple(cell for at, cell in enumerate(row.cells) if at in places))
-            for row in kept
-        ]
-    lines = [
-        f"column {header!r}: {sum(graded)} filled in, {len(graded) - sum(graded)} already the same"
-    ]
-    lines += first_lines([f"{who}: {why}" for kind, who, why in notes if not kind], _MAX_CHANGES)
-    lines += [*by_reason(note for note in notes if note[0]), *warnings]
-    is_complete = all(note[0] in ("", _OPEN, _KEPT) for note in notes)
-    numbers = {grades[at].student.key: people[index].moodle for index, at in of_row.items()}
-    return Filled(
-        file.table._replace(rows=tuple(kept)).encoded(),
-        [*map(printable, lines)],
-        is_complete,
-        numbers,
-    )
+        rows = file.only_column(rows)
+    filled_table = file.table._replace(rows=tuple(rows))
+    already = len(people) - len(removed) - len(changed)
+    lines = [f"column {header!r}: {len(changed)} filled in, {already} already the same"]
+    lines += [*_note_lines(notes), *warnings]
+    is_complete = all(note.kind in ("", _OPEN, _KEPT) for note in notes)
+    numbers = {grades[at].student.key: people[row].moodle for row, at in grade_of_row.items()}
+    return Filled(filled_table.encoded(), [*map(printable, lines)], is_complete, numbers)
 
 
-def by_reason(notes: Iterable[_Note]) -> list[str]:
-    """Return a line for each reason: who has it, of several how many and the first of them."""
-    names = defaultdict[tuple[str, str], list[str]](list)
+def _note_lines(notes: Sequence[_Note]) -> list[str]:
+    """Return the lines of the changes, then those of the other notes by reason."""
+    changes = [f"{note.who}: {note.why}" for note in notes if not note.kind]
+    others = by_reason(note for note in notes if note.kind)
+    return first_lines(changes, _MAX_CHANGES) + others
+
+
+def by_reason(notes: Iterable[tuple[str, str, str]]) -> list[str]:
+    """Return a line for each reason: who has it, of several how many and the first of them.
+
+    Of each note the kind, who is concerned, and why.
+    """
+    concerned = defaultdict[tuple[str, str], list[str]](list)
     for kind, who, why in notes:
-        names[kind, why].append(who)
-    groups = (
-        (*key, f"{len(who)} ({people_text(who, _MAX_NAMED)})" if who[1:] else who[0])
-        for key, who in names.items()
-    )
-    return first_lines(
-        [printable(": ".join(filter(None, (kind, who, why)))) for kind, why, who in groups],
-        _MAX_REASONS,
-    )
+        concerned[kind, why].append(who)
+    lines = []
+    for (kind, why), people in concerned.items():
+        who = people[0]
+        if len(people) > 1:
+            who = f"{len(people)} ({people_text(people, _MAX_NAMED)})"
+        lines.append(printable(": ".join(text for text in (kind, who, why) if text)))
+    return first_lines(lines, _MAX_REASONS)
+
+
+def _is_same_grade(old: str, new: str) -> bool:
+    """Return whether two cells hold the same words or the same number: 9,5 is 9.50."""
+    if old.casefold() == new.casefold():
+        return True
+    return number_in(old) is not None and number_in(old) == number_in(new)
 
 
 def _grade_text(grade: PublishedGrade, file: _GradeFile) -> str:
@@ -220,31 +245,34 @@ def _read_grade_file(data: bytes, form: Form, options: FillOptions) -> _GradeFil
     ambiguous.
     """
     table = read_table(data, options.shown)
-    titles, roles = table.titles, form.roles(table.titles)
+    roles = form.roles(table.titles)
     if not (roles.keys() >= {*form.needed} and roles.keys() & {*IDS}):
-        has = _listed(titles) or "nothing"
+        has = _listed(table.titles) or "nothing"
         raise InputError(
             f"{options.shown} is not a grade file of {form.lms}: its first row has {has}"
         )
-    points = next(
-        (row for row in table.rows[1:] if _POINTS_ROW in row.value(0)), TableRow(0, 0, (), "")
-    )
-    columns = {
-        at: found for at, title in enumerate(titles) if (found := form.grade.fullmatch(title))
-    }
-    if "maximum" in roles:
-        columns = {at: found for at, found in columns.items() if at + 1 == roles["maximum"]}
-    grade = roles["grade"] = _choose(columns, form, options)
-    people = {
-        row: one
-        for row in table.rows[1:]
-        if row is not points and any((one := _student_in(row, roles))[:7])
-    }
-    places = (columns[grade].groupdict().get("maximum"), points.value(grade))
-    maxima = (*places, *(row.value(roles.get("maximum")) for row in people))
-    return _GradeFile(
-        table, form, roles, people, _THOUSANDS.sub("", next(filter(None, maxima), ""))
-    )
+    columns = dict[int, re.Match[str]]()
+    for at, title in enumerate(table.titles):
+        header = form.grade.fullmatch(title)
+        is_graded = "maximum" not in roles or at + 1 == roles["maximum"]
+        if header is not None and is_graded:
+            columns[at] = header
+    roles["grade"] = _choose(columns, form, options)
+    points_row = None
+    people = dict[TableRow, Student]()
+    for row in table.rows[1:]:
+        if points_row is None and _POINTS_ROW in row.value(0):
+            points_row = row
+            continue
+        student = _student_in(row, roles)
+        if student != Student(""):
+            people[row] = student
+    maxima = [columns[roles["grade"]].groupdict().get("maximum")]
+    if points_row is not None:
+        maxima.append(points_row.value(roles["grade"]))
+    maxima += [row.value(roles.get("maximum")) for row in people]
+    maximum = next(filter(None, maxima), "")
+    return _GradeFile(table, form, roles, people, _THOUSANDS.sub("", maximum))
 
 
 def _student_in(row: TableRow, roles: Mapping[str, int]) -> Student:
@@ -252,52 +280,55 @@ def _student_in(row: TableRow, roles: Mapping[str, int]) -> Student:
     login, sis, email, canvas, moodle, name = (
         row.value(roles.get(role)).removeprefix("#") for role in (*IDS, "name")
     )
-    return Student(
-        "", name, email, login, sis, canvas, re.split(r"\D", moodle)[-1]
-    )  # of Participant 123
+    number = re.split(r"\D", moodle)[-1]  # of Participant 123
+    return Student("", name, email, login, sis, canvas, number)
 
 
 def _choose(columns: Mapping[int, re.Match[str]], form: Form, options: FillOptions) -> int:
     """Return the column that is named, else the one whose title is most like the title or the id of
     the lab.
     """
-    names = [options.column.strip()] if options.column.strip() else options.names
-    ranks = {
-        at: rank for at, one in columns.items() if (rank := _likeness(one, options)) is not None
-    }
-    found = [at for at, rank in ranks.items() if rank == min(ranks.values())]
+    wanted = options.column.strip()
+    ranks = dict[int, int]()
+    for at, header in columns.items():
+        rank = _likeness(header, options)
+        if rank is not None:
+            ranks[at] = rank
+    best = [at for at, rank in ranks.items() if rank == min(ranks.values())]
     if "maximum" in form.columns and not options.column:
-        found = [*columns]
-    if len(found) == 1:
-        return found[0]
-    listed = _listed([columns[at][0] for at in found or columns])
+        best = list(columns)
+    if len(best) == 1:
+        return best[0]
+    listed = _listed([columns[at][0] for at in best or columns])
     if listed:
         advice = f"choose one with --column: {listed}"
     else:
         advice = f"create it in {form.lms}, and export again"
-    what = f"{'' if options.column.strip() else 'for '}{' or '.join(map(repr, names))}"
-    raise InputError(
-        f"{options.shown} has {'several columns' if found else 'no column'} {what}; {advice}"
-    )
+    problem = "has several columns" if best else "has no column"
+    what = repr(wanted) if wanted else f"for {' or '.join(map(repr, options.names))}"
+    raise InputError(f"{options.shown} {problem} {what}; {advice}")
 
 
-def _likeness(found: re.Match[str], options: FillOptions) -> int | None:
+def _likeness(header: re.Match[str], options: FillOptions) -> int | None:
     """Return how much a column is like the lab, 0 is best: it has the header, title or number that
     is wanted.
 
     Else its title is, or contains, each of the lab's names, in this order; last, it is part of one.
     """
-    if wanted := options.column.strip():
-        tests = [wanted in (found[0], found["title"], found.groupdict().get("number"))]
-    else:
-        own, known = _spaced_words(found["title"]), [_spaced_words(name) for name in options.names]
-        tests = [
-            is_so
-            for name in known
-            for is_so in (own.replace(" ", "") == name.replace(" ", ""), name in own)
-        ]
-        tests.append(any(own in name for name in known))
-    return tests.index(True) if True in tests else None
+    wanted = options.column.strip()
+    if wanted:
+        is_named = wanted in (header[0], header["title"], header.groupdict().get("number"))
+        return 0 if is_named else None
+    title = _spaced_words(header["title"])
+    names = [_spaced_words(name) for name in options.names]
+    for place, name in enumerate(names):
+        if title.replace(" ", "") == name.replace(" ", ""):
+            return 2 * place
+        if name in title:
+            return 2 * place + 1
+    if any(title in name for name in names):
+        return 2 * len(names)
+    return None
 
 
 def _spaced_words(text: str) -> str:
@@ -311,16 +342,15 @@ def _listed(headers: Sequence[str]) -> str:
 
 def _match_rows(rows: Sequence[Student], students: Sequence[Student], lms: str) -> dict[int, int]:
     """Return the student of each row that fits only one, whom no other row fits."""
-    theirs, ours = (
-        [_clues(row, lms) for row in rows],
-        [_clues(student, lms) for student in students],
-    )
-    students_of, rows_of = _fitting(theirs, ours), _fitting(ours, theirs)
-    return {
-        row: some[0]
-        for row, some in enumerate(students_of)
-        if [rows_of[at] for at in some] == [[row]]
-    }
+    row_clues = [_clues(row, lms) for row in rows]
+    student_clues = [_clues(student, lms) for student in students]
+    students_of = _fitting(row_clues, student_clues)
+    rows_of = _fitting(student_clues, row_clues)
+    matches = {}
+    for row, fitting in enumerate(students_of):
+        if len(fitting) == 1 and rows_of[fitting[0]] == [row]:
+            matches[row] = fitting[0]
+    return matches
 
 
 def _clues(student: Student, lms: str) -> list[set[str]]:
@@ -346,14 +376,19 @@ def _fitting(some: Sequence[list[set[str]]], others: Sequence[list[set[str]]]) -
         for kind, words in enumerate(clues):
             for word in words:
                 having[kind, word].add(at)
-    found = []
+    fitting = []
     for clues in some:
-        kinds = (
-            set[int]().union(*(having[kind, word] for word in words))
-            for kind, words in enumerate(clues)
+        candidates = set[int]()
+        for kind, words in enumerate(clues):
+            candidates.update(*(having[kind, word] for word in words))
+            if candidates:
+                break
+        lms_id = clues[0]
+        fitting.append(
+            [
+                at
+                for at in sorted(candidates)
+                if lms_id == others[at][0] or not (lms_id and others[at][0])
+            ]
         )
-        fitting = sorted(next(filter(None, kinds), ()))
-        found.append(
-            [at for at in fitting if clues[0] == others[at][0] or not (clues[0] and others[at][0])]
-        )
-    return found
+    return fitting

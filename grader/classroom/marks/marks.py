@@ -248,20 +248,21 @@ def read_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], _Rows]:
     """
     table = read_table(data, shown, is_from_person=True)
     header, *lines = table.filled or [TableRow(1, 1, (), "")]
-    titles = tuple(
-        name if (name := folded(title)) in _TITLES else title.strip() for title in header.values
-    )
-    if twice := [title for title, count in Counter(filter(None, titles)).items() if count > 1]:
-        raise InputError(f"{shown} has two columns {twice[0]!r}")
+    titles = list[str]()
+    for title in header.values:
+        name = folded(title)
+        titles.append(name if name in _TITLES else title.strip())
+    for title, count in Counter(titles).items():
+        if title and count > 1:
+            raise InputError(f"{shown} has two columns {title!r}")
     rows = _Rows()
     for line in lines:
         row = dict.fromkeys((*COLUMNS, SURPLUS), "")
-        for title, cell in zip_longest(
-            titles[: len(line.cells)], map(_cell_text, line.values), fillvalue=SURPLUS
-        ):
+        cells = map(_cell_text, line.values)
+        for title, cell in zip_longest(titles[: len(line.cells)], cells, fillvalue=SURPLUS):
             row[title] = cell if title else f"{row[SURPLUS]} {cell}".strip()
         rows.append((f"{shown}:{line.line}", row))
-    return table, titles, rows
+    return table, tuple(titles), rows
 
 
 def _cell_text(cell: str) -> str:
@@ -281,18 +282,21 @@ def _whole_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], _Rows]
     column.
     """
     table, titles, rows = read_rows(data, shown)
-    if titles and not ({"student", "criterion"} <= {*titles} and {"points", "comment"} & {*titles}):
+    has_needed = {"student", "criterion"} <= {*titles} and {"points", "comment"} & {*titles}
+    if titles and not has_needed:
         raise InputError(f"the first line of {shown} must name the columns {enumerated(COLUMNS)}")
     last = table.rows[-1] if table.rows else None
-    if last is not None and not last.end and last in table.filled:
-        is_whole = rows and len(last.cells) == len(titles) and titles[-1] not in COLUMNS[:-1]
-        if not is_whole or table.encoding == "windows-1252":
-            where = f"{shown}:{last.line}"
-            raise InputError(
-                f"{where}: the last row may be incomplete: check it, and end it with a line break"
-            )
-        if titles[-1] == COLUMNS[-1]:
-            rows[-1] = rows[-1][0], {**rows[-1][1], titles[-1]: ""}
+    if last is None or last.end or last not in table.filled:
+        return table, titles, rows
+    is_whole = rows and len(last.cells) == len(titles) and titles[-1] not in COLUMNS[:-1]
+    if not is_whole or table.encoding == "windows-1252":
+        where = f"{shown}:{last.line}"
+        raise InputError(
+            f"{where}: the last row may be incomplete: check it, and end it with a line break"
+        )
+    if titles[-1] == COLUMNS[-1]:
+        place, cells = rows[-1]
+        rows[-1] = place, {**cells, titles[-1]: ""}
     return table, titles, rows
 
 
@@ -339,26 +343,36 @@ def _encoded(data: bytes, rows: Sequence[Mapping[str, str]], shown: str) -> byte
     lacks.
     """
     table, titles, old = _whole_rows(data, shown)
-    if missing := [name for name in COLUMNS if titles and name not in titles]:
+    missing = [name for name in COLUMNS if titles and name not in titles]
+    if missing:
         raise InputError(f"{shown} has no column {enumerated(missing)}: add it to the first line")
     end = (table.rows[0].end if table.rows else "") or "\n"
-    text = end if table.rows and not table.rows[-1].end else ""
-    text += "" if titles else table.delimiter.join(COLUMNS) + end
-    points = " ".join(row["points"] for _, row in old)
-    has_comma = bool(
-        re.search(r"\d,\d", points) or (table.delimiter == ";" and not re.search(r"\d\.\d", points))
-    )
+    lines = []
+    if table.rows and not table.rows[-1].end:
+        lines.append("")  # ends the last row
+    if not titles:
+        lines.append(table.delimiter.join(COLUMNS))
+    has_comma = _has_decimal_comma(table, old)
     for row in rows:
-        texts = {
-            name: value if value == WITHDRAWN else protected(_with_newlines(value))
-            for name, value in row.items()
-        }
-        texts["points"] = texts["points"].replace(".", ",") if has_comma else texts["points"]
-        text += (
-            table.delimiter.join(table.cell(texts.get(title, "")) for title in titles or COLUMNS)
-            + end
-        )
+        cells = []
+        for title in titles or COLUMNS:
+            text = row.get(title, "")
+            if text != WITHDRAWN:
+                text = protected(_with_newlines(text))
+            if title == "points" and has_comma:
+                text = text.replace(".", ",")
+            cells.append(table.cell(text))
+        lines.append(table.delimiter.join(cells))
+    text = "".join(line + end for line in lines)
     return text.encode(table.encoding, "xmlcharrefreplace")
+
+
+def _has_decimal_comma(table: Table, rows: _Rows) -> bool:
+    """Return whether points in a file are written with a comma, as in files with semicolons."""
+    points = " ".join(row["points"] for _, row in rows)
+    if re.search(r"\d,\d", points):
+        return True
+    return table.delimiter == ";" and not re.search(r"\d\.\d", points)
 
 
 def mark_file(folder: Path, by: str) -> Path:

@@ -50,87 +50,81 @@ class _Group(NamedTuple):
 def render_class_page(
     book: Gradebook,
     grades: Sequence[StudentGrade],
-    found: ClassStatistics,
+    figures: ClassStatistics,
     links: Mapping[str, str],
 ) -> str:
     """Return the class's page; `links` are the addresses of students' pages by key, relative to
     this page.
     """
-    rows = sorted(
-        (_row(grade, links) for grade in grades),
-        key=lambda row: words.family_name_order(row.name, row.key),
-    )
-    groups = {name: group for name, group in _groups(grades, found).items() if group.keys}
+    rows = [_row(grade, links) for grade in grades]
+    rows.sort(key=lambda row: words.family_name_order(row.name, row.key))
     numbers = {row.key: number for number, row in enumerate(rows)}
-    bars, cut = _bars(found)
-    shown = {
-        name: [printable(label), word, [numbers[key] for key in keys]]
-        for name, (label, keys, word) in groups.items()
-    }
+    groups, shown = dict[str, _Group](), dict[str, list[object]]()
+    for name, group in _groups(grades, figures):
+        if group.keys:
+            groups[name] = group
+            members = [numbers[key] for key in group.keys]
+            shown[name] = [printable(group.label), group.word, members]
+    bars, cut = _bars(figures)
+    attention = []
+    for reason, students in figures.attention.items():
+        attention.append((str(reason), students[:_MAX_ATTENTION], len(students)))
     values = {
         "version": __version__,
-        "title": found.rubric.title,
-        "rubric": found.rubric,
-        "lines": [*words.head_lines(found)],
+        "title": figures.rubric.title,
+        "rubric": figures.rubric,
+        "lines": list(words.head_lines(figures)),
         "bars": bars,
         "cut": cut,
-        "out_of": format_points(found.maximum),
-        "criteria": _criteria(found),
+        "out_of": format_points(figures.maximum),
+        "criteria": _criteria(figures),
         "criteria_note": words.SHARE_NOTE,
-        "mistakes": [(one.criterion, one.message, len(one.students)) for one in found.mistakes],
-        "equal": found.equal,
+        "mistakes": [(one.criterion, one.message, len(one.students)) for one in figures.mistakes],
+        "equal": figures.equal,
         "equal_note": words.EQUAL_NOTE,
-        "attention": [
-            (str(reason), those[:_MAX_ATTENTION], len(those))
-            for reason, those in found.attention.items()
-        ],
+        "attention": attention,
         "ignored": book.marks.ignored,
         "people": {row.key: row for row in rows},
         "rows": rows,
-        "columns": _columns(rows, found),
+        "columns": _columns(rows, figures),
         "groups": groups,
     }
     return render_page("class.html", values, {"groups": shown}, _ASSETS)
 
 
-def _bars(found: ClassStatistics) -> tuple[list[tuple[str, str, int, int, bool]], str]:
+def _bars(figures: ClassStatistics) -> tuple[list[tuple[str, str, int, int, bool]], str]:
     """Return the bars of the grades: the group, the grades, the students, the height in percent,
     and whether it is cut.
 
     The highest one is cut, as the text that is returned with them says, where all others would be
     flat.
     """
-    counts = [*map(len, found.tenths)]
+    counts = [len(students) for students in figures.tenths]
     second, most = sorted(counts)[-2:]
+    if not most:
+        return [], ""
     is_flat = 0 < _MAX_HEIGHT * second < most
-    scale = _CUT_AT * second if is_flat else max(most, 1)
-    bars = [
-        (
-            f"grade-{at}",
-            words.span(found, at),
-            count,
-            min(100, round(100 * count / scale)),
-            is_flat and count == most,
-        )
-        for at, count in enumerate(counts if most else ())
-    ]
-    highest = words.span(found, counts.index(most))
-    return (
-        bars,
-        f"The bar of {highest} is cut: it would be {most / scale:.1f} times as high."
-        if is_flat
-        else "",
-    )
+    scale = _CUT_AT * second if is_flat else most
+    bars = []
+    for at, count in enumerate(counts):
+        height = min(100, round(100 * count / scale))
+        is_cut = is_flat and count == most
+        bars.append((f"grade-{at}", words.span(figures, at), count, height, is_cut))
+    if not is_flat:
+        return bars, ""
+    highest = words.span(figures, counts.index(most))
+    return bars, f"The bar of {highest} is cut: it would be {most / scale:.1f} times as high."
 
 
 def _row(grade: StudentGrade, links: Mapping[str, str]) -> _StudentRow:
     student, lost = grade.student, [name for _, name in grade.losses]
+    status = f"{grade.status}, final mark" if grade.final_points is not None else grade.status
     return _StudentRow(
         student.key,
         student.name or student.key,
         links.get(student.key, ""),
         student.section,
-        f"{grade.status}, final mark" if grade.final_points is not None else grade.status,
+        status,
         grade.total_text,
         format_points(grade.pending) if grade.pending else "",
         words.late_text(grade),
@@ -138,22 +132,22 @@ def _row(grade: StudentGrade, links: Mapping[str, str]) -> _StudentRow:
     )
 
 
-def _columns(rows: Sequence[_StudentRow], found: ClassStatistics) -> list[tuple[str, str, str]]:
+def _columns(rows: Sequence[_StudentRow], figures: ClassStatistics) -> list[tuple[str, str, str]]:
     """Return the columns that are not empty: the field of a row, the heading, the class of its
     cells.
     """
-    columns = (
-        ("key", "id" if any(row.name != row.key for row in rows) else "", ""),
+    columns = [
         ("section", "section", ""),
         ("status", "status", ""),
-        ("grade", f"grade of {format_points(found.maximum)}", "number"),
+        ("grade", f"grade of {format_points(figures.maximum)}", "number"),
         ("open", "needs manual grading", "number"),
         ("late", "late", "text"),
         ("lost", "lost points in", "text"),
-    )
-    return [
-        column for column in columns if column[1] and any(getattr(row, column[0]) for row in rows)
     ]
+    if any(row.name != row.key for row in rows):
+        columns.insert(0, ("key", "id", ""))
+    filled = {field for row in rows for field, cell in row._asdict().items() if cell}
+    return [column for column in columns if column[0] in filled]
 
 
 def _filters_of(grade: StudentGrade, *, has_sections: bool) -> Iterator[tuple[int, str]]:
@@ -171,45 +165,39 @@ def _filters_of(grade: StudentGrade, *, has_sections: bool) -> Iterator[tuple[in
         yield 5, "a final mark"
 
 
-def _groups(grades: Sequence[StudentGrade], found: ClassStatistics) -> dict[str, _Group]:
-    """Return the groups of students on the page by the id that its buttons use; those at the top
-    are filters.
+def _groups(
+    grades: Sequence[StudentGrade], figures: ClassStatistics
+) -> Iterator[tuple[str, _Group]]:
+    """Yield the groups of students on the page with the id that its buttons use; the first ones
+    are the filters at the top.
     """
-    keys, lost = defaultdict[tuple[int, str], list[str]](list), defaultdict[str, list[str]](list)
-    has_sections = len({one.student.section for one in grades}) > 1
-    for one in grades:
-        for place in _filters_of(one, has_sections=has_sections):
-            keys[place].append(one.student.key)
-        for _, name in one.losses:
-            lost[name].append(one.student.key)
-    filters = {
-        f"filter-{label}": _Group(label, those, label) for (_, label), those in sorted(keys.items())
-    }
-    tenths = {
-        f"grade-{at}": _Group(f"a grade of {words.span(found, at)}", of)
-        for at, of in enumerate(found.tenths)
-    }
-    rows = (row.criterion for row in found.criteria)
-    criteria = {
-        f"criterion-{row.id}": _Group(f"lost points in {row.id}", lost[row.id], row.id)
-        for row in rows
-    }
-    mistakes = {
-        f"mistake-{at}": _Group(f"{one.criterion}: {one.message}", one.students)
-        for at, one in enumerate(found.mistakes)
-    }
-    same = {
-        f"same-{at}": _Group("equal work", work.students) for at, work in enumerate(found.equal)
-    }
-    return {**filters, **tenths, **criteria, **mistakes, **same}
+    filtered = defaultdict[tuple[int, str], list[str]](list)
+    lost = defaultdict[str, list[str]](list)
+    has_sections = len({grade.student.section for grade in grades}) > 1
+    for grade in grades:
+        key = grade.student.key
+        for place in _filters_of(grade, has_sections=has_sections):
+            filtered[place].append(key)
+        for _, name in grade.losses:
+            lost[name].append(key)
+    for (_, label), keys in sorted(filtered.items()):
+        yield f"filter-{label}", _Group(label, keys, label)
+    for at, students in enumerate(figures.tenths):
+        yield f"grade-{at}", _Group(f"a grade of {words.span(figures, at)}", students)
+    for row in figures.criteria:
+        name = row.criterion.id
+        yield f"criterion-{name}", _Group(f"lost points in {name}", lost[name], name)
+    for at, mistake in enumerate(figures.mistakes):
+        label = f"{mistake.criterion}: {mistake.message}"
+        yield f"mistake-{at}", _Group(label, mistake.students)
+    for at, work in enumerate(figures.equal):
+        yield f"same-{at}", _Group("equal work", work.students)
 
 
-def _criteria(found: ClassStatistics) -> list[dict[str, Any]]:
+def _criteria(figures: ClassStatistics) -> list[dict[str, Any]]:
     """Return the rows of the criteria, the hardest first."""
-    asked = sorted(
-        found.criteria,
-        key=lambda row: (2.0 if row.share is None else row.share, -row.criterion.points),
-    )
+    asked = [row for row in figures.criteria if row.share is not None or row.counts["pending"]]
+    asked.sort(key=lambda row: (2.0 if row.share is None else row.share, -row.criterion.points))
     return [
         {
             "row": row,
@@ -219,5 +207,4 @@ def _criteria(found: ClassStatistics) -> list[dict[str, Any]]:
             "width": round(100 * (row.share or 0)),
         }
         for row in asked
-        if row.share is not None or row.counts["pending"]
     ]

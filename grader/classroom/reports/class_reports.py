@@ -80,24 +80,19 @@ def report_of(book: Gradebook, grade: StudentGrade, *, has_hints: bool = True) -
     has changed since has its points only.
     """
     if grade.stored is not None:
-        report, _ = book.with_marks(
-            _graded_again(book, grade.stored, has_hints=has_hints), grade.stored
-        )
+        again = _graded_again(book, grade.stored, has_hints=has_hints)
+        report, _ = book.with_marks(again, grade.stored)
     else:
         results = tuple(Result(criterion, _NOTHING) for criterion in book.criteria)
         nothing = Submission(grade.student.key, Absent(), is_single=False)
         report = Report(nothing, book.rubric, book.settings.parts, results)
-    is_changed = (
-        grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
-    )
-    if is_changed:
+    counting = None
+    has_marks = any(result.manual_mark for result in report.results)
+    if has_marks or grade.has_final or grade.late.points:
         counting = Grade(grade.total, grade.late.points, grade.final_points is not None)
-    else:
-        counting = None
+    notes = (*report.notes, *notes_of(grade, report))
     student = grade.student.name or grade.student.key
-    return report._replace(
-        notes=(*report.notes, *notes_of(grade, report)), grade=counting, student=student
-    )
+    return report._replace(notes=notes, grade=counting, student=student)
 
 
 def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
@@ -170,22 +165,21 @@ def write_reports(
     """
     make_folder(run.folder)
     book = Gradebook(run.gradebook)
-    files = file_names([one.student.key for one in book if one.stored is not None or one.has_final])
-    place = run.gradebook if run.folder == run.gradebook / names.REPORTS else run.folder
-    if Format.HTML not in run.formats:
-        class_page = ""
-    else:
-        class_page = f"{'' if place == run.folder else '../'}{_CLASS_PAGE}"
-    run = run._replace(time=book.run.time, class_page=class_page)
+    keys = [grade.student.key for grade in book if grade.stored is not None or grade.has_final]
+    files = file_names(keys)
+    # Beside the reports, but in the gradebook above those in its own folder.
+    is_in_gradebook = run.folder == run.gradebook / names.REPORTS
+    run = run._replace(time=book.run.time)
+    if Format.HTML in run.formats:
+        class_page = f"../{_CLASS_PAGE}" if is_in_gradebook else _CLASS_PAGE
+        run = run._replace(class_page=class_page)
     lost = render_reports(run, files, terminal, jobs, timeout)
     if Format.HTML in run.formats:
-        prefix = "" if place == run.folder else f"{names.REPORTS}/"
-        write_class_page(
-            book, place, {key: prefix + name for key, name in files.items() if key not in lost}
-        )
-    terminal.warn(
-        f"{counted(len(files) - len(lost), 'report')} written to {printable_path(run.folder)}"
-    )
+        below = f"{names.REPORTS}/" if is_in_gradebook else ""
+        pages = {key: below + name for key, name in files.items() if key not in lost}
+        write_class_page(book, run.gradebook if is_in_gradebook else run.folder, pages)
+    written = counted(len(files) - len(lost), "report")
+    terminal.warn(f"{written} written to {printable_path(run.folder)}")
     for key, why in lost.items():
         terminal.warn(printable(f"no report for {key}: {why}"))
 
@@ -225,19 +219,17 @@ def _not_written(task: _ReportTask, error: Exception) -> tuple[str, str]:
     """Return the student without a report, and why."""
     if isinstance(error, InputError | RubricError):
         raise error
-    is_known = isinstance(error, WorkerError | MachineError)
-    return task.key, str(
-        error
-    ) if is_known else f"the grader itself failed: {type(error).__name__}: {error}"
+    if isinstance(error, WorkerError | MachineError):
+        return task.key, str(error)
+    return task.key, f"the grader itself failed: {type(error).__name__}: {error}"
 
 
 def _write_some(run: ReportRun, tasks: Sequence[_ReportTask]) -> list[tuple[str, str]]:
     """Write the reports of some students, in a worker; return the students."""
     book = _opened_gradebook(run)
     for task in tasks:
-        report = report_of(book, book.grade(task.key), has_hints=task.has_hints)._replace(
-            class_page=run.class_page
-        )
+        report = report_of(book, book.grade(task.key), has_hints=task.has_hints)
+        report = report._replace(class_page=run.class_page)
         for kind in run.formats:
             save(Path(run.folder, f"{task.name}.{kind.ending}"), render(report, kind))
     return [(task.key, "") for task in tasks]
@@ -279,7 +271,5 @@ def write_class_page(book: Gradebook, folder: Path, pages: Mapping[str, str]) ->
 
     grades = list(book)
     links = {key: quote(f"{name}.{Format.HTML.ending}") for key, name in pages.items()}
-    save(
-        folder / _CLASS_PAGE,
-        without_commands(render_class_page(book, grades, statistics(book, grades), links)),
-    )
+    page = render_class_page(book, grades, statistics(book, grades), links)
+    save(folder / _CLASS_PAGE, without_commands(page))

@@ -102,9 +102,9 @@ class ClassTable:
         for at in filled:
             table.add_column(titles[at], overflow="fold", justify="right" if at == 1 else "left")
         for row in rows:
-            table.add_row(
-                *(Text(printable(cut(row[at], width) if at == _LOST else row[at])) for at in filled)
-            )
+            cells = list(row)
+            cells[_LOST] = cut(cells[_LOST], width)
+            table.add_row(*(Text(printable(cells[at])) for at in filled))
         return table
 
     def print(self, console: Console) -> None:
@@ -113,74 +113,75 @@ class ClassTable:
         page = Page(console, [])
         page.inset(printable(self.rubric.title), "bold", 0)
         page.table(self._table(console.width - _OTHER_COLUMNS))
-        if rest := self.count - len(self.rows):
+        rest = self.count - len(self.rows)
+        if rest:
             page.inset(f"... and {counted(rest, 'more student')} (--verbose lists all)", "dim", 0)
         page.leave_row()
         if self._totals:
-            found = summary(self._totals.elements())
-            words = means(found.mean, found.median).capitalize()
-            page.inset(f"{words} ({counted(found.students, 'student')})", indent=0)
-        for reason in filter(self._concerns.get, Reason):
-            page.inset(
-                printable(_attention_line(reason, self._concerns[reason], verbose=self.verbose))
-            )
+            figures = summary(self._totals.elements())
+            words = means(figures.mean, figures.median).capitalize()
+            page.inset(f"{words} ({counted(figures.students, 'student')})", indent=0)
+        for reason in Reason:
+            if reason in self._concerns:
+                line = _attention_line(reason, self._concerns[reason], verbose=self.verbose)
+                page.inset(printable(line))
         if self.ending:
             page.leave_row()
-            page.rows.append(
-                Text(printable(self.ending))
-            )  # not wrapped: its path and command are copied
+            # not wrapped: its path and command are copied
+            page.rows.append(Text(printable(self.ending)))
         page.print()
 
 
 def _costs(grade: StudentGrade) -> str:
     """Return the criteria that cost most, with their points."""
-    costs = [*grade.losses[:_MAX_COSTS]]
-    if rest := grade.losses[_MAX_COSTS:]:
+    costs, rest = [*grade.losses[:_MAX_COSTS]], grade.losses[_MAX_COSTS:]
+    if rest:
         costs.append((sum((points for points, _ in rest), Decimal(0)), f"{len(rest)} more"))
     return ", ".join(f"{name} {format_points(-points)}" for points, name in costs)
 
 
-def render_class(found: ClassStatistics, console: Console, *, verbose: bool = False) -> None:
+def render_class(figures: ClassStatistics, console: Console, *, verbose: bool = False) -> None:
     """Print the statistics."""
     page = Page(console, [])
-    page.inset(printable(found.rubric.title), "bold", 0)
-    for line in head_lines(found):
+    page.inset(printable(figures.rubric.title), "bold", 0)
+    for line in head_lines(figures):
         page.inset(printable(line), indent=0)
-    most = max(map(len, found.tenths))
-    for tenth, keys in enumerate(found.tenths if most else ()):
-        bar = "#" * -(-len(keys) * min(_BAR_WIDTH, console.width - 30) // most)
-        page.rows.append(Text(f"  {span(found, tenth):>14} {len(keys):>6}  {bar}"))
+    most = max(map(len, figures.tenths))
     if most:
-        _show_criteria(found.criteria, page)
-
-    def name(key: str) -> str:
-        return named(key, found.names[key])
-
+        for tenth, keys in enumerate(figures.tenths):
+            bar = "#" * -(-len(keys) * min(_BAR_WIDTH, console.width - 30) // most)
+            page.rows.append(Text(f"  {span(figures, tenth):>14} {len(keys):>6}  {bar}"))
+        _show_criteria(figures.criteria, page)
+    labels = {key: named(key, name) for key, name in figures.names.items()}
     mistakes = [
-        f"{len(one.students):>4}  {one.criterion}: {one.message}"
-        for one in found.mistakes[:_MAX_MISTAKES]
+        f"{len(mistake.students):>4}  {mistake.criterion}: {mistake.message}"
+        for mistake in figures.mistakes[:_MAX_MISTAKES]
     ]
-    equal = [
-        f"{people_text([*map(name, one.students)], _MAX_NAMED)}: {one.equal}"
-        for one in found.equal[:_MAX_GROUPS]
-    ]
-    attention = [
-        _attention_line(reason, [(name(key), detail) for key, detail in those], verbose=verbose)
-        for reason, those in found.attention.items()
-    ]
-    sections = (
-        ("Common mistakes", mistakes, 8, ""),
-        ("Equal work", equal, 4, EQUAL_NOTE),
-        ("Needs attention", attention, 4, ""),
-    )
-    for title, lines, indent, note in sections:
-        if lines:
-            page.title(title)
-            if note:
-                page.inset(note, "dim")
-        for line in lines:
-            page.inset(printable(line), indent=indent, head=Text(" " * INDENT))
+    _show_lines("Common mistakes", mistakes, page, indent=8)
+    equal = []
+    for work in figures.equal[:_MAX_GROUPS]:
+        students = people_text([labels[key] for key in work.students], _MAX_NAMED)
+        equal.append(f"{students}: {work.equal}")
+    _show_lines("Equal work", equal, page, note=EQUAL_NOTE)
+    attention = []
+    for reason, students_and_details in figures.attention.items():
+        who = [(labels[key], detail) for key, detail in students_and_details]
+        attention.append(_attention_line(reason, who, verbose=verbose))
+    _show_lines("Needs attention", attention, page)
     page.print()
+
+
+def _show_lines(
+    title: str, lines: Sequence[str], page: Page, *, note: str = "", indent: int = 4
+) -> None:
+    """Print lines below a title, nothing without lines."""
+    if not lines:
+        return
+    page.title(title)
+    if note:
+        page.inset(note, "dim")
+    for line in lines:
+        page.inset(printable(line), indent=indent, head=Text(" " * INDENT))
 
 
 def _attention_line(
@@ -188,10 +189,8 @@ def _attention_line(
 ) -> str:
     """Return the students who need attention for one reason, each with a detail."""
     names = [f"{name} ({detail})" if detail else name for name, detail in who]
-    return (
-        f"{reason[:1].upper()}{reason[1:]} ({len(who)}): "
-        f"{people_text(names, len(who) if verbose else _MAX_NAMED)}"
-    )
+    shown = people_text(names, len(who) if verbose else _MAX_NAMED)
+    return f"{reason[:1].upper()}{reason[1:]} ({len(who)}): {shown}"
 
 
 def _show_criteria(rows: Sequence[CriterionFigures], page: Page) -> None:
@@ -218,38 +217,34 @@ def _show_criteria(rows: Sequence[CriterionFigures], page: Page) -> None:
 
 def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Console) -> None:
     """Print the two runs, and by reason whose grade changed, by how much, and in which criteria."""
-    before, after = (f"run {run.run} of {time_text(run.time)}" for run in runs)
+    before, after = runs
     page = Page(console, [])
-    page.inset(printable(f"From {before} to {after}"), "dim", 0)
-    if runs[0].maximum != runs[1].maximum != "" != runs[0].maximum:
-        page.inset(
-            f"the maximum changed from {runs[0].maximum} to {runs[1].maximum} points", indent=0
-        )
+    times = [f"run {run.run} of {time_text(run.time)}" for run in runs]
+    page.inset(printable(f"From {times[0]} to {times[1]}"), "dim", 0)
+    if before.maximum and after.maximum and before.maximum != after.maximum:
+        page.inset(f"the maximum changed from {before.maximum} to {after.maximum} points", indent=0)
     if not changes:
         page.inset("nothing changed", indent=0)
-    for why, found in sorted(
-        alike(changes, lambda change: change.why), key=lambda group: -len(group[1])
-    ):
+    by_reasons = alike(changes, lambda change: change.why)
+    for why, alike_changes in sorted(by_reasons, key=lambda group: -len(group[1])):
         page.leave_row()
-        page.inset(printable(f"{'; '.join(why)} ({counted(len(found), 'student')})"), "bold", 0)
-        for one in found:
-            steps = [f"{step.id} {_before_and_after(step, 'none')}" for step in one.criteria]
-            total = f"{named(one.key, one.name)}: {_before_and_after(one, 'not final')}"
-            page.inset(
-                printable("; ".join([total, *first_lines(steps, _MAX_STEPS)])),
-                indent=4,
-                head=Text("  "),
-            )
+        students = counted(len(alike_changes), "student")
+        page.inset(printable(f"{'; '.join(why)} ({students})"), "bold", 0)
+        for change in alike_changes:
+            total = f"{named(change.key, change.name)}: {_before_and_after(change, 'not final')}"
+            steps = [f"{step.id} {_before_and_after(step, 'none')}" for step in change.criteria]
+            line = "; ".join([total, *first_lines(steps, _MAX_STEPS)])
+            page.inset(printable(line), indent=4, head=Text("  "))
     page.print()
 
 
 def _before_and_after(change: Change | PointsChange, nothing: str) -> str:
     """Return points before and after: "50 to 60 (+10)"."""
     before, after = change.before, change.after
-    first, last = (
-        nothing if points is None else format_points(points) for points in (before, after)
-    )
-    more = f" ({signed_points(after - before)})" if before is not None and after is not None else ""
+    first = nothing if before is None else format_points(before)
+    last = nothing if after is None else format_points(after)
     if first == last:
         return f"{first}, as before"
-    return f"{first} to {last}{more}"
+    if before is None or after is None:
+        return f"{first} to {last}"
+    return f"{first} to {last} ({signed_points(after - before)})"

@@ -1,6 +1,7 @@
 """Equal and nearly equal work: submissions with the same URDF or robot. It is no verdict."""
 
-from collections.abc import Iterable
+from collections import defaultdict
+from collections.abc import Collection, Iterable
 from itertools import starmap
 from typing import NamedTuple
 
@@ -51,28 +52,38 @@ def equal_work(results: Iterable[StoredResult], handed_out: Iterable[str]) -> li
 
     The same file comes first, then the same robot, then the same elements.
     """
-    known, works = {*handed_out}, [one for one in results if one.work]
+    known, works = {*handed_out}, [stored for stored in results if stored.work]
     most = max(_MAX_SHARING, len(works) // 10)
-    found: dict[tuple[str, ...], str] = {}
-    own = [one for one in works if known.isdisjoint((one.work.get("urdf"), one.work.get("robot")))]
+    own = [
+        stored
+        for stored in works
+        if known.isdisjoint((stored.work.get("urdf"), stored.work.get("robot")))
+    ]
+    label_of: dict[tuple[str, ...], str] = {}
     for kind, label in _LABELS.items():
-        for group in _groups(
-            (one.work[kind], one) for one in own if one.work.get(kind, "") not in {"", *known}
-        ):
-            is_rare = len(group) <= most and len({one.work.get("robot") for one in group}) > 1
+        for group in _groups(own, kind, known):
+            robots = {stored.work.get("robot") for stored in group}
+            is_rare = len(group) <= most and len(robots) > 1
             if kind != "written" or is_rare:
-                found.setdefault(tuple(one.student for one in group), label)
-    return [*starmap(EqualWork, found.items())]
+                label_of.setdefault(tuple(stored.student for stored in group), label)
+    return list(starmap(EqualWork, label_of.items()))
 
 
-def _groups(works: Iterable[tuple[str, StoredResult]]) -> list[list[StoredResult]]:
-    """Return the groups with the same hash that come from more than one submission, the largest
-    first.
+def _groups(
+    results: Iterable[StoredResult], kind: str, known: Collection[str]
+) -> list[list[StoredResult]]:
+    """Return the groups whose hash of one kind is the same and not known, and that come from more
+    than one submission, the largest first.
     """
-    groups: dict[str, list[StoredResult]] = {}
-    for form, work in works:
-        groups.setdefault(form, []).append(work)
-    several = (
-        group for group in groups.values() if len({(one.root, one.paths) for one in group}) > 1
-    )
-    return sorted(several, key=lambda group: (-len(group), [one.student for one in group]))
+    groups = defaultdict[str, list[StoredResult]](list)
+    for stored in results:
+        form = stored.work.get(kind, "")
+        if form and form not in known:
+            groups[form].append(stored)
+    several = [group for group in groups.values() if _is_of_several(group)]
+    return sorted(several, key=lambda group: (-len(group), [stored.student for stored in group]))
+
+
+def _is_of_several(group: Iterable[StoredResult]) -> bool:
+    """Return whether results are of more than one submission: members of a group share one."""
+    return len({(stored.root, stored.paths) for stored in group}) > 1

@@ -59,13 +59,12 @@ def filters(
     """Return the lists to filter by: the name of each, its label, its values with their words,
     the chosen value.
     """
-    values = (
-        {"": "all questions"} | dict(zip(questions, questions, strict=True)),
-        {"": "all sections"} | dict(zip(sections, sections, strict=True)),
-        STATES,
-    )
+    question_words = {"": "all questions"} | {question: question for question in questions}
+    section_words = {"": "all sections"} | {section: section for section in sections}
     return [
-        *zip(ReviewFilter._fields, ("Question", "Section", "Items"), values, shown, strict=True)
+        ("criterion", "Question", question_words, shown.criterion),
+        ("section", "Section", section_words, shown.section),
+        ("state", "Items", STATES, shown.state),
     ]
 
 
@@ -75,11 +74,21 @@ def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) ->
 
     The addresses of the pictures are ADDRESS/picture/1 and so on.
     """
-    criterion, first, members = item.criterion, item.members[0], [one.label for one in item.members]
-    is_alone, marks = len(members) == 1, [one.members[0].mark for one in item.all]
-    maximum = sum((one.criterion.points for one in item.all), Decimal(0))
+    criterion, members = item.criterion, [member.label for member in item.members]
+    marks = [shown.members[0].mark for shown in item.all]
+    each = [
+        (shown.criterion.title, shown.criterion.id, format_points(shown.criterion.points))
+        for shown in item.all
+    ]
+    maximum = sum((shown.criterion.points for shown in item.all), Decimal(0))
     choices = criterion.choices if not item.also else {}
+    pictures = []
+    for number, picture in enumerate(opened.pictures, 1):
+        if isinstance(picture, EmbeddedPicture):
+            pictures.append((f"{place['address']}/picture/{number}", picture))
+    is_alone = len(members) == 1
     who = members[0] if is_alone else f"{len(members)} students"
+    is_older = item.members[0].state == OLDER
     values = {
         **place,
         "title": f"{place['number']} of {place['total']}: {who}, {criterion.title}",
@@ -87,19 +96,12 @@ def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) ->
         "members": [] if is_alone else members,
         "item": item,
         "maximum": format_points(maximum),
-        "each": [
-            (one.criterion.title, one.criterion.id, format_points(one.criterion.points))
-            for one in item.all
-        ],
+        "each": each,
         "opened": opened,
         "views": Markup(opened.views),  # noqa: S704  an element, whose text is escaped
         "model": model_lines(criterion),
-        "pictures": [
-            (f"{place['address']}/picture/{at}", one)
-            for at, one in enumerate(opened.pictures, 1)
-            if isinstance(one, EmbeddedPicture)
-        ],
-        "marked": _marked_text(marks, is_older=first.state == OLDER),
+        "pictures": pictures,
+        "marked": _marked_text(marks, is_older=is_older),
         "buttons": _buttons(maximum),
         "choices": [f"{text} ({format_points(points)})" for text, points in choices.items()],
     }

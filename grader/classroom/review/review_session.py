@@ -171,18 +171,18 @@ class ReviewSession:
         question as that at a position, else the first unmarked one.
         """
         question = self.places[position][0] if position < len(self.places) else ""
-        of_any_state = ReviewFilter(*self.filter[:2], "")
-        found = defaultdict[tuple[int, str, str], list[tuple[int, ReviewStudent]]](list)
-        for at, item in (
-            (at, self.items[place]) for at, place in enumerate(self.places) if place in self.items
-        ):
-            for one in of_any_state.members(item):
-                found[one.order].append((at, one))
+        of_any_state = self.filter._replace(state="")
+        items_of = defaultdict[tuple[int, str, str], list[tuple[int, ReviewStudent]]](list)
+        for at, place in enumerate(self.places):
+            if place in self.items:
+                for student in of_any_state.members(self.items[place]):
+                    items_of[student.order].append((at, student))
         people = list[tuple[str, int, int]]()
-        for _, items in sorted(found.items()):
-            left = [at for at, one in items if one.state == UNMARKED]
+        for _, items in sorted(items_of.items()):
+            first, student = items[0]
+            unmarked = [at for at, member in items if member.state == UNMARKED]
             same = [at for at, _ in items if self.places[at][0] == question]
-            people.append((items[0][1].label, len(left), [*same, *left, items[0][0]][0]))
+            people.append((student.label, len(unmarked), next(iter(same + unmarked), first)))
         return people
 
     def so_far(self, item: ReviewItem) -> str:

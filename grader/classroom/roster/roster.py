@@ -137,56 +137,75 @@ def read_roster(data: bytes, shown: str) -> Roster:
     """
     rows = rows_with_lines(data, shown)
     _, header = next(rows, (1, []))
-    titles = [*map(folded, header)]
-    fields = [_FIELD_OF.get(title, "") for title in titles]
-    if header and _WHO.isdisjoint(fields):
-        named = ", ".join(filter(None, header))[:200]
-        raise InputError(
-            f"{shown} has no column for an id, login, name or email in its first line, "
-            f"only: {named}"
-        )
-    is_canvas = {"student", "id"} <= {*titles} and any(title.startswith("sis") for title in titles)
+    fields = _fields(header, shown)
+    is_canvas = _is_from_canvas(header)
     students: dict[int, Student] = {}  # by the line
     mistakes, notes = list[tuple[int, str]](), list[str]()
     for line, cells in rows:
         if len(cells) < len(fields) or any(cells[len(fields) :]):
-            mistakes.append(
-                (line, f"has {counted(len(cells), 'cell')}, but the first line has {len(fields)}")
-            )
-            continue  # of several columns for a field the first that is not empty counts
-        filled = {
-            field: cell for field, cell in reversed([*zip(fields, cells, strict=False)]) if cell
-        }
-        row = dict.fromkeys(_TITLES, "") | filled
-        if is_canvas and (
-            row["name"].casefold() in _TEST_STUDENT or not (row["id"] + row["sis"] + row["login"])
-        ):
-            continue  # a row of points above the students
-        row["canvas"] = row["canvas"] or (row["id"] if is_canvas and row["id"].isdecimal() else "")
+            why = f"has {counted(len(cells), 'cell')}, but the first line has {len(fields)}"
+            mistakes.append((line, why))
+            continue
+        row = _row(fields, cells)
+        if is_canvas:
+            if _is_no_student_in_canvas(row):
+                continue
+            if not row["canvas"] and row["id"].isdecimal():
+                row["canvas"] = row["id"]
         mistakes += ((line, why) for why in _normalise(row))
-        students[line] = student = _student(row)
-        if (
-            student.is_late
-            and student.days_late is None
-            and not row["late"]
-            and _days_of(row["status"]) is None
-        ):
-            late = (
-                f"{row['status']!r} does not say clearly how late the submission is, and counts "
-                "as late"
-            )
+        student = students[line] = _student(row)
+        if student.is_late and student.days_late is None and _has_unclear_status(row):
             notes.append(
-                f"line {line} of {shown}: {late}: add a column `late` with `no` or a number of days"
+                f"line {line} of {shown}: {row['status']!r} does not say clearly how late the "
+                "submission is, and counts as late: add a column `late` with `no` or a number of "
+                "days"
             )
     mistakes += _duplicates(students)
-    if mistakes or not students:
-        named_lines = [
-            f"line {line} of {shown} {why}" for line, why in sorted(mistakes, key=itemgetter(0))
-        ]
-        raise InputError(
-            "\n".join(first_lines(named_lines or [f"{shown} has no students"], _MAX_MISTAKES))
-        )
+    lines = [f"line {line} of {shown} {why}" for line, why in sorted(mistakes, key=itemgetter(0))]
+    if not lines and not students:
+        lines = [f"{shown} has no students"]
+    if lines:
+        raise InputError("\n".join(first_lines(lines, _MAX_MISTAKES)))
     return Roster(tuple(students.values()), tuple(first_lines(notes, _MAX_MISTAKES)))
+
+
+def _fields(header: Sequence[str], shown: str) -> list[str]:
+    """Return the field of each column, empty for one of another title; raises InputError if none
+    of them identifies a student.
+    """
+    fields = [_FIELD_OF.get(folded(title), "") for title in header]
+    if header and _WHO.isdisjoint(fields):
+        titles = ", ".join(filter(None, header))[:200]
+        raise InputError(
+            f"{shown} has no column for an id, login, name or email in its first line, "
+            f"only: {titles}"
+        )
+    return fields
+
+
+def _is_from_canvas(header: Iterable[str]) -> bool:
+    titles = [folded(title) for title in header]
+    return {"student", "id"} <= {*titles} and any(title.startswith("sis") for title in titles)
+
+
+def _row(fields: Sequence[str], cells: Sequence[str]) -> dict[str, str]:
+    """Return the cells of a row by field; of several columns for one field the first counts that
+    is not empty.
+    """
+    row = dict.fromkeys(_TITLES, "")
+    for field, cell in zip(fields, cells, strict=False):
+        row[field] = row.get(field) or cell
+    return row
+
+
+def _is_no_student_in_canvas(row: Mapping[str, str]) -> bool:
+    """Return whether a row of Canvas has its test student, or the points possible."""
+    has_id = row["id"] or row["sis"] or row["login"]
+    return row["name"].casefold() in _TEST_STUDENT or not has_id
+
+
+def _has_unclear_status(row: Mapping[str, str]) -> bool:
+    return not row["late"] and _days_of(row["status"]) is None
 
 
 def _normalise(row: dict[str, str]) -> Iterator[str]:
@@ -215,42 +234,42 @@ def _student(row: dict[str, str]) -> Student:
     """Return the student in a row with values as they should be; without a key if it identifies
     none.
     """
-    own, canvas, moodle = row["id"], row["canvas"], row["moodle"]
-    aliases = (row["github"],) if row["github"] else ()
-    login, sis = row["login"] or row["github"], row["sis"] or ("" if own == canvas else own)
     name = row["name"] or f"{row['first']} {row['last']}".strip()
-    extension, days_late = _days(row["extension"]), _days(row["late"])
-    due, days = row["due"] or (row["extension"] if extension is None else ""), extension or 0.0
-    is_late, measured_by = (
-        days_late > 0 if days_late is not None else _LATE.get(row["late"].casefold()),
-        "",
-    )
-    if (
-        moodle
-        and not (row["late"] or row["submitted"])
-        and (status := _days_of(row["status"])) != 0
-    ):
-        is_late = status is None or status > days  # Moodle does not know this extension
-        if status is not None:
-            days_late, measured_by = max(0.0, status - days), "Moodle"
+    login, sis = row["login"] or row["github"], row["sis"]
+    if not sis and row["id"] != row["canvas"]:
+        sis = row["id"]
+    identifying = (row["id"], row["sis"], login, row["email"], name, row["canvas"], row["moodle"])
+    due, extension_days = row["due"], _days(row["extension"])
+    if extension_days is None:  # the column may have a date instead of days
+        due, extension_days = due or row["extension"], 0.0
+    days_late, measured_by = _days(row["late"]), ""
+    is_late = _LATE.get(row["late"].casefold())
+    if days_late is not None:
+        is_late = days_late > 0
+    status = _days_of(row["status"])
+    if row["moodle"] and not (row["late"] or row["submitted"]) and status != 0:
+        is_late = True
+        if status is not None:  # Moodle does not know this extension
+            is_late = status > extension_days
+            days_late, measured_by = max(0.0, status - extension_days), "Moodle"
     return Student(
-        printable_path(own or row["sis"] or login or row["email"] or name or canvas or moodle),
-        name,
-        row["email"],
-        login,
-        sis,
-        canvas,
-        moodle,
-        aliases,
-        row["group"],
-        row["section"],
-        due,
-        row["submitted"],
-        days,
-        is_late,
-        days_late,
-        measured_by,
-        row["submission"].strip("/"),
+        key=printable_path(next(filter(None, identifying), "")),
+        name=name,
+        email=row["email"],
+        login=login,
+        sis=sis,
+        canvas=row["canvas"],
+        moodle=row["moodle"],
+        aliases=(row["github"],) if row["github"] else (),
+        group=row["group"],
+        section=row["section"],
+        due=due,
+        submitted=row["submitted"],
+        extension_days=extension_days,
+        is_late=is_late,
+        days_late=days_late,
+        measured_by=measured_by,
+        submission=row["submission"].strip("/"),
     )
 
 
@@ -331,21 +350,17 @@ class People:
         self.students = students
         self._known: tuple[dict[str, tuple[int, ...]], ...] = ({}, {}, {}, {})
         self._groups: dict[str, list[int]] = defaultdict(list)
-        for index, one in enumerate(students):
+        lms_ids, exact, words, names = self._known
+        for index, student in enumerate(students):
             own = (index,)  # kept once for all words that only this student has
-            ids = [one.key, one.login, one.sis, one.email, *one.aliases]
-            names = [
-                plain(one.name),
-                plain(one.email.partition("@")[0]),
-                _surname(one.name),
-                *_in_canvas(one.name),
-            ]
-            for words, table in zip(
-                (_lms_ids(one), ids, map(plain, ids), names), self._known, strict=True
-            ):
-                for word in {unicodedata.normalize("NFC", word) for word in words if word}:
-                    table[word] = table[word] + own if word in table else own
-            for word in {plain(one.group), letters(one.group)} - {""}:
+            ids = [student.key, student.login, student.sis, student.email, *student.aliases]
+            user = student.email.partition("@")[0]
+            spellings = (plain(student.name), plain(user), _surname(student.name))
+            _add(own, _lms_ids(student), lms_ids)
+            _add(own, ids, exact)
+            _add(own, map(plain, ids), words)
+            _add(own, (*spellings, *_in_canvas(student.name)), names)
+            for word in {plain(student.group), letters(student.group)} - {""}:
                 self._groups[word].append(index)
 
     def members(self, group: str) -> Sequence[int]:
@@ -389,15 +404,14 @@ class People:
         login = plain(claim.login)
         names = [name, login, _surname(login) if claim.group else ""]
         ranked = (_lms_ids(claim), [unicodedata.normalize("NFC", claim.login)], [login], names)
+        team = self.members(claim.group)
         for by, (words, table) in enumerate(zip(ranked, self._known, strict=True)):
-            found = self._having(words, table)
+            having = self._having(words, table)
             if claim.group:
-                found = tuple(index for index in found if index in self.members(claim.group))
-            if found:
-                fitting = tuple(
-                    at for at in found if not _has_other_lms_id(self.students[at], claim)
-                )
-                return _Match(fitting, min(by, _WORD))
+                having = tuple(index for index in having if index in team)
+            if having:
+                students = [at for at in having if not _has_other_lms_id(self.students[at], claim)]
+                return _Match(tuple(students), min(by, _WORD))
         return _Match()
 
     def _having(
@@ -406,18 +420,29 @@ class People:
         return tuple(sorted({index for word in words for index in table.get(word, ())}))
 
 
-def _has_other_lms_id(one: Student, claim: Student) -> bool:
+def _add(own: tuple[int], words: Iterable[str], table: dict[str, tuple[int, ...]]) -> None:
+    """Add the index of a student to a table of those who have a word."""
+    for word in filter(None, words):
+        composed = unicodedata.normalize("NFC", word)
+        if composed not in table:
+            table[composed] = own
+        elif table[composed][-1:] != own:
+            table[composed] += own
+
+
+def _has_other_lms_id(student: Student, claim: Student) -> bool:
     """Return whether the LMS knows a student by another id than that in a claim."""
-    ids = ((one.canvas, claim.canvas), (one.moodle, claim.moodle))
+    ids = ((student.canvas, claim.canvas), (student.moodle, claim.moodle))
     return any(own and given and own != given for own, given in ids)
 
 
-def _lms_ids(one: Student) -> list[str]:
-    return [
-        f"{lms} {number}"
-        for lms, number in (("canvas", one.canvas), ("moodle", one.moodle))
-        if number
-    ]
+def _lms_ids(student: Student) -> list[str]:
+    ids = []
+    if student.canvas:
+        ids.append(f"canvas {student.canvas}")
+    if student.moodle:
+        ids.append(f"moodle {student.moodle}")
+    return ids
 
 
 def _surname(name: str) -> str:

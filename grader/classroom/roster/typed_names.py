@@ -34,52 +34,54 @@ def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
     with `advice`.
     """
     word = plain(name)
-    found = [
-        one
-        for one, ids, words in _clues(tuple(students))
-        if word in ids or words.issuperset(word.split() or [""])
-    ]
-    if len(found) == 1:
-        return found[0]
-    if found:
-        shown = [
-            f"{one.key!r} ({printable(one.name)})" if one.name else repr(one.key) for one in found
-        ]
+    words_of_name = word.split() or [""]
+    fitting = []
+    for student, ids, words in _clues(tuple(students)):
+        if word in ids or words.issuperset(words_of_name):
+            fitting.append(student)
+    if len(fitting) == 1:
+        return fitting[0]
+    if fitting:
+        labels = []
+        for student in fitting:
+            label = repr(student.key)
+            if student.name:
+                label += f" ({printable(student.name)})"
+            labels.append(label)
         raise InputError(
-            f"{name!r} is ambiguous: it may be {enumerated(shown, _MAX_LISTED, 'or')}; use "
+            f"{name!r} is ambiguous: it may be {enumerated(labels, _MAX_LISTED, 'or')}; use "
             "one of these ids"
         )
-    changed = enumerated(
-        [*map(repr, as_number(name, tuple(one.key for one in students)))], _MAX_LISTED, "or"
+    raise InputError(
+        f"there is no student {name!r} in the gradebook{_guess(students, name) or advice}"
     )
+
+
+def _guess(students: Sequence[Student], name: str) -> str:
+    """Return the question which student was meant; empty if none has a similar name."""
+    keys = tuple(student.key for student in students)
+    changed = enumerated([repr(key) for key in as_number(name, keys)], _MAX_LISTED, "or")
+    if changed:
+        return f"; did you mean {changed}?"
     digits = re.sub(r"\D", "", name)  # with another digit, it is the id of another student
-    words = (word for one in students for word in (one.key, one.login, one.name))
-    some = {word for word in words if re.sub(r"\D", "", word) == digits}
-    guess = f"; did you mean {changed}?" if changed else did_you_mean(name, some) or advice
-    raise InputError(f"there is no student {name!r} in the gradebook{guess}")
+    candidates = set()
+    for student in students:
+        for word in (student.key, student.login, student.name):
+            if re.sub(r"\D", "", word) == digits:
+                candidates.add(word)
+    return did_you_mean(name, candidates)
 
 
 @lru_cache(maxsize=1)  # a file of marks names many
 def _clues(students: tuple[Student, ...]) -> list[tuple[Student, set[str], set[str]]]:
     """Return each student with the ids, and the words of the name."""
     clues = []
-    for one in students:
-        ids = (
-            one.key,
-            one.login,
-            one.sis,
-            one.canvas,
-            one.moodle,
-            one.email,
-            one.email.partition("@")[0],
-        )
-        clues.append(
-            (
-                one,
-                {plain(word) for word in (*ids, *one.aliases)} - {""},
-                {*plain(one.name or one.key).split()},
-            )
-        )
+    for student in students:
+        user = student.email.partition("@")[0]
+        ids = (student.key, student.login, student.sis, student.canvas, student.moodle)
+        written = (*ids, student.email, user, *student.aliases)
+        words = set(plain(student.name or student.key).split())
+        clues.append((student, {plain(word) for word in written} - {""}, words))
     return clues
 
 
