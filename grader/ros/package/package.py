@@ -21,6 +21,7 @@ from grader.ros.build.places import (
     is_launch_named,
     launch_stem,
 )
+from grader.ros.launch.launch_cache import LaunchCache
 from grader.ros.python.budget import PYTHON_LIMIT, Budget
 
 # The readers are imported when they are needed: a URDF on its own needs none of them.
@@ -86,7 +87,10 @@ class Package:
     lab_name: str = ""  # the name that the lab gives it
     lab_packages: tuple[str, ...] = ()  # the names of all packages of the lab, if there are several
     ignored_by: str = ""  # the path of a file for which colcon ignores it
+    launch_cache: LaunchCache = field(default_factory=LaunchCache)
     arguments: "Mapping[str, str]" = field(default_factory=dict)  # that its launch files are given
+    # The package without other launch arguments: what a build installs does not depend on them.
+    _original: "Package | None" = None
     budget: Budget = field(default_factory=Budget, init=False)  # of the evaluation of its files
     _launches: "dict[str, Launch]" = field(default_factory=dict, init=False)
     _rviz_files: "dict[str, RvizFile]" = field(default_factory=dict, init=False)
@@ -105,11 +109,7 @@ class Package:
         """Return the package with its launch files under these arguments; the rest is not read
         again.
         """
-        found = replace(self, arguments=arguments)
-        found.__dict__.update(
-            (name, value) for name, value in vars(self).items() if name not in vars(found)
-        )
-        return found
+        return replace(self, arguments=arguments, _original=self._original or self)
 
     @property
     def name(self) -> str:
@@ -193,6 +193,8 @@ class Package:
     @cached_property
     def installation(self) -> "Installation | None":
         """Return what its setup.py or CMakeLists.txt installs; None without either."""
+        if self._original is not None:
+            return self._original.installation
         name = CMAKE if self.is_cmake else SETUP
         file = self.tree.files.get(name)
         if file is None:
@@ -222,6 +224,8 @@ class Package:
     @cached_property
     def installed(self) -> dict[str, str]:
         """Each installed file's path in the package, by its path below the prefix."""
+        if self._original is not None:
+            return self._original.installed
         if self.installation is not None:
             return self.installation.installed()
         return {}
@@ -333,7 +337,7 @@ class Package:
                 (it for it, source in self.installed.items() if source == path),
                 f"share/{self.name}/{path}",
             )
-            launch = read_launch(data, own, installed, self, self.arguments)
+            launch = read_launch(data, own, installed, self, self.arguments, self.launch_cache)
         except InputError as error:
             launch = Launch(Source(own, ""), unread=str(error))
         if text is None:
