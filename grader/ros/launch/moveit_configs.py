@@ -7,16 +7,16 @@ needs and that is not installed stops it.
 
 import posixpath
 import re
-import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache, partial
-from pathlib import Path, PurePosixPath
+from functools import partial
+from pathlib import PurePosixPath
 from typing import Any
 
 from grader.files.limits import SETUP_ASSISTANT
 from grader.ros.build.places import BY_MOVEIT, PREFIX, SHARE
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_value
+from grader.ros.known.known import moveit_launches
 from grader.ros.launch.api import DESCRIPTION
 from grader.ros.launch.launch_model import Contents, Context, FileText, UnknownTable, UnknownText
 from grader.ros.python.evaluation import Evaluation
@@ -103,25 +103,38 @@ _OF_YAML = {
 
 def moveit_exports() -> Mapping[str, Sequence[str]]:
     """Return the names of the modules of moveit_configs_utils."""
-    of_launch = ("DeclareLaunchArgument", "IfCondition", "LaunchConfiguration", "Node")
-    of_utils = (*of_launch, "UnlessCondition", "add_debuggable_node", "DeclareBooleanLaunchArg")
-    of_launches = (
-        *of_utils[:4],
-        *of_utils[5:],
-        "LaunchDescription",
-        "IncludeLaunchDescription",
-        "ParameterValue",
-    )
-    modules = ("launches", "launch_utils", "moveit_configs_builder", "substitutions")
+    of_both = ("DeclareLaunchArgument", "IfCondition", "LaunchConfiguration", "Node")
     return {
-        _PACKAGE: (*_OF_BUILDER, *modules),
+        _PACKAGE: (
+            *_OF_BUILDER,
+            "launches",
+            "launch_utils",
+            "moveit_configs_builder",
+            "substitutions",
+        ),
         f"{_PACKAGE}.moveit_configs_builder": (
             *_OF_BUILDER,
             "get_pattern_matches",
             "moveit_configs_utils_path",
         ),
-        f"{_PACKAGE}.launch_utils": of_utils,
-        _LAUNCHES: (*_launches(), *of_launches, "PythonLaunchDescriptionSource", "SRDF", "os"),
+        f"{_PACKAGE}.launch_utils": (
+            *of_both,
+            "UnlessCondition",
+            "add_debuggable_node",
+            "DeclareBooleanLaunchArg",
+        ),
+        _LAUNCHES: (
+            *moveit_launches(),
+            *of_both,
+            "add_debuggable_node",
+            "DeclareBooleanLaunchArg",
+            "LaunchDescription",
+            "IncludeLaunchDescription",
+            "ParameterValue",
+            "PythonLaunchDescriptionSource",
+            "SRDF",
+            "os",
+        ),
     }
 
 
@@ -163,7 +176,7 @@ class MoveItConfigurations:
             f"{_BUILDER}.to_dict": lambda evaluation, call: (
                 self._finish(evaluation, call).find("to_dict").run()
             ),
-            **{f"{_LAUNCHES}.{name}": partial(self._start, name) for name in _launches()},
+            **{f"{_LAUNCHES}.{name}": partial(self._start, name) for name in moveit_launches()},
         }
 
     def _build(self, evaluation: Evaluation, call: Call) -> Call:
@@ -417,7 +430,7 @@ class MoveItConfigurations:
 
     def _start(self, name: str, _: Evaluation, call: Call) -> Value:
         """Return the description that a function of moveit_configs_utils.launches makes."""
-        given, row = _named(call, ("moveit_config", "launch_package_path")), _launches()[name]
+        given, row = _named(call, ("moveit_config", "launch_package_path")), moveit_launches()[name]
         configs = given.get("moveit_config")
         if not isinstance(configs, Namespace):
             raise Undetermined("the configuration of MoveIt is not evaluated", call.at)
@@ -521,12 +534,6 @@ def _as_dict(parts: Mapping[str, Value]) -> dict[str, Value]:
         elif isinstance(table, Unknown):
             found[name] = table
     return found
-
-
-@cache
-def _launches() -> Mapping[str, Any]:
-    """Return what each of MoveIt's launch functions starts."""
-    return tomllib.loads(Path(__file__).with_name("moveit_launches.toml").read_text("utf-8"))
 
 
 @dataclass(frozen=True, slots=True)

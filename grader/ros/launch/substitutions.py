@@ -12,7 +12,7 @@ from math import isclose
 from grader.base.text import enumerated
 from grader.ros.build.places import HOME, PREFIX, SHARE
 from grader.ros.config.yaml_nodes import yaml_value
-from grader.ros.launch.known_programs import is_part_of_ros, programs_of
+from grader.ros.known.known import is_on_every_machine, programs_of
 from grader.ros.launch.launch_model import ANY, Contents, Context, FileText, Resolved
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.builtins import BUILTINS, MATH
@@ -302,7 +302,7 @@ def check_program(package: str, name: str, context: Context, at: Position) -> No
         where = (
             f" in lib/{package}: see console_scripts of setup.py, and install_scripts of setup.cfg"
         )
-        known = f"; it has {others}" if is_part_of_ros(package) else where
+        known = f"; it has {others}" if is_on_every_machine(package) else where
         raise EvaluationFails(f"the package {package!r} has no program {name!r}{known}", at)
 
 

@@ -38,20 +38,6 @@ RESOURCE_INDEX = "share/ament_index/resource_index/packages/"
 NO_PACKAGE = "the submission has no ROS 2 package: there is no package.xml"
 _RVIZ_LIMIT = 512 * 1024  # bytes
 _MAX_LAUNCHES = 10
-# What ros2 launch imports: an installed folder of this name is found before it, on the PYTHONPATH
-# of a workspace.
-_OF_ROS_IN_PYTHON = (
-    "launch",
-    "launch_ros",
-    "launch_xml",
-    "launch_yaml",
-    "rclpy",
-    "ament_index_python",
-    "ros2launch",
-    "ros2cli",
-    "osrf_pycommon",
-    "yaml",
-)
 # What a file of a kind is called in messages, and how its name ends.
 _KINDS = {
     "urdf": ("URDF", (".urdf", ".xacro")),
@@ -235,11 +221,11 @@ class Package:
         """The name of a Python package that a build installs and that ros2 launch imports in place
         of its own.
         """
-        if self.installation is not None and not self.installation.unknown:
-            packages = self.installation.packages
-        else:
-            packages = ()
-        return next((name for name in packages if name in _OF_ROS_IN_PYTHON), "")
+        from grader.ros.known.known import is_imported_by_launch  # late: a URDF needs no table
+
+        if self.installation is None or self.installation.unknown:
+            return ""
+        return next(filter(is_imported_by_launch, self.installation.packages), "")
 
     @cached_property
     def launch_files(self) -> tuple[str, ...]:
@@ -422,9 +408,7 @@ class Package:
         """Return whether a package has a program, as far as its setup.py tells; one that is not
         known has it.
         """
-        from grader.ros.launch.known_programs import (
-            lacks_program,  # late: as the readers of launch files
-        )
+        from grader.ros.known.known import lacks_program  # late: as the readers of launch files
 
         owner = self.find(package)
         if owner is None:
