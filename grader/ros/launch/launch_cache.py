@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from grader.ros.launch.launch_model import Installation, Launch
+    from grader.ros.launch.launch_model import Launch, Machine
 
     # What a launch file is read from: its bytes, its path in the submission, its path below the
     # prefix, and its launch arguments.
@@ -16,41 +16,41 @@ if TYPE_CHECKING:
 _MAX_KEPT = 4  # launch files
 
 
-class InstallationRecorder:
-    """An installation that records what is asked of it. With the same answers, a launch file is
+class MachineRecorder:
+    """A machine that records what is asked of it. With the same answers, a launch file is
     evaluated alike.
     """
 
-    def __init__(self, installation: "Installation") -> None:
-        self._installation = installation
-        self._answers: list[tuple[Callable[[Installation], object], object]] = []
+    def __init__(self, machine: "Machine") -> None:
+        self._machine = machine
+        self._answers: list[tuple[Callable[[Machine], object], object]] = []
 
     def open_installed(self, path: str) -> tuple[bytes, str] | None:
         """Return an installed file."""
-        file = self._installation.open_installed(path)
+        file = self._machine.open_installed(path)
         self._answers.append((methodcaller("open_installed", path), file))
         return file
 
     def has_package(self, name: str) -> bool:
         """Return whether a package certainly is on the machine."""
-        has_package = self._installation.has_package(name)
+        has_package = self._machine.has_package(name)
         self._answers.append((methodcaller("has_package", name), has_package))
         return has_package
 
     def files_in(self, folder: str) -> "Sequence[str] | None":
         """Return the names of the installed files in a folder."""
-        names = self._installation.files_in(folder)
+        names = self._machine.files_in(folder)
         self._answers.append((methodcaller("files_in", folder), names))
         return names
 
     def has_program(self, package: str, name: str) -> bool | None:
         """Return whether a package has a program."""
-        has_program = self._installation.has_program(package, name)
+        has_program = self._machine.has_program(package, name)
         self._answers.append((methodcaller("has_program", package, name), has_program))
         return has_program
 
-    def is_equal(self, other: "Installation") -> bool:
-        """Return whether another installation answers alike."""
+    def is_equal(self, other: "Machine") -> bool:
+        """Return whether another machine answers alike."""
         return all(question(other) == answer for question, answer in self._answers)
 
 
@@ -62,18 +62,18 @@ class LaunchCache:
     """
 
     def __init__(self) -> None:
-        self._kept: dict[LaunchKey, tuple[InstallationRecorder, Launch]] = {}
+        self._kept: dict[LaunchKey, tuple[MachineRecorder, Launch]] = {}
 
-    def find(self, key: "LaunchKey", installation: "Installation") -> "Launch | None":
+    def find(self, key: "LaunchKey", machine: "Machine") -> "Launch | None":
         """Return the result of a launch file on a machine that answers alike, if it is kept."""
         if key not in self._kept:
             return None
         recorder, launch = self._kept[key]
-        if recorder.is_equal(installation):
+        if recorder.is_equal(machine):
             return launch
         return None
 
-    def keep(self, key: "LaunchKey", recorder: InstallationRecorder, launch: "Launch") -> None:
+    def keep(self, key: "LaunchKey", recorder: MachineRecorder, launch: "Launch") -> None:
         """Keep a result, in place of the oldest one."""
         self._kept.pop(key, None)
         if len(self._kept) >= _MAX_KEPT:

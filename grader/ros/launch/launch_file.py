@@ -25,15 +25,15 @@ from grader.ros.launch.api import (
     is_a,
 )
 from grader.ros.launch.call_arguments import LaunchFunctions, join_path, kind_of
-from grader.ros.launch.launch_cache import InstallationRecorder, LaunchCache
+from grader.ros.launch.launch_cache import LaunchCache, MachineRecorder
 from grader.ros.launch.launch_model import (
     Contents,
     Context,
     FileText,
     Findings,
-    Installation,
     Launch,
     LaunchFault,
+    Machine,
     StartedNode,
     UnknownText,
 )
@@ -77,7 +77,7 @@ def read_launch(
     data: bytes,
     path: str,
     installed: str,
-    installation: Installation,
+    machine: Machine,
     arguments: Mapping[str, str] = _NO_ARGUMENTS,
     cache: LaunchCache | None = None,
 ) -> Launch:
@@ -87,15 +87,15 @@ def read_launch(
         data: The file's contents.
         path: Its path in the submission.
         installed: Its path below the prefix after a build.
-        installation: What is installed besides.
+        machine: What is installed besides.
         arguments: The launch arguments that it is given.
         cache: The launch files that were read before.
     """
     key = (data, path, installed, tuple(arguments.items()))
-    kept = cache.find(key, installation) if cache is not None else None
+    kept = cache.find(key, machine) if cache is not None else None
     if kept is not None:
         return kept
-    recorder = InstallationRecorder(installation)
+    recorder = MachineRecorder(machine)
     context = Context(
         f"{PREFIX}/{installed}", recorder, dict(arguments), given=frozenset(arguments)
     )
@@ -140,7 +140,7 @@ class _LaunchReader:
         """Read an included file; return why it is not read, or nothing."""
         if target in self.open:
             return CIRCULAR_INCLUDE
-        found = context.installation.open_installed(target)
+        found = context.machine.open_installed(target)
         if found is None:
             return f"it includes {target}, which the submission does not install"
         if self.includes_left == 0:
@@ -394,7 +394,7 @@ class _PythonLaunchFile:
         name = known(call.argument(0, "package_name", "package"))
         if not isinstance(name, str):
             raise EvaluationFails("the name of a package is a string")
-        if not self.context.installation.has_package(name):
+        if not self.context.machine.has_package(name):
             evaluation.doubted(
                 Unknown(f"whether the package {name!r} is installed is not evaluated", call.at)
             )

@@ -188,7 +188,7 @@ class MoveItConfigurations:
             raise EvaluationFails("MoveItConfigsBuilder needs the name of the robot")
         package = known(given.get("package_name")) or f"{robot}_moveit_config"
         for name in (_PACKAGE, package):
-            if not self.context().installation.has_package(name):
+            if not self.context().machine.has_package(name):
                 evaluation.doubted(
                     Unknown(f"whether the package {name!r} is installed is not evaluated", call.at)
                 )
@@ -258,9 +258,7 @@ class MoveItConfigurations:
         """Return the names of the files that are installed in the folder config; None where this
         is not known.
         """
-        return self.context().installation.files_in(
-            f"{own.folder}/config".removeprefix(f"{PREFIX}/")
-        )
+        return self.context().machine.files_in(f"{own.folder}/config".removeprefix(f"{PREFIX}/"))
 
     def _is_there(self, path: str) -> bool:
         return self.context().text_of(path) is not None
@@ -273,7 +271,7 @@ class MoveItConfigurations:
     def _yaml(self, path: str, at: Position) -> Value:
         """Return the table in a file that has to be there."""
         self._read(path, at, BY_MOVEIT)
-        found = self.context().installation.open_installed(
+        found = self.context().machine.open_installed(
             posixpath.normpath(path).removeprefix(f"{PREFIX}/")
         )
         if found is None:

@@ -195,7 +195,7 @@ class _Substitution:
         package = self.argument("package")
         if isinstance(package, Unknown):
             return package
-        if not isinstance(package, str) or not self.context.installation.has_package(package):
+        if not isinstance(package, str) or not self.context.machine.has_package(package):
             shown = repr(package) if isinstance(package, str) else "that is read from a file"
             raise Undetermined(
                 f"whether the package {shown} is installed is not evaluated", self.call.at
@@ -292,9 +292,9 @@ def check_program(package: str, name: str, context: Context, at: Position) -> No
     """Raise EvaluationFails if a package certainly has no such program, Undetermined if this is not
     known.
     """
-    if not context.installation.has_package(package):
+    if not context.machine.has_package(package):
         raise Undetermined(f"whether the package {package!r} is installed is not evaluated", at)
-    is_there = context.installation.has_program(package, name)
+    is_there = context.machine.has_program(package, name)
     if is_there is None:
         raise Undetermined(f"whether {package!r} has the program {name!r} is not evaluated", at)
     if not is_there:
