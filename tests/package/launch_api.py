@@ -1,7 +1,7 @@
 """Write the table of launch's classes from its sources: `python -m tests.package.launch_api LAUNCH LAUNCH_ROS`.
 
 The arguments are checkouts of github.com/ros2/launch and github.com/ros2/launch_ros (branch jazzy), which are parsed and
-not imported. The table is `grader/package/launch/api.json`.
+not imported. The table is `grader/ros/launch/api.json`.
 """
 
 import ast
@@ -9,9 +9,9 @@ import json
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-TABLE = Path("grader/package/launch/api.json")
+TABLE = Path("grader/ros/launch/api.json")
 PACKAGES = ("launch", "launch_ros", "launch_xml", "launch_yaml")
 SOURCE = "github.com/ros2/launch and github.com/ros2/launch_ros, branch jazzy, by python -m tests.package.launch_api"
 # What later releases export, so that a newer patch of Jazzy may: whether the name is there is not known.
@@ -22,7 +22,14 @@ LATER = {
 }
 _PATHS = "launch.substitutions.path_join_substitution"
 # Those of them that are evaluated; the demos of ros2_control use this one on Jazzy.
-LATER_CLASSES = {f"{_PATHS}.PathSubstitution": [f"{_PATHS}.PathJoinSubstitution", "path!:text", ""]}
+LATER_CLASSES = {
+    f"{_PATHS}.PathSubstitution": {
+        "base": f"{_PATHS}.PathJoinSubstitution",
+        "positional": {"path": {"required": True, "check": "text"}},
+        "keyword_only": {},
+        "methods": [],
+    }
+}
 # What the constructors require of arguments with these annotations: each stands for the check of this name.
 CHECKS = {
     "SomeSubstitutionsType": "text",
@@ -88,39 +95,51 @@ class Module:
         return {name for name in found if not name.startswith("_")}
 
 
-def parameter(argument: ast.arg, default: ast.expr | None) -> str:
-    """Return a parameter of a constructor: its name, ! if it is required, : and the name of the check of its value."""
+class Constructor(NamedTuple):
+    """The parameters of a class's own constructor by their names."""
+
+    positional: dict[str, dict[str, Any]]
+    keyword_only: dict[str, dict[str, Any]]
+    passed: list[str]  # the names of those that it gives to its base's constructor
+    takes_more: bool  # whether the rest is given to its base's constructor
+
+
+def parameter(argument: ast.arg, default: ast.expr | None) -> dict[str, Any]:
+    """Return what a constructor requires of a parameter: fields that are false or empty are left out."""
     written = ast.unparse(argument.annotation) if argument.annotation else ""
     is_optional = written.startswith("Optional[")
-    check = CHECKS.get(
-        written.removeprefix("Optional[").removesuffix("]") if is_optional else written, ""
-    )
-    can_be_none = is_optional or (isinstance(default, ast.Constant) and default.value is None)
-    return (
-        argument.arg + "!" * (default is None) + (f":{check}" + "?" * can_be_none if check else "")
-    )
+    if is_optional:
+        written = written.removeprefix("Optional[").removesuffix("]")
+    row: dict[str, Any] = {}
+    if default is None:
+        row["required"] = True
+    if written in CHECKS:
+        row["check"] = CHECKS[written]
+        if is_optional or (isinstance(default, ast.Constant) and default.value is None):
+            row["can_be_none"] = True
+    return row
 
 
-def constructor(cls: ast.ClassDef) -> tuple[list[str], list[str]] | None:
-    """Return the parameters of a class's own constructor and those that it passes to its base; None without one."""
-    init = next(
-        (n for n in cls.body if isinstance(n, ast.FunctionDef) and n.name == "__init__"), None
-    )
+def constructor(cls: ast.ClassDef) -> Constructor | None:
+    """Return the constructor that a class defines; None without one."""
+    methods = (node for node in cls.body if isinstance(node, ast.FunctionDef))
+    init = next((method for method in methods if method.name == "__init__"), None)
     if init is None:
         return None
     args = init.args
     positional = args.args[1:]
     defaults = [None] * (len(positional) - len(args.defaults)) + list(args.defaults)
-    rows = [parameter(arg, default) for arg, default in zip(positional, defaults, strict=True)]
-    rows += [f"*{args.vararg.arg}:text"] if args.vararg else ["*"]
-    rows += [
-        parameter(arg, default)
-        for arg, default in zip(args.kwonlyargs, args.kw_defaults, strict=True)
-    ]
     calls = (node for node in ast.walk(init) if isinstance(node, ast.Call))
     passed = [call.keywords for call in calls if ast.unparse(call.func) == "super().__init__"]
-    names = [keyword.arg for keywords in passed for keyword in keywords if keyword.arg is not None]
-    return [*rows, *(["**"] if args.kwarg else [])], names
+    return Constructor(
+        {it.arg: parameter(it, default) for it, default in zip(positional, defaults, strict=True)},
+        {
+            it.arg: parameter(it, default)
+            for it, default in zip(args.kwonlyargs, args.kw_defaults, strict=True)
+        },
+        [keyword.arg for keywords in passed for keyword in keywords if keyword.arg is not None],
+        args.kwarg is not None,
+    )
 
 
 def tags(cls: ast.ClassDef, kind: str) -> list[str]:
@@ -149,37 +168,47 @@ def table(*roots: Path) -> dict[str, Any]:
             classes[f"{name}.{cls.name}"] = (bases[0] if bases else "", constructor(cls), methods)
             for kind, names in found.items():
                 names |= dict.fromkeys(tags(cls, kind), f"{name}.{cls.name}")
-    exports: dict[str, str] = {}
+    exports: dict[str, Any] = {}
+    known = classes.keys() | LATER_CLASSES.keys()
     for name, module in modules.items():
         inner = {other.rpartition(".")[2] for other in modules if other.rpartition(".")[0] == name}
         full = {
             alias: target(module.imports.get(alias, ""), modules, classes) for alias in module.names
         }
         full |= {it.rpartition(".")[2]: it for it in LATER_CLASSES}
-        words = [
-            alias + (f"={full[alias]}" if inner and full.get(alias) else "")
-            for alias in sorted(module.names | inner | LATER.get(name, set()))
-        ]
-        exports[name] = " ".join(words)
-    rows = {
-        name: [base_of(name, classes), effective(name, classes), " ".join(sorted(it[2]))]
-        for name, it in classes.items()
-    } | LATER_CLASSES
+        aliases = sorted(module.names | inner | LATER.get(name, set()))
+        targets = {
+            alias: (full.get(alias) if inner else "") or f"{name}.{alias}" for alias in aliases
+        }
+        exports[name] = {
+            "classes": {alias: targets[alias] for alias in aliases if targets[alias] in known},
+            "others": [alias for alias in aliases if targets[alias] not in known],
+        }
+    rows = LATER_CLASSES | {
+        name: {
+            "base": base_of(name, classes),
+            **effective(name, classes),
+            "methods": sorted(methods),
+        }
+        for name, (_, _, methods) in classes.items()
+    }
     return {"source": SOURCE, "exports": exports, "classes": rows, **found}
 
 
-def effective(name: str, classes: dict[str, Any]) -> str:
+def effective(name: str, classes: dict[str, Any]) -> dict[str, dict[str, Any]]:
     """Return the parameters of a class's constructor, with those that it passes on."""
     base, own = base_of(name, classes), classes[name][1]
-    inherited = effective(base, classes).split() if base else []
+    inherited: dict[str, dict[str, Any]] = {"positional": {}, "keyword_only": {}}
+    if base:
+        inherited = effective(base, classes)
     if own is None:
-        return " ".join(inherited)
-    rows, passed = own
-    if "**" not in rows:
-        return " ".join(rows)
-    known = {row.partition(":")[0].strip("!*") for row in rows} | {*passed}
-    more = [row for row in inherited if row.partition(":")[0].strip("!*") not in known]
-    return " ".join([*rows[:-1], *more])
+        return inherited
+    keyword_only = dict(own.keyword_only)
+    if own.takes_more:
+        known = {*own.positional, *own.keyword_only, *own.passed}
+        more = inherited["positional"] | inherited["keyword_only"]
+        keyword_only |= {key: row for key, row in more.items() if key not in known}
+    return {"positional": own.positional, "keyword_only": keyword_only}
 
 
 def target(full: str, modules: dict[str, Module], classes: dict[str, Any]) -> str:

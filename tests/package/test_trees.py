@@ -8,11 +8,11 @@ from grader.base.errors import MissingElement, NotDecided
 from grader.base.source import Location
 from grader.files.tree import make_tree, overlaid
 from grader.ros.package.finding import read_packages
-from grader.ros.package.trees import Entry, Search, is_path, read_tree, steps_of
+from grader.ros.package.trees import Search, TreeEntry, is_path, read_tree, steps_of
 from tests.examples import examples
 
 
-def tree_of(text: str, file: str = "a.yaml") -> Entry:
+def tree_of(text: str, file: str = "a.yaml") -> TreeEntry:
     """Return the tree of a file of a package."""
     texts = {"package.xml": "<package format='3'><name>hub</name></package>", file: text}
     tree = overlaid(
@@ -22,7 +22,7 @@ def tree_of(text: str, file: str = "a.yaml") -> Entry:
     return read_tree(package, file)
 
 
-def texts_at(tree: Entry, path: str) -> list[str | None]:
+def texts_at(tree: TreeEntry, path: str) -> list[str | None]:
     """Return the texts at a path."""
     return [it.text for it in Search().find(tree, steps_of(path, is_xml=tree.is_xml))]
 

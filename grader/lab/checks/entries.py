@@ -14,7 +14,9 @@ from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.checks.toml_types import Constraint, Content, NonNegative, Scalar
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import Package
-from grader.ros.package.trees import Entry, Search, Step, is_path, read_tree, steps_of, xml_entry
+from grader.ros.package.trees import PathStep as Step
+from grader.ros.package.trees import Search, is_path, read_tree, steps_of, xml_entry
+from grader.ros.package.trees import TreeEntry as Entry
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import selected_name
 from grader.ros.urdf.reader import Reading

@@ -36,6 +36,7 @@ from grader.lab.rubric.toml_file import (
 from grader.lab.rubric.validation import BoundCarried, BoundCheck, Validation
 from grader.lab.submission.opening import open_submission
 from grader.lab.submission.submission import Lab, Submission
+from grader.ros.launch.launch_cache import LaunchCache
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import is_selector, texts_in
 from grader.ros.urdf.reader import Reading, find_xacro, read_urdf
@@ -129,11 +130,14 @@ class Rubric:
     transforms: tuple[str, ...] = ()  # launch files whose static transforms are part of the robot
     solution: ReferenceSolution | None = field(default=None, compare=False, repr=False)
     links: frozenset[str] = frozenset()  # that criteria name
+    launch_cache: LaunchCache = field(default_factory=LaunchCache, compare=False, repr=False)
 
     @property
     def lab(self) -> Lab:
         """What is searched in a submission."""
-        return Lab(self.urdf, self.package, self.folders, self.links, self.packages)
+        return Lab(
+            self.urdf, self.package, self.folders, self.links, self.packages, self.launch_cache
+        )
 
     @property
     def compares_with_reference(self) -> bool:
@@ -306,6 +310,7 @@ def _reference_solution(rubric: TomlRow, path: Path, data: bytes) -> ReferenceSo
         package,
         rubric.get("folders", ()),
         packages=rubric.get("packages", ()),
+        launch_cache=LaunchCache(),
     )
 
     def error(what: str) -> InputError:

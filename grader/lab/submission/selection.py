@@ -231,7 +231,7 @@ def _searched(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
         if labs.belonging(it.path) is Belonging.OTHER_LAB and labs.is_project(it.path)
     }
     projects = projects if has_own or len(projects) < len(robots) else set()
-    every_package = read_packages(tree, lab.urdf, lab.package, lab.packages)
+    every_package = read_packages(tree, lab.urdf, lab.package, lab.packages, lab.launch_cache)
     robots = tuple(robot for robot in robots if robot.path not in projects)
     of_lab = packages_of_lab(every_package, lab.packages).values()
     robots = (
@@ -248,7 +248,9 @@ def _searched(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
         if package_tree is tree:
             packages = every_package
         else:
-            packages = read_packages(package_tree, lab.urdf, lab.package, lab.packages)
+            packages = read_packages(
+                package_tree, lab.urdf, lab.package, lab.packages, lab.launch_cache
+            )
     other_roots = [
         path for path in roots if places.of(path) is None or places.of(path) is not of_packages
     ]

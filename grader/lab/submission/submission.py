@@ -11,6 +11,7 @@ from grader.base.text import enumerated, was_not_committed
 from grader.files.limits import MAX_FILE_SIZE, ROBOT_ENDINGS
 from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.files.tree import File, Tree, make_tree
+from grader.ros.launch.launch_cache import LaunchCache
 from grader.ros.package.package import MANIFEST, NO_PACKAGE, Package
 from grader.ros.package.robot_file import (
     Absent,
@@ -46,6 +47,7 @@ class Lab(NamedTuple):
     folders: tuple[str, ...] = ()  # names of the lab's folder
     links: frozenset[str] = frozenset()  # the names of the robot's links
     packages: tuple[str, ...] = ()  # the names of all packages, if there are several
+    launch_cache: LaunchCache | None = None  # of its submissions, where several are read
 
     @property
     def package_names(self) -> tuple[str, ...]:

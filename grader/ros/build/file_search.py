@@ -184,17 +184,7 @@ class PackageListing:
         Wildcards match names that begin with a dot only if `hidden`. Raises Undetermined, also for
         what nobody writes.
         """
-        several = (
-            recursive
-            and "**" in parts
-            and (parts.count("**") > 1 or any(it.startswith(".") for it in parts))
-        )
-        if (
-            several
-            or "" in parts[:-1]
-            or {".", ".."} & {*parts}
-            or sum(map(len, parts)) > _MAX_PATTERN
-        ):
+        if _is_unusual(parts, recursive=recursive):
             raise Undetermined(_UNUSUAL)
         self.budget.charge(1 + 2 * len(self._paths))
         place = parts.index("**") if recursive and "**" in parts else None
@@ -202,13 +192,18 @@ class PackageListing:
         start = f"{folder}/" if folder else ""
         if any(pattern.leads_to(names) for names in _names_below(start, self._unseen)):
             raise Undetermined(_IGNORED)
-        return self.ordered(
-            [
-                "/".join(names)
-                for names in _names_below(start, self._paths)
-                if pattern.matches(names)
-            ]
-        )
+        fitting = filter(pattern.matches, _names_below(start, self._paths))
+        return self.ordered(["/".join(names) for names in fitting])
+
+
+def _is_unusual(parts: list[str], *, recursive: bool) -> bool:
+    """Return whether a pattern is one that nobody writes, so that it is not evaluated."""
+    is_hidden = any(part.startswith(".") for part in parts)
+    if recursive and "**" in parts and (is_hidden or parts.count("**") > 1):
+        return True
+    if "" in parts[:-1] or "." in parts or ".." in parts:
+        return True
+    return sum(map(len, parts)) > _MAX_PATTERN
 
 
 class _Pattern(NamedTuple):
@@ -263,7 +258,8 @@ def file_functions(listing: PackageListing, root: str) -> FunctionTable:
         "glob.iglob": folder.iglob,
         "os.listdir": folder.listdir,
         "os.walk": folder.walk,
-        **dict.fromkeys(("builtins.open", "io.open"), folder.open),
+        "builtins.open": folder.open,
+        "io.open": folder.open,
         "pathlib.Path.open": folder.open,
         "pathlib.Path.read_text": folder.read_text,
         "pathlib.Path.iterdir": folder.iterdir,
@@ -272,14 +268,17 @@ def file_functions(listing: PackageListing, root: str) -> FunctionTable:
         "setuptools.find_packages": partial(_find_packages, listing),
         "setuptools.find_namespace_packages": partial(_find_packages, listing),
     }
-    tests: dict[str, Callable[[str | None], bool]] = {
-        "exists": lambda path: path is not None,
-        "is_file": lambda path: path in listing.files,
-        "is_dir": lambda path: path in listing.folders,
+    exists = partial(folder.test, lambda path: path is not None)
+    is_file = partial(folder.test, lambda path: path in listing.files)
+    is_folder = partial(folder.test, lambda path: path in listing.folders)
+    functions |= {
+        "pathlib.Path.exists": exists,
+        "pathlib.Path.is_file": is_file,
+        "pathlib.Path.is_dir": is_folder,
+        "os.path.exists": exists,
+        "os.path.isfile": is_file,
+        "os.path.isdir": is_folder,
     }
-    for name, test in tests.items():
-        functions[f"pathlib.Path.{name}"] = partial(folder.test, test)
-        functions[f"os.path.{name.replace('_', '')}"] = partial(folder.test, test)
     return {
         name: partial(_evaluate_search, function, listing) for name, function in functions.items()
     }

@@ -66,25 +66,28 @@ def read_manifest(data: bytes, path: str) -> Manifest:
         )
         return Manifest(source, None, "", (problem,), start, start)
     name = _first(root, "name")
-    build_types = (element for element in _exports(root) if tag_of(element) == "build_type")
-    holding = [
-        element
-        for element in build_types
-        if evaluate_condition(element.get("condition")) is not False
-    ]
-    build_type = text_of(holding[0]) if holding else "catkin"
-    if len(holding) > 1:
-        build_type = " and ".join(map(text_of, holding))
+    build_types = []
+    for element in _exports(root):
+        is_used = evaluate_condition(element.get("condition")) is not False
+        if tag_of(element) == "build_type" and is_used:
+            build_types.append(element)
+    dependencies = set()
+    for element in root.iterchildren("*"):
+        if tag_of(element).endswith("depend"):
+            dependencies.add(text_of(element))
+    problems = [*_problems(file)]
+    try:
+        data.decode()
+    except UnicodeDecodeError:
+        problems.append(_refused("the file is not UTF-8 text; save it as UTF-8", start))
     return Manifest(
         source,
         (text_of(name) or None) if name is not None else None,
-        build_type,
-        (*_problems(file), *_encoding_problems(data, start), *_condition_problems(file)),
+        " and ".join(map(text_of, build_types)) if build_types else "catkin",
+        (*problems, *_condition_problems(file)),
         file.location(name if name is not None else root),
-        file.location(holding[0] if holding else root),
-        dependencies=frozenset(
-            text_of(it) for it in root.iterchildren("*") if tag_of(it).endswith("depend")
-        ),
+        file.location(build_types[0] if build_types else root),
+        dependencies=frozenset(dependencies),
     )
 
 
@@ -138,13 +141,6 @@ def _problems(file: XmlFile) -> Iterator[Problem]:
     if version not in ("2", "3"):
         message = f"package.xml has format {version[:20]}; ROS 2 packages use format 3"
         yield Problem(kinds.OLD_FORMAT, message, file.location(root))
-
-
-def _encoding_problems(data: bytes, start: Location) -> Iterator[Problem]:
-    try:
-        data.decode()
-    except UnicodeDecodeError:
-        yield _refused("the file is not UTF-8 text; save it as UTF-8", start)
 
 
 def _condition_problems(file: XmlFile) -> Iterator[Problem]:

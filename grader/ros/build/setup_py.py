@@ -230,10 +230,9 @@ def _evaluate_setup(
                 "setup.py prints something, and colcon reads what it prints: print to sys.stderr",
                 call.at,
             )
-        elif (
-            not isinstance(call.kwargs["file"], QualifiedName)
-            or call.kwargs["file"].name != "sys.stderr"
-        ):
+            return
+        stream = call.kwargs["file"]
+        if not isinstance(stream, QualifiedName) or stream.name != "sys.stderr":
             raise Undetermined("this use of print is not evaluated", call.at, is_final=True)
 
     functions = {
@@ -249,9 +248,12 @@ def _evaluate_setup(
         local_modules=listing.modules(),
     )
     interpreter.run(code)
-    name = calls[0].kwargs.get("name") if calls else None
     data_files.finish()
-    conflicts = [PythonError(*code.conflict)] if code.conflict is not None else []
+    given = calls[0].kwargs if calls else {}  # a second call of setup() builds nothing
+    name = given.get("name")
+    faults = sorted(interpreter.errors, key=lambda error: error.at)
+    if code.conflict is not None:
+        faults.insert(0, PythonError(*code.conflict))
     doubts = data_files.doubts
     if interpreter.doubt is not None:
         doubts = [interpreter.doubt, *doubts]
@@ -261,15 +263,15 @@ def _evaluate_setup(
         copies=tuple(data_files.copies),
         stops=tuple(data_files.stops),
         empty=tuple(listing.empty),
-        faults=(*conflicts, *sorted(interpreter.errors, key=lambda error: error.at)),
+        faults=tuple(faults),
         unknown=tuple(dict.fromkeys([*doubts, *data_files.unknown])),
         doubt=doubts[0] if doubts else None,
         is_called=bool(calls) or interpreter.doubt is not None,
         called_at=calls[0].at if calls else START,
-        entry_points=calls[0].kwargs.get("entry_points") if calls else None,
+        entry_points=given.get("entry_points"),
         ignored=tuple(data_files.ignored),
         scripts_folder=_scripts_folder(listing),
-        packages=_packages_in(calls[0].kwargs.get("packages")) if calls else (),
+        packages=_packages_in(given.get("packages")),
     )
 
 

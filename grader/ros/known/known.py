@@ -1,12 +1,123 @@
-"""What is known of packages that are not submitted, in known.toml with its sources."""
+"""What ROS 2 has, by the TOML files of this folder, each of which is read when it is needed."""
 
 import tomllib
+from collections.abc import Mapping, Sequence
+from fnmatch import fnmatchcase
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, TypedDict, cast
+
+_FOLDER = Path(__file__).parent
+_OF_WORKSPACES = ("packages", "programs", "nav2", "controllers", "gazebo")
+
+
+class _Known(TypedDict):
+    """What packages define that are not submitted; the files say what each table means."""
+
+    frames: list[str]
+    without_frames: list[str]
+    without_lifecycle: list[str]
+    written: list[str]
+    metapackages: dict[str, list[str]]
+    node_names: dict[str, str]
+    programs: dict[str, list[str]]
+    required_parameters: dict[str, list[str]]
+    children: dict[str, list[str]]
+    launch_arguments: dict[str, list[str]]
+    slash_before_jazzy: list[str]
+    plugins: list[str]
+    controllers: Mapping[Any, dict[str, str]]  # by the type that a file may give
+    controller_topics: Mapping[Any, dict[Literal["subscription", "publisher"], dict[str, str]]]
+    controller_actions: dict[str, list[str]]
+    bridge_types: dict[str, list[str]]
+    gazebo_systems: dict[str, dict[str, dict[str, str]]]
+    gazebo_sensors: dict[str, str]
+    sensor_systems: dict[str, str]
+
+
+class _Machine(TypedDict):
+    """The file machine.toml."""
+
+    other_packages: list[str]
+    imported_by_launch: list[str]
+    in_cpp: list[str]
+    in_python: list[str]
+    spawner_options: list[str]
+    packages: dict[str, list[str]]
 
 
 @cache
-def known() -> dict[str, Any]:
-    """Return the table."""
-    return tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
+def _read(name: str) -> dict[str, Any]:
+    return tomllib.loads((_FOLDER / f"{name}.toml").read_text("utf-8"))
+
+
+@cache
+def known() -> _Known:
+    """Return what the packages define that a workspace is compared with."""
+    tables: dict[str, Any] = {}
+    for name in _OF_WORKSPACES:
+        tables |= _read(name)
+    return cast("_Known", tables)
+
+
+def _machine() -> _Machine:
+    return cast("_Machine", _read("machine"))
+
+
+def is_on_every_machine(package: str) -> bool:
+    """Return whether a package is on every machine of a lab, whether package.xml names it or
+    not.
+    """
+    return package in _machine()["packages"] or package in _machine()["other_packages"]
+
+
+def programs_of(package: str) -> Sequence[str]:
+    """Return the programs of a package that is on every machine, if all are known."""
+    return _machine()["packages"].get(package, ())
+
+
+def lacks_program(package: str, name: str) -> bool:
+    """Return whether a package on every machine certainly has no such program."""
+    return package in _machine()["packages"] and name not in programs_of(package)
+
+
+def is_imported_by_launch(module: str) -> bool:
+    """Return whether `ros2 launch` imports a Python package of this name."""
+    return module in _machine()["imported_by_launch"]
+
+
+def is_written_in_cpp(package: str) -> bool:
+    """Return whether all nodes of a package certainly are written in C++."""
+    machine = _machine()
+    if any(fnmatchcase(package, pattern) for pattern in machine["in_python"]):
+        return False
+    return any(fnmatchcase(package, pattern) for pattern in machine["in_cpp"])
+
+
+def spawner_options() -> Sequence[str]:
+    """Return the options of the spawner of ros2_control that a value follows."""
+    return _machine()["spawner_options"]
+
+
+def started_by_launch_files() -> Mapping[str, Mapping[str, Sequence[str]]]:
+    """Return the programs that the launch files of well-known packages start, by package and name
+    of the file.
+    """
+    return _read("launch_files")
+
+
+def moveit_launches() -> Mapping[str, Any]:
+    """Return what each of the launch functions of MoveIt starts, by its name."""
+    return _read("moveit")
+
+
+@cache
+def cmake_words(key: str) -> frozenset[str]:
+    """Return the words that are known of CMake, by their key in cmake.toml."""
+    return frozenset(str(_read("cmake")[key]).split())
+
+
+def cmake_table(key: str) -> Mapping[str, str | int]:
+    """Return a table that is known of CMake, by its key in cmake.toml."""
+    table: Mapping[str, str | int] = _read("cmake")[key]
+    return table

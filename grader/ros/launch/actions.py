@@ -179,7 +179,7 @@ class ActionVisitor:
         if cls is None or when is False:
             return
         for name, parameter in cls.parameters.items():
-            value, test = call.kwargs.get(name), parameter.check.removesuffix("?")
+            value, test = call.kwargs.get(name), parameter.check
             if value is None or name in _LATE or (name == "output" and isinstance(value, dict)):
                 continue
             try:

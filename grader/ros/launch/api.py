@@ -21,10 +21,10 @@ DESCRIPTION = "launch.launch_description.LaunchDescription"
 class _ConstructorParameter(NamedTuple):
     """A parameter of a constructor."""
 
-    name: str
-    check: str  # names what its value has to be; empty where it takes anything
-    is_required: bool
     is_positional: bool
+    is_required: bool = False
+    check: str = ""  # names what its value has to be; empty where it takes anything
+    can_be_none: bool = False  # although it has a check
 
 
 class LaunchClass(NamedTuple):
@@ -54,24 +54,20 @@ def class_named(name: str) -> LaunchClass | None:
     row = _table()["classes"].get(name)
     if row is None:
         return None
-    base, signature, methods = row
-    parameters, is_positional = {}, True
-    for word in signature.split():
-        own, _, check = word.partition(":")
-        if word.startswith("*"):
-            is_positional = False
-        else:
-            named = own.removesuffix("!")
-            parameters[named] = _ConstructorParameter(
-                named, check, own.endswith("!"), is_positional
+    parameters = {}
+    for group in ("positional", "keyword_only"):
+        for parameter, fields in row[group].items():
+            parameters[parameter] = _ConstructorParameter(
+                group == "positional",
+                fields.get("required", False),
+                fields.get("check", ""),
+                fields.get("can_be_none", False),
             )
-    inherited = class_named(base)
-    return LaunchClass(
-        name,
-        base,
-        parameters,
-        frozenset(methods.split()) | (inherited.methods if inherited else set()),
-    )
+    inherited = class_named(row["base"])
+    methods = frozenset(row["methods"])
+    if inherited is not None:
+        methods |= inherited.methods
+    return LaunchClass(name, row["base"], parameters, methods)
 
 
 def is_a(name: str, base: str) -> bool:
@@ -89,14 +85,10 @@ def exports() -> Mapping[str, Mapping[str, str]]:
     """Return for each module the names that it exports, with the full name of the class, if it is
     one.
     """
-    found: dict[str, dict[str, str]] = {}
-    for module, words in _table()["exports"].items():
-        pairs = (word.partition("=") for word in words.split())
-        own = {name: full or f"{module}.{name}" for name, _, full in pairs}
-        found[module] = {
-            name: full if full in _table()["classes"] else "" for name, full in own.items()
-        }
-    return found
+    return {
+        module: {**names["classes"], **dict.fromkeys(names["others"], "")}
+        for module, names in _table()["exports"].items()
+    }
 
 
 def front_end(kind: str) -> Mapping[str, str]:

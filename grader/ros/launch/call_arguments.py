@@ -230,13 +230,15 @@ def _wrong_argument(cls: LaunchClass, call: Call, name: str, value: Value) -> st
     if not name:
         message = _SPECIAL[cls.short](call) if cls.short in _SPECIAL else ""
         return f"{cls.short}: {message}" if message else ""
-    test = cls.parameters[name].check
-    own = _CHECKS.get(test.removesuffix("?"))
-    wanted = own(value) if own is not None and not (value is None and test.endswith("?")) else ""
-    tail = "" if wanted.startswith("has a") else f", not {kind_of(value)}"
-    if wanted:
-        return f"{name} of {cls.short} {wanted}{tail}"
-    return ""
+    parameter = cls.parameters[name]
+    find_error = _CHECKS.get(parameter.check)
+    if find_error is None or (value is None and parameter.can_be_none):
+        return ""
+    error = find_error(value)
+    if not error:
+        return ""
+    tail = "" if error.startswith("has a") else f", not {kind_of(value)}"
+    return f"{name} of {cls.short} {error}{tail}"
 
 
 def _find_bound(value: Value) -> expr | None:

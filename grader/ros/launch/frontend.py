@@ -8,7 +8,7 @@ import re
 import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
 from grader.base.names import closest, did_you_mean
 from grader.base.source import Location, Source
@@ -39,55 +39,123 @@ _BEFORE_NEXT = {
     "'": " '()",
     '"': ' "()',
 }  # what ends a value, in no quotes and in each kind of quotes
-# The names of the arguments of each substitution that is evaluated; those in brackets may be
-# missing.
-_SUBSTITUTIONS = {
-    "var": "variable_name [default]",
-    "env": "name [default_value]",
-    "command": "command [on_stderr]",
-    "find-pkg-share": "package",
-    "find-exec": "name",
-    "eval": "expression [python_modules]",
-    "dirname": "",
-    "filename": "",
-    "file-content": "path",
-    "exec-in-pkg": "executable package",
-    "if": "condition if_value [else_value]",
-    "not": "value",
-    **dict.fromkeys(("and", "or", "equals", "not-equals"), "left right"),
+
+
+class _SubstitutionFormat(NamedTuple):
+    """The names of the arguments of a substitution, in their order."""
+
+    required: tuple[str, ...] = ()
+    optional: tuple[str, ...] = ()
+
+
+_OF_TWO = _SubstitutionFormat(("left", "right"))
+# The substitutions that are evaluated.
+_SUBSTITUTIONS: Mapping[str, _SubstitutionFormat] = {
+    "var": _SubstitutionFormat(("variable_name",), ("default",)),
+    "env": _SubstitutionFormat(("name",), ("default_value",)),
+    "command": _SubstitutionFormat(("command",), ("on_stderr",)),
+    "find-pkg-share": _SubstitutionFormat(("package",)),
+    "find-exec": _SubstitutionFormat(("name",)),
+    "eval": _SubstitutionFormat(("expression",), ("python_modules",)),
+    "dirname": _SubstitutionFormat(),
+    "filename": _SubstitutionFormat(),
+    "file-content": _SubstitutionFormat(("path",)),
+    "exec-in-pkg": _SubstitutionFormat(("executable", "package")),
+    "if": _SubstitutionFormat(("condition", "if_value"), ("else_value",)),
+    "not": _SubstitutionFormat(("value",)),
+    "and": _OF_TWO,
+    "or": _OF_TWO,
+    "equals": _OF_TWO,
+    "not-equals": _OF_TWO,
 }
 _ON_STDERR = (["fail"], ["ignore"], ["warn"], ["capture"])
+_MERGE_KEY = "<<"  # of YAML
 _MAX_DEPTH = 40
 _MAX_ENTITIES = 5_000
 _MAX_PLACES = 40  # attributes of an element in XML that are looked for
-_PROCESS = (
-    "cwd name on_exit launch-prefix output respawn shell:bool emulate_tty:bool"
-    " -respawn_max_retries -respawn_delay -sigkill_timeout -sigterm_timeout -env"
-)
-# The attributes of each element that is evaluated: ! is required, : precedes a type that is not
-# text, [] are elements in it; what launch accepts, but is not evaluated, begins with -.
-_ACTIONS: Mapping[str, str] = {
-    "arg": "name! default description choice[]",
-    "executable": f"cmd! {_PROCESS}",
-    "group": "scoped:bool -forwarding -keep children",
-    "include": "file! arg[]",
-    "log": "message!",
-    "set_env": "name! value!",
-    "let": "name! value!",
-    "timer": "period!:float -cancel_on_shutdown children",
-    "node": f"exec! pkg args ros_args -node-name -exec_name namespace remap[] param[] {_PROCESS}",
-    **dict.fromkeys(("push_ros_namespace", "push-ros-namespace"), "namespace!"),
-    "set_parameter": "name! value!",
-    "set_remap": "from! to!",
-    "set_parameters_from_file": "filename!",
+
+
+class _Part(NamedTuple):
+    """What an element may have: an attribute, elements of one name, or actions."""
+
+    value: type | None = str  # the type of an attribute; None for any scalar
+    is_required: bool = False
+    is_evaluated: bool = True  # not where launch accepts it, and it changes what is started
+    holds: Literal["value", "elements", "actions"] = "value"
+
+
+_Parts = Mapping[str, _Part]
+_TEXT, _REQUIRED, _NOT_EVALUATED = _Part(), _Part(is_required=True), _Part(is_evaluated=False)
+_BOOL, _ANY = _Part(bool), _Part(None)
+_ELEMENTS, _CHILDREN = _Part(holds="elements"), _Part(holds="actions")
+_CONDITION_PARTS: _Parts = {"if": _TEXT, "unless": _TEXT}
+_PROCESS: _Parts = {
+    "cwd": _TEXT,
+    "name": _TEXT,
+    "on_exit": _TEXT,
+    "launch-prefix": _TEXT,
+    "output": _TEXT,
+    "respawn": _TEXT,
+    "shell": _BOOL,
+    "emulate_tty": _BOOL,
+    "respawn_max_retries": _NOT_EVALUATED,
+    "respawn_delay": _NOT_EVALUATED,
+    "sigkill_timeout": _NOT_EVALUATED,
+    "sigterm_timeout": _NOT_EVALUATED,
+    "env": _NOT_EVALUATED,
 }
-_NESTED: Mapping[str, str] = {
-    "arg": "name! value!",
-    "choice": "value!",
-    "remap": "from! to!",
-    "param": "name from value:any value-sep type:any -allow_substs param[]",
+_PUSH_NAMESPACE: _Parts = {"namespace": _REQUIRED}
+# The actions that are evaluated.
+_ACTIONS: Mapping[str, _Parts] = {
+    "arg": {"name": _REQUIRED, "default": _TEXT, "description": _TEXT, "choice": _ELEMENTS},
+    "executable": {"cmd": _REQUIRED, **_PROCESS},
+    "group": {
+        "scoped": _BOOL,
+        "forwarding": _NOT_EVALUATED,
+        "keep": _NOT_EVALUATED,
+        "children": _CHILDREN,
+    },
+    "include": {"file": _REQUIRED, "arg": _ELEMENTS},
+    "log": {"message": _REQUIRED},
+    "set_env": {"name": _REQUIRED, "value": _REQUIRED},
+    "let": {"name": _REQUIRED, "value": _REQUIRED},
+    "timer": {
+        "period": _Part(float, is_required=True),
+        "cancel_on_shutdown": _NOT_EVALUATED,
+        "children": _CHILDREN,
+    },
+    "node": {
+        "exec": _REQUIRED,
+        "pkg": _TEXT,
+        "args": _TEXT,
+        "ros_args": _TEXT,
+        "node-name": _NOT_EVALUATED,
+        "exec_name": _NOT_EVALUATED,
+        "namespace": _TEXT,
+        "remap": _ELEMENTS,
+        "param": _ELEMENTS,
+        **_PROCESS,
+    },
+    "push_ros_namespace": _PUSH_NAMESPACE,
+    "push-ros-namespace": _PUSH_NAMESPACE,
+    "set_parameter": {"name": _REQUIRED, "value": _REQUIRED},
+    "set_remap": {"from": _REQUIRED, "to": _REQUIRED},
+    "set_parameters_from_file": {"filename": _REQUIRED},
 }
-_TYPES: Mapping[str, type | None] = {"float": float, "bool": bool, "any": None}
+_NESTED: Mapping[str, _Parts] = {
+    "arg": {"name": _REQUIRED, "value": _REQUIRED},
+    "choice": {"value": _REQUIRED},
+    "remap": {"from": _REQUIRED, "to": _REQUIRED},
+    "param": {
+        "name": _TEXT,
+        "from": _TEXT,
+        "value": _ANY,
+        "value-sep": _TEXT,
+        "type": _ANY,
+        "allow_substs": _NOT_EVALUATED,
+        "param": _ELEMENTS,
+    },
+}
 _VALUE_TYPES = (
     "str",
     "bool",
@@ -307,7 +375,7 @@ def _action_of(entity: _Entity, findings: Findings) -> Call:
         raise EvaluationFails(
             f"there is no action {kind!r}{did_you_mean(kind, _ACTIONS)}", entity.at
         )
-    given = _attributes_of(entity, f"if unless {_ACTIONS[kind]}")
+    given = _read_attributes(entity, {**_CONDITION_PARTS, **_ACTIONS[kind]})
     condition = _condition_of(given, entity)
     kwargs = {
         _ARGUMENTS.get(name, name): _argument_value(entity, name, value)
@@ -321,59 +389,59 @@ def _action_of(entity: _Entity, findings: Findings) -> Call:
     return _checked_call(Call(front_end("action")[kind], [], kwargs, entity.at))
 
 
-def _attributes_of(entity: _Entity, known: str) -> dict[str, Any]:
+def _read_attributes(entity: _Entity, parts: _Parts) -> dict[str, Any]:
     """Return the attributes of an entity, of their types. Raises EvaluationSignal."""
     if entity.error:
         raise EvaluationFails(entity.error, entity.at)
-    if entity.is_yaml and entity.has_actions != ("children" in known):
-        what = "needs the key children" if "children" in known else "has no list of actions"
+    takes_actions = "children" in parts
+    if entity.is_yaml and entity.has_actions != takes_actions:
+        what = "needs the key children" if takes_actions else "has no list of actions"
         raise EvaluationFails(f"{entity.kind} {what}", entity.at)
-    names = {word.partition(":")[0].strip("-![]"): word for word in f"{known} -<<".split()}
-    lists = {name for name, word in names.items() if word.endswith("[]")}
-    inner = [*entity.nested, *(it.kind for it in entity.actions)]
-    for name in [*inner, *entity.attributes]:
-        if (
-            name == "<<"
-            or names.get(name, "").startswith("-")
-            or (
-                name.endswith("-sep")
-                and name[:-4] in names
-                and (name not in names or entity.is_yaml)
-            )
-        ):
-            raise Undetermined(f"{name} of <{entity.kind}> is not evaluated", entity.at)
-    for name in inner:
-        if "children" not in names and name not in lists:
-            raise EvaluationFails(
-                f"<{entity.kind}> contains no <{name}>{did_you_mean(name, lists)}", entity.at
-            )
-    for name in entity.attributes:
-        if name not in names or name in lists or name == "children":
-            message = f"<{entity.kind}> has no attribute {name!r}{did_you_mean(name, names)}"
-            raise EvaluationFails(message, entity.place(name))
-    missing = [
-        name
-        for name, word in names.items()
-        if "!" in word and name not in {*entity.attributes, *entity.nested}
-    ]
-    if missing:
-        raise EvaluationFails(f"<{entity.kind}> needs the attribute {missing[0]!r}", entity.at)
+    parts = {**parts, _MERGE_KEY: _NOT_EVALUATED}
+    _check_names(entity, parts)
+    for name, part in parts.items():
+        if part.is_required and name not in entity.attributes and name not in entity.nested:
+            raise EvaluationFails(f"<{entity.kind}> needs the attribute {name!r}", entity.at)
     return {
-        name: _typed_attribute(entity, name, value, names[name].partition(":")[2])
+        name: _typed_attribute(entity, name, value, parts[name].value)
         for name, value in entity.attributes.items()
     }
 
 
-def _typed_attribute(entity: _Entity, name: str, value: Any, kind: str) -> Any:
-    wanted = _TYPES[kind] if kind else str
+def _check_names(entity: _Entity, parts: _Parts) -> None:
+    """Compare the names in an entity with those that it may have. Raises EvaluationSignal."""
+    inner = [*entity.nested, *(action.kind for action in entity.actions)]
+    for name in [*inner, *entity.attributes]:
+        is_evaluated = name not in parts or parts[name].is_evaluated
+        # value-sep makes a list of the attribute value in XML; YAML has lists itself.
+        is_separator = name.endswith("-sep") and name.removesuffix("-sep") in parts
+        if not is_evaluated or (is_separator and (name not in parts or entity.is_yaml)):
+            raise Undetermined(f"{name} of <{entity.kind}> is not evaluated", entity.at)
+    elements = {name for name, part in parts.items() if part.holds == "elements"}
+    if "children" not in parts:
+        for name in inner:
+            if name not in elements:
+                hint = did_you_mean(name, elements)
+                raise EvaluationFails(f"<{entity.kind}> contains no <{name}>{hint}", entity.at)
+    for name in entity.attributes:
+        if name not in parts or parts[name].holds != "value":
+            message = f"<{entity.kind}> has no attribute {name!r}{did_you_mean(name, parts)}"
+            raise EvaluationFails(message, entity.place(name))
+
+
+def _typed_attribute(entity: _Entity, name: str, value: Any, wanted: type | None) -> Any:
+    """Return an attribute as a value of a type; None: any scalar. Raises EvaluationSignal."""
     if not entity.is_yaml:
         if wanted is str:
             return value
         return _typed_text(value, wanted, entity.place(name))
     if not _is_typed(value, wanted, entity.place(name)):
         what = f"{name} of {entity.kind} is {value!r}, which YAML reads as {type(value).__name__}"
-        todo = "put quotes around it" if wanted is str else f"write a {kind}"
-        raise EvaluationFails(f"{what}: {todo}", entity.place(name))
+        if wanted is str:
+            hint = "put quotes around it"
+        else:
+            hint = f"write a {wanted.__name__ if wanted is not None else 'any'}"
+        raise EvaluationFails(f"{what}: {hint}", entity.place(name))
     return value
 
 
@@ -424,43 +492,56 @@ def _add_elements(entity: _Entity, kwargs: dict[str, Value]) -> None:
     for name, inner in entity.nested.items():
         match name:
             case "param":
-                kwargs["parameters"] = [_parameter_of(it) for it in inner]
-            case "remap" | "arg":
-                pair = ("from", "to") if name == "remap" else ("name", "value")
-                given = [(it, _attributes_of(it, _NESTED[name])) for it in inner]
-                found = [
-                    tuple(_parse_value(values[key], it.place(key)) for key in pair)
-                    for it, values in given
-                ]
-                kwargs["remappings" if name == "remap" else "launch_arguments"] = found
+                kwargs["parameters"] = [_read_parameter(it) for it in inner]
+            case "remap":
+                kwargs["remappings"] = _read_pairs(inner, "from", "to")
+            case "arg":
+                kwargs["launch_arguments"] = _read_pairs(inner, "name", "value")
             case "choice":
-                kwargs["choices"] = [_attributes_of(it, _NESTED[name])["value"] for it in inner]
+                kwargs["choices"] = [_read_attributes(it, _NESTED[name])["value"] for it in inner]
 
 
-def _parameter_of(entity: _Entity) -> Value:
+def _read_pairs(elements: list[_Entity], *names: str) -> list[tuple[list[Value], ...]]:
+    """Return the values of two attributes of each element. Raises EvaluationSignal."""
+    given = [_read_attributes(element, _NESTED[element.kind]) for element in elements]
+    pairs = []
+    for element, attributes in zip(elements, given, strict=True):
+        values = [_parse_value(attributes[name], element.place(name)) for name in names]
+        pairs.append(tuple(values))
+    return pairs
+
+
+def _read_parameter(entity: _Entity) -> Value:
     """Return an item of the parameters of a node. Raises EvaluationSignal."""
-    given = _attributes_of(entity, _NESTED["param"])
+    given = _read_attributes(entity, _NESTED["param"])
     if ("from" in given) == ("name" in given):
         raise EvaluationFails("a <param> has either name or from", entity.at)
     if "from" in given:
         return _parse_value(str(given["from"]), entity.place("from"))
     parts = _parse_value(given["name"], entity.place("name"))
-    inner, kind = entity.nested.get("param"), given.get("type")
-    name: Value = parts[0] if len(parts) == 1 and isinstance(parts[0], str) else tuple(parts)
-    if inner:
-        if "value" in given or "type" in given:
-            raise EvaluationFails("a <param> has either a value or other <param> in it", entity.at)
-        tables = (_parameter_of(it) for it in inner)
-        return {
-            name: {
-                key: value
-                for table in tables
-                if isinstance(table, dict)
-                for key, value in table.items()
-            }
-        }
+    name: Value = tuple(parts)
+    if len(parts) == 1 and isinstance(parts[0], str):
+        name = parts[0]
+    inner = entity.nested.get("param")
+    if not inner:
+        return {name: _read_parameter_value(entity, given)}
+    if "value" in given or "type" in given:
+        raise EvaluationFails("a <param> has either a value or other <param> in it", entity.at)
+    table: dict[Any, Value] = {}
+    for element in inner:
+        values = _read_parameter(element)
+        if isinstance(values, dict):
+            table |= values
+    return {name: table}
+
+
+def _read_parameter_value(entity: _Entity, given: Mapping[str, Any]) -> Value:
+    """Return the value of a <param> as the ParameterValue that it is in Python. Raises
+    EvaluationSignal.
+    """
     if "value" not in given:
         raise EvaluationFails("a <param> needs a value", entity.at)
+    kind = given.get("type")
     if kind is not None and kind not in _VALUE_TYPES:
         raise EvaluationFails(
             f"a <param> has the type {kind!r}, which is none of {', '.join(_VALUE_TYPES)}",
@@ -468,17 +549,17 @@ def _parameter_of(entity: _Entity) -> Value:
         )
     if kind not in (None, "str", "yaml"):
         raise Undetermined(f"a <param> of the type {kind} is not evaluated", entity.at)
+    kwargs: dict[str, Value] = {}
     if "value-sep" in given:
-        return {
-            name: _checked_call(
-                Call(TYPED[0], [], {"value": _separated_values(entity, kind)}, entity.at)
-            )
-        }
-    value = entity.attributes["value"] if not entity.is_yaml and kind == "str" else given["value"]
-    kwargs: dict[str, Value] = {"value": _parse_if_text(value, entity.place("value"))}
+        kwargs["value"] = _separated_values(entity, kind)
+        return _checked_call(Call(TYPED[0], [], kwargs, entity.at))
+    value = given["value"]
+    if kind == "str" and not entity.is_yaml:
+        value = entity.attributes["value"]  # as it is written, where the other is a number
+    kwargs["value"] = _parse_if_text(value, entity.place("value"))
     if kind == "str":
         kwargs["value_type"] = Call("builtins.str", [], {}, entity.at)
-    return {name: _checked_call(Call(TYPED[0], [], kwargs, entity.at))}
+    return _checked_call(Call(TYPED[0], [], kwargs, entity.at))
 
 
 def _separated_values(entity: _Entity, kind: str | None) -> list[Value]:
@@ -647,20 +728,15 @@ class _ValueParser:
             if name in front_end("substitution"):
                 raise Undetermined(f"the substitution $({name} ...) is not evaluated", self.at)
             similar = closest(name, _SUBSTITUTIONS)
-            raise EvaluationFails(
-                (
-                    f"there is no substitution $({name} "
-                    f"...){f'; did you mean $({similar} ...)?' if similar else ''}"
-                ),
-                self.at,
-            )
-        names = _SUBSTITUTIONS[name].split()
-        if not len([it for it in names if it[0] != "["]) <= len(values) <= len(names):
+            hint = f"; did you mean $({similar} ...)?" if similar else ""
+            raise EvaluationFails(f"there is no substitution $({name} ...){hint}", self.at)
+        required, optional = _SUBSTITUTIONS[name]
+        names = [*required, *optional]
+        if not len(required) <= len(values) <= len(names):
             count = "1 argument" if len(names) == 1 else f"{len(names) or 'no'} arguments"
             raise EvaluationFails(f"$({name} ...) takes {count}", self.at)
-        plain = (
-            "".join(value) if all(isinstance(it, str) for it in value) else value
-            for value in values
-        )
-        kwargs: dict[str, Value] = dict(zip((it.strip("[]") for it in names), plain, strict=False))
+        kwargs: dict[str, Value] = {}
+        for argument, value in zip(names, values, strict=False):
+            texts = [part for part in value if isinstance(part, str)]
+            kwargs[argument] = "".join(texts) if len(texts) == len(value) else value
         return Call(front_end("substitution")[name], [], kwargs, self.at)

@@ -6,9 +6,9 @@ calls return.
 
 import posixpath
 import re
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from operator import attrgetter, methodcaller
+from operator import attrgetter
 from pathlib import PurePosixPath
 
 from grader.base.merge_conflicts import resolve_conflicts
@@ -25,14 +25,15 @@ from grader.ros.launch.api import (
     is_a,
 )
 from grader.ros.launch.call_arguments import LaunchFunctions, join_path, kind_of
+from grader.ros.launch.launch_cache import LaunchCache, MachineRecorder
 from grader.ros.launch.launch_model import (
     Contents,
     Context,
     FileText,
     Findings,
-    Installation,
     Launch,
     LaunchFault,
+    Machine,
     StartedNode,
     UnknownText,
 )
@@ -67,50 +68,8 @@ _MOVEIT = "moveit_configs_utils"
 _MAX_INCLUDES = 10
 # What a launch file shares with those that it includes.
 _JOINED = ("nodes", "references", "faults", "unknown", "doubts", "declared", "values", "passed")
-_MAX_KEPT = 4  # launch files
 
 
-class _Recorder:
-    """An installation that records what is asked of it. With the same answers, a launch file is
-    evaluated alike.
-    """
-
-    def __init__(self, installation: Installation) -> None:
-        self._installation = installation
-        self._answers: list[tuple[Callable[[Installation], object], object]] = []
-
-    def open_installed(self, path: str) -> tuple[bytes, str] | None:
-        """Return an installed file."""
-        found = self._installation.open_installed(path)
-        self._answers.append((methodcaller("open_installed", path), found))
-        return found
-
-    def has_package(self, name: str) -> bool:
-        """Return whether a package certainly is on the machine."""
-        found = self._installation.has_package(name)
-        self._answers.append((methodcaller("has_package", name), found))
-        return found
-
-    def files_in(self, folder: str) -> Sequence[str] | None:
-        """Return the names of the installed files in a folder."""
-        found = self._installation.files_in(folder)
-        self._answers.append((methodcaller("files_in", folder), found))
-        return found
-
-    def has_program(self, package: str, name: str) -> bool | None:
-        """Return whether a package has a program."""
-        found = self._installation.has_program(package, name)
-        self._answers.append((methodcaller("has_program", package, name), found))
-        return found
-
-    def is_equal(self, other: Installation) -> bool:
-        """Return whether another installation answers alike."""
-        return all(question(other) == answer for question, answer in self._answers)
-
-
-# The results of the last launch files: those of a handout are read again, and all while hints are
-# searched.
-_KEPT: dict[tuple[bytes, str, str, tuple[tuple[str, str], ...]], tuple[_Recorder, Launch]] = {}
 _NO_ARGUMENTS: Mapping[str, str] = {}
 
 
@@ -118,8 +77,9 @@ def read_launch(
     data: bytes,
     path: str,
     installed: str,
-    installation: Installation,
+    machine: Machine,
     arguments: Mapping[str, str] = _NO_ARGUMENTS,
+    cache: LaunchCache | None = None,
 ) -> Launch:
     """Read a launch file and evaluate it. Never raises.
 
@@ -127,21 +87,21 @@ def read_launch(
         data: The file's contents.
         path: Its path in the submission.
         installed: Its path below the prefix after a build.
-        installation: What is installed besides.
+        machine: What is installed besides.
         arguments: The launch arguments that it is given.
+        cache: The launch files that were read before.
     """
     key = (data, path, installed, tuple(arguments.items()))
-    if key in _KEPT and _KEPT[key][0].is_equal(installation):
-        return _KEPT[key][1]
-    recorder = _Recorder(installation)
+    kept = cache.find(key, machine) if cache is not None else None
+    if kept is not None:
+        return kept
+    recorder = MachineRecorder(machine)
     context = Context(
         f"{PREFIX}/{installed}", recorder, dict(arguments), given=frozenset(arguments)
     )
     launch = _LaunchReader().read(data, path, installed, context)
-    _KEPT.pop(key, None)
-    if len(_KEPT) >= _MAX_KEPT:
-        del _KEPT[next(iter(_KEPT))]
-    _KEPT[key] = (recorder, launch)
+    if cache is not None:
+        cache.keep(key, recorder, launch)
     return launch
 
 
@@ -180,7 +140,7 @@ class _LaunchReader:
         """Read an included file; return why it is not read, or nothing."""
         if target in self.open:
             return CIRCULAR_INCLUDE
-        found = context.installation.open_installed(target)
+        found = context.machine.open_installed(target)
         if found is None:
             return f"it includes {target}, which the submission does not install"
         if self.includes_left == 0:
@@ -434,7 +394,7 @@ class _PythonLaunchFile:
         name = known(call.argument(0, "package_name", "package"))
         if not isinstance(name, str):
             raise EvaluationFails("the name of a package is a string")
-        if not self.context.installation.has_package(name):
+        if not self.context.machine.has_package(name):
             evaluation.doubted(
                 Unknown(f"whether the package {name!r} is installed is not evaluated", call.at)
             )

@@ -60,7 +60,7 @@ def not_evaluated(reason: str) -> str:
     return reason if "evaluated" in reason else f"{reason}, which is not evaluated"
 
 
-class Installation(Protocol):
+class Machine(Protocol):
     """What is installed on the machine of a launch file: what builds of the submitted packages
     install, and ROS 2.
     """
@@ -90,7 +90,7 @@ class Context:
     """
 
     path: str
-    installation: Installation
+    machine: Machine
     arguments: dict[str, Resolved] = field(default_factory=dict)
     when: bool | None = True  # whether the file is launched at all
     # What SetRemap and SetParameter give to all nodes, by the configurations that launch_ros keeps
@@ -117,9 +117,7 @@ class Context:
         """
         if not path.startswith(f"{PREFIX}/"):
             return None
-        found = self.installation.open_installed(
-            posixpath.normpath(path).removeprefix(f"{PREFIX}/")
-        )
+        found = self.machine.open_installed(posixpath.normpath(path).removeprefix(f"{PREFIX}/"))
         if found is None:
             return None
         try:

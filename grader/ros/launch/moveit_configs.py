@@ -7,16 +7,16 @@ needs and that is not installed stops it.
 
 import posixpath
 import re
-import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache, partial
-from pathlib import Path, PurePosixPath
+from functools import partial
+from pathlib import PurePosixPath
 from typing import Any
 
 from grader.files.limits import SETUP_ASSISTANT
 from grader.ros.build.places import BY_MOVEIT, PREFIX, SHARE
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_value
+from grader.ros.known.known import moveit_launches
 from grader.ros.launch.api import DESCRIPTION
 from grader.ros.launch.launch_model import Contents, Context, FileText, UnknownTable, UnknownText
 from grader.ros.python.evaluation import Evaluation
@@ -103,25 +103,38 @@ _OF_YAML = {
 
 def moveit_exports() -> Mapping[str, Sequence[str]]:
     """Return the names of the modules of moveit_configs_utils."""
-    of_launch = ("DeclareLaunchArgument", "IfCondition", "LaunchConfiguration", "Node")
-    of_utils = (*of_launch, "UnlessCondition", "add_debuggable_node", "DeclareBooleanLaunchArg")
-    of_launches = (
-        *of_utils[:4],
-        *of_utils[5:],
-        "LaunchDescription",
-        "IncludeLaunchDescription",
-        "ParameterValue",
-    )
-    modules = ("launches", "launch_utils", "moveit_configs_builder", "substitutions")
+    of_both = ("DeclareLaunchArgument", "IfCondition", "LaunchConfiguration", "Node")
     return {
-        _PACKAGE: (*_OF_BUILDER, *modules),
+        _PACKAGE: (
+            *_OF_BUILDER,
+            "launches",
+            "launch_utils",
+            "moveit_configs_builder",
+            "substitutions",
+        ),
         f"{_PACKAGE}.moveit_configs_builder": (
             *_OF_BUILDER,
             "get_pattern_matches",
             "moveit_configs_utils_path",
         ),
-        f"{_PACKAGE}.launch_utils": of_utils,
-        _LAUNCHES: (*_launches(), *of_launches, "PythonLaunchDescriptionSource", "SRDF", "os"),
+        f"{_PACKAGE}.launch_utils": (
+            *of_both,
+            "UnlessCondition",
+            "add_debuggable_node",
+            "DeclareBooleanLaunchArg",
+        ),
+        _LAUNCHES: (
+            *moveit_launches(),
+            *of_both,
+            "add_debuggable_node",
+            "DeclareBooleanLaunchArg",
+            "LaunchDescription",
+            "IncludeLaunchDescription",
+            "ParameterValue",
+            "PythonLaunchDescriptionSource",
+            "SRDF",
+            "os",
+        ),
     }
 
 
@@ -163,7 +176,7 @@ class MoveItConfigurations:
             f"{_BUILDER}.to_dict": lambda evaluation, call: (
                 self._finish(evaluation, call).find("to_dict").run()
             ),
-            **{f"{_LAUNCHES}.{name}": partial(self._start, name) for name in _launches()},
+            **{f"{_LAUNCHES}.{name}": partial(self._start, name) for name in moveit_launches()},
         }
 
     def _build(self, evaluation: Evaluation, call: Call) -> Call:
@@ -175,7 +188,7 @@ class MoveItConfigurations:
             raise EvaluationFails("MoveItConfigsBuilder needs the name of the robot")
         package = known(given.get("package_name")) or f"{robot}_moveit_config"
         for name in (_PACKAGE, package):
-            if not self.context().installation.has_package(name):
+            if not self.context().machine.has_package(name):
                 evaluation.doubted(
                     Unknown(f"whether the package {name!r} is installed is not evaluated", call.at)
                 )
@@ -245,9 +258,7 @@ class MoveItConfigurations:
         """Return the names of the files that are installed in the folder config; None where this
         is not known.
         """
-        return self.context().installation.files_in(
-            f"{own.folder}/config".removeprefix(f"{PREFIX}/")
-        )
+        return self.context().machine.files_in(f"{own.folder}/config".removeprefix(f"{PREFIX}/"))
 
     def _is_there(self, path: str) -> bool:
         return self.context().text_of(path) is not None
@@ -260,7 +271,7 @@ class MoveItConfigurations:
     def _yaml(self, path: str, at: Position) -> Value:
         """Return the table in a file that has to be there."""
         self._read(path, at, BY_MOVEIT)
-        found = self.context().installation.open_installed(
+        found = self.context().machine.open_installed(
             posixpath.normpath(path).removeprefix(f"{PREFIX}/")
         )
         if found is None:
@@ -370,31 +381,27 @@ class MoveItConfigurations:
     def _controllers(
         self, own: _Configuration, at: Position, given: Mapping[str, Value]
     ) -> dict[str, Value]:
-        made: dict[str, Value] = {
-            "moveit_manage_controllers": given.get("moveit_manage_controllers", True)
-        }
+        manages = given.get("moveit_manage_controllers", True)
+        made: dict[str, Value] = {"moveit_manage_controllers": manages}
         if "file_path" in given:
             return made | _spread(self._yaml(self._path(own, given, ""), at))
         ending, names = "_controllers.yaml", self._names(own)
-        usual = [
-            it
-            for it in ("moveit", "moveit2", own.robot)
-            if self._is_there(f"{own.folder}/config/{it}{ending}")
-        ]
-        if names is None and not usual:
-            return made | _spread(
-                UnknownTable("the controllers that MoveIt finds are not evaluated", at)
-            )
-        found = [name.removesuffix(ending) for name in names or () if name.endswith(ending)]
-        if len(found) > 1 and not usual:
-            listed = ", ".join(sorted(name + ending for name in found))
+        for name in ("moveit", "moveit2", own.robot):
+            path = f"{own.folder}/config/{name}{ending}"
+            if self._is_there(path):
+                return made | _spread(self._yaml(path, at))
+        if names is None:
+            reason = "the controllers that MoveIt finds are not evaluated"
+            return made | _spread(UnknownTable(reason, at))
+        fitting = [name for name in names if name.endswith(ending)]
+        if not fitting:
+            return made
+        if len(fitting) > 1:
+            listed = ", ".join(sorted(fitting))
             raise EvaluationFails(
                 f"MoveIt cannot choose between {listed}: give trajectory_execution a file_path", at
             )
-        chosen = [*usual, *found][:1]
-        return made | (
-            _spread(self._yaml(f"{own.folder}/config/{chosen[0]}{ending}", at)) if chosen else {}
-        )
+        return made | _spread(self._yaml(f"{own.folder}/config/{fitting[0]}", at))
 
     def _sensors(
         self, own: _Configuration, at: Position, given: Mapping[str, Value]
@@ -417,29 +424,31 @@ class MoveItConfigurations:
 
     def _start(self, name: str, _: Evaluation, call: Call) -> Value:
         """Return the description that a function of moveit_configs_utils.launches makes."""
-        given, row = _named(call, ("moveit_config", "launch_package_path")), _launches()[name]
+        given = _named(call, ("moveit_config", "launch_package_path"))
         configs = given.get("moveit_config")
         if not isinstance(configs, Namespace):
             raise Undetermined("the configuration of MoveIt is not evaluated", call.at)
-        package, folder = str(configs.find("package_path")), given.get("launch_package_path")
-        make = _Actions(
-            call.at,
-            configs,
-            {"package": package, "folder": str(known(folder)) if folder else package},
-        )
+        package = str(configs.find("package_path"))
+        folder = given.get("launch_package_path")
+        folders = {"package": package, "folder": str(known(folder)) if folder else package}
+        make = _Actions(call.at, configs, folders)
+        launch = moveit_launches()[name]
         rows = [
-            it
-            for it in row["start"]
-            if not it.get("optional") or self._is_there(make.value(it["include"]))
+            row
+            for row in launch["start"]
+            if not row.get("optional") or self._is_there(make.value(row["include"]))
         ]
-        actions: list[Value] = [
-            make.argument(*pair, is_flag=True) for pair in row.get("flags", {}).items()
-        ]
-        actions += [
-            make.argument(*pair, is_flag=False) for pair in row.get("arguments", {}).items()
-        ]
-        for it in [*rows, *self._found_in(configs, name, call.at)]:
-            actions += [it] if isinstance(it, Unknown) else make.started(it)
+        rows += self._found_in(configs, name, call.at)
+        actions: list[Value] = []
+        for argument, default in launch.get("flags", {}).items():
+            actions.append(make.argument(argument, default, is_flag=True))
+        for argument, default in launch.get("arguments", {}).items():
+            actions.append(make.argument(argument, default, is_flag=False))
+        for row in rows:
+            if isinstance(row, Unknown):
+                actions.append(row)
+            else:
+                actions += make.started(row)
         return Call(DESCRIPTION, [], {"initial_entities": actions}, call.at)
 
     def _found_in(self, configs: Namespace, name: str, at: Position) -> Iterator[Any]:
@@ -523,12 +532,6 @@ def _as_dict(parts: Mapping[str, Value]) -> dict[str, Value]:
     return found
 
 
-@cache
-def _launches() -> Mapping[str, Any]:
-    """Return what each of MoveIt's launch functions starts."""
-    return tomllib.loads(Path(__file__).with_name("moveit_launches.toml").read_text("utf-8"))
-
-
 @dataclass(frozen=True, slots=True)
 class _Actions:
     """Makes the actions of a description from the rows of the table, as if they were written at
@@ -564,26 +567,24 @@ class _Actions:
         """Return the node or include of a row; two nodes if one has a debugger."""
         condition = self.when(row["if"]) if "if" in row else None
         if "include" in row:
-            return [
-                self.made(
-                    _INCLUDE,
-                    launch_description_source=self.value(row["include"]),
-                    condition=condition,
-                )
-            ]
+            source = self.value(row["include"])
+            return [self.made(_INCLUDE, launch_description_source=source, condition=condition)]
         package, _, executable = row["node"].partition("/")
-        parts = [self.configs.find(name) for name in row.get("parts", ())]
+        parameters: list[Value] = []
+        for name in row.get("parts", ()):
+            part = self.configs.find(name)
+            parameters.append(part.run() if isinstance(part, PlainFunction) else part)
         table = {name: self.value(value) for name, value in row.get("parameters", {}).items()}
-        given = [it.run() if isinstance(it, PlainFunction) else it for it in parts] + (
-            [table] if table else []
-        )
+        if table:
+            parameters.append(table)
+        parameters += map(self.value, row.get("files", ()))
         node = partial(
             self.made,
             _NODE,
             package=package,
             executable=executable,
             arguments=[*map(self.value, row.get("arguments", ()))],
-            parameters=[*given, *map(self.value, row.get("files", ()))],
+            parameters=parameters,
             remappings=[*map(tuple, row.get("remappings", ()))],
         )
         if not row.get("debug"):
@@ -610,8 +611,8 @@ def _controllers_in(table: Mapping[str, Value], at: Position) -> list[Value]:
 def _virtual_joints(text: str) -> Iterator[list[str]]:
     """Yield the arguments of the publishers of the virtual joints in an SRDF."""
     for joint in re.findall(r"<virtual_joint\b[^>]*>", re.sub(r"(?s)<!--.*?-->", "", text)):
-        found = (
-            re.search(rf"\b{name}=[\"']([^\"']*)", joint) for name in ("parent_frame", "child_link")
-        )
-        parent, child = (it[1] if it is not None else "" for it in found)
-        yield ["--frame-id", parent, "--child-frame-id", child]
+        parent = re.search(r"\bparent_frame=[\"']([^\"']*)", joint)
+        child = re.search(r"\bchild_link=[\"']([^\"']*)", joint)
+        frame = parent[1] if parent is not None else ""
+        link = child[1] if child is not None else ""
+        yield ["--frame-id", frame, "--child-frame-id", link]

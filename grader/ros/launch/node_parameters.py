@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 from grader.base.source import Location
 from grader.ros.build.places import PREFIX
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_value
+from grader.ros.known.known import is_written_in_cpp, spawner_options
 from grader.ros.launch.call_arguments import FILE, SCALARS, TYPED, items_in, kind_of, type_of
 from grader.ros.launch.launch_model import (
     Contents,
@@ -53,28 +54,6 @@ _FALSE = frozenset(["N", "n", "no", "No", "NO", "false", "False", "FALSE", "off"
 _INTEGER = re.compile(r"([+-]?)(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
 _FLOAT = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 _SPECIAL = {".nan": nan, ".inf": inf, "+.inf": inf, "-.inf": -inf}
-# Packages of ROS 2 whose nodes are all written in C++.
-_IN_CPP = re.compile(
-    r"robot_state_publisher|controller_manager|rviz2|slam_toolbox|robot_localization|ros_gz_(bridge|sim|image)"
-    r"|nav2_(?!simple_commander).*|moveit_(ros_)?(move_group|servo|task_constructor.*)|tf2_ros|twist_mux|topic_tools"
-)
-# The options of the spawner of ros2_control (Jazzy) that a value follows; the others are switches.
-_OF_SPAWNER = frozenset(
-    {
-        "-c",
-        "--controller-manager",
-        "-p",
-        "--param-file",
-        "-n",
-        "--namespace",
-        "--controller-manager-timeout",
-        "--switch-timeout",
-        "--service-call-timeout",
-        "--controller-ros-args",
-        "-t",
-        "--controller-type",
-    }
-)
 _PARAM_FILES = ("-p", "--param-file")
 
 
@@ -449,7 +428,7 @@ def parameters_of(
     is_cpp: bool | None = None
     if is_python is not None:
         is_cpp = not is_python
-    elif _IN_CPP.fullmatch(node.package) is not None:
+    elif is_written_in_cpp(node.package):
         is_cpp = True
     by_key: dict[str, dict[str, ParameterValue]] = {}
     reasons = []
@@ -637,10 +616,11 @@ def controllers_of(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
     ]
     names: list[str] = []
     given: dict[str, list[str]] = {}
+    options = spawner_options()
     rest = iter(known)
     for word in rest:
         option, is_joined, value = word.partition("=")
-        if option in _OF_SPAWNER:
+        if option in options:
             given.setdefault(option, []).append(value if is_joined else next(rest, ""))
         elif not word.startswith("-"):
             names.append(word)

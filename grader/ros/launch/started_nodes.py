@@ -1,24 +1,21 @@
 """The nodes that a launch file starts, as launch_ros does: their names, and the files that they are
 given.
 
-These files are the robot and the configuration of RViz. `known_launch_files.toml` lists the nodes
-that launch files of well-known packages start, which submissions include but do not contain.
+These files are the robot and the configuration of RViz. `ros/known/launch_files.toml` lists the
+nodes that launch files of well-known packages start, which submissions include but do not contain.
 """
 
 import posixpath
 import re
 import shlex
-import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import cache
-from pathlib import Path
 from typing import Any
 
 from grader.ros.build.places import PREFIX, ROS, SHARE
+from grader.ros.known.known import is_on_every_machine, started_by_launch_files
 from grader.ros.launch.call_arguments import OPENED, TYPED, items_in
-from grader.ros.launch.known_programs import is_part_of_ros
 from grader.ros.launch.launch_model import (
     NAMESPACE,
     STATE_PUBLISHER,
@@ -442,7 +439,7 @@ def _tables_in(parameters: Value) -> Iterator[dict[Any, Value]]:
 
 def is_of_ros(package: str) -> bool:
     """Return whether a package is on every machine that runs ROS 2 in a lab."""
-    return is_part_of_ros(package) or package in _started_by()
+    return is_on_every_machine(package) or package in started_by_launch_files()
 
 
 def start_known_file(findings: Findings, path: str, call: Call, context: Context) -> bool:
@@ -451,7 +448,9 @@ def start_known_file(findings: Findings, path: str, call: Call, context: Context
     """
     prefix, _, name = path.rpartition("/share/")
     package, _, file = name.partition("/launch/")
-    nodes = _started_by().get(package, {}).get(file) if prefix.startswith((PREFIX, ROS)) else None
+    if not prefix.startswith((PREFIX, ROS)):
+        return False
+    nodes = started_by_launch_files().get(package, {}).get(file)
     if nodes is None:
         return False
     above = context.arguments.get(NAMESPACE, "")
@@ -490,13 +489,3 @@ def _refer_known_files(findings: Findings, call: Call, context: Context, *, is_s
         findings.refer("rviz", None, call, wrong=message)
     elif is_shown:
         findings.refer("rviz", opened, call)
-
-
-@cache
-def _started_by() -> Mapping[str, Mapping[str, Sequence[str]]]:
-    """Return the nodes that the launch files of well-known packages start, by package and name of
-    the file.
-    """
-    text = Path(__file__).with_name("known_launch_files.toml").read_text("utf-8")
-    table: dict[str, dict[str, list[str]]] = tomllib.loads(text)
-    return table

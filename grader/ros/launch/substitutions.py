@@ -12,7 +12,7 @@ from math import isclose
 from grader.base.text import enumerated
 from grader.ros.build.places import HOME, PREFIX, SHARE
 from grader.ros.config.yaml_nodes import yaml_value
-from grader.ros.launch.known_programs import is_part_of_ros, programs_of
+from grader.ros.known.known import is_on_every_machine, programs_of
 from grader.ros.launch.launch_model import ANY, Contents, Context, FileText, Resolved
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.builtins import BUILTINS, MATH
@@ -195,7 +195,7 @@ class _Substitution:
         package = self.argument("package")
         if isinstance(package, Unknown):
             return package
-        if not isinstance(package, str) or not self.context.installation.has_package(package):
+        if not isinstance(package, str) or not self.context.machine.has_package(package):
             shown = repr(package) if isinstance(package, str) else "that is read from a file"
             raise Undetermined(
                 f"whether the package {shown} is installed is not evaluated", self.call.at
@@ -292,9 +292,9 @@ def check_program(package: str, name: str, context: Context, at: Position) -> No
     """Raise EvaluationFails if a package certainly has no such program, Undetermined if this is not
     known.
     """
-    if not context.installation.has_package(package):
+    if not context.machine.has_package(package):
         raise Undetermined(f"whether the package {package!r} is installed is not evaluated", at)
-    is_there = context.installation.has_program(package, name)
+    is_there = context.machine.has_program(package, name)
     if is_there is None:
         raise Undetermined(f"whether {package!r} has the program {name!r} is not evaluated", at)
     if not is_there:
@@ -302,7 +302,7 @@ def check_program(package: str, name: str, context: Context, at: Position) -> No
         where = (
             f" in lib/{package}: see console_scripts of setup.py, and install_scripts of setup.cfg"
         )
-        known = f"; it has {others}" if is_part_of_ros(package) else where
+        known = f"; it has {others}" if is_on_every_machine(package) else where
         raise EvaluationFails(f"the package {package!r} has no program {name!r}{known}", at)
 
 

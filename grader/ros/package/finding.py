@@ -1,15 +1,14 @@
 """The packages in a file tree, and the files kept of earlier work among them."""
 
-import posixpath
 import re
 from collections.abc import Sequence
-from pathlib import PurePosixPath
 
 from grader.base.errors import InputError
 from grader.base.names import closest, folded
 from grader.base.source import Location, Source
 from grader.files.tree import Tree
 from grader.ros.build.manifest import Manifest, read_manifest
+from grader.ros.launch.launch_cache import LaunchCache
 from grader.ros.package.package import CMAKE, MANIFEST, SETUP, Package
 
 # The files that hide a folder, with all that is below, from colcon.
@@ -72,7 +71,11 @@ def find_packages(tree: Tree, names: Sequence[str]) -> list[str]:
 
 
 def read_packages(
-    tree: Tree, urdf: str, name: str = "", names: tuple[str, ...] = ()
+    tree: Tree,
+    urdf: str,
+    name: str = "",
+    names: tuple[str, ...] = (),
+    launch_cache: LaunchCache | None = None,
 ) -> tuple[Package, ...]:
     """Return the packages in a file tree, the one that matches best first.
 
@@ -85,11 +88,27 @@ def read_packages(
         urdf: The path of the URDF in the package.
         name: The name that the package should have.
         names: The names of all packages, if there are several.
+        launch_cache: The launch files that were read for the same lab.
     """
     known: dict[str, Package] = {}
+    cache = launch_cache if launch_cache is not None else LaunchCache()
     wanted = names or (name,)
     folders = find_packages(tree, wanted)
-    packages = [_read_package(tree, folder, folders, known, name, names) for folder in folders]
+    packages = []
+    for folder in folders:
+        files = _own_files(tree, folder, folders)
+        package = Package(
+            folder,
+            files,
+            _read_manifest(files, f"{folder}/{MANIFEST}" if folder else MANIFEST),
+            known,
+            generated=tree.generated,
+            lab_name=name,
+            lab_packages=names,
+            ignored_by=_find_marker(tree, folder),
+            launch_cache=cache,
+        )
+        packages.append(package)
     packages.sort(
         key=lambda it: (
             min(name_distance(it, one) for one in wanted),
@@ -137,35 +156,41 @@ def name_distance(package: Package, name: str) -> int:
     return _OTHER
 
 
-def _read_package(
-    tree: Tree,
-    folder: str,
-    folders: Sequence[str],
-    known: dict[str, Package],
-    name: str,
-    names: tuple[str, ...],
-) -> Package:
-    own = tree.below(folder)
+def _own_files(tree: Tree, folder: str, folders: Sequence[str]) -> Tree:
+    """Return the files of a package without those of packages in it. A stray package.xml makes
+    none.
+    """
+    files = tree.below(folder)
     prefix = f"{folder}/" if folder else ""
-    nested = (it.removeprefix(prefix) for it in folders if it.startswith(prefix) and it != folder)
-    inner = tuple(
-        f"{it}/"
-        for it in nested
-        if not own.files.keys().isdisjoint((f"{it}/{SETUP}", f"{it}/{CMAKE}"))
-    )
-    if inner:  # what is in a package in this one is that package's; a stray package.xml makes none
-        own = own.only(lambda path: not path.startswith(inner))
-    path = f"{folder}/{MANIFEST}" if folder else MANIFEST
-    start = Location(path, 1, 1)
-    manifest = None
+    inner = []
+    for other in folders:
+        path = other.removeprefix(prefix)
+        is_inside = other.startswith(prefix) and other != folder
+        if is_inside and (f"{path}/{SETUP}" in files.files or f"{path}/{CMAKE}" in files.files):
+            inner.append(f"{path}/")
+    if not inner:
+        return files
+    return files.only(lambda path: not path.startswith(tuple(inner)))
+
+
+def _read_manifest(files: Tree, path: str) -> Manifest | None:
+    """Return the package.xml among the files of a package, by its path in the submission."""
+    if MANIFEST not in files.files:
+        return None
     try:
-        if MANIFEST in own.files:
-            manifest = read_manifest(own.files[MANIFEST].read(_MAX_MANIFEST_SIZE), path)
+        return read_manifest(files.files[MANIFEST].read(_MAX_MANIFEST_SIZE), path)
     except InputError as error:
-        manifest = Manifest(Source(path, ""), None, "", (), start, start, unread=str(error))
-    above = [folder, *map(str, PurePosixPath(folder).parents)] if folder else [""]
-    markers = (
-        posixpath.normpath(f"{path}/{marker}").lstrip("/") for path in above for marker in _IGNORING
-    )
-    ignored_by = next((path for path in markers if path in tree.files), "")
-    return Package(folder, own, manifest, known, tree.generated, name, names, ignored_by)
+        start = Location(path, 1, 1)
+        return Manifest(Source(path, ""), None, "", (), start, start, unread=str(error))
+
+
+def _find_marker(tree: Tree, folder: str) -> str:
+    """Return the path of the nearest file for which colcon ignores a folder; empty without one."""
+    while True:
+        for marker in _IGNORING:
+            path = f"{folder}/{marker}" if folder else marker
+            if path in tree.files:
+                return path
+        if not folder:
+            return ""
+        folder = folder.rpartition("/")[0]

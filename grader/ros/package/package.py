@@ -21,6 +21,7 @@ from grader.ros.build.places import (
     is_launch_named,
     launch_stem,
 )
+from grader.ros.launch.launch_cache import LaunchCache
 from grader.ros.python.budget import PYTHON_LIMIT, Budget
 
 # The readers are imported when they are needed: a URDF on its own needs none of them.
@@ -37,20 +38,6 @@ RESOURCE_INDEX = "share/ament_index/resource_index/packages/"
 NO_PACKAGE = "the submission has no ROS 2 package: there is no package.xml"
 _RVIZ_LIMIT = 512 * 1024  # bytes
 _MAX_LAUNCHES = 10
-# What ros2 launch imports: an installed folder of this name is found before it, on the PYTHONPATH
-# of a workspace.
-_OF_ROS_IN_PYTHON = (
-    "launch",
-    "launch_ros",
-    "launch_xml",
-    "launch_yaml",
-    "rclpy",
-    "ament_index_python",
-    "ros2launch",
-    "ros2cli",
-    "osrf_pycommon",
-    "yaml",
-)
 # What a file of a kind is called in messages, and how its name ends.
 _KINDS = {
     "urdf": ("URDF", (".urdf", ".xacro")),
@@ -86,7 +73,10 @@ class Package:
     lab_name: str = ""  # the name that the lab gives it
     lab_packages: tuple[str, ...] = ()  # the names of all packages of the lab, if there are several
     ignored_by: str = ""  # the path of a file for which colcon ignores it
+    launch_cache: LaunchCache = field(default_factory=LaunchCache)
     arguments: "Mapping[str, str]" = field(default_factory=dict)  # that its launch files are given
+    # The package without other launch arguments: what a build installs does not depend on them.
+    _original: "Package | None" = None
     budget: Budget = field(default_factory=Budget, init=False)  # of the evaluation of its files
     _launches: "dict[str, Launch]" = field(default_factory=dict, init=False)
     _rviz_files: "dict[str, RvizFile]" = field(default_factory=dict, init=False)
@@ -105,11 +95,7 @@ class Package:
         """Return the package with its launch files under these arguments; the rest is not read
         again.
         """
-        found = replace(self, arguments=arguments)
-        found.__dict__.update(
-            (name, value) for name, value in vars(self).items() if name not in vars(found)
-        )
-        return found
+        return replace(self, arguments=arguments, _original=self._original or self)
 
     @property
     def name(self) -> str:
@@ -193,6 +179,8 @@ class Package:
     @cached_property
     def installation(self) -> "Installation | None":
         """Return what its setup.py or CMakeLists.txt installs; None without either."""
+        if self._original is not None:
+            return self._original.installation
         name = CMAKE if self.is_cmake else SETUP
         file = self.tree.files.get(name)
         if file is None:
@@ -222,6 +210,8 @@ class Package:
     @cached_property
     def installed(self) -> dict[str, str]:
         """Each installed file's path in the package, by its path below the prefix."""
+        if self._original is not None:
+            return self._original.installed
         if self.installation is not None:
             return self.installation.installed()
         return {}
@@ -231,11 +221,11 @@ class Package:
         """The name of a Python package that a build installs and that ros2 launch imports in place
         of its own.
         """
-        if self.installation is not None and not self.installation.unknown:
-            packages = self.installation.packages
-        else:
-            packages = ()
-        return next((name for name in packages if name in _OF_ROS_IN_PYTHON), "")
+        from grader.ros.known.known import is_imported_by_launch  # late: a URDF needs no table
+
+        if self.installation is None or self.installation.unknown:
+            return ""
+        return next(filter(is_imported_by_launch, self.installation.packages), "")
 
     @cached_property
     def launch_files(self) -> tuple[str, ...]:
@@ -333,7 +323,7 @@ class Package:
                 (it for it, source in self.installed.items() if source == path),
                 f"share/{self.name}/{path}",
             )
-            launch = read_launch(data, own, installed, self, self.arguments)
+            launch = read_launch(data, own, installed, self, self.arguments, self.launch_cache)
         except InputError as error:
             launch = Launch(Source(own, ""), unread=str(error))
         if text is None:
@@ -418,9 +408,7 @@ class Package:
         """Return whether a package has a program, as far as its setup.py tells; one that is not
         known has it.
         """
-        from grader.ros.launch.known_programs import (
-            lacks_program,  # late: as the readers of launch files
-        )
+        from grader.ros.known.known import lacks_program  # late: as the readers of launch files
 
         owner = self.find(package)
         if owner is None:

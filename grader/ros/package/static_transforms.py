@@ -28,7 +28,7 @@ _BY_POSITION = {  # the words without options: with yaw, pitch and roll, or with
 _NORM_TOLERANCE = 10e-3  # of a quaternion; tf2 ignores others
 
 
-class _Frame(NamedTuple):
+class _StaticFrame(NamedTuple):
     """A frame that a launch file places. It is `open`, for a reason, where it is not known whether
     and where.
     """
@@ -87,7 +87,7 @@ def with_transforms(
     return robot
 
 
-def _with_frame(robot: Robot, frame: _Frame) -> Robot:
+def _with_frame(robot: Robot, frame: _StaticFrame) -> Robot:
     if not frame.child or frame.parent == frame.child:
         return robot  # the publisher ends with an error
     part = {"origin": UnresolvedPart(frame.open, frame.location)} if frame.open else {}
@@ -123,7 +123,7 @@ def _with_frame(robot: Robot, frame: _Frame) -> Robot:
     return replace(robot, joints=tuple(both if it is before else it for it in robot.joints))
 
 
-def _frame_of(node: StartedNode, source_of: Callable[[str], Source | None]) -> _Frame | None:
+def _frame_of(node: StartedNode, source_of: Callable[[str], Source | None]) -> _StaticFrame | None:
     """Return the frame that a static_transform_publisher publishes, its child empty for none; None
     if it is unknown.
     """
@@ -137,9 +137,11 @@ def _frame_of(node: StartedNode, source_of: Callable[[str], Source | None]) -> _
     if None in words or node.when is None:
         what = "whether it is published" if node.when is None else "its place"
         reason = f"{what} is known only at run time ({at.path}, line {at.line})"
-        return _Frame(names[0], names[1], None, location, f"the frame {names[1]!r}: {reason}")
+        return _StaticFrame(names[0], names[1], None, location, f"the frame {names[1]!r}: {reason}")
     origin = _origin_of({name: text or "" for name, text in options.items()}, location)
-    return _Frame(names[0], names[1] if names[0] and origin is not None else "", origin, location)
+    return _StaticFrame(
+        names[0], names[1] if names[0] and origin is not None else "", origin, location
+    )
 
 
 def _words_of(node: StartedNode) -> tuple[str | None, ...]:

@@ -34,7 +34,7 @@ _Place = Location | LazyLocation
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Entry:
+class TreeEntry:
     """An entry of a tree: an element, attribute, key or row, with its text, what it contains, and
     its place.
 
@@ -43,7 +43,7 @@ class Entry:
 
     name: str
     text: str | None  # None for tables and lists
-    find_children: "Callable[[], list[Entry]]"
+    find_children: "Callable[[], list[TreeEntry]]"
     find_place: Callable[[], _Place]
     is_xml: bool
     is_quoted: bool = False  # a text of YAML that is no number and no boolean
@@ -51,7 +51,7 @@ class Entry:
     element: Element | None = None  # what it was made of, if it is an element
 
     @property
-    def children(self) -> "list[Entry]":
+    def children(self) -> "list[TreeEntry]":
         """The entries in it: of a list its rows."""
         return self.find_children()
 
@@ -61,7 +61,7 @@ class Entry:
         return self.find_place()
 
 
-class Step(NamedTuple):
+class PathStep(NamedTuple):
     """A step of a path: a name, and values that the entry contains, by their paths in it."""
 
     name: str
@@ -73,7 +73,7 @@ def is_path(text: str) -> bool:
     return all(_STEP.fullmatch(part) for part in re.split(r"[./](?![^\[]*\])", text))
 
 
-def steps_of(path: str, *, is_xml: bool) -> list[Step]:
+def steps_of(path: str, *, is_xml: bool) -> list[PathStep]:
     """Return the steps of a path; an empty path, or a dot, is the entry itself."""
     parts = re.split(r"/(?![^\[]*\])" if is_xml else r"\.(?![^\[]*\])", path)
     found = []
@@ -83,7 +83,7 @@ def steps_of(path: str, *, is_xml: bool) -> list[Step]:
             conditions = (
                 (key, one or two or three) for key, one, two, three in _CONDITION.findall(match[2])
             )
-            found.append(Step(match[1], tuple(conditions)))
+            found.append(PathStep(match[1], tuple(conditions)))
     return found
 
 
@@ -95,7 +95,7 @@ class Search:
     def __init__(self) -> None:
         self._budget = Budget(_MAX_LOOKED_AT)
 
-    def find(self, entry: Entry, steps: Sequence[Step]) -> list[Entry]:
+    def find(self, entry: TreeEntry, steps: Sequence[PathStep]) -> list[TreeEntry]:
         """Return the entries at a path in an entry, in the order of the file. Raises NotDecided for
         too many.
         """
@@ -104,7 +104,7 @@ class Search:
         except OutOfBudget:
             raise NotDecided("the file has too many entries to look through") from None
 
-    def fits(self, entry: Entry, step: Step) -> bool:
+    def fits(self, entry: TreeEntry, step: PathStep) -> bool:
         """Return whether an entry contains the values of a step."""
         for key, value in step.conditions:
             found = self.find(entry, steps_of(key, is_xml=entry.is_xml))
@@ -115,7 +115,7 @@ class Search:
                 return False
         return True
 
-    def _find(self, entry: Entry, steps: Sequence[Step]) -> Iterator[Entry]:
+    def _find(self, entry: TreeEntry, steps: Sequence[PathStep]) -> Iterator[TreeEntry]:
         children = entry.children if steps else []
         self._budget.charge(1 + len(children))
         if not steps:
@@ -130,7 +130,9 @@ class Search:
                     [it for it in children if it.name == name], steps[count - 1 :]
                 )
 
-    def _find_below(self, named: Sequence[Entry], steps: Sequence[Step]) -> Iterator[Entry]:
+    def _find_below(
+        self, named: Sequence[TreeEntry], steps: Sequence[PathStep]
+    ) -> Iterator[TreeEntry]:
         """Yield the entries at the other steps in those that the first step names."""
         for entry in named:
             rows = entry.children if entry.is_list and steps[0].conditions else [entry]
@@ -138,9 +140,9 @@ class Search:
                 yield from self._find(row, steps[1:])
 
 
-def xml_entry(element: Element, locate: Callable[[Element, str | None], _Place]) -> Entry:
+def xml_entry(element: Element, locate: Callable[[Element, str | None], _Place]) -> TreeEntry:
     """Return the entry of an element; `locate` returns its place, or that of an attribute of it."""
-    return Entry(
+    return TreeEntry(
         name_of(element),
         text_in(element),
         partial(_children_of, element, locate),
@@ -150,17 +152,19 @@ def xml_entry(element: Element, locate: Callable[[Element, str | None], _Place])
     )
 
 
-def _children_of(element: Element, locate: Callable[[Element, str | None], _Place]) -> list[Entry]:
+def _children_of(
+    element: Element, locate: Callable[[Element, str | None], _Place]
+) -> list[TreeEntry]:
     attributes = [
-        Entry(f"@{name}", value, list, partial(locate, element, name), is_xml=True)
+        TreeEntry(f"@{name}", value, list, partial(locate, element, name), is_xml=True)
         for name, value in attributes_of(element)
     ]
     return [*attributes, *(xml_entry(child, locate) for child in element.iterchildren("*"))]
 
 
-def _yaml_entry(node: "YamlNode", name: str = "") -> Entry:
+def _yaml_entry(node: "YamlNode", name: str = "") -> TreeEntry:
     """Return the entry of a node of YAML."""
-    return Entry(
+    return TreeEntry(
         name,
         node.text,
         partial(_entries_of, node),
@@ -171,7 +175,7 @@ def _yaml_entry(node: "YamlNode", name: str = "") -> Entry:
     )
 
 
-def _entries_of(node: "YamlNode") -> list[Entry]:
+def _entries_of(node: "YamlNode") -> list[TreeEntry]:
     match node.value:
         case list(rows):
             return [_yaml_entry(row) for row in rows]
@@ -180,7 +184,7 @@ def _entries_of(node: "YamlNode") -> list[Entry]:
     return []
 
 
-def read_tree(package: Package, file: str) -> Entry:
+def read_tree(package: Package, file: str) -> TreeEntry:
     """Return the tree of a file of a package, which is found by the end of its path.
 
     Raises MissingElement for a file that is not there or is broken, NotDecided for one that cannot
@@ -220,6 +224,6 @@ def read_tree(package: Package, file: str) -> Entry:
         ) from None
 
 
-def _read_xml(data: bytes, path: str) -> Entry:
+def _read_xml(data: bytes, path: str) -> TreeEntry:
     file = XmlFile(data, Source(path, data.decode("utf-8", "replace")))
     return xml_entry(file.root, file.location)

@@ -10,11 +10,12 @@ from itertools import pairwise
 from grader.base.names import did_you_mean
 from grader.base.source import Source
 from grader.files.limits import ignored_part
-from grader.ros.build.cmake.cmake_values import ROOT, Text, Values, known_words
+from grader.ros.build.cmake.cmake_values import ROOT, Text, Values
 from grader.ros.build.cmake.language import Command
 from grader.ros.build.file_search import EmptyGlob, PackageListing
 from grader.ros.build.installation import Installation, InstalledFile, InstallError
 from grader.ros.build.places import PREFIX
+from grader.ros.known.known import cmake_words
 from grader.ros.python.parse import START, Position
 from grader.ros.python.values import Undetermined, Unknown
 
@@ -173,7 +174,7 @@ class Build:
     def _require_sources(self, sources: Sequence[str], command: Command) -> None:
         for source in sources:
             path = self.inside(source) or ""
-            is_file = source not in known_words("target_keywords") and posixpath.splitext(path)[1]
+            is_file = source not in cmake_words("target_keywords") and posixpath.splitext(path)[1]
             if is_file and self._has(path) is False:
                 self._stop_missing(command, path)
 
@@ -321,7 +322,7 @@ class Build:
                 unknown or Unknown(f"install({kind} ...) is not evaluated", command.at)
             )
             return
-        groups = _groups(words, known_words("install_keywords"))
+        groups = _groups(words, cmake_words("install_keywords"))
         if kind == "TARGETS":
             self._install_targets(groups, command)
             return

@@ -14,14 +14,13 @@ from grader.ros.build.cmake.cmake_values import (
     Text,
     Values,
     joined,
-    known_table,
-    known_words,
     split_list,
 )
 from grader.ros.build.cmake.conditions import Condition
 from grader.ros.build.cmake.language import CMakeFault, Command, parse_cmake
 from grader.ros.build.file_search import PackageListing
 from grader.ros.build.installation import Installation
+from grader.ros.known.known import cmake_table, cmake_words
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.parse import START, Position, SyntaxFault, location_in
 from grader.ros.python.values import Unknown
@@ -73,7 +72,7 @@ class _Evaluation:
                 BUILD_COMMANDS[command.name](self.build, command)
             elif command.name in self.own:
                 self._call(command)
-            elif command.name in known_words("harmless"):
+            elif command.name in cmake_words("harmless"):
                 self._forget_outputs(command)
             else:
                 self.build.give_up(f"{command.name}() is not evaluated", command.at)
@@ -84,8 +83,8 @@ class _Evaluation:
         if command.name == "message" and texts[:1] in (["FATAL_ERROR"], ["SEND_ERROR"]):
             words = " ".join(text for text in texts[1:] if isinstance(text, str))
             self.build.stop(f"CMakeLists.txt stops with the message {words!r}", command.at)
-        self.values.is_opaque |= command.name in known_words("opaque")
-        index = int(known_table("outputs").get(command.name, len(texts)))
+        self.values.is_opaque |= command.name in cmake_words("opaque")
+        index = int(cmake_table("outputs").get(command.name, len(texts)))
         names = texts if index < 0 else texts[index : index + 1]
         self.values.forget(names, f"the result of {command.name}() is not evaluated", command.at)
 
@@ -234,9 +233,9 @@ class _Evaluation:
         name = self.values.first(command)
         if name == "GNUInstallDirs":
             self.values.variables |= {
-                key: str(value) for key, value in known_table("install_dirs").items()
+                key: str(value) for key, value in cmake_table("install_dirs").items()
             }
-        elif name not in known_words("modules"):
+        elif name not in cmake_words("modules"):
             self.build.give_up("include() is not evaluated", command.at)
 
     def find_package(self, command: Command) -> None:

@@ -1,13 +1,11 @@
 """The variables of a CMakeLists.txt, and the texts that its arguments stand for."""
 
 import re
-import tomllib
-from collections.abc import Iterable, Mapping, Sequence
-from functools import cache
-from pathlib import Path
+from collections.abc import Iterable, Sequence
 
 from grader.ros.build.cmake.language import Argument, Command
 from grader.ros.build.places import PREFIX
+from grader.ros.known.known import cmake_table, cmake_words
 from grader.ros.python.budget import Budget
 from grader.ros.python.library import PACKAGE_FOLDER
 from grader.ros.python.parse import Position
@@ -27,32 +25,13 @@ _SEPARATOR = re.compile(r"(?<!\\);")
 _MAX_TEXT = 64 * 1024  # characters of a value
 
 
-@cache
-def known_words(key: str) -> frozenset[str]:
-    """Return the words that are known of CMake, by their key in known.toml."""
-    return frozenset(str(_known()[key]).split())
-
-
-@cache
-def known_table(key: str) -> Mapping[str, str | int]:
-    """Return a table that is known of CMake, by its key in known.toml."""
-    table = _known()[key]
-    assert isinstance(table, dict)
-    return table
-
-
-@cache
-def _known() -> Mapping[str, object]:
-    return tomllib.loads(Path(__file__).with_name("known.toml").read_text("utf-8"))
-
-
 class Values:
     """The variables of a file while it is evaluated."""
 
     def __init__(self, budget: Budget) -> None:
         self.budget = budget
         self.variables: dict[str, Text] = {
-            name: str(value) for name, value in known_table("variables").items()
+            name: str(value) for name, value in cmake_table("variables").items()
         }
         self.variables |= _FOLDERS
         self.packages: set[str] = set()  # that were found, in lower case
@@ -112,7 +91,7 @@ class Values:
         if name in self.variables:
             return self.variables[name]
         of_packages = (f"{package}_" for package in self.packages)
-        is_foreign = name.lower().startswith((*known_words("foreign"), *of_packages))
+        is_foreign = name.lower().startswith((*cmake_words("foreign"), *of_packages))
         if self.is_opaque or is_foreign:
             return Unknown(f"the value of {name} is not known", at)
         return ""

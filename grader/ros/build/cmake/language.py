@@ -91,10 +91,12 @@ def _opened(commands: list[Command], start: int, depth: int) -> tuple[Command, i
         raise CMakeFault("the blocks are too deeply nested to read", first.at, sure=False)
     body, index = _block(commands, start + 1, end, depth + 1)
     others: list[Command] = []
-    while index < len(commands) and commands[index].name in ("elseif", "else") and end == "endif":
-        other = commands[index]
+    while index < len(commands):
+        command = commands[index]
+        if end != "endif" or command.name not in ("elseif", "else"):
+            break
         part, index = _block(commands, index + 1, end, depth + 1)
-        others.append(other._replace(body=part))
+        others.append(command._replace(body=part))
     if index >= len(commands) or commands[index].name != end:
         raise CMakeFault(f"{first.name}() has no {end}()", first.at)
     return first._replace(body=body, others=tuple(others)), index
