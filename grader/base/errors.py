@@ -75,9 +75,9 @@ class RubricError(GraderError):
     """A rubric that cannot be used. `complaints` has one line for each mistake in it.
 
     >>> import grader
-    >>> grader.load_rubric("lab7")
+    >>> grader.load_rubric("lab66")
     Traceback (most recent call last):
-    grader.base.errors.RubricError: there is no rubric 'lab7'; did you mean 'lab6'? ...
+    grader.base.errors.RubricError: there is no rubric 'lab66'; did you mean 'lab6'? ...
     """
 
     def __init__(self, complaints: tuple[str, ...]) -> None:

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from grader.base.errors import InputError, MissingElement, NotDecided
 from grader.base.text import capitalised, printable
 from grader.lab.authoring.element_facts import element_facts
-from grader.lab.authoring.facts import Carried, Fact, Omission, Solution, robot_facts
+from grader.lab.authoring.facts import CarriedFact, Fact, Omission, Solution, robot_facts
 from grader.lab.authoring.package_facts import (
     measure_facts,
     name_facts,
@@ -183,7 +183,7 @@ def _tried(subjects: _Subjects, fact: Fact) -> _DraftCriterion | Omission:
     return Omission(fact.words, reasons[0])
 
 
-def _holds(subjects: _Subjects, fact: Fact, carried: Carried) -> bool:
+def _holds(subjects: _Subjects, fact: Fact, carried: CarriedFact) -> bool:
     """Return whether the reference passes what counts instead of a fact."""
     try:
         instead = fact._replace(check=carried.check, arguments=carried.arguments)

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 from math import isfinite
 from typing import Any
 
-from grader.lab.authoring.facts import Carried, Fact, Facts, Omission, Solution, are_joints_free
+from grader.lab.authoring.facts import CarriedFact, Fact, Facts, Omission, Solution, are_joints_free
 from grader.ros.build.places import is_of_one_machine
 from grader.ros.package.robot_file import Read, read_as_ros
 from grader.ros.package.trees import is_path
@@ -102,13 +102,13 @@ def _by_links(fact: Fact, selectors: Mapping[str, str]) -> Fact:
 
 def _carried_from_names(
     fact: Fact, joints: Collection[str], links: Collection[str]
-) -> Iterator[Carried]:
+) -> Iterator[CarriedFact]:
     """Yield what counts instead of a fact if names of joints or links are wrong."""
     without_links = _weakened(fact.arguments, links)
     weaker = _weakened(without_links, joints)
     if weaker != fact.arguments:
         of_joints = ("joints_named", "controllers names_agree") if weaker != without_links else ()
-        yield Carried((*of_joints, "frames names_agree"), fact.check, weaker)
+        yield CarriedFact((*of_joints, "frames names_agree"), fact.check, weaker)
 
 
 def _root_without_launch_files(solution: Solution) -> Element | None:
@@ -125,17 +125,17 @@ def _root_without_launch_files(solution: Solution) -> Element | None:
 
 def _carried_from_launch(
     fact: Fact, other: Mapping[str, Any] | None, causes: tuple[str, ...]
-) -> list[Carried]:
+) -> list[CarriedFact]:
     """Return what counts instead of a fact if launch files give xacro no arguments: what stays true
     without them.
     """
     if other == fact.arguments:
         return []
     if other is None:
-        return [Carried(causes, "urdf_loads")]
+        return [CarriedFact(causes, "urdf_loads")]
     values, others = fact.arguments.get("values", {}), other.get("values", {})
     same = {key: value for key, value in values.items() if others.get(key) == value}
-    return [Carried(causes, fact.check, _entry(fact.arguments["at"], same))]
+    return [CarriedFact(causes, fact.check, _entry(fact.arguments["at"], same))]
 
 
 def _weakened(arguments: Mapping[str, Any], names: Collection[str]) -> Mapping[str, Any]:

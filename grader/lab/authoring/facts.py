@@ -51,7 +51,7 @@ class Solution(NamedTuple):
         return self.reading.root
 
 
-class Carried(NamedTuple):
+class CarriedFact(NamedTuple):
     """For mistakes of which other facts, by their words, a fact costs nothing if a check passes."""
 
     causes: tuple[str, ...]
@@ -68,7 +68,7 @@ class Fact(NamedTuple):
     words: str  # of the id
     # what it is about: the name of a package, empty for the main one; None for the robot
     package: str | None = None
-    carried: "tuple[Carried, ...]" = ()
+    carried: "tuple[CarriedFact, ...]" = ()
     otherwise: "Sequence[Fact]" = ()  # tried in its place if the reference does not pass it
     title: str = ""  # default: what the check says
     args: Mapping[str, str | bool] = {}  # launch arguments
@@ -208,7 +208,7 @@ def _body_facts(link: Link) -> Facts:
         yield from shapes
     elif shapes:
         known = [
-            Carried(_shown(link.name), it.check, it.arguments)
+            CarriedFact(_shown(link.name), it.check, it.arguments)
             for it in shapes
             if only and it.check == "collides_as"
         ]
@@ -255,7 +255,7 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
         link, "frame_at", relative_to=parent, xyz=xyz, **({"rpy": rpy} if any(rpy) else {})
     )
     yield frame._replace(title=title)
-    of_type = Carried(
+    of_type = CarriedFact(
         (f"{link} held_by",), "frame_at", frame.arguments
     )  # a joint of another type has no such range
     if joint.limit is not None and joint.type in ("revolute", "prismatic"):
@@ -283,7 +283,9 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
             title=title
         )
         in_own_frame = {"link": link, "relative_to": link, "direction": _rounded(own, 2)}
-        yield axis._replace(carried=(Carried((f"{link} frame_at",), "joint_axis", in_own_frame),))
+        yield axis._replace(
+            carried=(CarriedFact((f"{link} frame_at",), "joint_axis", in_own_frame),)
+        )
 
 
 def _range_fact(joint: Joint, limit: Limit) -> Fact:
@@ -315,7 +317,9 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
     rooted = _robot_fact("root_of_tree", link=root, holds=next(fixed, root))
     yield rooted
     # A wrong type of a joint is the mistake of another criterion.
-    of_types = Carried(_words_of_joints(joints, "held_by mimics"), rooted.check, rooted.arguments)
+    of_types = CarriedFact(
+        _words_of_joints(joints, "held_by mimics"), rooted.check, rooted.arguments
+    )
     moving = [joint for joint in joints if joint.type != "fixed"]
     kinds = Counter(joint.type for joint in moving)
     numbers = {"moving": sum(joint.mimic is None for joint in moving)}
@@ -328,7 +332,7 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
         title = f"{enumerated(list(map(repr, tips)))} {verb} as in the reference solution"
         known = _words_of_joints(joints, "frame_at joint_axis mimics")
         motion = _robot_fact("kinematics_match_reference", links=tips, match="order")
-        carried = (Carried(known, "counts", numbers), of_types)
+        carried = (CarriedFact(known, "counts", numbers), of_types)
         yield motion._replace(title=title, carried=carried)
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import counted, enumerated
-from grader.lab.authoring.facts import Carried, Fact, Facts, Omission, Solution
+from grader.lab.authoring.facts import CarriedFact, Fact, Facts, Omission, Solution
 from grader.lab.checks.parameters import measures
 from grader.lab.rubric.toml_file import toml_literal
 from grader.lab.submission.submission import Submission
@@ -133,7 +133,7 @@ def measure_facts(solution: Solution) -> Iterator[Fact]:
             of = enumerated([repr(link) for link in fitting])
             fact = _parameter_fact(node, name, measure=measure, links=[*fitting])
             known = [f"{link} {check}" for link in fitting for check in _MEASURING]
-            same = Carried(
+            same = CarriedFact(
                 (*known, _MOTION), "parameter_is", {"node": node, "parameter": name, "value": value}
             )
             title = f"the parameter {name} of {node} is the {measure} of {of} in the robot"
@@ -168,7 +168,7 @@ def _parameter_fact(node: str, name: str, **arguments: Any) -> Fact:
     node.
     """
     where_given = {"node": node, "parameter": name, **arguments, "where_given": True}
-    carried = (Carried(_OF_PARAMETERS, "parameter_is", where_given),)
+    carried = (CarriedFact(_OF_PARAMETERS, "parameter_is", where_given),)
     fact = _package_fact("parameter_is", f"{node} {name}", node=node, parameter=name, **arguments)
     return fact._replace(about=_THE_NAMES, carried=carried)
 
@@ -198,7 +198,7 @@ def name_facts(submission: Submission) -> Facts:
     if submission.package is None:
         return
     found = read_agreement(submission.workspace)
-    unbuilt = Carried(_builds(submission), "package_found", {"name": submission.package.name})
+    unbuilt = CarriedFact(_builds(submission), "package_found", {"name": submission.package.name})
     for family in (it for it in FAMILIES if it in found.families):
         fact = _package_fact("names_agree", family, of=family)
         carried = (unbuilt,) if family in _OF_BUILDS else ()
@@ -248,7 +248,7 @@ def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[F
                 yield _package_fact(
                     "build_installs", name, kind=kind, name=name, despite_errors=True
                 )
-    with_named = (Carried(("files names_agree",), "package_found", {"name": package.name}),)
+    with_named = (CarriedFact(("files names_agree",), "package_found", {"name": package.name}),)
     for pattern in _patterns_of_others(package, installed):
         fact = _package_fact("installs_files", pattern, files=[pattern], despite_errors=True)
         yield fact._replace(carried=with_named)
@@ -279,7 +279,7 @@ def _launch_facts(
     for words in words_of_launches(submission):
         if words.split(" ")[-2] in included:
             causes.append(words)
-    found = Carried(tuple(causes), "launch_found", {"name": name})
+    found = CarriedFact(tuple(causes), "launch_found", {"name": name})
     after = found._replace(causes=(*causes, f"{prefix}{name} node_runs"))
     nodes = _nodes_that_start(launch)
     if nodes:

@@ -16,7 +16,7 @@ LARGE = 3.0  # metres: no part of a robot for a desk is as large
 _SAME = 1e-6
 
 
-class _Mistake(NamedTuple):
+class _NumberMistake(NamedTuple):
     """What a person does to numbers: the units, the size from which it is likely, how to undo it,
     and the cause.
     """
@@ -29,15 +29,17 @@ class _Mistake(NamedTuple):
 
 _LENGTHS, _ANGLES, _ANY = ("m",), ("rad", "rad or m"), ()
 _MISTAKES = (
-    _Mistake(_ANY, 0.0, lambda value: -value, "the sign of {}"),
-    _Mistake(_ANGLES, 6.3, radians, "the unit of {}: degrees, not radians"),
-    _Mistake(
+    _NumberMistake(_ANY, 0.0, lambda value: -value, "the sign of {}"),
+    _NumberMistake(_ANGLES, 6.3, radians, "the unit of {}: degrees, not radians"),
+    _NumberMistake(
         _LENGTHS, LARGE, lambda value: value / 1000, "the unit of {}: millimetres, not metres"
     ),
-    _Mistake(_LENGTHS, LARGE, lambda value: value / 100, "the unit of {}: centimetres, not metres"),
-    _Mistake(("1",), 1.1, lambda value: value / 255, "the range of {}: 0..255, not 0..1"),
-    _Mistake(_LENGTHS, 0.0, lambda value: value / 2, "{}: twice the correct value"),
-    _Mistake(_LENGTHS, 0.0, lambda value: value * 2, "{}: half of the correct value"),
+    _NumberMistake(
+        _LENGTHS, LARGE, lambda value: value / 100, "the unit of {}: centimetres, not metres"
+    ),
+    _NumberMistake(("1",), 1.1, lambda value: value / 255, "the range of {}: 0..255, not 0..1"),
+    _NumberMistake(_LENGTHS, 0.0, lambda value: value / 2, "{}: twice the correct value"),
+    _NumberMistake(_LENGTHS, 0.0, lambda value: value * 2, "{}: half of the correct value"),
 )
 
 

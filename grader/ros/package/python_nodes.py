@@ -282,7 +282,7 @@ def _calls_of(nodes: Sequence[ast.AST]) -> list[ast.Call]:
     return sorted((it for it in nodes if isinstance(it, ast.Call)), key=offset_of)
 
 
-class _Part(NamedTuple):
+class _ModulePart(NamedTuple):
     """A function or method, or the module without these: its calls, its scope and the place of
     its class.
     """
@@ -306,7 +306,7 @@ class _Module:
         self.doubts: list[_Doubt] = []
         self._classes: dict[Location, str] = {}
         self._facts: dict[Location, list[_Fact]] = {}  # of each node
-        self._parts: list[_Part] = []
+        self._parts: list[_ModulePart] = []
         body = own_nodes(code.tree)
         scope = self._constants.bound(body, Scope({}))
         for part in body:
@@ -315,12 +315,12 @@ class _Module:
                 and part.name in scope.names
             ):
                 scope.names[part.name] = QualifiedName(f"{name}.{part.name}")
-        self._parts.append(_Part("", _calls_of(body), scope))
+        self._parts.append(_ModulePart("", _calls_of(body), scope))
         for part in body:
             if isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef):
                 inner = [*ast.walk(part)]
                 self._parts.append(
-                    _Part(
+                    _ModulePart(
                         part.name, _calls_of(inner), self._constants.bound(inner, Scope({}, scope))
                     )
                 )
@@ -350,7 +350,7 @@ class _Module:
                 attributes.names[name] = (
                     value if is_first else Unknown("it is not bound once", START)
                 )
-            self._parts.append(_Part(method.name, _calls_of(nodes), local, at))
+            self._parts.append(_ModulePart(method.name, _calls_of(nodes), local, at))
 
     def read_nodes(self, kinds: Collection[str]) -> list[PythonNode]:
         """Return the nodes, once the full names of all classes of nodes are known."""
@@ -399,14 +399,14 @@ class _Module:
             if part.name == function and part.of is None:
                 yield from ((self._called(part, call), self._at(call)) for call in part.calls)
 
-    def _called(self, part: _Part, call: ast.Call) -> str:
+    def _called(self, part: _ModulePart, call: ast.Call) -> str:
         first, dot, rest = dotted(call.func).partition(".")
         found = constant_in(part.scope, first)
         if isinstance(found, QualifiedName):
             return f"{found.name}{dot}{rest}"
         return ""
 
-    def _argument(self, part: _Part, call: ast.Call, position: int, name: str) -> Value:
+    def _argument(self, part: _ModulePart, call: ast.Call, position: int, name: str) -> Value:
         """Return an argument of a call; None where it is missing, Unknown where * or ** may give
         it.
         """
@@ -418,7 +418,7 @@ class _Module:
             return Unknown("it is unpacked", position_of(call))
         return self._constants.value_of(given[0] if given else None, part.scope)
 
-    def _receiver(self, part: _Part, node: ast.expr) -> Location | None:
+    def _receiver(self, part: _ModulePart, node: ast.expr) -> Location | None:
         """Return the place of the node that an expression is; None where that is not known."""
         name = dotted(node)
         if name == "self":
@@ -432,7 +432,7 @@ class _Module:
             at = None
         return at if at in self._facts else None
 
-    def _read_call(self, part: _Part, call: ast.Call) -> None:
+    def _read_call(self, part: _ModulePart, call: ast.Call) -> None:
         """Add what a call declares or opens to the facts of its node."""
         match call.func:
             case ast.Attribute(value=owner, attr="__init__") if (
@@ -457,7 +457,7 @@ class _Module:
                     elif at is not None and name not in _HARMLESS:
                         self._facts[at].append(_Doubt(f"{name} is given the node", self._at(call)))
 
-    def _action_client(self, part: _Part, call: ast.Call) -> Endpoint:
+    def _action_client(self, part: _ModulePart, call: ast.Call) -> Endpoint:
         made = self._argument(part, call, 1, "action_type")
         name = _text(self._argument(part, call, 2, "action_name"))
         return Endpoint(
@@ -467,7 +467,7 @@ class _Module:
             self._at(call),
         )
 
-    def _read_init(self, part: _Part, call: ast.Call, owner: ast.expr) -> "Iterator[_Fact]":
+    def _read_init(self, part: _ModulePart, call: ast.Call, owner: ast.expr) -> "Iterator[_Fact]":
         """Yield the name that a class gives its node, if its base is rclpy's Node itself."""
         assert part.of is not None
         is_super = isinstance(owner, ast.Call) and dotted(owner.func) == "super"
@@ -480,7 +480,7 @@ class _Module:
                 if keyword.arg in _OPTIONS:
                     yield _Doubt(f"{keyword.arg or 'more arguments'} of its Node", self._at(call))
 
-    def _read_method(self, part: _Part, call: ast.Call, method: str) -> "Iterator[_Fact]":
+    def _read_method(self, part: _ModulePart, call: ast.Call, method: str) -> "Iterator[_Fact]":
         """Yield what a method of a node declares, opens or reads."""
         at, argument = self._at(call), partial(self._argument, part, call)
         if method in _KINDS:
