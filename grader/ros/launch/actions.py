@@ -4,7 +4,7 @@
 includes, arguments, timers, events.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from grader.ros.build.places import PREFIX
@@ -235,26 +235,32 @@ def _condition_holds(given: Value, context: Context, at: Position) -> bool:
     return condition_holds(given, context)
 
 
+def _texts_in(value: Value) -> Sequence[Value]:
+    """Return the items of a list, or the keys and values of a dict. Raises Undetermined."""
+    if not isinstance(value, dict):
+        return items_in(value) or ()
+    texts: list[Value] = []
+    for pair in value.items():
+        texts += pair
+    return texts
+
+
 def _evaluate_field(value: Value, test: str, context: Context, at: Position) -> None:
     """Evaluate an argument of an action, which has the check `test`. Raises EvaluationSignal."""
     match test:
         case "text":
             resolve(value, context, at)
         case "texts" | "mapping":
-            pairs: Iterable[tuple[object, ...]]
-            if isinstance(value, dict):
-                pairs = value.items()
-            else:
-                pairs = ((item,) for item in items_in(value) or ())
-            for item in (item for pair in pairs for item in pair):
+            for item in _texts_in(value):
                 resolve(item, context, at)
         case "bool" if not isinstance(value, bool):
             boolean(known_text(value, context, at), at)
         case "parameters":
             evaluate_parameters(value, context, at)
         case "remappings":
-            for name in (name for rule in items_in(value) or () for name in items_in(rule) or ()):
-                resolve(name, context, at)
+            for rule in items_in(value) or ():
+                for name in items_in(rule) or ():
+                    resolve(name, context, at)
 
 
 def _visit_description(

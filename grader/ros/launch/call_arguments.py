@@ -195,29 +195,32 @@ def check(cls: LaunchClass, call: Call) -> Unknown | None:
 
 def _name_arguments(cls: LaunchClass, call: Call) -> None:
     """Give the arguments of a constructor their names. Raises EvaluationFails as Python does."""
-    positional = [name for name, it in cls.parameters.items() if it.is_positional]
+    positional = [name for name, row in cls.parameters.items() if row.is_positional]
     if len(call.args) > len(positional):
-        names = ", ".join(f"{name}=..." for name in cls.parameters if name not in positional)
-        hint = "put [ ] around them" if cls.short in _OF_ONE_LIST else f"write {names[:100]}"
+        if cls.short in _OF_ONE_LIST:
+            hint = "put [ ] around them"
+        else:
+            names = ", ".join(f"{name}=..." for name in cls.parameters if name not in positional)
+            hint = f"write {names[:100]}"
         raise EvaluationFails(
             f"{cls.short} takes {len(positional)} argument without a name: {hint}", call.at
         )
     given = dict(zip(positional, call.args, strict=False))
-    if twice := given.keys() & call.kwargs.keys():
+    twice = given.keys() & call.kwargs.keys()
+    if twice:
         raise EvaluationFails(f"{cls.short} is given {min(twice)!r} twice", call.at)
-    for name in (name for name in call.kwargs if name not in cls.parameters):
-        message = f"{cls.short} has no argument {name!r}{did_you_mean(name, cls.parameters)}"
-        raise EvaluationFails(message, call.at)
-    kwargs = {**given, **call.kwargs}.items()
-    call.args = []
-    call.kwargs = {
-        name: list(iterate(value)) if isinstance(value, Items) else value for name, value in kwargs
-    }
-    missing = [
-        name for name, it in cls.parameters.items() if it.is_required and name not in call.kwargs
-    ]
-    if missing:
-        raise EvaluationFails(f"{cls.short} needs the argument {missing[0]}=...", call.at)
+    for name in call.kwargs:
+        if name not in cls.parameters:
+            message = f"{cls.short} has no argument {name!r}{did_you_mean(name, cls.parameters)}"
+            raise EvaluationFails(message, call.at)
+    given |= call.kwargs
+    for name, value in given.items():
+        if isinstance(value, Items):
+            given[name] = list(iterate(value))
+    call.args, call.kwargs = [], given
+    for name, row in cls.parameters.items():
+        if row.is_required and name not in given:
+            raise EvaluationFails(f"{cls.short} needs the argument {name}=...", call.at)
 
 
 def _wrong_argument(cls: LaunchClass, call: Call, name: str, value: Value) -> str:

@@ -10,6 +10,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from operator import attrgetter
 from pathlib import PurePosixPath
+from typing import Any
 
 from grader.base.merge_conflicts import resolve_conflicts
 from grader.base.source import Location, Source
@@ -328,41 +329,45 @@ class _PythonLaunchFile:
             self.context = before
 
     def _functions(self) -> FunctionTable:
-        adds = [f"{DESCRIPTION}.{name}" for name in ("add_action", "add_entity")]
-        classes = {full for names in exports().values() for full in names.values() if full}
-        performs = [f"{full}.perform" for full in sorted(classes) if is_a(full, SUBSTITUTION)]
-        return LaunchFunctions(
-            {
-                **standard_functions(WORKING_FOLDER),
-                **self.moveit,
-                **dict.fromkeys(_RECORDED, record),
-                **dict.fromkeys(adds, _add_action),
-                **dict.fromkeys((f"{it}.__truediv__" for it in (JOINED_PATH, PATH)), join_path),
-                **dict.fromkeys(performs, self._perform),
-                **dict.fromkeys(
-                    (f"{it}.get_package_share_directory" for it in _AMENT_INDEX), self._share
-                ),
-                **dict.fromkeys(
-                    (f"{it}.get_package_share_path" for it in _AMENT_INDEX), self._share_path
-                ),
-                "launch_ros.substitutions.find_package.FindPackageShare.find": self._share,
-                "builtins.open": self._open,
-                **dict.fromkeys(("pathlib.Path.read_text", "pathlib.Path.open"), self._open_path),
-                **dict.fromkeys(
-                    ("os.path.exists", "os.path.isfile", "pathlib.Path.exists"), self._exists
-                ),
-                **dict.fromkeys(
-                    ("xacro.process_file", "xacro.process", "xacro.parse"), self._xacro
-                ),
-                **dict.fromkeys(("builtins.open.read", *_TEXTS), self._text),
-                **dict.fromkeys(
-                    ("os.environ.__getitem__", "os.environ.get", "os.getenv"), _read_variable
-                ),
-                "os.path.join": _join_paths,
-                "os.path.expanduser": _expand_user,
-                "pathlib.Path.home": lambda *_: PurePosixPath(HOME),
-            }
-        )
+        functions: dict[str, Any] = {
+            **standard_functions(WORKING_FOLDER),
+            **self.moveit,
+            **dict.fromkeys(_RECORDED, record),
+            f"{DESCRIPTION}.add_action": _add_action,
+            f"{DESCRIPTION}.add_entity": _add_action,
+            f"{JOINED_PATH}.__truediv__": join_path,
+            f"{PATH}.__truediv__": join_path,
+        }
+        classes: set[str] = set()
+        for names in exports().values():
+            classes.update(names.values())
+        for full in classes:
+            if is_a(full, SUBSTITUTION):
+                functions[f"{full}.perform"] = self._perform
+        for module in _AMENT_INDEX:
+            functions[f"{module}.get_package_share_directory"] = self._share
+            functions[f"{module}.get_package_share_path"] = self._share_path
+        functions |= {
+            "launch_ros.substitutions.find_package.FindPackageShare.find": self._share,
+            "builtins.open": self._open,
+            "builtins.open.read": self._text,
+            "pathlib.Path.read_text": self._open_path,
+            "pathlib.Path.open": self._open_path,
+            "pathlib.Path.exists": self._exists,
+            "pathlib.Path.home": lambda *_: PurePosixPath(HOME),
+            "os.path.exists": self._exists,
+            "os.path.isfile": self._exists,
+            "os.path.join": _join_paths,
+            "os.path.expanduser": _expand_user,
+            "os.environ.__getitem__": _read_variable,
+            "os.environ.get": _read_variable,
+            "os.getenv": _read_variable,
+            "xacro.process_file": self._xacro,
+            "xacro.process": self._xacro,
+            "xacro.parse": self._xacro,
+            **dict.fromkeys(_TEXTS, self._text),
+        }
+        return LaunchFunctions(functions)
 
     def _perform(self, _: Evaluation, call: Call) -> Value:
         """Return the text of a substitution as Python gets it."""

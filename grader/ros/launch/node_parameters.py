@@ -440,20 +440,20 @@ def parameters_of(
         except Undetermined as error:
             reasons.append(str(error))
             doubt = Unknown(str(error), START)
-            by_key = {
-                key: {own: it._replace(value=doubt) for own, it in table.items()}
-                for key, table in by_key.items()
-            }
+            for table in by_key.values():
+                table.update({it: row._replace(value=doubt) for it, row in table.items()})
             continue
         for key, values in tables:
-            opened = {
-                name: it.value for name, it in values.items() if isinstance(it.value, UnknownTable)
-            }
-            reasons += [table.reason for table in opened.values()]
+            known: dict[str, ParameterValue] = {}
+            opened: dict[str, Unknown] = {}
+            for parameter, row in values.items():
+                if isinstance(row.value, UnknownTable):
+                    opened[parameter] = row.value
+                else:
+                    known[parameter] = row
+            reasons += [unknown.reason for unknown in opened.values()]
             _forget_below(opened, by_key)
-            by_key.setdefault(key, {}).update(
-                (name, it) for name, it in values.items() if name not in opened
-            )
+            by_key.setdefault(key, {}).update(known)
     return NodeParameters(_counting(by_key, full, is_cpp), "; ".join(dict.fromkeys(reasons)))
 
 

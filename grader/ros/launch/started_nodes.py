@@ -109,18 +109,19 @@ def _with_names(node: StartedNode, call: Call, context: Context, findings: Findi
     the robot itself.
     """
     words = _words_of(call.kwargs.get("arguments"), context, call.at)
-    own = words[words.index("--ros-args") + 1 :] if "--ros-args" in words else []
-    own += _words_of(call.kwargs.get("ros_arguments"), context, call.at)
-    rules = remap_rules(own)
-    is_given = any(
-        "robot_description" in table for table in _tables_in(call.kwargs.get("parameters"))
-    )
-    has_description = is_given or (
-        bool(words) and not words[0].startswith("-") and node.executable != _RVIZ
-    )
-    parameters = given_parameters(call, own, context, node.location)
-    for path in (it.path for it in parameters if it.path):
-        findings.refer("parameters", path, call)
+    ros_words: list[str] = []
+    if "--ros-args" in words:
+        ros_words = words[words.index("--ros-args") + 1 :]
+    ros_words += _words_of(call.kwargs.get("ros_arguments"), context, call.at)
+    rules = remap_rules(ros_words)
+    # robot_state_publisher still reads a URDF whose path is its first argument.
+    has_description = bool(words) and not words[0].startswith("-") and node.executable != _RVIZ
+    for table in _tables_in(call.kwargs.get("parameters")):
+        has_description |= "robot_description" in table
+    parameters = given_parameters(call, ros_words, context, node.location)
+    for given in parameters:
+        if given.path:
+            findings.refer("parameters", given.path, call)
     node = replace(
         node,
         has_description=has_description,
@@ -129,7 +130,7 @@ def _with_names(node: StartedNode, call: Call, context: Context, findings: Findi
         parameters=parameters,
         included_by=context.included_by,
     )
-    return _with_remaps(node, rules, [*words, *own], call, context)
+    return _with_remaps(node, rules, [*words, *ros_words], call, context)
 
 
 def _with_remaps(
@@ -142,21 +143,22 @@ def _with_remaps(
     """Return a node with its namespace and remappings; `rules` are those among the words of its
     command line.
     """
+    remaps: list[tuple[str, ...] | None] = [(name, to) for name, _, to in rules]
+    remaps += context.to_all.get(REMAPS, ())
     try:
-        namespace: str | None = namespace_below(
-            call.kwargs.get("namespace") or "", context, call.at
-        )
-        given = [
-            tuple(known_text(it, context, call.at) for it in rule)
-            for rule in call.kwargs.get("remappings") or ()
-        ]
+        below = call.kwargs.get("namespace") or ""
+        namespace: str | None = namespace_below(below, context, call.at)
+        for rule in call.kwargs.get("remappings") or ():
+            remaps.append(tuple(known_text(name, context, call.at) for name in rule))
     except EvaluationSignal:
         return replace(node, namespace=None, remaps=None)
-    namespace = next((value for name, _, value in rules if name == "__ns"), namespace)
-    remaps = (*((name, to) for name, _, to in rules), *context.to_all.get(REMAPS, ()), *given)
-    is_known = None not in remaps and not any(PART_UNKNOWN in word for word in words)
+    for name, _, value in reversed(rules):
+        if name == "__ns":  # the first rule counts
+            namespace = value
     known = tuple(rule for rule in remaps if rule is not None)
-    return replace(node, namespace=namespace, remaps=known if is_known else None)
+    if len(known) < len(remaps) or any(PART_UNKNOWN in word for word in words):
+        return replace(node, namespace=namespace, remaps=None)
+    return replace(node, namespace=namespace, remaps=known)
 
 
 def _given_name(rules: Iterable[tuple[str, str, str]], call: Call, context: Context) -> str | None:
@@ -285,19 +287,12 @@ def _find_description(findings: Findings, call: Call, context: Context) -> None:
     """Add the file that robot_state_publisher gets the robot from."""
     given = call.kwargs.get("parameters") or []
     parameters = given if isinstance(given, list | tuple) else [given]
-    descriptions = [
-        table["robot_description"]
-        for table in _tables_in(parameters)
-        if "robot_description" in table
-    ]
-    if descriptions:
-        _refer_description(findings, descriptions[-1], call, context)
+    tables = [table for table in _tables_in(parameters) if "robot_description" in table]
+    if tables:
+        _refer_description(findings, tables[-1]["robot_description"], call, context)
         return
     unknown = next((it for it in parameters if isinstance(it, Unknown)), None)
-    is_clear = all(
-        isinstance(it, dict) and not any(isinstance(own, dict) for own in it.values())
-        for it in parameters
-    )
+    is_clear = all(map(_is_flat, parameters))
     words = _words_of(call.kwargs.get("arguments"), context, call.at)
     end = words.index("--ros-args") if "--ros-args" in words else len(words)
     files = [word for word in words[:end] if not word.startswith("-")]
@@ -312,6 +307,13 @@ def _find_description(findings: Findings, call: Call, context: Context) -> None:
             "robot_state_publisher is started without robot_description: it has no robot to publish"
         )
         findings.refer("urdf", None, call, wrong=message)
+
+
+def _is_flat(parameter: Value) -> bool:
+    """Return whether parameters are a dict that contains no other."""
+    if not isinstance(parameter, dict):
+        return False
+    return not any(isinstance(value, dict) for value in parameter.values())
 
 
 def _refer_description(findings: Findings, value: Value, call: Call, context: Context) -> None:

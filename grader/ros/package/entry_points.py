@@ -126,23 +126,26 @@ def _lacks_module(package: Package, module: str) -> bool:
     """
     top, stem = module.partition(".")[0], module.replace(".", "/")
     tree = package.tree
-    names = {path: path.rpartition("/")[2] for path in (*tree.files, *tree.folders, *tree.unseen)}
+    paths = dict.fromkeys((*tree.files, *tree.folders, *tree.unseen))
     homes = [
-        path for path, name in names.items() if name == top and not path.startswith("resource/")
+        path
+        for path in paths
+        if path.rpartition("/")[2] == top and not path.startswith("resource/")
     ]
     if not homes:  # no other package of ROS 2 installs a Python package of this name
-        return top == package.name and not any(
-            name.startswith((f"{top}.py", f"{top}.so")) for name in names.values()
-        )
+        single = (f"{top}.py", f"{top}.so")
+        is_single = any(path.rpartition("/")[2].startswith(single) for path in paths)
+        return top == package.name and not is_single
     if homes != [top] or any(
-        path == stem or path.startswith((f"{stem}.", f"{stem}/")) for path in names
+        path == stem or path.startswith((f"{stem}.", f"{stem}/")) for path in paths
     ):
         return False
-    inits = [
-        path for path in tree.files if path.endswith("/__init__.py") and stem.startswith(path[:-11])
-    ]
-    codes = [read_module(package, path) for path in inits]
-    return all(code is not None and _certain_names(code) is not None for code in codes)
+    for path in tree.files:
+        if path.endswith("/__init__.py") and stem.startswith(path.removesuffix("__init__.py")):
+            code = read_module(package, path)
+            if code is None or _certain_names(code) is None:
+                return False
+    return True
 
 
 def _missing_module(package: Package, entry: _EntryPoint) -> EntryFault:

@@ -246,16 +246,12 @@ class Package:
         of that name.
         """
         shares = [f"/{folder}/{self.name}/" for folder in ("build", "install", "share")]
-        copied = (path for path in self.generated if any(share in f"/{path}" for share in shares))
         endings = (f"/{name}",) if name else _KINDS[kind][1]
-        return next(
-            (
-                was_not_committed(path)
-                for path in copied
-                if (path if name else path.lower()).endswith(endings)
-            ),
-            "",
-        )
+        for path in self.generated:
+            is_copied = any(share in f"/{path}" for share in shares)
+            if is_copied and (path if name else path.lower()).endswith(endings):
+                return was_not_committed(path)
+        return ""
 
     def missing(self, kind: str) -> MissingElement | NotDecided:
         """Return the error for a package without a file of a kind: urdf, launch or rviz."""

@@ -380,15 +380,28 @@ class _Module:
         return [self._node(at, facts) for at, facts in self._facts.items()]
 
     def _node(self, at: Location, facts: "Sequence[_Fact]") -> PythonNode:
-        names = {it.name for it in facts if isinstance(it, _Name)}
+        names: set[str | None] = set()
+        endpoints, parameters, timers, doubts = [], [], [], []
+        for fact in facts:
+            match fact:
+                case _Name():
+                    names.add(fact.name)
+                case Endpoint():
+                    endpoints.append(fact)
+                case NodeParameter():
+                    parameters.append(fact)
+                case Timer():
+                    timers.append(fact)
+                case _Doubt():
+                    doubts.append(fact)
         return PythonNode(
             class_name=self._classes.get(at, ""),
             name=names.pop() if len(names) == 1 else None,
             location=at,
-            endpoints=tuple(it for it in facts if isinstance(it, Endpoint)),
-            parameters=tuple(it for it in facts if isinstance(it, NodeParameter)),
-            timers=tuple(it for it in facts if isinstance(it, Timer)),
-            doubts=tuple(it for it in facts if isinstance(it, _Doubt)),
+            endpoints=tuple(endpoints),
+            parameters=tuple(parameters),
+            timers=tuple(timers),
+            doubts=tuple(doubts),
         )
 
     def calls_in(self, function: str) -> Iterator[tuple[str, Location]]:
@@ -443,18 +456,19 @@ class _Module:
                 at = self._receiver(part, owner)
                 facts = self._facts.get(at) if at is not None else None
                 if facts is None:
-                    self.doubts.append(
-                        _Doubt(f"the node of this {method}() is not known", self._at(call))
-                    )
+                    reason = f"the node of this {method}() is not known"
+                    self.doubts.append(_Doubt(reason, self._at(call)))
                 else:
                     facts += self._read_method(part, call, method)
             case function:
+                name = (dotted(function) or "this call").rpartition(".")[2]
                 for argument in (*call.args, *(keyword.value for keyword in call.keywords)):
                     at = self._receiver(part, argument) if isinstance(argument, ast.Name) else None
-                    name = (dotted(function) or "this call").rpartition(".")[2]
-                    if at is not None and name == "ActionClient":
+                    if at is None:
+                        continue
+                    if name == "ActionClient":
                         self._facts[at].append(self._action_client(part, call))
-                    elif at is not None and name not in _HARMLESS:
+                    elif name not in _HARMLESS:
                         self._facts[at].append(_Doubt(f"{name} is given the node", self._at(call)))
 
     def _action_client(self, part: _Part, call: ast.Call) -> Endpoint:
@@ -488,7 +502,9 @@ class _Module:
             is_topic = kind in ("publisher", "subscription")
             made = argument(0, "msg_type" if is_topic else "srv_type")
             name = _text(argument(1, "topic" if is_topic else "srv_name"))
-            qos = argument(2 if kind == "publisher" else 3, "qos_profile") if is_topic else None
+            qos = None
+            if is_topic:
+                qos = argument(2 if kind == "publisher" else 3, "qos_profile")
             yield Endpoint(
                 kind, made.name if isinstance(made, QualifiedName) else None, name, at, _qos(qos)
             )

@@ -127,9 +127,9 @@ def _frame_of(node: StartedNode, source_of: Callable[[str], Source | None]) -> _
     """Return the frame that a static_transform_publisher publishes, its child empty for none; None
     if it is unknown.
     """
-    words, names = _words_of(node), frames_named(node)
-    options = _options_of(words)
-    if None in words and not names[1]:
+    words = _words_of(node)
+    parent, child = frames_named(node)
+    if None in words and not child:
         return None
     at = node.location
     source = source_of(at.path) or Source(at.path, "")
@@ -137,11 +137,12 @@ def _frame_of(node: StartedNode, source_of: Callable[[str], Source | None]) -> _
     if None in words or node.when is None:
         what = "whether it is published" if node.when is None else "its place"
         reason = f"{what} is known only at run time ({at.path}, line {at.line})"
-        return _StaticFrame(names[0], names[1], None, location, f"the frame {names[1]!r}: {reason}")
-    origin = _origin_of({name: text or "" for name, text in options.items()}, location)
-    return _StaticFrame(
-        names[0], names[1] if names[0] and origin is not None else "", origin, location
-    )
+        return _StaticFrame(parent, child, None, location, f"the frame {child!r}: {reason}")
+    options = {name: text or "" for name, text in _options_of(words).items()}
+    origin = _origin_of(options, location)
+    if not parent or origin is None:
+        child = ""
+    return _StaticFrame(parent, child, origin, location)
 
 
 def _words_of(node: StartedNode) -> tuple[str | None, ...]:
