@@ -15,7 +15,7 @@ from typing import Any
 from grader.base.merge_conflicts import resolve_conflicts
 from grader.base.source import Location, Source
 from grader.ros.build.places import HOME, PREFIX, SHARE, WORKING_FOLDER
-from grader.ros.launch.actions import CIRCULAR_INCLUDE, ActionVisitor, Include
+from grader.ros.launch.actions import ActionVisitor, Include, NotIncluded
 from grader.ros.launch.api import (
     DESCRIPTION,
     JOINED_PATH,
@@ -119,7 +119,7 @@ class _LaunchReader:
         """Return a launch file together with those that it includes."""
         included: list[Launch] = []
 
-        def include(target: str, arguments: Context) -> str:
+        def include(target: str, arguments: Context) -> NotIncluded | None:
             return self.include(
                 posixpath.normpath(target).removeprefix(PREFIX + "/"), arguments, included
             )
@@ -137,15 +137,15 @@ class _LaunchReader:
             own = replace(own, **joined)
         return own
 
-    def include(self, target: str, context: Context, included: list[Launch]) -> str:
-        """Read an included file; return why it is not read, or nothing."""
+    def include(self, target: str, context: Context, included: list[Launch]) -> NotIncluded | None:
+        """Read an included file; return why it is not read."""
         if target in self.open:
-            return CIRCULAR_INCLUDE
+            return NotIncluded("it includes itself", is_circular=True)
         found = context.machine.open_installed(target)
         if found is None:
-            return f"it includes {target}, which the submission does not install"
+            return NotIncluded(f"it includes {target}, which the submission does not install")
         if self.includes_left == 0:
-            return f"it includes more than {_MAX_INCLUDES} launch files"
+            return NotIncluded(f"it includes more than {_MAX_INCLUDES} launch files")
         self.includes_left -= 1
         launch = self.read(*found, target, context)
         faults = launch.faults if launch.syntax is None else (*launch.faults, launch.syntax)
@@ -155,7 +155,7 @@ class _LaunchReader:
             )
             faults = ()
         included.append(replace(launch, faults=faults))
-        return ""
+        return None
 
 
 def _launch_of_entities(

@@ -42,7 +42,6 @@ from grader.ros.python.values import (
 _EVERY_NODE = "/**"
 # the launch configuration that has what SetParameter gives to all nodes, as in launch_ros
 TO_ALL = "global_params"
-_OWN = "?"  # the key of a node whose name is not known
 _MAX_YAML = 200_000  # characters
 _MAX_DEPTH = 40
 _HEAD = '<?xml version="1.0" ?>\n<!-- by xacro -->\n'  # of what xacro writes
@@ -430,7 +429,7 @@ def parameters_of(
         is_cpp = not is_python
     elif is_written_in_cpp(node.package):
         is_cpp = True
-    by_key: dict[str, dict[str, ParameterValue]] = {}
+    by_key: dict[str | None, dict[str, ParameterValue]] = {}
     reasons = []
     if node.parameters is None:
         return NodeParameters({}, "the parameters of the node are not evaluated")
@@ -458,7 +457,7 @@ def parameters_of(
 
 
 def _forget_below(
-    tables: Mapping[str, Unknown], by_key: dict[str, dict[str, ParameterValue]]
+    tables: Mapping[str, Unknown], by_key: dict[str | None, dict[str, ParameterValue]]
 ) -> None:
     """Make the values unknown that parameters in a table that is not known may replace."""
     for name, doubt in tables.items():
@@ -479,7 +478,7 @@ def _full_name(node: StartedNode, name: str) -> str | None:
 
 def _tables_of(
     given: GivenParameters, open_file: _OpenFile, own: str | None
-) -> Iterator[tuple[str, Mapping[str, ParameterValue]]]:
+) -> Iterator[tuple[str | None, Mapping[str, ParameterValue]]]:
     """Yield the parameters by keys of nodes; `own` is the full name that the launch file gives.
     Raises Undetermined.
     """
@@ -501,10 +500,12 @@ def _tables_of(
     yield from _sections(root, "", is_plain=given.is_plain)
 
 
-def _key_of(given: GivenParameters, own: str | None) -> str:
-    """Return for which nodes the parameters of a launch file are."""
+def _key_of(given: GivenParameters, own: str | None) -> str | None:
+    """Return for which nodes the parameters of a launch file are; None for the node itself, whose
+    name is not known.
+    """
     if given.is_named:
-        return own or _OWN
+        return own
     if given.node:
         return f"/{given.node.strip('/')}"
     return _EVERY_NODE
@@ -549,7 +550,7 @@ def value_in_file(node: YamlNode, *, is_plain: bool = True) -> ParameterValue:
 
 
 def _counting(
-    by_key: Mapping[str, Mapping[str, ParameterValue]], full: str | None, is_cpp: bool | None
+    by_key: Mapping[str | None, Mapping[str, ParameterValue]], full: str | None, is_cpp: bool | None
 ) -> dict[str, ParameterValue]:
     """Return the values that count for a node, of all sections in the order in which their keys are
     met first.
@@ -569,14 +570,14 @@ def _counting(
 
 
 def _for_unknown_name(
-    by_key: Mapping[str, Mapping[str, ParameterValue]],
+    by_key: Mapping[str | None, Mapping[str, ParameterValue]],
 ) -> dict[str, ParameterValue]:
     """Return the values of sections for every node; those that another section may replace are
     unknown.
     """
     doubt = Unknown("the name of the node is not known", START)
-    known = _merged(values for key, values in by_key.items() if key in (_EVERY_NODE, _OWN))
-    others = _merged(values for key, values in by_key.items() if key not in (_EVERY_NODE, _OWN))
+    known = _merged(values for key, values in by_key.items() if key in (_EVERY_NODE, None))
+    others = _merged(values for key, values in by_key.items() if key not in (_EVERY_NODE, None))
     return {**known, **{name: given._replace(value=doubt) for name, given in others.items()}}
 
 
@@ -587,8 +588,10 @@ def _merged(tables: Iterable[Mapping[str, ParameterValue]]) -> dict[str, Paramet
     return found
 
 
-def _matches(key: str, full: str) -> bool:
+def _matches(key: str | None, full: str) -> bool:
     """Return whether the key of a section names a node, as rclcpp reads it."""
+    if key is None:
+        return False
     pattern = re.sub(r"/\\\*(\\\*)?", lambda it: r"(/\w+)*" if it[1] else r"(/\w+)", re.escape(key))
     return re.fullmatch(pattern, full) is not None
 

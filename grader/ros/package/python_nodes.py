@@ -302,7 +302,8 @@ class _Module:
         self._code, self._name = code, name
         functions = dict.fromkeys(("rclpy.qos.QoSProfile", *_CREATES), record)
         self._constants = Constants([*ast.walk(code.tree)], name, functions, is_package=is_package)
-        self.bases: dict[str, list[str]] = {}  # of the classes, by full names
+        # Of the classes, by full names; None for a base that is not known.
+        self.bases: dict[str, list[str | None]] = {}
         self.doubts: list[_Doubt] = []
         self._classes: dict[Location, str] = {}
         self._facts: dict[Location, list[_Fact]] = {}  # of each node
@@ -334,7 +335,9 @@ class _Module:
         """Keep a class and its methods, which reach its constants as attributes of self."""
         at, full = self._at(node), f"{self._name}.{node.name}"
         bases = [self._constants.value_of(base, scope) for base in node.bases]
-        self.bases[full] = [base.name if isinstance(base, QualifiedName) else "?" for base in bases]
+        self.bases[full] = [
+            base.name if isinstance(base, QualifiedName) else None for base in bases
+        ]
         self._classes[at] = full
         own = own_nodes(node)
         constants = self._constants.bound(own, Scope({}, scope)).names
