@@ -97,7 +97,7 @@ _ACTIONS = (
     "SetUseSimTime",
 )
 _MAX_DEPTH = 20  # of lists in others
-_OF_ONE_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")
+_TAKES_A_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")
 # The classes that are evaluated, besides the sources of included files; what is wrong with their
 # arguments.
 _EVALUATED = frozenset(
@@ -116,13 +116,13 @@ class LaunchFunctions(dict[str, Any]):
         found = super().get(name)
         if found is not None:
             return found
-        return _function_of(name) or default
+        return _find_function(name) or default
 
     def __contains__(self, name: object) -> bool:
         return self.get(str(name)) is not None
 
 
-def _function_of(name: str) -> "Callable[[Evaluation, Call], Value] | None":
+def _find_function(name: str) -> "Callable[[Evaluation, Call], Value] | None":
     """Return the constructor of a class of launch, or one that fails: of a name that is not
     there.
     """
@@ -197,7 +197,7 @@ def _name_arguments(cls: LaunchClass, call: Call) -> None:
     """Give the arguments of a constructor their names. Raises EvaluationFails as Python does."""
     positional = [name for name, row in cls.parameters.items() if row.is_positional]
     if len(call.args) > len(positional):
-        if cls.short in _OF_ONE_LIST:
+        if cls.short in _TAKES_A_LIST:
             hint = "put [ ] around them"
         else:
             names = ", ".join(f"{name}=..." for name in cls.parameters if name not in positional)

@@ -128,9 +128,9 @@ class _LaunchReader:
         suffix = PurePosixPath(path).suffix.lower()
         is_xml = suffix == ".xml" or (suffix in (".launch", "") and data.lstrip().startswith(b"<"))
         if is_xml or suffix in (".yaml", ".yml"):
-            own = _launch_of_entities(data, path, context, include, is_yaml=not is_xml)
+            own = _read_entities(data, path, context, include, is_yaml=not is_xml)
         else:
-            own = _launch_of_python(data, path, installed, context, include)
+            own = _read_python(data, path, installed, context, include)
         self.open.pop()
         for launch in included:
             joined = {name: getattr(own, name) + getattr(launch, name) for name in _JOINED}
@@ -158,10 +158,10 @@ class _LaunchReader:
         return None
 
 
-def _launch_of_entities(
+def _read_entities(
     data: bytes, path: str, context: Context, include: Include, *, is_yaml: bool
 ) -> Launch:
-    from grader.ros.launch.frontend import actions_of, read_frontend
+    from grader.ros.launch.frontend import read_actions, read_frontend
 
     source = Source(path, data.decode("utf-8", "replace"))
     findings = Findings(lambda position: Location(path, position.line, position.column))
@@ -175,15 +175,15 @@ def _launch_of_entities(
         return Launch(source, root)
     if root.error:
         findings.add_fault(root.error, root.at)
-    actions = actions_of(root, findings)
+    actions = read_actions(root, findings)
     visitor = ActionVisitor(
         findings, include, lambda _, at, *__: Unknown("a function is not evaluated here", at)
     )
     visitor.launch(Call(DESCRIPTION, [], {"initial_entities": actions}, root.at), context, root.at)
-    return _launch_of_findings(source, findings, ())
+    return _make_launch(source, findings, ())
 
 
-def _launch_of_python(
+def _read_python(
     data: bytes, path: str, installed: str, context: Context, include: Include
 ) -> Launch:
     code = parse(data, path)
@@ -218,7 +218,7 @@ def _launch_of_python(
     nodes = [
         call for call in interpreter.calls if call.name == _NODE and call not in visitor.visited
     ]
-    return _launch_of_findings(
+    return _make_launch(
         code.source, findings, tuple(_forgotten_node(node, findings) for node in nodes)
     )
 
@@ -257,9 +257,7 @@ def _forgotten_node(node: Call, findings: Findings) -> StartedNode:
     return StartedNode(package, executable, False, findings.locate(node.at))
 
 
-def _launch_of_findings(
-    source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]
-) -> Launch:
+def _make_launch(source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
     named = {
         reference.path
         for reference in findings.references

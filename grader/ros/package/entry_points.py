@@ -52,12 +52,12 @@ def entry_points(package: Package) -> list[_EntryPoint]:
         parts = _ENTRY.fullmatch(script) if isinstance(script, str) else None
         if parts is not None:
             found.append(
-                _EntryPoint(parts[1], parts[2], parts[3] or "", _place_of(package, parts[1]))
+                _EntryPoint(parts[1], parts[2], parts[3] or "", _locate_name(package, parts[1]))
             )
     return found
 
 
-def _place_of(package: Package, name: str) -> Location:
+def _locate_name(package: Package, name: str) -> Location:
     """Return where setup.py writes an entry point; where it calls setup() if the text is
     computed.
     """

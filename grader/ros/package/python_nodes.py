@@ -278,7 +278,7 @@ def _created_by(
     return tuple(found.values())
 
 
-def _calls_of(nodes: Sequence[ast.AST]) -> list[ast.Call]:
+def _find_calls(nodes: Sequence[ast.AST]) -> list[ast.Call]:
     return sorted((it for it in nodes if isinstance(it, ast.Call)), key=offset_of)
 
 
@@ -316,13 +316,15 @@ class _Module:
                 and part.name in scope.names
             ):
                 scope.names[part.name] = QualifiedName(f"{name}.{part.name}")
-        self._parts.append(_Part("", _calls_of(body), scope))
+        self._parts.append(_Part("", _find_calls(body), scope))
         for part in body:
             if isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef):
                 inner = [*ast.walk(part)]
                 self._parts.append(
                     _Part(
-                        part.name, _calls_of(inner), self._constants.bound(inner, Scope({}, scope))
+                        part.name,
+                        _find_calls(inner),
+                        self._constants.bound(inner, Scope({}, scope)),
                     )
                 )
             elif isinstance(part, ast.ClassDef):
@@ -353,7 +355,7 @@ class _Module:
                 attributes.names[name] = (
                     value if is_first else Unknown("it is not bound once", START)
                 )
-            self._parts.append(_Part(method.name, _calls_of(nodes), local, at))
+            self._parts.append(_Part(method.name, _find_calls(nodes), local, at))
 
     def read_nodes(self, kinds: Collection[str]) -> list[PythonNode]:
         """Return the nodes, once the full names of all classes of nodes are known."""

@@ -145,14 +145,14 @@ def xml_entry(element: Element, locate: Callable[[Element, str | None], _Place])
     return TreeEntry(
         name_of(element),
         text_in(element),
-        partial(_children_of, element, locate),
+        partial(_list_xml_children, element, locate),
         partial(locate, element, None),
         is_xml=True,
         element=element,
     )
 
 
-def _children_of(
+def _list_xml_children(
     element: Element, locate: Callable[[Element, str | None], _Place]
 ) -> list[TreeEntry]:
     attributes = [
@@ -167,7 +167,7 @@ def _yaml_entry(node: "YamlNode", name: str = "") -> TreeEntry:
     return TreeEntry(
         name,
         node.text,
-        partial(_entries_of, node),
+        partial(_list_yaml_children, node),
         lambda: node.location,
         is_xml=False,
         is_quoted=node.quoted,
@@ -175,7 +175,7 @@ def _yaml_entry(node: "YamlNode", name: str = "") -> TreeEntry:
     )
 
 
-def _entries_of(node: "YamlNode") -> list[TreeEntry]:
+def _list_yaml_children(node: "YamlNode") -> list[TreeEntry]:
     match node.value:
         case list(rows):
             return [_yaml_entry(row) for row in rows]
