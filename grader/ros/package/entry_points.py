@@ -47,14 +47,16 @@ def entry_points(package: Package) -> list[_EntryPoint]:
     setup = package.installation
     groups = setup.entry_points if setup is not None else None
     scripts = groups.get("console_scripts") if isinstance(groups, dict) else None
-    found = []
-    for script in scripts if isinstance(scripts, list | tuple) else ():
+    if not isinstance(scripts, list | tuple):
+        return []
+    entries = []
+    for script in scripts:
         parts = _ENTRY.fullmatch(script) if isinstance(script, str) else None
         if parts is not None:
-            found.append(
-                _EntryPoint(parts[1], parts[2], parts[3] or "", _locate_name(package, parts[1]))
-            )
-    return found
+            name, module, function = parts.groups()
+            location = _locate_name(package, name)
+            entries.append(_EntryPoint(name, module, function or "", location))
+    return entries
 
 
 def _locate_name(package: Package, name: str) -> Location:

@@ -211,14 +211,14 @@ def _module_paths(package: Package) -> dict[str, str]:
     files = [path for path in package.tree.files if path.endswith(".py")]
     folders = {path.rpartition("/")[0] for path in files if path.endswith("/__init__.py")}
     packages = {name.replace(".", "/") for name in setup.packages} or folders
-    found = {
-        path.removesuffix(".py").removesuffix("/__init__").replace("/", "."): path
-        for path in files
-        if path.rpartition("/")[0] in packages
-    }
-    return dict(
-        [*found.items(), *((it.source, it.source) for it in _scripts(package))][:_MAX_MODULES]
-    )
+    modules: dict[str, str] = {}
+    for path in files:
+        if path.rpartition("/")[0] in packages:
+            name = path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+            modules[name] = path
+    rows = [*modules.items()]
+    rows += [(script.source, script.source) for script in _scripts(package)]
+    return dict(rows[:_MAX_MODULES])
 
 
 def _scripts(package: Package) -> list[InstalledFile]:
@@ -568,10 +568,12 @@ def _qos(value: Value) -> _Qos:
             return _Qos(*_PROFILES.get(profile, ()))
         case Call(name="rclpy.qos.QoSProfile", kwargs=given):
             depth = given.get("depth")
-            reliability, durability = (
-                _policy(given[name]) if name in given else default
-                for name, default in (("reliability", "reliable"), ("durability", "volatile"))
-            )
+            reliability: str | None = "reliable"
+            if "reliability" in given:
+                reliability = _policy(given["reliability"])
+            durability: str | None = "volatile"
+            if "durability" in given:
+                durability = _policy(given["durability"])
             return _Qos(depth if isinstance(depth, int) else None, reliability, durability)
     return _Qos()
 
@@ -580,10 +582,10 @@ def _policy(value: Value) -> str | None:
     """Return a policy by its name in rclpy.qos, as ReliabilityPolicy.BEST_EFFORT; None where it is
     not known.
     """
-    name = value.name.rpartition(".")[2].lower() if isinstance(value, QualifiedName) else ""
-    names = (
-        policy
-        for policy, group in _GROUPS.items()
-        if name in (policy, f"rmw_qos_policy_{group}_{policy}")
-    )
-    return next(names, None)
+    if not isinstance(value, QualifiedName):
+        return None
+    name = value.name.rpartition(".")[2].lower()
+    for policy, group in _GROUPS.items():
+        if name in (policy, f"rmw_qos_policy_{group}_{policy}"):
+            return policy
+    return None

@@ -64,16 +64,15 @@ def with_transforms(
         launch = package.launch(name) if name is not None else None
         if launch is None or launch.syntax is not None or launch.faults:
             continue  # nothing is published
-        started = [
-            it
-            for it in launch.nodes
-            if (it.package, it.executable) == STATIC_PUBLISHER and it.when is not False
-        ]
-        frames = [_read_frame(node, source_of) for node in started]
-        for frame in (it for it in frames if it is not None and it.child not in roots):
-            robot = _add_frame(robot, frame)
-        reason = launch.unread or next((it.message for it in launch.unknown), "")
-        reason = reason or ("the name of a frame is not evaluated" if None in frames else "")
+        frames = [_read_frame(node, source_of) for node in launch.nodes if _publishes_frame(node)]
+        for frame in frames:
+            if frame is not None and frame.child not in roots:
+                robot = _add_frame(robot, frame)
+        reason = launch.unread
+        if not reason and launch.unknown:
+            reason = launch.unknown[0].message
+        if not reason and None in frames:
+            reason = "the name of a frame is not evaluated"
         if reason:
             robot = replace(
                 robot,
@@ -85,6 +84,11 @@ def with_transforms(
             incomplete=robot.incomplete or "robot_state_publisher gives the frames other names",
         )
     return robot
+
+
+def _publishes_frame(node: StartedNode) -> bool:
+    is_publisher = (node.package, node.executable) == STATIC_PUBLISHER
+    return is_publisher and node.when is not False
 
 
 def _add_frame(robot: Robot, frame: _StaticFrame) -> Robot:
