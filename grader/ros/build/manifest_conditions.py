@@ -41,10 +41,10 @@ def evaluate_condition(condition: str | None) -> bool | None:
 
 
 def _compare(left: str, operator: str, right: str) -> bool:
-    return _COMPARE[operator](_value_of(left), _value_of(right))
+    return _COMPARE[operator](_evaluate_term(left), _evaluate_term(right))
 
 
-def _value_of(term: str) -> str:
+def _evaluate_term(term: str) -> str:
     if term.startswith("$"):
         return _VARIABLES.get(term[1:], "")
     if term[0] in "\"'":

@@ -23,7 +23,7 @@ _EMAIL = re.compile(
 )
 _VERSIONS = ("version_lt", "version_lte", "version_eq", "version_gte", "version_gt")
 _DEPENDS = ("build_depend", "buildtool_depend", "test_depend", "conflict", "replace")
-_DEPENDS_OF_FORMAT = {
+_DEPENDS_BY_FORMAT = {
     1: ("run_depend",),
     2: ("build_export_depend", "buildtool_export_depend", "depend", "exec_depend", "doc_depend"),
 }
@@ -41,7 +41,7 @@ def find_refusals(root: Element) -> Iterator[_Refusal]:
     children: dict[str, list[Element]] = defaultdict(list)
     for element in root.iterchildren("*"):
         children[tag_of(element)].append(element)
-    version = _format_of(root)
+    version = _read_format(root)
     if version is None:
         yield f"Unable to handle package.xml format version '{root.get('format')}'", root
         version = 3
@@ -80,7 +80,7 @@ def email_of(person: Element) -> str:
     return (person.get("email") or "").strip("\"'")
 
 
-def _format_of(root: Element) -> int | None:
+def _read_format(root: Element) -> int | None:
     try:
         number = int(root.get("format", "1"))
     except ValueError:
@@ -89,10 +89,10 @@ def _format_of(root: Element) -> int | None:
 
 
 def _tags_of_dependencies(version: int) -> tuple[str, ...]:
-    return (*_DEPENDS, *_DEPENDS_OF_FORMAT[min(version, 2)])
+    return (*_DEPENDS, *_DEPENDS_BY_FORMAT[min(version, 2)])
 
 
-def _key_of(dependency: Element) -> tuple[str | None, ...]:
+def _make_key(dependency: Element) -> tuple[str | None, ...]:
     """Return what makes two dependencies equal."""
     return (text_of(dependency), *(dependency.get(name) for name in (*_VERSIONS, "condition")))
 
@@ -106,14 +106,14 @@ def _redundant_dependencies(children: _Children, version: int) -> Iterator[_Refu
     if version == 1:
         general, tags = "test_depend", ("build_depend", "run_depend")
         words = 'The test dependency on "{}" is redundant with: {}'
-    counts = {tag: Counter(map(_key_of, children.get(tag, ()))) for tag in tags}
+    counts = {tag: Counter(map(_make_key, children.get(tag, ()))) for tag in tags}
     for dependency in children.get(general, ()):
-        same = [tag for tag in tags if counts[tag][_key_of(dependency)]]
+        same = [tag for tag in tags if counts[tag][_make_key(dependency)]]
         if same:
             yield words.format(text_of(dependency), ", ".join(same)), dependency
         if version != 1:
             for tag in tags:
-                counts[tag][_key_of(dependency)] += 1
+                counts[tag][_make_key(dependency)] += 1
 
 
 def _known_attributes(version: int) -> dict[str, tuple[str, ...]]:

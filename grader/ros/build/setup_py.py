@@ -158,7 +158,7 @@ _AT_HAND = frozenset({"setuptools", "wheel"})  # what setup_requires may name wi
 # accepted. setuptools 68 takes a dash for an underscore, with a warning (dist.py,
 # `warn_dash_deprecation`).
 _SECTIONS = {"develop": {"script_dir", "install_scripts"}, "install": {"install_scripts"}}
-_OF_TOOLS = re.compile(
+_TOOL_SECTIONS = re.compile(
     r"flake8|pycodestyle|pydocstyle|pep8|pep257|mypy\b.*|isort|pylint|yapf|black|tool:.*|coverage:.*|bdist_wheel|sdist|test"
 )
 _MAX_SETTINGS = 64 * 1024  # bytes
@@ -695,7 +695,7 @@ def _cfg_findings(text: str, at: Position) -> Iterator[_Finding]:
         if section in _SECTIONS:
             options_of_section = {name.replace("-", "_") for name in names}
             yield from _option_findings(section, options_of_section - _SECTIONS[section], at)
-        elif names and not _OF_TOOLS.fullmatch(section):
+        elif names and not _TOOL_SECTIONS.fullmatch(section):
             yield Unknown(f"the section [{section}] of setup.cfg is not evaluated", at)
 
 

@@ -65,7 +65,7 @@ class YamlNode:
     @property
     def location(self) -> Location:
         """Where it begins."""
-        return _location_of(self.source, self.mark)
+        return _locate_mark(self.source, self.mark)
 
     @property
     def span(self) -> tuple[int, int]:
@@ -87,7 +87,7 @@ class YamlNode:
         """Return where the last of some keys, which are there, begins."""
         mapping = self.mapping_of(keys)
         assert mapping is not None
-        return _location_of(mapping.source, mapping.key_marks[keys[-1]])
+        return _locate_mark(mapping.source, mapping.key_marks[keys[-1]])
 
     def mapping_of(self, keys: "tuple[str, ...]") -> "YamlNode | None":
         """Return the mapping that has the last of some keys."""
@@ -147,10 +147,10 @@ def check_one_document(text: str, path: str) -> None:
             if count > _MAX_EVENTS or depth > _MAX_DEPTH:
                 return
             if documents > 1:
-                raise YamlFault("a second document begins", _location_of(source, event.start_mark))
+                raise YamlFault("a second document begins", _locate_mark(source, event.start_mark))
             if tag not in (None, "!") and tag not in _TAGS:
                 raise YamlFault(
-                    f"the tag {tag[:40]} is not known", _location_of(source, event.start_mark)
+                    f"the tag {tag[:40]} is not known", _locate_mark(source, event.start_mark)
                 )
     except yaml.YAMLError:
         return  # which is reported where the nodes are read
@@ -167,7 +167,7 @@ def read_yaml(data: bytes, path: str) -> YamlNode:
         return _compose_nodes(yaml.parse(text.removeprefix("\ufeff"), Loader=_LOADER), source)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        location = _location_of(source, mark) if mark else Location(path, 1, 1)
+        location = _locate_mark(source, mark) if mark else Location(path, 1, 1)
         if error.problem == _TOO_DEEP:
             raise YamlFault(_DEEP, Location(path, 1, 1)) from None
         message = f"{error.context or ''} {error.problem or ''}".strip()
@@ -185,11 +185,11 @@ def first_alias(source: Source) -> tuple[str, Location] | None:
         yaml.parse(source.text.removeprefix("\ufeff"), Loader=_LOADER) if may_have_one else ()
     ):
         if isinstance(event, yaml.AliasEvent):
-            return event.anchor or "", _location_of(source, event.start_mark)
+            return event.anchor or "", _locate_mark(source, event.start_mark)
     return None
 
 
-def _location_of(source: Source, mark: Any) -> Location:
+def _locate_mark(source: Source, mark: Any) -> Location:
     """Return the location of a mark by its offset: the lines of YAML also end at separators of
     Unicode.
     """
@@ -235,7 +235,9 @@ class _Anchors:
         many.
         """
         if isinstance(event, yaml.AliasEvent):
-            return self._node_of(event.anchor or "", _location_of(self._source, event.start_mark))
+            return self._resolve_alias(
+                event.anchor or "", _locate_mark(self._source, event.start_mark)
+            )
         if isinstance(event, yaml.ScalarEvent):
             node = YamlNode(
                 self._source,
@@ -254,7 +256,7 @@ class _Anchors:
             self._nodes[event.anchor] = node
         return node
 
-    def _node_of(self, anchor: str, location: Location) -> YamlNode:
+    def _resolve_alias(self, anchor: str, location: Location) -> YamlNode:
         self._aliases += 1
         found = self._nodes.get(anchor)
         if found is None:

@@ -4,8 +4,9 @@
 includes, arguments, timers, events.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 from grader.ros.build.places import PREFIX
 from grader.ros.launch.api import CONDITION, ENTITY, SOURCE, class_named, is_a
@@ -63,10 +64,17 @@ _LATE = (
     "default_value",
 )  # arguments that are not evaluated at once
 _PROCESSES = ("Node", "LifecycleNode", "ExecuteProcess")
-# Takes the path of a launch file below the prefix and the context for it; returns why it is not
-# read, or nothing.
-Include = Callable[[str, Context], str]
-CIRCULAR_INCLUDE = "it includes itself"
+
+
+class NotIncluded(NamedTuple):
+    """Why an included launch file is not read."""
+
+    reason: str
+    is_circular: bool = False
+
+
+# Reads a launch file by its path below the prefix, in a context.
+Include = Callable[[str, Context], NotIncluded | None]
 # By which packages, programs and files are found.
 _SEARCHED = ("AMENT_PREFIX_PATH", "PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "HOME")
 
@@ -235,26 +243,32 @@ def _condition_holds(given: Value, context: Context, at: Position) -> bool:
     return condition_holds(given, context)
 
 
+def _texts_in(value: Value) -> Sequence[Value]:
+    """Return the items of a list, or the keys and values of a dict. Raises Undetermined."""
+    if not isinstance(value, dict):
+        return items_in(value) or ()
+    texts: list[Value] = []
+    for pair in value.items():
+        texts += pair
+    return texts
+
+
 def _evaluate_field(value: Value, test: str, context: Context, at: Position) -> None:
     """Evaluate an argument of an action, which has the check `test`. Raises EvaluationSignal."""
     match test:
         case "text":
             resolve(value, context, at)
         case "texts" | "mapping":
-            pairs: Iterable[tuple[object, ...]]
-            if isinstance(value, dict):
-                pairs = value.items()
-            else:
-                pairs = ((item,) for item in items_in(value) or ())
-            for item in (item for pair in pairs for item in pair):
+            for item in _texts_in(value):
                 resolve(item, context, at)
         case "bool" if not isinstance(value, bool):
             boolean(known_text(value, context, at), at)
         case "parameters":
             evaluate_parameters(value, context, at)
         case "remappings":
-            for name in (name for rule in items_in(value) or () for name in items_in(rule) or ()):
-                resolve(name, context, at)
+            for rule in items_in(value) or ():
+                for name in items_in(rule) or ():
+                    resolve(name, context, at)
 
 
 def _visit_description(
@@ -476,19 +490,18 @@ def _include_file(visitor: ActionVisitor, call: Call, context: Context, when: bo
         context, path=path, arguments=arguments, when=when, reads=[], given=frozenset(given)
     )
     inner.included_by = (*context.included_by, context.path.removeprefix(f"{PREFIX}/"))
-    reason = visitor.include(path, inner)
-    if reason and not start_known_file(visitor.findings, path, call, inner):
+    fault = visitor.include(path, inner)
+    if fault is not None and not start_known_file(visitor.findings, path, call, inner):
         visitor.findings.refer("include", path, call)
-        if reason == CIRCULAR_INCLUDE:
-            raise EvaluationFails(reason, call.at)
-        visitor.findings.add_unknown(reason, call.at)
-    elif not reason:
+        if fault.is_circular:
+            raise EvaluationFails(fault.reason, call.at)
+        visitor.findings.add_unknown(fault.reason, call.at)
+    elif fault is None:
         visitor.findings.refer("include", path, call)
-    context.arguments.update(
-        inner.arguments
-    )  # an included file shares its arguments with the actions that follow
-    if reason:
-        context.arguments[ANY] = Unknown(reason, call.at)
+    # An included file shares its arguments with the actions that follow.
+    context.arguments.update(inner.arguments)
+    if fault is not None:
+        context.arguments[ANY] = Unknown(fault.reason, call.at)
 
 
 def _launch_arguments(given: Value, context: Context, at: Position) -> dict[str, Resolved]:

@@ -6,10 +6,10 @@ An argument is a text (a string or substitutions), a list of them, a parameter o
 """
 
 from ast import expr, unparse
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import PurePosixPath
-from typing import Any
+from typing import Any, NamedTuple
 
 from grader.base.names import did_you_mean
 from grader.ros.launch.api import (
@@ -97,7 +97,7 @@ _ACTIONS = (
     "SetUseSimTime",
 )
 _MAX_DEPTH = 20  # of lists in others
-_OF_ONE_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")
+_TAKES_A_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")
 # The classes that are evaluated, besides the sources of included files; what is wrong with their
 # arguments.
 _EVALUATED = frozenset(
@@ -116,13 +116,13 @@ class LaunchFunctions(dict[str, Any]):
         found = super().get(name)
         if found is not None:
             return found
-        return _function_of(name) or default
+        return _find_function(name) or default
 
     def __contains__(self, name: object) -> bool:
         return self.get(str(name)) is not None
 
 
-def _function_of(name: str) -> "Callable[[Evaluation, Call], Value] | None":
+def _find_function(name: str) -> "Callable[[Evaluation, Call], Value] | None":
     """Return the constructor of a class of launch, or one that fails: of a name that is not
     there.
     """
@@ -195,29 +195,42 @@ def check(cls: LaunchClass, call: Call) -> Unknown | None:
 
 def _name_arguments(cls: LaunchClass, call: Call) -> None:
     """Give the arguments of a constructor their names. Raises EvaluationFails as Python does."""
-    positional = [name for name, it in cls.parameters.items() if it.is_positional]
+    positional = [name for name, row in cls.parameters.items() if row.is_positional]
     if len(call.args) > len(positional):
-        names = ", ".join(f"{name}=..." for name in cls.parameters if name not in positional)
-        hint = "put [ ] around them" if cls.short in _OF_ONE_LIST else f"write {names[:100]}"
+        if cls.short in _TAKES_A_LIST:
+            hint = "put [ ] around them"
+        else:
+            names = ", ".join(f"{name}=..." for name in cls.parameters if name not in positional)
+            hint = f"write {names[:100]}"
         raise EvaluationFails(
             f"{cls.short} takes {len(positional)} argument without a name: {hint}", call.at
         )
     given = dict(zip(positional, call.args, strict=False))
-    if twice := given.keys() & call.kwargs.keys():
+    twice = given.keys() & call.kwargs.keys()
+    if twice:
         raise EvaluationFails(f"{cls.short} is given {min(twice)!r} twice", call.at)
-    for name in (name for name in call.kwargs if name not in cls.parameters):
-        message = f"{cls.short} has no argument {name!r}{did_you_mean(name, cls.parameters)}"
-        raise EvaluationFails(message, call.at)
-    kwargs = {**given, **call.kwargs}.items()
-    call.args = []
-    call.kwargs = {
-        name: list(iterate(value)) if isinstance(value, Items) else value for name, value in kwargs
-    }
-    missing = [
-        name for name, it in cls.parameters.items() if it.is_required and name not in call.kwargs
-    ]
-    if missing:
-        raise EvaluationFails(f"{cls.short} needs the argument {missing[0]}=...", call.at)
+    for name in call.kwargs:
+        if name not in cls.parameters:
+            message = f"{cls.short} has no argument {name!r}{did_you_mean(name, cls.parameters)}"
+            raise EvaluationFails(message, call.at)
+    given |= call.kwargs
+    for name, value in given.items():
+        if isinstance(value, Items):
+            given[name] = list(iterate(value))
+    call.args, call.kwargs = [], given
+    for name, row in cls.parameters.items():
+        if row.is_required and name not in given:
+            raise EvaluationFails(f"{cls.short} needs the argument {name}=...", call.at)
+
+
+class _Fault(NamedTuple):
+    """What is wrong with an argument, after its name."""
+
+    message: str
+    is_of_part: bool = False  # whether it says what is wrong inside the argument, and what that is
+
+
+_NO_LIST = _Fault("has to be a list: put [ ] around it")
 
 
 def _wrong_argument(cls: LaunchClass, call: Call, name: str, value: Value) -> str:
@@ -234,11 +247,12 @@ def _wrong_argument(cls: LaunchClass, call: Call, name: str, value: Value) -> st
     find_error = _CHECKS.get(parameter.check)
     if find_error is None or (value is None and parameter.can_be_none):
         return ""
-    error = find_error(value)
-    if not error:
+    fault = find_error(value)
+    if fault is None:
         return ""
-    tail = "" if error.startswith("has a") else f", not {kind_of(value)}"
-    return f"{name} of {cls.short} {error}{tail}"
+    if fault.is_of_part:
+        return f"{name} of {cls.short} {fault.message}"
+    return f"{name} of {cls.short} {fault.message}, not {kind_of(value)}"
 
 
 def _find_bound(value: Value) -> expr | None:
@@ -284,21 +298,26 @@ def items_in(value: Value) -> list[Value] | None:
     return list(value) if isinstance(value, kinds) else None
 
 
-def _wrong_text(value: Value) -> str:
-    """Return what is wrong with a value that has to be a text, or nothing. Raises Undetermined."""
+def _wrong_text(value: Value) -> _Fault | None:
+    """Return what is wrong with a value that has to be a text. Raises Undetermined."""
     if isinstance(value, _COLLECTIONS):
-        wrong = next((item for item in value if not _is_text(item)), "")
-        if wrong != "":
-            return f"has an item that is {kind_of(wrong)}{_in_quotes(wrong)}"
-        return ""
-    return "" if _is_text(value) else "takes a string or a substitution"
+        for item in value:
+            if not _is_text(item):
+                return _wrong_in(item)
+        return None
+    if _is_text(value):
+        return None
+    return _Fault("takes a string or a substitution")
 
 
-def _in_quotes(value: Value) -> str:
-    """Return how a number is written as a text, as advice."""
-    if type(value) in (int, float):
-        return f": write '{value}'"
-    return ""
+def _wrong_in(item: Value) -> _Fault:
+    """Return what is wrong with a list that has an item which is no text."""
+    hint = f": write '{item}'" if type(item) in (int, float) else ""
+    return _Fault(f"has an item that is {kind_of(item)}{hint}", is_of_part=True)
+
+
+def _first_fault(faults: Iterable[_Fault | None]) -> _Fault | None:
+    return next((fault for fault in faults if fault is not None), None)
 
 
 def kind_of(value: Value) -> str:
@@ -310,64 +329,64 @@ def kind_of(value: Value) -> str:
     return _NAMES.get(type(value), f"a {type(value).__name__}")
 
 
-def _check_of_type(kind: type) -> Callable[[Value], str]:
+def _check_of_type(kind: type) -> Callable[[Value], _Fault | None]:
     """Return the check of a value of a type, or of a substitution whose text is read as one."""
+    fault = _Fault(f"takes {_WANTED[kind]} or a substitution")
 
-    def checked(value: Value) -> str:
+    def checked(value: Value) -> _Fault | None:
         if isinstance(value, str | int | float):
-            if isinstance(value, kind):
-                return ""
-            return f"takes {_WANTED[kind]} or a substitution"
+            return None if isinstance(value, kind) else fault
         if isinstance(value, list | tuple) and any(
             isinstance(item, Call | Unknown) for item in value
         ):
             return _wrong_text(value)
         if not isinstance(value, _COLLECTIONS) and _is_text(value):
-            return ""
-        return f"takes {_WANTED[kind]} or a substitution"
+            return None
+        return fault
 
     return checked
 
 
-def _wrong_parameters(value: Value) -> str:
-    """Return what is wrong with the parameters of a node, or nothing. Raises Undetermined."""
+def _wrong_parameters(value: Value) -> _Fault | None:
+    """Return what is wrong with the parameters of a node. Raises Undetermined."""
     if isinstance(value, Unknown):
         raise Undetermined(value.reason)
     if not isinstance(value, list):
-        return "has to be a list: put [ ] around it"
-    return next(filter(None, map(_wrong_item, value)), "")
+        return _NO_LIST
+    return _first_fault(map(_wrong_item, value))
 
 
-def _wrong_item(item: Value) -> str:
+def _wrong_item(item: Value) -> _Fault | None:
     if isinstance(item, PurePosixPath) or (isinstance(item, Call) and item.name in (*TYPED, FILE)):
-        return ""
+        return None
     if isinstance(item, dict):
         return _wrong_dict(item)
     return _wrong_text(item)
 
 
-def _wrong_dict(table: dict[Any, Value]) -> str:
-    return next(
-        filter(None, (_wrong_text(key) or _wrong_parameter(value) for key, value in table.items())),
-        "",
-    )
+def _wrong_dict(table: dict[Any, Value]) -> _Fault | None:
+    for key, value in table.items():
+        fault = _wrong_text(key) or _wrong_parameter(value)
+        if fault is not None:
+            return fault
+    return None
 
 
-def _wrong_parameter(value: Value) -> str:
-    """Return what is wrong with the value of a parameter, or nothing. Raises Undetermined."""
+def _wrong_parameter(value: Value) -> _Fault | None:
+    """Return what is wrong with the value of a parameter. Raises Undetermined."""
     match value:
         case dict():
             return _wrong_dict(value)
         case str() | int() | float() | bytes():
-            return ""
+            return None
         case Call() if value.name in TYPED:
-            return ""
+            return None
         case list() | tuple() | range():
-            items = [item for item in value if not isinstance(item, SCALARS)]
-            return next(filter(None, map(_wrong_text, items)), "")
+            items = (item for item in value if not isinstance(item, SCALARS))
+            return _first_fault(map(_wrong_text, items))
     if _is_text(value):
-        return ""
-    return f"has a value that is {kind_of(value)}"
+        return None
+    return _Fault(f"has a value that is {kind_of(value)}", is_of_part=True)
 
 
 def _wrong_typed(call: Call) -> str:
@@ -382,7 +401,8 @@ def _wrong_typed(call: Call) -> str:
     if isinstance(value, list | tuple) and not any(isinstance(it, Call | Unknown) for it in value):
         is_wrong = kind is not None or not all(isinstance(it, SCALARS) for it in value)
         return f"the value is {kind_of(value)}" if is_wrong else ""
-    return _wrong_text(value)
+    fault = _wrong_text(value)
+    return fault.message if fault is not None else ""
 
 
 def type_of(call: Call) -> "type | None":
@@ -399,48 +419,51 @@ def type_of(call: Call) -> "type | None":
     return found
 
 
-def _wrong_texts(value: Value) -> str:
+def _wrong_texts(value: Value) -> _Fault | None:
     items = items_in(value)
     if items is None:
-        return "has to be a list: put [ ] around it"
-    wrong = next(
-        (item for item in items if not isinstance(item, _COLLECTIONS) and not _is_text(item)), ""
-    )
-    if wrong != "":
-        return f"has an item that is {kind_of(wrong)}{_in_quotes(wrong)}"
-    return next(filter(None, map(_wrong_text, items)), "")
+        return _NO_LIST
+    for item in items:
+        if not isinstance(item, _COLLECTIONS) and not _is_text(item):
+            return _wrong_in(item)
+    return _first_fault(map(_wrong_text, items))
 
 
-def _wrong_mapping(value: Value) -> str:
-    if not isinstance(value, dict):
-        if items_in(value) is None and isinstance(value, Unknown):
-            return ""
-        return "has to be a dict"
-    return next(filter(None, (_wrong_text(item) for pair in value.items() for item in pair)), "")
+def _wrong_mapping(value: Value) -> _Fault | None:
+    if isinstance(value, dict):
+        return _first_fault(_wrong_text(item) for pair in value.items() for item in pair)
+    items_in(value)  # raises Undetermined for what may be a dict
+    return _Fault("has to be a dict")
 
 
-def _wrong_period(value: Value) -> str:
-    return (
-        "" if isinstance(value, str) else _check_of_type(float)(value)
-    )  # a string is read as a number
+def _wrong_period(value: Value) -> _Fault | None:
+    if isinstance(value, str):  # is read as a number
+        return None
+    return _check_of_type(float)(value)
 
 
-def _wrong_actions(value: Value) -> str:
-    return "takes a list of actions: put [ ] around them" if items_in(value) is None else ""
+def _wrong_actions(value: Value) -> _Fault | None:
+    if items_in(value) is None:
+        return _Fault("takes a list of actions: put [ ] around them")
+    return None
 
 
-def _wrong_remappings(value: Value) -> str:
-    for rule in items_in(value) or []:
+def _wrong_remappings(value: Value) -> _Fault | None:
+    rules = items_in(value)
+    if rules is None:
+        return _NO_LIST
+    for rule in rules:
         if isinstance(rule, Unknown):
             raise Undetermined(rule.reason)
         if not isinstance(rule, tuple) or len(rule) != 2:
-            return "takes pairs: ('from', 'to')"
-        if wrong := _wrong_text(rule[0]) or _wrong_text(rule[1]):
-            return wrong
-    return "has to be a list: put [ ] around it" if items_in(value) is None else ""
+            return _Fault("takes pairs: ('from', 'to')")
+        fault = _wrong_text(rule[0]) or _wrong_text(rule[1])
+        if fault is not None:
+            return fault
+    return None
 
 
-_CHECKS: Mapping[str, Callable[[Value], str]] = {
+_CHECKS: Mapping[str, Callable[[Value], _Fault | None]] = {
     "text": _wrong_text,
     "texts": _wrong_texts,
     "mapping": _wrong_mapping,
@@ -464,10 +487,10 @@ def _wrong_declaration(call: Call) -> str:
 
 def _wrong_include(call: Call) -> str:
     source, given = call.kwargs["launch_description_source"], call.kwargs.get("launch_arguments")
-    if not (isinstance(source, Call) and is_a(source.name, SOURCE)) and (
-        wrong := _wrong_text(source)
-    ):
-        return f"the first argument {wrong}, not {kind_of(source)}"
+    if not (isinstance(source, Call) and is_a(source.name, SOURCE)):
+        fault = _wrong_text(source)
+        if fault is not None:
+            return f"the first argument {fault.message}, not {kind_of(source)}"
     if isinstance(given, dict) and not all(isinstance(key, str) and len(key) == 2 for key in given):
         # Python takes a key of two letters for a pair
         return "launch_arguments is given a dict: add .items() to it"

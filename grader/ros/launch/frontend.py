@@ -48,7 +48,7 @@ class _SubstitutionFormat(NamedTuple):
     optional: tuple[str, ...] = ()
 
 
-_OF_TWO = _SubstitutionFormat(("left", "right"))
+_TWO_VALUES = _SubstitutionFormat(("left", "right"))
 # The substitutions that are evaluated.
 _SUBSTITUTIONS: Mapping[str, _SubstitutionFormat] = {
     "var": _SubstitutionFormat(("variable_name",), ("default",)),
@@ -63,10 +63,10 @@ _SUBSTITUTIONS: Mapping[str, _SubstitutionFormat] = {
     "exec-in-pkg": _SubstitutionFormat(("executable", "package")),
     "if": _SubstitutionFormat(("condition", "if_value"), ("else_value",)),
     "not": _SubstitutionFormat(("value",)),
-    "and": _OF_TWO,
-    "or": _OF_TWO,
-    "equals": _OF_TWO,
-    "not-equals": _OF_TWO,
+    "and": _TWO_VALUES,
+    "or": _TWO_VALUES,
+    "equals": _TWO_VALUES,
+    "not-equals": _TWO_VALUES,
 }
 _ON_STDERR = (["fail"], ["ignore"], ["warn"], ["capture"])
 _MERGE_KEY = "<<"  # of YAML
@@ -303,16 +303,16 @@ class _YamlReader:
                 message = (
                     f"expected one action below one key, found {names}. Is it indented far enough?"
                 )
-                raise EvaluationFails(message, _position_of(item))
+                raise EvaluationFails(message, _locate_node(item))
             found += [self.entity(kind, value, depth + 1) for kind, value in table.items()]
         return found
 
     def entity(self, kind: str, node: YamlNode, depth: int) -> _Entity:
         """Return one action or element."""
-        entity = _Entity(kind, _position_of(node), is_yaml=True)
+        entity = _Entity(kind, _locate_node(node), is_yaml=True)
         self.count += 1
         if depth > _MAX_DEPTH or self.count > _MAX_ENTITIES:
-            raise EvaluationFails("the launch file has too many elements", _position_of(node))
+            raise EvaluationFails("the launch file has too many elements", _locate_node(node))
         if isinstance(node.value, list):
             entity.actions = self.entries(node, depth)
         elif not isinstance(node.value, dict):
@@ -346,7 +346,7 @@ def _plain_value(node: YamlNode) -> Any:
     return found
 
 
-def _position_of(node: YamlNode) -> Position:
+def _locate_node(node: YamlNode) -> Position:
     return _position_at(node.location)
 
 
@@ -354,12 +354,12 @@ def _position_at(location: Location) -> Position:
     return Position(location.line, location.column)
 
 
-def actions_of(parent: _Entity, findings: Findings) -> list[Value]:
+def read_actions(parent: _Entity, findings: Findings) -> list[Value]:
     """Return the actions in an entity; errors, which stop the launch, are added to the findings."""
     found: list[Value] = []
     for entity in parent.actions:
         try:
-            found.append(_action_of(entity, findings))
+            found.append(_read_action(entity, findings))
         except EvaluationFails as error:
             findings.add_fault(str(error), error.at or entity.at)
         except EvaluationSignal as signal:
@@ -367,7 +367,7 @@ def actions_of(parent: _Entity, findings: Findings) -> list[Value]:
     return found
 
 
-def _action_of(entity: _Entity, findings: Findings) -> Call:
+def _read_action(entity: _Entity, findings: Findings) -> Call:
     kind = entity.kind
     if kind not in _ACTIONS:
         if kind in front_end("action"):
@@ -376,16 +376,16 @@ def _action_of(entity: _Entity, findings: Findings) -> Call:
             f"there is no action {kind!r}{did_you_mean(kind, _ACTIONS)}", entity.at
         )
     given = _read_attributes(entity, {**_CONDITION_PARTS, **_ACTIONS[kind]})
-    condition = _condition_of(given, entity)
+    condition = _take_condition(given, entity)
     kwargs = {
-        _ARGUMENTS.get(name, name): _argument_value(entity, name, value)
+        _ARGUMENTS.get(name, name): _read_argument(entity, name, value)
         for name, value in given.items()
     }
     if condition is not None:
         kwargs["condition"] = condition
     _add_elements(entity, kwargs)
     if "children" in _ACTIONS[kind]:
-        kwargs["actions"] = actions_of(entity, findings)
+        kwargs["actions"] = read_actions(entity, findings)
     return _checked_call(Call(front_end("action")[kind], [], kwargs, entity.at))
 
 
@@ -454,7 +454,7 @@ def _checked_call(call: Call) -> Call:
     return call
 
 
-def _condition_of(given: dict[str, Any], entity: _Entity) -> Call | None:
+def _take_condition(given: dict[str, Any], entity: _Entity) -> Call | None:
     """Take the condition out of the attributes."""
     own = {name: given.pop(name) for name in ("if", "unless") if name in given}
     if len(own) > 1:
@@ -466,7 +466,7 @@ def _condition_of(given: dict[str, Any], entity: _Entity) -> Call | None:
     return None
 
 
-def _argument_value(entity: _Entity, name: str, value: Any) -> Value:
+def _read_argument(entity: _Entity, name: str, value: Any) -> Value:
     at = entity.place(name)
     if entity.kind == "arg" and name in ("name", "description"):
         return value  # without substitutions

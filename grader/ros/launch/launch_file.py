@@ -10,11 +10,12 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from operator import attrgetter
 from pathlib import PurePosixPath
+from typing import Any
 
 from grader.base.merge_conflicts import resolve_conflicts
 from grader.base.source import Location, Source
 from grader.ros.build.places import HOME, PREFIX, SHARE, WORKING_FOLDER
-from grader.ros.launch.actions import CIRCULAR_INCLUDE, ActionVisitor, Include
+from grader.ros.launch.actions import ActionVisitor, Include, NotIncluded
 from grader.ros.launch.api import (
     DESCRIPTION,
     JOINED_PATH,
@@ -118,7 +119,7 @@ class _LaunchReader:
         """Return a launch file together with those that it includes."""
         included: list[Launch] = []
 
-        def include(target: str, arguments: Context) -> str:
+        def include(target: str, arguments: Context) -> NotIncluded | None:
             return self.include(
                 posixpath.normpath(target).removeprefix(PREFIX + "/"), arguments, included
             )
@@ -127,24 +128,24 @@ class _LaunchReader:
         suffix = PurePosixPath(path).suffix.lower()
         is_xml = suffix == ".xml" or (suffix in (".launch", "") and data.lstrip().startswith(b"<"))
         if is_xml or suffix in (".yaml", ".yml"):
-            own = _launch_of_entities(data, path, context, include, is_yaml=not is_xml)
+            own = _read_entities(data, path, context, include, is_yaml=not is_xml)
         else:
-            own = _launch_of_python(data, path, installed, context, include)
+            own = _read_python(data, path, installed, context, include)
         self.open.pop()
         for launch in included:
             joined = {name: getattr(own, name) + getattr(launch, name) for name in _JOINED}
             own = replace(own, **joined)
         return own
 
-    def include(self, target: str, context: Context, included: list[Launch]) -> str:
-        """Read an included file; return why it is not read, or nothing."""
+    def include(self, target: str, context: Context, included: list[Launch]) -> NotIncluded | None:
+        """Read an included file; return why it is not read."""
         if target in self.open:
-            return CIRCULAR_INCLUDE
+            return NotIncluded("it includes itself", is_circular=True)
         found = context.machine.open_installed(target)
         if found is None:
-            return f"it includes {target}, which the submission does not install"
+            return NotIncluded(f"it includes {target}, which the submission does not install")
         if self.includes_left == 0:
-            return f"it includes more than {_MAX_INCLUDES} launch files"
+            return NotIncluded(f"it includes more than {_MAX_INCLUDES} launch files")
         self.includes_left -= 1
         launch = self.read(*found, target, context)
         faults = launch.faults if launch.syntax is None else (*launch.faults, launch.syntax)
@@ -154,13 +155,13 @@ class _LaunchReader:
             )
             faults = ()
         included.append(replace(launch, faults=faults))
-        return ""
+        return None
 
 
-def _launch_of_entities(
+def _read_entities(
     data: bytes, path: str, context: Context, include: Include, *, is_yaml: bool
 ) -> Launch:
-    from grader.ros.launch.frontend import actions_of, read_frontend
+    from grader.ros.launch.frontend import read_actions, read_frontend
 
     source = Source(path, data.decode("utf-8", "replace"))
     findings = Findings(lambda position: Location(path, position.line, position.column))
@@ -174,15 +175,15 @@ def _launch_of_entities(
         return Launch(source, root)
     if root.error:
         findings.add_fault(root.error, root.at)
-    actions = actions_of(root, findings)
+    actions = read_actions(root, findings)
     visitor = ActionVisitor(
         findings, include, lambda _, at, *__: Unknown("a function is not evaluated here", at)
     )
     visitor.launch(Call(DESCRIPTION, [], {"initial_entities": actions}, root.at), context, root.at)
-    return _launch_of_findings(source, findings, ())
+    return _make_launch(source, findings, ())
 
 
-def _launch_of_python(
+def _read_python(
     data: bytes, path: str, installed: str, context: Context, include: Include
 ) -> Launch:
     code = parse(data, path)
@@ -217,7 +218,7 @@ def _launch_of_python(
     nodes = [
         call for call in interpreter.calls if call.name == _NODE and call not in visitor.visited
     ]
-    return _launch_of_findings(
+    return _make_launch(
         code.source, findings, tuple(_forgotten_node(node, findings) for node in nodes)
     )
 
@@ -256,9 +257,7 @@ def _forgotten_node(node: Call, findings: Findings) -> StartedNode:
     return StartedNode(package, executable, False, findings.locate(node.at))
 
 
-def _launch_of_findings(
-    source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]
-) -> Launch:
+def _make_launch(source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
     named = {
         reference.path
         for reference in findings.references
@@ -328,41 +327,45 @@ class _PythonLaunchFile:
             self.context = before
 
     def _functions(self) -> FunctionTable:
-        adds = [f"{DESCRIPTION}.{name}" for name in ("add_action", "add_entity")]
-        classes = {full for names in exports().values() for full in names.values() if full}
-        performs = [f"{full}.perform" for full in sorted(classes) if is_a(full, SUBSTITUTION)]
-        return LaunchFunctions(
-            {
-                **standard_functions(WORKING_FOLDER),
-                **self.moveit,
-                **dict.fromkeys(_RECORDED, record),
-                **dict.fromkeys(adds, _add_action),
-                **dict.fromkeys((f"{it}.__truediv__" for it in (JOINED_PATH, PATH)), join_path),
-                **dict.fromkeys(performs, self._perform),
-                **dict.fromkeys(
-                    (f"{it}.get_package_share_directory" for it in _AMENT_INDEX), self._share
-                ),
-                **dict.fromkeys(
-                    (f"{it}.get_package_share_path" for it in _AMENT_INDEX), self._share_path
-                ),
-                "launch_ros.substitutions.find_package.FindPackageShare.find": self._share,
-                "builtins.open": self._open,
-                **dict.fromkeys(("pathlib.Path.read_text", "pathlib.Path.open"), self._open_path),
-                **dict.fromkeys(
-                    ("os.path.exists", "os.path.isfile", "pathlib.Path.exists"), self._exists
-                ),
-                **dict.fromkeys(
-                    ("xacro.process_file", "xacro.process", "xacro.parse"), self._xacro
-                ),
-                **dict.fromkeys(("builtins.open.read", *_TEXTS), self._text),
-                **dict.fromkeys(
-                    ("os.environ.__getitem__", "os.environ.get", "os.getenv"), _read_variable
-                ),
-                "os.path.join": _join_paths,
-                "os.path.expanduser": _expand_user,
-                "pathlib.Path.home": lambda *_: PurePosixPath(HOME),
-            }
-        )
+        functions: dict[str, Any] = {
+            **standard_functions(WORKING_FOLDER),
+            **self.moveit,
+            **dict.fromkeys(_RECORDED, record),
+            f"{DESCRIPTION}.add_action": _add_action,
+            f"{DESCRIPTION}.add_entity": _add_action,
+            f"{JOINED_PATH}.__truediv__": join_path,
+            f"{PATH}.__truediv__": join_path,
+        }
+        classes: set[str] = set()
+        for names in exports().values():
+            classes.update(names.values())
+        for full in classes:
+            if is_a(full, SUBSTITUTION):
+                functions[f"{full}.perform"] = self._perform
+        for module in _AMENT_INDEX:
+            functions[f"{module}.get_package_share_directory"] = self._share
+            functions[f"{module}.get_package_share_path"] = self._share_path
+        functions |= {
+            "launch_ros.substitutions.find_package.FindPackageShare.find": self._share,
+            "builtins.open": self._open,
+            "builtins.open.read": self._text,
+            "pathlib.Path.read_text": self._open_path,
+            "pathlib.Path.open": self._open_path,
+            "pathlib.Path.exists": self._exists,
+            "pathlib.Path.home": lambda *_: PurePosixPath(HOME),
+            "os.path.exists": self._exists,
+            "os.path.isfile": self._exists,
+            "os.path.join": _join_paths,
+            "os.path.expanduser": _expand_user,
+            "os.environ.__getitem__": _read_variable,
+            "os.environ.get": _read_variable,
+            "os.getenv": _read_variable,
+            "xacro.process_file": self._xacro,
+            "xacro.process": self._xacro,
+            "xacro.parse": self._xacro,
+            **dict.fromkeys(_TEXTS, self._text),
+        }
+        return LaunchFunctions(functions)
 
     def _perform(self, _: Evaluation, call: Call) -> Value:
         """Return the text of a substitution as Python gets it."""

@@ -35,7 +35,7 @@ from grader.ros.python.values import (
 
 _PACKAGE = "moveit_configs_utils"
 _BUILDER = f"{_PACKAGE}.moveit_configs_builder.MoveItConfigsBuilder"
-_OF_BUILDER = ("MoveItConfigs", "MoveItConfigsBuilder")
+_BUILDER_CLASSES = ("MoveItConfigs", "MoveItConfigsBuilder")
 _LAUNCHES = f"{_PACKAGE}.launches"
 _NODE = "launch_ros.actions.node.Node"
 _INCLUDE = "launch.actions.include_launch_description.IncludeLaunchDescription"
@@ -73,7 +73,7 @@ _PARTS = (
     "joint_limits",
     "moveit_cpp",
 )
-_BY_DEFAULT = _PARTS[:-1]
+_DEFAULT_PARTS = _PARTS[:-1]
 _PARAMETERS: Mapping[str, Sequence[str]] = {
     "robot_description": ("file_path", "mappings"),
     "robot_description_semantic": ("file_path", "mappings"),
@@ -93,7 +93,7 @@ _PARAMETERS: Mapping[str, Sequence[str]] = {
 }
 # What a part is called in the parameters after the name of the robot's, and the file that it is
 # read from by default.
-_OF_YAML = {
+_YAML_PARTS = {
     "robot_description_kinematics": ("_kinematics", "kinematics"),
     "joint_limits": ("_planning", "joint_limits"),
     "pilz_cartesian_limits": ("_planning", "pilz_cartesian_limits"),
@@ -106,14 +106,14 @@ def moveit_exports() -> Mapping[str, Sequence[str]]:
     of_both = ("DeclareLaunchArgument", "IfCondition", "LaunchConfiguration", "Node")
     return {
         _PACKAGE: (
-            *_OF_BUILDER,
+            *_BUILDER_CLASSES,
             "launches",
             "launch_utils",
             "moveit_configs_builder",
             "substitutions",
         ),
         f"{_PACKAGE}.moveit_configs_builder": (
-            *_OF_BUILDER,
+            *_BUILDER_CLASSES,
             "get_pattern_matches",
             "moveit_configs_utils_path",
         ),
@@ -208,7 +208,7 @@ class MoveItConfigurations:
         """Return the configuration, with what is made by default, as an object with its parts."""
         assert call.owner is not None
         own = self._built[call.owner]
-        for name in _BY_DEFAULT:
+        for name in _DEFAULT_PARTS:
             if not own.parts.get(name):
                 self._made(own, name, call.at, {})
         if _PILZ in own.parts["planning_pipelines"] and "pilz_cartesian_limits" not in own.parts:
@@ -231,8 +231,8 @@ class MoveItConfigurations:
         self, own: _Configuration, name: str, at: Position, given: Mapping[str, Value]
     ) -> None:
         """Make a part of a configuration, as the method of this name does."""
-        if name in _OF_YAML:
-            ending, stem = _OF_YAML[name]
+        if name in _YAML_PARTS:
+            ending, stem = _YAML_PARTS[name]
             table = self._yaml(self._path(own, given, f"config/{stem}.yaml"), at)
             own.parts[name] = {own.description + ending: table} if ending else _spread(table)
         else:
@@ -277,7 +277,7 @@ class MoveItConfigurations:
         if found is None:
             return UnknownTable("a file for MoveIt is not evaluated", at)
         try:
-            return _value_of(read_yaml(*found), 0)
+            return _read_value(read_yaml(*found), 0)
         except (YamlFault, Undetermined, ValueError) as error:
             raise Undetermined(f"the file {found[1]} is not evaluated: {error}", at) from None
 
@@ -497,15 +497,15 @@ def _mappings(given: Mapping[str, Value]) -> tuple[tuple[str, str | None], ...]:
     )
 
 
-def _value_of(node: YamlNode, depth: int) -> Value:
+def _read_value(node: YamlNode, depth: int) -> Value:
     """Return the value of YAML as PyYAML reads it. Raises Undetermined."""
     if depth > _MAX_DEPTH:
         raise Undetermined("it is nested too deeply")
     match node.value:
         case dict() as table:
-            return {name: _value_of(it, depth + 1) for name, it in table.items()}
+            return {name: _read_value(it, depth + 1) for name, it in table.items()}
         case list() as items:
-            return [_value_of(it, depth + 1) for it in items]
+            return [_read_value(it, depth + 1) for it in items]
         case str() as text:
             if node.quoted or len(text) > _MAX_NUMBER:
                 return text

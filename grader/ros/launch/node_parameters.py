@@ -42,7 +42,6 @@ from grader.ros.python.values import (
 _EVERY_NODE = "/**"
 # the launch configuration that has what SetParameter gives to all nodes, as in launch_ros
 TO_ALL = "global_params"
-_OWN = "?"  # the key of a node whose name is not known
 _MAX_YAML = 200_000  # characters
 _MAX_DEPTH = 40
 _HEAD = '<?xml version="1.0" ?>\n<!-- by xacro -->\n'  # of what xacro writes
@@ -73,7 +72,7 @@ def evaluate_parameters(parameters: Value, context: Context, at: Position) -> No
 
 
 def _evaluate_file(call: Call, context: Context) -> None:
-    path = _path_of(call, context)
+    path = _resolve_path(call, context)
     text = context.text_of(path) if isinstance(path, str) else None
     if call.kwargs.get("allow_substs") not in (None, False) and (
         text is None or _SUBSTITUTION in text
@@ -81,7 +80,7 @@ def _evaluate_file(call: Call, context: Context) -> None:
         raise Undetermined("substitutions in a parameter file are not evaluated", call.at)
 
 
-def _path_of(call: Call, context: Context) -> Resolved:
+def _resolve_path(call: Call, context: Context) -> Resolved:
     """Return the path in a ParameterFile. Raises EvaluationSignal."""
     given = call.kwargs["param_file"]
     if isinstance(given, PurePosixPath):
@@ -259,7 +258,7 @@ def given_parameters(
     else:
         items = [given]
     found = (_given_item(item, place, is_named=is_named) for item in items)
-    return (*_of_command_line(words, at), *context.to_all.get(TO_ALL, ()), *found)
+    return (*_read_command_line(words, at), *context.to_all.get(TO_ALL, ()), *found)
 
 
 def set_for_all(
@@ -279,7 +278,7 @@ def _as_rule(given: ParameterValue) -> ParameterValue:
     value = given.value
     if isinstance(value, list | bytes | Unknown):
         return given._replace(value=Unknown("the text of this parameter is not evaluated", START))
-    return given._replace(value=_value_of_text(str(value)))
+    return given._replace(value=_read_text(str(value)))
 
 
 def file_for_all(
@@ -297,7 +296,7 @@ def _given_item(item: Value, place: _Place, *, is_named: bool = False) -> GivenP
         if isinstance(item, Call) and item.name == FILE:
             is_plain = item.kwargs.get("allow_substs") in (None, False)
             return GivenParameters(
-                location, known_text(_path_of(item, context), context, at), is_plain=is_plain
+                location, known_text(_resolve_path(item, context), context, at), is_plain=is_plain
             )
         if isinstance(item, Call) and item.name in TYPED:
             raise Undetermined("a parameter of this kind is not evaluated")
@@ -325,11 +324,14 @@ def _values_in(table: dict[Any, Value], place: _Place) -> dict[str, ParameterVal
             if isinstance(value, dict):
                 raise
             values = {name: Unknown(str(signal), place.at)}
-        found |= {own: ParameterValue(_plain(it, place.at), location) for own, it in values.items()}
+        found |= {
+            own: ParameterValue(_replace_stand_ins(it, place.at), location)
+            for own, it in values.items()
+        }
     return found
 
 
-def _plain(value: Any, at: Position) -> Any:
+def _replace_stand_ins(value: Any, at: Position) -> Any:
     """Return a value without stand-ins; the contents of a file are unknown."""
     is_plain = isinstance(value, (*SCALARS, list)) and PART_UNKNOWN not in str(value)
     if is_plain or isinstance(value, Unknown):
@@ -337,7 +339,7 @@ def _plain(value: Any, at: Position) -> Any:
     return Unknown("the contents of a file are not evaluated", at)
 
 
-def _of_command_line(words: Sequence[str], at: Location) -> Iterator[GivenParameters]:
+def _read_command_line(words: Sequence[str], at: Location) -> Iterator[GivenParameters]:
     """Yield the parameters of the arguments for ROS: -p name:=value, --params-file path."""
     for option, word in pairwise(words):
         if option not in ("-p", "--param", "--params-file"):
@@ -350,23 +352,23 @@ def _of_command_line(words: Sequence[str], at: Location) -> Iterator[GivenParame
             yield GivenParameters(at, word)
         else:
             yield GivenParameters(
-                at, values={name: ParameterValue(_value_of_text(text), at)}, node=node
+                at, values={name: ParameterValue(_read_text(text), at)}, node=node
             )
 
 
-def _value_of_text(text: str) -> Any:
+def _read_text(text: str) -> Any:
     try:
         if PART_UNKNOWN not in text:
-            return _value_of(read_yaml(text.encode(), ""))
+            return _read_value(read_yaml(text.encode(), ""))
         return Unknown("a text", START)
     except YamlFault as fault:
         return Unknown(str(fault), START)
 
 
-def _value_of(node: YamlNode) -> Any:
+def _read_value(node: YamlNode) -> Any:
     """Return the value of a parameter as rcl reads it: a scalar or a list of them; else Unknown."""
     if isinstance(node.value, list):
-        items = [_value_of(item) for item in node.items]
+        items = [_read_value(item) for item in node.items]
         kinds = {type(item) for item in items}
         if len(kinds) == 1 and kinds <= {*SCALARS}:
             return items
@@ -430,35 +432,35 @@ def parameters_of(
         is_cpp = not is_python
     elif is_written_in_cpp(node.package):
         is_cpp = True
-    by_key: dict[str, dict[str, ParameterValue]] = {}
+    by_key: dict[str | None, dict[str, ParameterValue]] = {}
     reasons = []
     if node.parameters is None:
         return NodeParameters({}, "the parameters of the node are not evaluated")
     for given in node.parameters:
         try:
-            tables = [*_tables_of(given, open_file, _full_name(node, ""))]
+            tables = [*_read_tables(given, open_file, _full_name(node, ""))]
         except Undetermined as error:
             reasons.append(str(error))
             doubt = Unknown(str(error), START)
-            by_key = {
-                key: {own: it._replace(value=doubt) for own, it in table.items()}
-                for key, table in by_key.items()
-            }
+            for table in by_key.values():
+                table.update({it: row._replace(value=doubt) for it, row in table.items()})
             continue
         for key, values in tables:
-            opened = {
-                name: it.value for name, it in values.items() if isinstance(it.value, UnknownTable)
-            }
-            reasons += [table.reason for table in opened.values()]
+            known: dict[str, ParameterValue] = {}
+            opened: dict[str, Unknown] = {}
+            for parameter, row in values.items():
+                if isinstance(row.value, UnknownTable):
+                    opened[parameter] = row.value
+                else:
+                    known[parameter] = row
+            reasons += [unknown.reason for unknown in opened.values()]
             _forget_below(opened, by_key)
-            by_key.setdefault(key, {}).update(
-                (name, it) for name, it in values.items() if name not in opened
-            )
-    return NodeParameters(_counting(by_key, full, is_cpp), "; ".join(dict.fromkeys(reasons)))
+            by_key.setdefault(key, {}).update(known)
+    return NodeParameters(_select_values(by_key, full, is_cpp), "; ".join(dict.fromkeys(reasons)))
 
 
 def _forget_below(
-    tables: Mapping[str, Unknown], by_key: dict[str, dict[str, ParameterValue]]
+    tables: Mapping[str, Unknown], by_key: dict[str | None, dict[str, ParameterValue]]
 ) -> None:
     """Make the values unknown that parameters in a table that is not known may replace."""
     for name, doubt in tables.items():
@@ -477,16 +479,16 @@ def _full_name(node: StartedNode, name: str) -> str | None:
     return None
 
 
-def _tables_of(
+def _read_tables(
     given: GivenParameters, open_file: _OpenFile, own: str | None
-) -> Iterator[tuple[str, Mapping[str, ParameterValue]]]:
+) -> Iterator[tuple[str | None, Mapping[str, ParameterValue]]]:
     """Yield the parameters by keys of nodes; `own` is the full name that the launch file gives.
     Raises Undetermined.
     """
     if given.unknown:
         raise Undetermined(given.unknown)
     if not given.path:
-        yield _key_of(given, own), given.values
+        yield _find_key(given, own), given.values
         return
     path = posixpath.normpath(given.path)
     found = open_file(path.removeprefix(f"{PREFIX}/")) if path.startswith(f"{PREFIX}/") else None
@@ -501,10 +503,12 @@ def _tables_of(
     yield from _sections(root, "", is_plain=given.is_plain)
 
 
-def _key_of(given: GivenParameters, own: str | None) -> str:
-    """Return for which nodes the parameters of a launch file are."""
+def _find_key(given: GivenParameters, own: str | None) -> str | None:
+    """Return for which nodes the parameters of a launch file are; None for the node itself, whose
+    name is not known.
+    """
     if given.is_named:
-        return own or _OWN
+        return own
     if given.node:
         return f"/{given.node.strip('/')}"
     return _EVERY_NODE
@@ -545,19 +549,19 @@ def value_in_file(node: YamlNode, *, is_plain: bool = True) -> ParameterValue:
         return ParameterValue(
             Unknown("substitutions in a parameter file are not evaluated", START), node.location
         )
-    return ParameterValue(_value_of(node), node.location)
+    return ParameterValue(_read_value(node), node.location)
 
 
-def _counting(
-    by_key: Mapping[str, Mapping[str, ParameterValue]], full: str | None, is_cpp: bool | None
+def _select_values(
+    by_key: Mapping[str | None, Mapping[str, ParameterValue]], full: str | None, is_cpp: bool | None
 ) -> dict[str, ParameterValue]:
     """Return the values that count for a node, of all sections in the order in which their keys are
     met first.
     """
     if full is None:
-        return _for_unknown_name(by_key)
-    of_cpp = _merged(values for key, values in by_key.items() if _matches(key, full))
-    of_python = _merged(by_key.get(key, {}) for key in (_EVERY_NODE, full))
+        return _select_for_any_name(by_key)
+    of_cpp = _merge(values for key, values in by_key.items() if _matches(key, full))
+    of_python = _merge(by_key.get(key, {}) for key in (_EVERY_NODE, full))
     if is_cpp is not None:
         return of_cpp if is_cpp else of_python
     doubt = Unknown("rclcpp and rclpy let different values count", START)
@@ -568,27 +572,29 @@ def _counting(
     }
 
 
-def _for_unknown_name(
-    by_key: Mapping[str, Mapping[str, ParameterValue]],
+def _select_for_any_name(
+    by_key: Mapping[str | None, Mapping[str, ParameterValue]],
 ) -> dict[str, ParameterValue]:
     """Return the values of sections for every node; those that another section may replace are
     unknown.
     """
     doubt = Unknown("the name of the node is not known", START)
-    known = _merged(values for key, values in by_key.items() if key in (_EVERY_NODE, _OWN))
-    others = _merged(values for key, values in by_key.items() if key not in (_EVERY_NODE, _OWN))
+    known = _merge(values for key, values in by_key.items() if key in (_EVERY_NODE, None))
+    others = _merge(values for key, values in by_key.items() if key not in (_EVERY_NODE, None))
     return {**known, **{name: given._replace(value=doubt) for name, given in others.items()}}
 
 
-def _merged(tables: Iterable[Mapping[str, ParameterValue]]) -> dict[str, ParameterValue]:
+def _merge(tables: Iterable[Mapping[str, ParameterValue]]) -> dict[str, ParameterValue]:
     found: dict[str, ParameterValue] = {}
     for table in tables:
         found |= table
     return found
 
 
-def _matches(key: str, full: str) -> bool:
+def _matches(key: str | None, full: str) -> bool:
     """Return whether the key of a section names a node, as rclcpp reads it."""
+    if key is None:
+        return False
     pattern = re.sub(r"/\\\*(\\\*)?", lambda it: r"(/\w+)*" if it[1] else r"(/\w+)", re.escape(key))
     return re.fullmatch(pattern, full) is not None
 

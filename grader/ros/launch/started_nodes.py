@@ -93,7 +93,7 @@ def start_node(findings: Findings, call: Call, context: Context, when: bool | No
         return
     prefix = _frame_prefix(call, context) if executable == STATE_PUBLISHER else ""
     node = StartedNode(package, executable, when, findings.locate(call.at), prefix)
-    started = _with_names(node, call, context, findings)
+    started = _add_names(node, call, context, findings)
     findings.nodes.append(started)
     for controller in (controllers_of(started) if executable == "spawner" else ()) or ():
         for given in controller.parameters or ():
@@ -104,23 +104,24 @@ def start_node(findings: Findings, call: Call, context: Context, when: bool | No
         _find_configuration(findings, call, context)
 
 
-def _with_names(node: StartedNode, call: Call, context: Context, findings: Findings) -> StartedNode:
+def _add_names(node: StartedNode, call: Call, context: Context, findings: Findings) -> StartedNode:
     """Return a node with its name, arguments, parameters and remappings, and whether it is given
     the robot itself.
     """
-    words = _words_of(call.kwargs.get("arguments"), context, call.at)
-    own = words[words.index("--ros-args") + 1 :] if "--ros-args" in words else []
-    own += _words_of(call.kwargs.get("ros_arguments"), context, call.at)
-    rules = remap_rules(own)
-    is_given = any(
-        "robot_description" in table for table in _tables_in(call.kwargs.get("parameters"))
-    )
-    has_description = is_given or (
-        bool(words) and not words[0].startswith("-") and node.executable != _RVIZ
-    )
-    parameters = given_parameters(call, own, context, node.location)
-    for path in (it.path for it in parameters if it.path):
-        findings.refer("parameters", path, call)
+    words = _resolve_words(call.kwargs.get("arguments"), context, call.at)
+    ros_words: list[str] = []
+    if "--ros-args" in words:
+        ros_words = words[words.index("--ros-args") + 1 :]
+    ros_words += _resolve_words(call.kwargs.get("ros_arguments"), context, call.at)
+    rules = remap_rules(ros_words)
+    # robot_state_publisher still reads a URDF whose path is its first argument.
+    has_description = bool(words) and not words[0].startswith("-") and node.executable != _RVIZ
+    for table in _tables_in(call.kwargs.get("parameters")):
+        has_description |= "robot_description" in table
+    parameters = given_parameters(call, ros_words, context, node.location)
+    for given in parameters:
+        if given.path:
+            findings.refer("parameters", given.path, call)
     node = replace(
         node,
         has_description=has_description,
@@ -129,10 +130,10 @@ def _with_names(node: StartedNode, call: Call, context: Context, findings: Findi
         parameters=parameters,
         included_by=context.included_by,
     )
-    return _with_remaps(node, rules, [*words, *own], call, context)
+    return _add_remaps(node, rules, [*words, *ros_words], call, context)
 
 
-def _with_remaps(
+def _add_remaps(
     node: StartedNode,
     rules: Sequence[tuple[str, str, str]],
     words: Sequence[str],
@@ -142,21 +143,22 @@ def _with_remaps(
     """Return a node with its namespace and remappings; `rules` are those among the words of its
     command line.
     """
+    remaps: list[tuple[str, ...] | None] = [(name, to) for name, _, to in rules]
+    remaps += context.to_all.get(REMAPS, ())
     try:
-        namespace: str | None = namespace_below(
-            call.kwargs.get("namespace") or "", context, call.at
-        )
-        given = [
-            tuple(known_text(it, context, call.at) for it in rule)
-            for rule in call.kwargs.get("remappings") or ()
-        ]
+        below = call.kwargs.get("namespace") or ""
+        namespace: str | None = namespace_below(below, context, call.at)
+        for rule in call.kwargs.get("remappings") or ():
+            remaps.append(tuple(known_text(name, context, call.at) for name in rule))
     except EvaluationSignal:
         return replace(node, namespace=None, remaps=None)
-    namespace = next((value for name, _, value in rules if name == "__ns"), namespace)
-    remaps = (*((name, to) for name, _, to in rules), *context.to_all.get(REMAPS, ()), *given)
-    is_known = None not in remaps and not any(PART_UNKNOWN in word for word in words)
+    for name, _, value in reversed(rules):
+        if name == "__ns":  # the first rule counts
+            namespace = value
     known = tuple(rule for rule in remaps if rule is not None)
-    return replace(node, namespace=namespace, remaps=known if is_known else None)
+    if len(known) < len(remaps) or any(PART_UNKNOWN in word for word in words):
+        return replace(node, namespace=namespace, remaps=None)
+    return replace(node, namespace=namespace, remaps=known)
 
 
 def _given_name(rules: Iterable[tuple[str, str, str]], call: Call, context: Context) -> str | None:
@@ -173,7 +175,7 @@ def start_process(findings: Findings, call: Call, context: Context, when: bool |
     """Add the node that a command starts, if it does."""
     if when is False:
         return
-    words = _words_of(call.kwargs["cmd"], context, call.at)
+    words = _resolve_words(call.kwargs["cmd"], context, call.at)
     if call.kwargs.get("shell"):
         with suppress(ValueError):
             words = shlex.split(" ".join(words))
@@ -230,7 +232,7 @@ def evaluate_process(call: Call, context: Context) -> None:
     if "cmd" in call.kwargs and not items_in(call.kwargs["cmd"]):
         raise EvaluationFails("cmd is empty", call.at)
     if "cmd" in call.kwargs:
-        words = _words_of(call.kwargs["cmd"], context, call.at)
+        words = _resolve_words(call.kwargs["cmd"], context, call.at)
         node = _node_of_command(words, call)
         if node is not None:
             check_program(node.kwargs["package"], node.kwargs["executable"], context, call.at)
@@ -273,7 +275,7 @@ def _frame_prefix(call: Call, context: Context) -> str | None:
         for table in _tables_in(call.kwargs.get("parameters"))
         if "frame_prefix" in table
     ]
-    words = _words_of(call.kwargs.get("arguments"), context, call.at)
+    words = _resolve_words(call.kwargs.get("arguments"), context, call.at)
     given += [word.partition(":=")[2] for word in words if word.startswith("frame_prefix:=")]
     found = _text_if_known(_inner_value(given[-1]), context, call.at) if given else ""
     if isinstance(found, str) and PART_UNKNOWN not in found:
@@ -285,20 +287,13 @@ def _find_description(findings: Findings, call: Call, context: Context) -> None:
     """Add the file that robot_state_publisher gets the robot from."""
     given = call.kwargs.get("parameters") or []
     parameters = given if isinstance(given, list | tuple) else [given]
-    descriptions = [
-        table["robot_description"]
-        for table in _tables_in(parameters)
-        if "robot_description" in table
-    ]
-    if descriptions:
-        _refer_description(findings, descriptions[-1], call, context)
+    tables = [table for table in _tables_in(parameters) if "robot_description" in table]
+    if tables:
+        _refer_description(findings, tables[-1]["robot_description"], call, context)
         return
     unknown = next((it for it in parameters if isinstance(it, Unknown)), None)
-    is_clear = all(
-        isinstance(it, dict) and not any(isinstance(own, dict) for own in it.values())
-        for it in parameters
-    )
-    words = _words_of(call.kwargs.get("arguments"), context, call.at)
+    is_clear = all(map(_is_flat, parameters))
+    words = _resolve_words(call.kwargs.get("arguments"), context, call.at)
     end = words.index("--ros-args") if "--ros-args" in words else len(words)
     files = [word for word in words[:end] if not word.startswith("-")]
     if unknown is not None:
@@ -312,6 +307,13 @@ def _find_description(findings: Findings, call: Call, context: Context) -> None:
             "robot_state_publisher is started without robot_description: it has no robot to publish"
         )
         findings.refer("urdf", None, call, wrong=message)
+
+
+def _is_flat(parameter: Value) -> bool:
+    """Return whether parameters are a dict that contains no other."""
+    if not isinstance(parameter, dict):
+        return False
+    return not any(isinstance(value, dict) for value in parameter.values())
 
 
 def _refer_description(findings: Findings, value: Value, call: Call, context: Context) -> None:
@@ -366,7 +368,7 @@ def _find_configuration(findings: Findings, call: Call, context: Context) -> Non
     if isinstance(arguments, Unknown):
         findings.refer("rviz", arguments, call)
         return
-    words = _words_of(arguments, context, call.at)
+    words = _resolve_words(arguments, context, call.at)
     path = _display_config(words)
     if path is None and PART_UNKNOWN not in words:
         message = (
@@ -415,7 +417,7 @@ def _text_if_known(value: Value, context: Context, at: Position) -> Resolved:
         return Unknown(str(signal), signal.at or at)
 
 
-def _words_of(value: Value, context: Context, at: Position) -> list[str]:
+def _resolve_words(value: Value, context: Context, at: Position) -> list[str]:
     """Return the words of a command, of which each item of a list is one."""
     items = value
     if not isinstance(value, list | tuple | str):

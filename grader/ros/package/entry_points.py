@@ -47,17 +47,19 @@ def entry_points(package: Package) -> list[_EntryPoint]:
     setup = package.installation
     groups = setup.entry_points if setup is not None else None
     scripts = groups.get("console_scripts") if isinstance(groups, dict) else None
-    found = []
-    for script in scripts if isinstance(scripts, list | tuple) else ():
+    if not isinstance(scripts, list | tuple):
+        return []
+    entries = []
+    for script in scripts:
         parts = _ENTRY.fullmatch(script) if isinstance(script, str) else None
         if parts is not None:
-            found.append(
-                _EntryPoint(parts[1], parts[2], parts[3] or "", _place_of(package, parts[1]))
-            )
-    return found
+            name, module, function = parts.groups()
+            location = _locate_name(package, name)
+            entries.append(_EntryPoint(name, module, function or "", location))
+    return entries
 
 
-def _place_of(package: Package, name: str) -> Location:
+def _locate_name(package: Package, name: str) -> Location:
     """Return where setup.py writes an entry point; where it calls setup() if the text is
     computed.
     """
@@ -126,23 +128,26 @@ def _lacks_module(package: Package, module: str) -> bool:
     """
     top, stem = module.partition(".")[0], module.replace(".", "/")
     tree = package.tree
-    names = {path: path.rpartition("/")[2] for path in (*tree.files, *tree.folders, *tree.unseen)}
+    paths = dict.fromkeys((*tree.files, *tree.folders, *tree.unseen))
     homes = [
-        path for path, name in names.items() if name == top and not path.startswith("resource/")
+        path
+        for path in paths
+        if path.rpartition("/")[2] == top and not path.startswith("resource/")
     ]
     if not homes:  # no other package of ROS 2 installs a Python package of this name
-        return top == package.name and not any(
-            name.startswith((f"{top}.py", f"{top}.so")) for name in names.values()
-        )
+        single = (f"{top}.py", f"{top}.so")
+        is_single = any(path.rpartition("/")[2].startswith(single) for path in paths)
+        return top == package.name and not is_single
     if homes != [top] or any(
-        path == stem or path.startswith((f"{stem}.", f"{stem}/")) for path in names
+        path == stem or path.startswith((f"{stem}.", f"{stem}/")) for path in paths
     ):
         return False
-    inits = [
-        path for path in tree.files if path.endswith("/__init__.py") and stem.startswith(path[:-11])
-    ]
-    codes = [read_module(package, path) for path in inits]
-    return all(code is not None and _certain_names(code) is not None for code in codes)
+    for path in tree.files:
+        if path.endswith("/__init__.py") and stem.startswith(path.removesuffix("__init__.py")):
+            code = read_module(package, path)
+            if code is None or _certain_names(code) is None:
+                return False
+    return True
 
 
 def _missing_module(package: Package, entry: _EntryPoint) -> EntryFault:

@@ -56,10 +56,13 @@ def find_packages(tree: Tree, names: Sequence[str]) -> list[str]:
     """Return the folders of packages: those with a package.xml, and those of these names with only
     a setup.py.
     """
-    with_manifest, with_setup = (
-        [path.rpartition("/")[0] for path in tree.files if path.rpartition("/")[2] == file]
-        for file in (MANIFEST, SETUP)
-    )
+    with_manifest, with_setup = [], []
+    for path in tree.files:
+        folder, _, name = path.rpartition("/")
+        if name == MANIFEST:
+            with_manifest.append(folder)
+        elif name == SETUP:
+            with_setup.append(folder)
     named = [
         folder
         for folder in with_setup

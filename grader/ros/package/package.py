@@ -114,9 +114,12 @@ class Package:
         """
         if name == self.name:
             return self
-        return self.packages.get(name) or next(
-            (it for it in self.packages.values() if name in it.names), None
-        )
+        if name in self.packages:
+            return self.packages[name]
+        for package in self.packages.values():
+            if name in package.names:
+                return package
+        return None
 
     def depends_on(self, name: str) -> bool:
         """Return whether its package.xml depends on a package of this name."""
@@ -188,24 +191,22 @@ class Package:
         from grader.ros.build.installation import Installation
         from grader.ros.python.parse import SyntaxFault
 
-        own = self.path(name)
+        path = self.path(name)
         try:
             data = file.read(PYTHON_LIMIT)
         except InputError as error:
-            source = Source(own, "")
-            return Installation(
-                source, SyntaxFault(source, str(error), Location(own, 1, 1), sure=False)
-            )
+            source = Source(path, "")
+            fault = SyntaxFault(source, str(error), Location(path, 1, 1), sure=False)
+            return Installation(source, fault)
         if self.is_cmake:
             from grader.ros.build.cmake.cmake_lists import read_cmake
 
             declared = (self.manifest.name if self.manifest is not None else None) or ""
-            return read_cmake(
-                data.decode("utf-8", "replace"), own, self.tree, declared, self.budget
-            )
+            text = data.decode("utf-8", "replace")
+            return read_cmake(text, path, self.tree, declared, self.budget)
         from grader.ros.build.setup_py import read_setup
 
-        return read_setup(data, own, self.tree, self.budget)
+        return read_setup(data, path, self.tree, self.budget)
 
     @cached_property
     def installed(self) -> dict[str, str]:
@@ -246,30 +247,25 @@ class Package:
         of that name.
         """
         shares = [f"/{folder}/{self.name}/" for folder in ("build", "install", "share")]
-        copied = (path for path in self.generated if any(share in f"/{path}" for share in shares))
         endings = (f"/{name}",) if name else _KINDS[kind][1]
-        return next(
-            (
-                was_not_committed(path)
-                for path in copied
-                if (path if name else path.lower()).endswith(endings)
-            ),
-            "",
-        )
+        for path in self.generated:
+            is_copied = any(share in f"/{path}" for share in shares)
+            if is_copied and (path if name else path.lower()).endswith(endings):
+                return was_not_committed(path)
+        return ""
 
     def missing(self, kind: str) -> MissingElement | NotDecided:
         """Return the error for a package without a file of a kind: urdf, launch or rviz."""
         word, endings = _KINDS[kind]
         if self.tree.links:
             return NotDecided(f"the {word} may be in {self.tree.links[0]}, which {IS_LINK}")
-        has_folder = kind != "launch" or any(
-            it.rpartition("/")[2] == kind for it in self.tree.folders
-        )
-        folder = "" if has_folder else ", and there is no folder launch"
-        message = (
-            f"the package has no {word}: no file ends in "
-            f"{enumerated(endings[:3], word='or')}{folder}"
-        )
+        folder = ""
+        if kind == "launch" and not any(
+            path.rpartition("/")[2] == kind for path in self.tree.folders
+        ):
+            folder = ", and there is no folder launch"
+        usual = enumerated(endings[:3], word="or")
+        message = f"the package has no {word}: no file ends in {usual}{folder}"
         return MissingElement(
             f"{word} in the package", "", message=message, detail=self.built(kind), absent=word
         )
@@ -316,19 +312,27 @@ class Package:
         from grader.ros.launch.launch_file import read_launch
         from grader.ros.launch.launch_model import Launch
 
-        own = self.path(path)
+        full = self.path(path)
         try:
-            data = self.tree.files[path].read(PYTHON_LIMIT) if text is None else text
-            installed = next(
-                (it for it, source in self.installed.items() if source == path),
-                f"share/{self.name}/{path}",
-            )
-            launch = read_launch(data, own, installed, self, self.arguments, self.launch_cache)
+            data = text
+            if data is None:
+                data = self.tree.files[path].read(PYTHON_LIMIT)
+            installed = self._installed_path(path)
+            launch = read_launch(data, full, installed, self, self.arguments, self.launch_cache)
         except InputError as error:
-            launch = Launch(Source(own, ""), unread=str(error))
+            launch = Launch(Source(full, ""), unread=str(error))
         if text is None:
             return self._launches.setdefault(path, launch)
         return launch
+
+    def _installed_path(self, path: str) -> str:
+        """Return where a build installs a file, below the prefix. A launch file that it does not
+        install is read as if it did: that is another mistake.
+        """
+        for target, source in self.installed.items():
+            if source == path:
+                return target
+        return f"share/{self.name}/{path}"
 
     def rviz(self, path: str) -> "RvizFile":
         """Return an RViz file."""
@@ -336,11 +340,12 @@ class Package:
             return self._rviz_files[path]
         from grader.ros.config.rviz import RvizFile, read_rviz
 
-        own = self.path(path)
+        full = self.path(path)
         try:
-            rviz = read_rviz(self.tree.files[path].read(_RVIZ_LIMIT), own)
+            rviz = read_rviz(self.tree.files[path].read(_RVIZ_LIMIT), full)
         except InputError as error:
-            rviz = RvizFile(Source(own, ""), None, None, Location(own, 1, 1), (), unread=str(error))
+            start = Location(full, 1, 1)
+            rviz = RvizFile(Source(full, ""), None, None, start, (), unread=str(error))
         return self._rviz_files.setdefault(path, rviz)
 
     @property
@@ -350,31 +355,39 @@ class Package:
 
     def robot_references(self, name: str = "") -> "list[NamedFile]":
         """Return where its launch files read the robot in a file of this name, or in any file."""
-        found = (it for launch in self.launches for it in launch.named("urdf") if it.path)
-        return [it for it in found if not name or f"/{it.path}".endswith(f"/{name}")]
+        references = []
+        for launch in self.launches:
+            for reference in launch.named("urdf"):
+                path = reference.path
+                if path and (not name or f"/{path}".endswith(f"/{name}")):
+                    references.append(reference)
+        return references
 
     def rviz_file(self, name: str, launch: "Launch | None") -> str | None:
         """Return the RViz file that the launch file opens; else the one of this name; else any."""
-        wanted = min(
+        opened = self.rviz_opened(launch) if launch is not None else None
+        if opened:
+            return opened
+        return min(
             self.rviz_files,
-            key=lambda it: (it.rpartition("/")[2] != name, it.count("/"), it),
+            key=lambda path: (path.rpartition("/")[2] != name, path.count("/"), path),
             default=None,
         )
-        return (self.rviz_opened(launch) if launch is not None else None) or wanted
 
     def rviz_opened(self, launch: "Launch") -> str | None:
         """Return the RViz file that a launch file opens, also by a wrong folder: that is another
         error.
         """
         paths = [reference.path for reference in launch.named("rviz") if reference.path is not None]
-        installed = [
-            source for path in paths if (source := self.source_of(path)) in self.rviz_files
-        ]
+        for path in paths:
+            source = self.source_of(path)
+            if source in self.rviz_files:
+                return source
         names = {path.rpartition("/")[2] for path in paths}
-        return next(
-            iter([*installed, *(it for it in self.rviz_files if it.rpartition("/")[2] in names)]),
-            None,
-        )
+        for path in self.rviz_files:
+            if path.rpartition("/")[2] in names:
+                return path
+        return None
 
     def source_of(self, path: str) -> str | None:
         """Return the file of the package that a build installs at a path, which begins with the
@@ -437,8 +450,9 @@ class Package:
         """Return what a build of any submitted package installs at a path below the prefix, with
         the file's path.
         """
-        for package in (package for package in self.packages.values() if path in package.installed):
-            with suppress(InputError):
-                source = package.installed[path]
-                return package.tree.files[source].read(PYTHON_LIMIT), package.path(source)
+        for package in self.packages.values():
+            if path in package.installed:
+                with suppress(InputError):
+                    source = package.installed[path]
+                    return package.tree.files[source].read(PYTHON_LIMIT), package.path(source)
         return None

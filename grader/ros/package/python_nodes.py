@@ -211,14 +211,14 @@ def _module_paths(package: Package) -> dict[str, str]:
     files = [path for path in package.tree.files if path.endswith(".py")]
     folders = {path.rpartition("/")[0] for path in files if path.endswith("/__init__.py")}
     packages = {name.replace(".", "/") for name in setup.packages} or folders
-    found = {
-        path.removesuffix(".py").removesuffix("/__init__").replace("/", "."): path
-        for path in files
-        if path.rpartition("/")[0] in packages
-    }
-    return dict(
-        [*found.items(), *((it.source, it.source) for it in _scripts(package))][:_MAX_MODULES]
-    )
+    modules: dict[str, str] = {}
+    for path in files:
+        if path.rpartition("/")[0] in packages:
+            name = path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+            modules[name] = path
+    rows = [*modules.items()]
+    rows += [(script.source, script.source) for script in _scripts(package)]
+    return dict(rows[:_MAX_MODULES])
 
 
 def _scripts(package: Package) -> list[InstalledFile]:
@@ -278,7 +278,7 @@ def _created_by(
     return tuple(found.values())
 
 
-def _calls_of(nodes: Sequence[ast.AST]) -> list[ast.Call]:
+def _find_calls(nodes: Sequence[ast.AST]) -> list[ast.Call]:
     return sorted((it for it in nodes if isinstance(it, ast.Call)), key=offset_of)
 
 
@@ -302,7 +302,8 @@ class _Module:
         self._code, self._name = code, name
         functions = dict.fromkeys(("rclpy.qos.QoSProfile", *_CREATES), record)
         self._constants = Constants([*ast.walk(code.tree)], name, functions, is_package=is_package)
-        self.bases: dict[str, list[str]] = {}  # of the classes, by full names
+        # Of the classes, by full names; None for a base that is not known.
+        self.bases: dict[str, list[str | None]] = {}
         self.doubts: list[_Doubt] = []
         self._classes: dict[Location, str] = {}
         self._facts: dict[Location, list[_Fact]] = {}  # of each node
@@ -315,13 +316,15 @@ class _Module:
                 and part.name in scope.names
             ):
                 scope.names[part.name] = QualifiedName(f"{name}.{part.name}")
-        self._parts.append(_ModulePart("", _calls_of(body), scope))
+        self._parts.append(_ModulePart("", _find_calls(body), scope))
         for part in body:
             if isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef):
                 inner = [*ast.walk(part)]
                 self._parts.append(
                     _ModulePart(
-                        part.name, _calls_of(inner), self._constants.bound(inner, Scope({}, scope))
+                        part.name,
+                        _find_calls(inner),
+                        self._constants.bound(inner, Scope({}, scope)),
                     )
                 )
             elif isinstance(part, ast.ClassDef):
@@ -334,7 +337,9 @@ class _Module:
         """Keep a class and its methods, which reach its constants as attributes of self."""
         at, full = self._at(node), f"{self._name}.{node.name}"
         bases = [self._constants.value_of(base, scope) for base in node.bases]
-        self.bases[full] = [base.name if isinstance(base, QualifiedName) else "?" for base in bases]
+        self.bases[full] = [
+            base.name if isinstance(base, QualifiedName) else None for base in bases
+        ]
         self._classes[at] = full
         own = own_nodes(node)
         constants = self._constants.bound(own, Scope({}, scope)).names
@@ -350,7 +355,7 @@ class _Module:
                 attributes.names[name] = (
                     value if is_first else Unknown("it is not bound once", START)
                 )
-            self._parts.append(_ModulePart(method.name, _calls_of(nodes), local, at))
+            self._parts.append(_ModulePart(method.name, _find_calls(nodes), local, at))
 
     def read_nodes(self, kinds: Collection[str]) -> list[PythonNode]:
         """Return the nodes, once the full names of all classes of nodes are known."""
@@ -380,15 +385,28 @@ class _Module:
         return [self._node(at, facts) for at, facts in self._facts.items()]
 
     def _node(self, at: Location, facts: "Sequence[_Fact]") -> PythonNode:
-        names = {it.name for it in facts if isinstance(it, _Name)}
+        names: set[str | None] = set()
+        endpoints, parameters, timers, doubts = [], [], [], []
+        for fact in facts:
+            match fact:
+                case _Name():
+                    names.add(fact.name)
+                case Endpoint():
+                    endpoints.append(fact)
+                case NodeParameter():
+                    parameters.append(fact)
+                case Timer():
+                    timers.append(fact)
+                case _Doubt():
+                    doubts.append(fact)
         return PythonNode(
             class_name=self._classes.get(at, ""),
             name=names.pop() if len(names) == 1 else None,
             location=at,
-            endpoints=tuple(it for it in facts if isinstance(it, Endpoint)),
-            parameters=tuple(it for it in facts if isinstance(it, NodeParameter)),
-            timers=tuple(it for it in facts if isinstance(it, Timer)),
-            doubts=tuple(it for it in facts if isinstance(it, _Doubt)),
+            endpoints=tuple(endpoints),
+            parameters=tuple(parameters),
+            timers=tuple(timers),
+            doubts=tuple(doubts),
         )
 
     def calls_in(self, function: str) -> Iterator[tuple[str, Location]]:
@@ -443,18 +461,19 @@ class _Module:
                 at = self._receiver(part, owner)
                 facts = self._facts.get(at) if at is not None else None
                 if facts is None:
-                    self.doubts.append(
-                        _Doubt(f"the node of this {method}() is not known", self._at(call))
-                    )
+                    reason = f"the node of this {method}() is not known"
+                    self.doubts.append(_Doubt(reason, self._at(call)))
                 else:
                     facts += self._read_method(part, call, method)
             case function:
+                name = (dotted(function) or "this call").rpartition(".")[2]
                 for argument in (*call.args, *(keyword.value for keyword in call.keywords)):
                     at = self._receiver(part, argument) if isinstance(argument, ast.Name) else None
-                    name = (dotted(function) or "this call").rpartition(".")[2]
-                    if at is not None and name == "ActionClient":
+                    if at is None:
+                        continue
+                    if name == "ActionClient":
                         self._facts[at].append(self._action_client(part, call))
-                    elif at is not None and name not in _HARMLESS:
+                    elif name not in _HARMLESS:
                         self._facts[at].append(_Doubt(f"{name} is given the node", self._at(call)))
 
     def _action_client(self, part: _ModulePart, call: ast.Call) -> Endpoint:
@@ -488,7 +507,9 @@ class _Module:
             is_topic = kind in ("publisher", "subscription")
             made = argument(0, "msg_type" if is_topic else "srv_type")
             name = _text(argument(1, "topic" if is_topic else "srv_name"))
-            qos = argument(2 if kind == "publisher" else 3, "qos_profile") if is_topic else None
+            qos = None
+            if is_topic:
+                qos = argument(2 if kind == "publisher" else 3, "qos_profile")
             yield Endpoint(
                 kind, made.name if isinstance(made, QualifiedName) else None, name, at, _qos(qos)
             )
@@ -547,10 +568,12 @@ def _qos(value: Value) -> _Qos:
             return _Qos(*_PROFILES.get(profile, ()))
         case Call(name="rclpy.qos.QoSProfile", kwargs=given):
             depth = given.get("depth")
-            reliability, durability = (
-                _policy(given[name]) if name in given else default
-                for name, default in (("reliability", "reliable"), ("durability", "volatile"))
-            )
+            reliability: str | None = "reliable"
+            if "reliability" in given:
+                reliability = _policy(given["reliability"])
+            durability: str | None = "volatile"
+            if "durability" in given:
+                durability = _policy(given["durability"])
             return _Qos(depth if isinstance(depth, int) else None, reliability, durability)
     return _Qos()
 
@@ -559,10 +582,10 @@ def _policy(value: Value) -> str | None:
     """Return a policy by its name in rclpy.qos, as ReliabilityPolicy.BEST_EFFORT; None where it is
     not known.
     """
-    name = value.name.rpartition(".")[2].lower() if isinstance(value, QualifiedName) else ""
-    names = (
-        policy
-        for policy, group in _GROUPS.items()
-        if name in (policy, f"rmw_qos_policy_{group}_{policy}")
-    )
-    return next(names, None)
+    if not isinstance(value, QualifiedName):
+        return None
+    name = value.name.rpartition(".")[2].lower()
+    for policy, group in _GROUPS.items():
+        if name in (policy, f"rmw_qos_policy_{group}_{policy}"):
+            return policy
+    return None

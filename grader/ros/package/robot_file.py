@@ -148,12 +148,12 @@ class Surroundings(NamedTuple):
             return [self.graded]
         own = next((it for it in self.packages if it.holds(path)), self.graded)
         others = [it for it in self.packages if it is own or it.name != own.name]
-        launched = (
-            it
-            for it in others
-            if any(own.source_of(at.path or "") for at in it.robot_references(name))
-        )
-        return [*launched] or [self.graded]
+        launched = []
+        for package in others:
+            references = package.robot_references(name)
+            if any(own.source_of(reference.path or "") for reference in references):
+                launched.append(package)
+        return launched or [self.graded]
 
     @property
     def paths(self) -> Collection[str]:
@@ -235,11 +235,11 @@ def launch_folders(tree: Tree, packages: Sequence[Package], paths: Iterable[str]
     loose = tree.only(lambda path: not path.startswith(packaged)) if packaged else tree
     files = Package("", loose, None, {}).launch_files
     folders = {folder for path in files for folder in (*parents(path), "")}
-    around = {
-        folder
-        for path in paths
-        for folder in [it for it in (*parents(path), "") if it in folders][:1]
-    }
+    around = set()
+    for path in paths:
+        nearest = next((it for it in (*parents(path), "") if it in folders), None)
+        if nearest is not None:
+            around.add(nearest)
     return [
         Package(folder, loose.below(folder), None, {}) for folder in sorted(around)[:_MAX_FOLDERS]
     ]

@@ -148,13 +148,15 @@ def is_robot(data: bytes) -> bool:
 
 def parts_of(robots: Sequence[RobotFile]) -> frozenset[str]:
     """Return the paths of those files that another one includes."""
-    includers: dict[str, list[str]] = {}
+    includers: dict[str, set[str]] = {}
     for robot in robots:
         for name in robot.includes:
-            includers.setdefault(name, []).append(robot.path)
-    return frozenset(
-        robot.path for robot in robots if set(includers.get(robot.name, ())) - {robot.path}
-    )
+            includers.setdefault(name, set()).add(robot.path)
+    parts = set()
+    for robot in robots:
+        if includers.get(robot.name, set()) - {robot.path}:
+            parts.add(robot.path)
+    return frozenset(parts)
 
 
 def _robot_start(file: File) -> bytes | None:

@@ -64,16 +64,15 @@ def with_transforms(
         launch = package.launch(name) if name is not None else None
         if launch is None or launch.syntax is not None or launch.faults:
             continue  # nothing is published
-        started = [
-            it
-            for it in launch.nodes
-            if (it.package, it.executable) == STATIC_PUBLISHER and it.when is not False
-        ]
-        frames = [_frame_of(node, source_of) for node in started]
-        for frame in (it for it in frames if it is not None and it.child not in roots):
-            robot = _with_frame(robot, frame)
-        reason = launch.unread or next((it.message for it in launch.unknown), "")
-        reason = reason or ("the name of a frame is not evaluated" if None in frames else "")
+        frames = [_read_frame(node, source_of) for node in launch.nodes if _publishes_frame(node)]
+        for frame in frames:
+            if frame is not None and frame.child not in roots:
+                robot = _add_frame(robot, frame)
+        reason = launch.unread
+        if not reason and launch.unknown:
+            reason = launch.unknown[0].message
+        if not reason and None in frames:
+            reason = "the name of a frame is not evaluated"
         if reason:
             robot = replace(
                 robot,
@@ -87,7 +86,12 @@ def with_transforms(
     return robot
 
 
-def _with_frame(robot: Robot, frame: _StaticFrame) -> Robot:
+def _publishes_frame(node: StartedNode) -> bool:
+    is_publisher = (node.package, node.executable) == STATIC_PUBLISHER
+    return is_publisher and node.when is not False
+
+
+def _add_frame(robot: Robot, frame: _StaticFrame) -> Robot:
     if not frame.child or frame.parent == frame.child:
         return robot  # the publisher ends with an error
     part = {"origin": UnresolvedPart(frame.open, frame.location)} if frame.open else {}
@@ -123,13 +127,15 @@ def _with_frame(robot: Robot, frame: _StaticFrame) -> Robot:
     return replace(robot, joints=tuple(both if it is before else it for it in robot.joints))
 
 
-def _frame_of(node: StartedNode, source_of: Callable[[str], Source | None]) -> _StaticFrame | None:
+def _read_frame(
+    node: StartedNode, source_of: Callable[[str], Source | None]
+) -> _StaticFrame | None:
     """Return the frame that a static_transform_publisher publishes, its child empty for none; None
     if it is unknown.
     """
-    words, names = _words_of(node), frames_named(node)
-    options = _options_of(words)
-    if None in words and not names[1]:
+    words = _select_words(node)
+    parent, child = frames_named(node)
+    if None in words and not child:
         return None
     at = node.location
     source = source_of(at.path) or Source(at.path, "")
@@ -137,14 +143,15 @@ def _frame_of(node: StartedNode, source_of: Callable[[str], Source | None]) -> _
     if None in words or node.when is None:
         what = "whether it is published" if node.when is None else "its place"
         reason = f"{what} is known only at run time ({at.path}, line {at.line})"
-        return _StaticFrame(names[0], names[1], None, location, f"the frame {names[1]!r}: {reason}")
-    origin = _origin_of({name: text or "" for name, text in options.items()}, location)
-    return _StaticFrame(
-        names[0], names[1] if names[0] and origin is not None else "", origin, location
-    )
+        return _StaticFrame(parent, child, None, location, f"the frame {child!r}: {reason}")
+    options = {name: text or "" for name, text in _read_options(words).items()}
+    origin = _make_origin(options, location)
+    if not parent or origin is None:
+        child = ""
+    return _StaticFrame(parent, child, origin, location)
 
 
-def _words_of(node: StartedNode) -> tuple[str | None, ...]:
+def _select_words(node: StartedNode) -> tuple[str | None, ...]:
     words = node.arguments if node.arguments is not None else (None,)
     if "--ros-args" in words:
         return words[: words.index("--ros-args")]
@@ -155,19 +162,19 @@ def frames_named(node: StartedNode) -> tuple[str, str]:
     """Return the parent and the child that a static_transform_publisher is given, empty where they
     are not known.
     """
-    options = _options_of(_words_of(node))
+    options = _read_options(_select_words(node))
     parent, child = ((options.get(option) or "").removeprefix("/") for option in _FRAMES)
     return parent, child
 
 
-def _options_of(words: Sequence[str | None]) -> dict[str, str | None]:
+def _read_options(words: Sequence[str | None]) -> dict[str, str | None]:
     """Return the values by their options, also if they are given by their positions."""
     if words and words[0] is not None and words[0].startswith("--"):
         return dict(zip(((it or "") for it in words[::2]), words[1::2], strict=False))
     return dict(zip(_BY_POSITION.get(len(words), ()), words, strict=False))
 
 
-def _origin_of(options: Mapping[str, str], location: LazyLocation) -> Origin | None:
+def _make_origin(options: Mapping[str, str], location: LazyLocation) -> Origin | None:
     """Return where a frame is placed; None where the publisher ends with an error, or tf2 ignores
     the transform.
     """
@@ -184,13 +191,13 @@ def _origin_of(options: Mapping[str, str], location: LazyLocation) -> Origin | N
     roll, pitch, yaw = (values.get(name, 0.0) for name in _RPY)
     if not set(turned) & {*_QUATERNION}:
         return Origin((x, y, z), (roll, pitch, yaw), location)
-    rpy = _rpy_of(*(values.get(name, float(name == "--qw")) for name in _QUATERNION))
+    rpy = _convert_quaternion(*(values.get(name, float(name == "--qw")) for name in _QUATERNION))
     if rpy is not None:
         return Origin((x, y, z), rpy, location)
     return None
 
 
-def _rpy_of(x: float, y: float, z: float, w: float) -> Vector | None:
+def _convert_quaternion(x: float, y: float, z: float, w: float) -> Vector | None:
     length = hypot(x, y, z)
     if abs(length**2 + w**2 - 1) > _NORM_TOLERANCE:
         return None

@@ -80,9 +80,9 @@ def steps_of(path: str, *, is_xml: bool) -> list[PathStep]:
     for part in parts if path not in ("", ".") else ():
         match = _STEP.fullmatch(part)
         if match is not None and part not in ("", "."):
-            conditions = (
-                (key, one or two or three) for key, one, two, three in _CONDITION.findall(match[2])
-            )
+            conditions = []
+            for key, quoted, double_quoted, plain in _CONDITION.findall(match[2]):
+                conditions.append((key, quoted or double_quoted or plain))
             found.append(PathStep(match[1], tuple(conditions)))
     return found
 
@@ -107,11 +107,9 @@ class Search:
     def fits(self, entry: TreeEntry, step: PathStep) -> bool:
         """Return whether an entry contains the values of a step."""
         for key, value in step.conditions:
-            found = self.find(entry, steps_of(key, is_xml=entry.is_xml))
-            if not any(
-                it.text is not None and matches_value(readable(it.text), value, _EXACT)
-                for it in found
-            ):
+            inner = self.find(entry, steps_of(key, is_xml=entry.is_xml))
+            texts = [readable(it.text) for it in inner if it.text is not None]
+            if not any(matches_value(text, value, _EXACT) for text in texts):
                 return False
         return True
 
@@ -145,14 +143,14 @@ def xml_entry(element: Element, locate: Callable[[Element, str | None], _Place])
     return TreeEntry(
         name_of(element),
         text_in(element),
-        partial(_children_of, element, locate),
+        partial(_list_xml_children, element, locate),
         partial(locate, element, None),
         is_xml=True,
         element=element,
     )
 
 
-def _children_of(
+def _list_xml_children(
     element: Element, locate: Callable[[Element, str | None], _Place]
 ) -> list[TreeEntry]:
     attributes = [
@@ -167,7 +165,7 @@ def _yaml_entry(node: "YamlNode", name: str = "") -> TreeEntry:
     return TreeEntry(
         name,
         node.text,
-        partial(_entries_of, node),
+        partial(_list_yaml_children, node),
         lambda: node.location,
         is_xml=False,
         is_quoted=node.quoted,
@@ -175,7 +173,7 @@ def _yaml_entry(node: "YamlNode", name: str = "") -> TreeEntry:
     )
 
 
-def _entries_of(node: "YamlNode") -> list[TreeEntry]:
+def _list_yaml_children(node: "YamlNode") -> list[TreeEntry]:
     match node.value:
         case list(rows):
             return [_yaml_entry(row) for row in rows]

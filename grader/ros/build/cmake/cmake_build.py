@@ -20,7 +20,7 @@ from grader.ros.python.parse import START, Position
 from grader.ros.python.values import Undetermined, Unknown
 
 _MANIFEST = "package.xml"
-_OF_INTERFACES = frozenset(
+_INTERFACE_KEYWORDS = frozenset(
     {
         "DEPENDENCIES",
         "LIBRARY_NAME",
@@ -29,7 +29,7 @@ _OF_INTERFACES = frozenset(
         "SKIP_GROUP_MEMBERSHIP_CHECK",
     }
 )
-_OF_PYTHON = frozenset(
+_PYTHON_KEYWORDS = frozenset(
     {"PACKAGE_DIR", "SETUP_CFG", "DESTINATION", "SCRIPTS_DESTINATION", "VERSION", "SKIP_COMPILE"}
 )
 _ARTIFACTS = frozenset(
@@ -225,7 +225,8 @@ class Build:
         texts = self.values.texts(command.arguments)
         texts = texts[
             : next(
-                (index for index, text in enumerate(texts) if text in _OF_INTERFACES), len(texts)
+                (index for index, text in enumerate(texts) if text in _INTERFACE_KEYWORDS),
+                len(texts),
             )
         ]
         known = [text for text in texts if isinstance(text, str)]
@@ -287,7 +288,7 @@ class Build:
                 "the arguments of ament_python_install_package() are not known", command.at
             )
             return
-        options = dict(_groups(texts, _OF_PYTHON))
+        options = dict(_groups(texts, _PYTHON_KEYWORDS))
         folder = self.inside((options.get("PACKAGE_DIR") or texts)[0])
         self.modules.append(texts[0])
         if "SCRIPTS_DESTINATION" in options or "setup.cfg" in self.listing.files:

@@ -19,8 +19,17 @@ _COMPARE: dict[str, Callable[[float, float], bool]] = {
     "LESS_EQUAL": operator.le,
     "GREATER_EQUAL": operator.ge,
 }
-_OF_FILES = ("EXISTS", "IS_DIRECTORY")
-_UNARY = ("DEFINED", "TARGET", "COMMAND", "POLICY", "TEST", "IS_ABSOLUTE", "IS_SYMLINK", *_OF_FILES)
+_FILE_TESTS = ("EXISTS", "IS_DIRECTORY")
+_UNARY = (
+    "DEFINED",
+    "TARGET",
+    "COMMAND",
+    "POLICY",
+    "TEST",
+    "IS_ABSOLUTE",
+    "IS_SYMLINK",
+    *_FILE_TESTS,
+)
 
 
 class Condition:
@@ -139,7 +148,7 @@ class Condition:
     def _test(self, word: str, operand: Text) -> bool | None:
         if isinstance(operand, Unknown):
             return None
-        if word in _OF_FILES:
+        if word in _FILE_TESTS:
             return self._exists(operand)
         if word == "DEFINED" and "{" not in operand:
             value = self._values.lookup(operand, self._at)
