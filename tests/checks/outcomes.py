@@ -31,7 +31,7 @@ def ask(
     check: AnyCheck, of: Scene | Submitted, reference: Scene = ARM, /, **arguments: Any
 ) -> Outcome:
     """Return the outcome of a check."""
-    described = describe(check)
+    described = describe(check).for_arguments(arguments)
     return described.outcome(
         (_subject(name, of, reference) for name in described.examined), arguments
     )
@@ -48,7 +48,8 @@ def graded(
     check: AnyCheck, of: Scene | Submitted, reference: Scene = ARM, /, **arguments: Any
 ) -> Outcome:
     """Return the outcome of a rubric's only criterion, which uses this check."""
-    criterion = Criterion("only", "The only one", "all", Decimal(1), describe(check), arguments)
+    described = describe(check).for_arguments(arguments)
+    criterion = Criterion("only", "The only one", "all", Decimal(1), described, arguments)
     rubric = Rubric(
         "test",
         "Test",

@@ -74,12 +74,7 @@ class Row:
     def found(self) -> str:
         """Return what the check finds now."""
         reference = Scene(scene_text(self.given.get("reference", "arm")))
-        return finding(
-            self.check.for_arguments(self.arguments).function,
-            self.subject,
-            reference,
-            self.arguments,
-        )
+        return finding(self.check.function, self.subject, reference, self.arguments)
 
 
 def finding(check: AnyCheck, of: Scene | Submitted, reference: Scene, arguments: Arguments) -> str:

@@ -113,11 +113,13 @@ def shows_cylinder(
         tolerance: How far radius and length may each be off, in metres.
     """
     expected = (radius, length)
-    sizes = [
-        ((shape.radius, shape.length), shape)
-        for _, shape in _visuals_of_kind(robot, link, Cylinder)
-    ]
-    actual, best = min(sizes, key=lambda pair: _largest_difference(pair[0], expected))
+
+    def difference_from_expected(shape: Cylinder) -> float:
+        return _largest_difference((shape.radius, shape.length), expected)
+
+    shapes = [shape for _, shape in _visuals_of_kind(robot, link, Cylinder)]
+    best = min(shapes, key=difference_from_expected)
+    actual = (best.radius, best.length)
     fine = min(actual) >= 0.0 and all_within(actual, expected, tolerance)
     message = (
         f"{link!r} shows a cylinder of radius {point(actual[:1])} m and length "
@@ -125,8 +127,9 @@ def shows_cylinder(
     )
     if not fine:
         message += f"; it should have radius {point((radius,))} m and length {point((length,))} m"
-        message += f" ({unit})" if (unit := other_unit(actual, expected)) else ""
-    at = place(best.location, "length" if within(actual[0], radius, tolerance) else "radius")
+        units = other_unit(actual, expected)
+        message += f" ({units})" if units else ""
+    at = place(best.location, "length" if within(best.radius, radius, tolerance) else "radius")
     return judged(fine, message, actual, expected, tolerance, "m", at=at)
 
 

@@ -5,7 +5,7 @@ hints and pictures.
 import inspect
 import re
 import sys
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from itertools import takewhile
 from keyword import iskeyword
 from typing import Any, Literal, NamedTuple, get_args, get_type_hints
@@ -113,7 +113,8 @@ class Check(NamedTuple):
             function = self.function
         if function is self.function:
             return self
-        return self._replace(function=function, examined=describe(function).examined)
+        parameters = [*inspect.signature(function).parameters.values()]
+        return self._replace(function=function, examined=_examined(parameters))
 
     def outcome(self, examined: Iterable[object], arguments: Mapping[str, Any]) -> Outcome:
         """Return what it finds in the objects that it examines, with the arguments of a rubric."""
@@ -152,18 +153,20 @@ def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
         parameters[key] = _CheckParameter(
             key, hints[name], is_required, None if is_required else default
         )
-    main = subject.name if subject.name in _SUBJECTS else "robot"
-    examined = tuple(
-        name
-        for given in (main, *(parameter.name for parameter in also))
-        for name in _SUBJECTS
-        if name == given
-    )
+    examined = _examined([subject, *also])
     name = function.__name__
     about = getattr(sys.modules.get(function.__module__), "ABOUT", {}).get(name, About())
     if not isinstance(about, About):
         raise InputError(f"ABOUT says of {name} what is no About(...)")
     return Check(name, function, examined, parameters, distribution, about)
+
+
+def _examined(parameters: Sequence[inspect.Parameter]) -> tuple[Subject, ...]:
+    """Return what a function with these parameters examines: the first one, and those after it."""
+    subject, *rest = parameters
+    main = subject.name if subject.name in _SUBJECTS else "robot"
+    names = [main, *(parameter.name for parameter in takewhile(_is_subject, rest))]
+    return tuple(name for given in names for name in _SUBJECTS if name == given)
 
 
 def _key(name: str) -> str:

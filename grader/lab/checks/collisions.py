@@ -51,16 +51,13 @@ def collision_matches_visual(robot: Configuration, *, link: str, tolerance: NonN
         raise NotDecided(
             f"{link!r} has more than {MAX_SHAPES} shapes", "a link has very many shapes"
         )
-    partners = most_pairs(
-        [
-            [
-                index
-                for index, other in enumerate(solid)
-                if _fits(_mismatch(visual, other, tolerance), tolerance)
-            ]
-            for visual in shown
-        ]
-    )
+    fitting: list[list[int]] = []  # for each visual, the collisions that may be its own
+    for visual in shown:
+        fitting.append([])
+        for index, other in enumerate(solid):
+            if _fits(_mismatch(visual, other, tolerance), tolerance):
+                fitting[-1].append(index)
+    partners = most_pairs(fitting)
     lonely = [visual for index, visual in enumerate(shown) if index not in partners.values()]
     others = [collision for index, collision in enumerate(solid) if index not in partners]
     if not lonely and not others:
@@ -198,29 +195,26 @@ def _judge_unmatched(
     """Return the outcome for visuals without a collision shape, and collision shapes without a
     visual.
     """
-    files = {visual.geometry.filename for visual in lonely if isinstance(visual.geometry, Mesh)}
+    shown_meshes = [visual.geometry for visual in lonely if isinstance(visual.geometry, Mesh)]
     meshes = [collision.geometry for collision in others if isinstance(collision.geometry, Mesh)]
-    if len(meshes) == len(others) and all(isinstance(visual.geometry, Mesh) for visual in lonely):
-        unknown = next((mesh for mesh in meshes if mesh.filename not in files), None)
-        if unknown is not None:
-            cause = "mesh files are not opened"
-            what = (
-                f"whether the collision mesh {file_name(unknown.filename)} of {link!r} has the "
-                "shape that is shown"
-            )
-            raise NotDecided(f"{what} cannot be determined: {cause}", cause)
+    if len(meshes) == len(others) and len(shown_meshes) == len(lonely):
+        files = {mesh.filename for mesh in shown_meshes}
+        for mesh in meshes:
+            if mesh.filename not in files:
+                cause = "mesh files are not opened"
+                message = (
+                    f"whether the collision mesh {file_name(mesh.filename)} of {link!r} has the "
+                    f"shape that is shown cannot be determined: {cause}"
+                )
+                raise NotDecided(message, cause)
     pairs = [
         (_mismatch(visual, other, tolerance), visual, other)
         for visual in lonely
         for other in others
     ]
     off, visual, nearest = min(pairs, key=lambda pair: _rank_mismatch(pair[0]))
-    return _fail_with_nearest(
-        f"no collision shape of {link!r} is {_describe_shape(visual)}, as shown",
-        nearest,
-        off,
-        tolerance,
-    )
+    message = f"no collision shape of {link!r} is {_describe_shape(visual)}, as shown"
+    return _fail_with_nearest(message, nearest, off, tolerance)
 
 
 def _rank_mismatch(off: ShapeDifference | None) -> tuple[bool, float]:

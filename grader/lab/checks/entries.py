@@ -1,6 +1,6 @@
 """The check of the entries of a file: of the expanded robot, of YAML, SDF, SRDF and package.xml."""
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from copy import deepcopy
 from typing import Annotated, Any, NamedTuple
 
@@ -29,6 +29,7 @@ _READ_BY_ROS = ("link", "joint", "material")
 _PARTS = ("inertial", "visual", "collision")  # of a link
 _IDENTIFYING = ("@name", "@reference", "@filename", "@type")  # the first that a rubric gives
 _MAX_NAMED = 5  # entries and values in a message
+_TOLERANCE = 1e-6  # of numbers, where a rubric gives none
 _SLACK = 1e-12  # a tolerance includes its end
 _Path = Annotated[str, Constraint("a path such as gazebo[@reference='lidar']/sensor", is_path)]
 
@@ -53,7 +54,7 @@ def entry_is(
     one_of: list[Scalar] | None = None,
     has: list[Scalar] | None = None,
     values: Mapping[str, Content] | None = None,
-    tolerance: NonNegative = 1e-6,
+    tolerance: NonNegative = _TOLERANCE,
 ) -> Outcome:
     """The expanded robot, or a file of the package, has an entry at a path, with the given values.
 
@@ -89,46 +90,30 @@ def entry_is(
     tree = _robot_entry(reading, root)
     outcome = _judge(tree, wanted, _IN_ROBOT)
     if outcome.status == "passed":
-        is_dropped = wanted.first.name == "link" and not wanted.found_in(
-            _robot_entry(reading, _kept(robot, root))
-        )
-        if is_dropped:
-            _check_known(reading, tree, wanted)
-            raise _dropped_part(tree, wanted)
-        return outcome
+        if wanted.first.name != "link":
+            return outcome
+        if wanted.found_in(_robot_entry(reading, _kept(robot, root))):
+            return outcome
+        _check_known(reading, tree, wanted)
+        raise _dropped_part(tree, wanted)
     _check_known(reading, tree, wanted)
     return outcome
 
 
-def _entry_of_file(
-    package: Package,
-    *,
-    file: str = _ROBOT,
-    at: str = "",
-    value: Content | None = None,
-    one_of: list[Scalar] | None = None,
-    has: list[Scalar] | None = None,
-    values: Mapping[str, Content] | None = None,
-    tolerance: NonNegative = 1e-6,
-) -> Outcome:
+def _entry_of_file(package: Package, *, file: str, at: str = "", **expected: Any) -> Outcome:
     """Return whether a file of a package has an entry; the arguments are those of entry_is."""
     tree = read_tree(package, file)
-    wanted = _Wanted(steps_of(at, is_xml=tree.is_xml), value, one_of, has, values or {}, tolerance)
+    wanted = _Wanted(steps_of(at, is_xml=tree.is_xml), **expected)
     return _judge(tree, wanted, f"directly in <{tree.name}>" if tree.is_xml else f"in {file}")
-
-
-def _function_for(arguments: Mapping[str, Any]) -> Callable[..., Outcome]:
-    """Return what examines the robot, or another file."""
-    if arguments.get("file", _ROBOT) == _ROBOT:
-        return entry_is
-    return _entry_of_file
 
 
 ABOUT = {
     "entry_is": About(
         ("gazebo", "ros2_control", "transmission", "sensor", "safety_controller", "calibration"),
         breaks_under=_breaks_under,
-        function_for=_function_for,
+        function_for=lambda arguments: (
+            entry_is if arguments.get("file", _ROBOT) == _ROBOT else _entry_of_file
+        ),
     )
 }
 
@@ -137,11 +122,11 @@ class _Wanted(NamedTuple):
     """What a rubric looks for."""
 
     steps: list[Step]
-    value: Content | None
-    one_of: list[Scalar] | None
-    has: list[Scalar] | None
-    values: Mapping[str, Content]
-    tolerance: float
+    value: Content | None = None
+    one_of: list[Scalar] | None = None
+    has: list[Scalar] | None = None
+    values: Mapping[str, Content] = {}
+    tolerance: float = _TOLERANCE
 
     @property
     def first(self) -> Step:
@@ -165,24 +150,23 @@ class _Wanted(NamedTuple):
     def found_in(self, tree: Entry) -> bool:
         """Return whether a tree has the entry with its values."""
         search = Search()
-        found = search.find(tree, self.steps)
-        return (
-            bool(found) and self.has_own(found) and not all(self.wrong(search, it) for it in found)
-        )
+        entries = search.find(tree, self.steps)
+        if not entries or not self.has_own(entries):
+            return False
+        return not all(self.wrong(search, entry) for entry in entries)
 
-    def has_own(self, found: Sequence[Entry]) -> bool:
+    def has_own(self, entries: Sequence[Entry]) -> bool:
         """Return whether the entries at the path have the value themselves, or several of them
         the values.
         """
-        items = [item for it in found for item in (it.children if it.is_list else [it])]
-        return (
-            (self.value is None or self._have(found, self.value))
-            and (
-                self.one_of is None
-                or any(self.equals(it, one) for it in found for one in self.one_of)
-            )
-            and (self.has is None or self._are_among(items, self.has))
-        )
+        if self.value is not None and not self._have(entries, self.value):
+            return False
+        if self.one_of is not None and not self._is_any_of(entries, self.one_of):
+            return False
+        return self.has is None or self._are_among(_items_of(entries), self.has)
+
+    def _is_any_of(self, entries: Sequence[Entry], values: Sequence[Scalar]) -> bool:
+        return any(self.equals(entry, value) for entry in entries for value in values)
 
     def wrong(self, search: Search, entry: Entry) -> list[str]:
         """Return the keys of the values that an entry does not contain."""
@@ -214,59 +198,62 @@ class _Wanted(NamedTuple):
         numbers = numbers_in(entry.text) or ()
         return len(numbers) == 1 and abs(numbers[0] - expected) <= self.tolerance + _SLACK
 
-    def _have(self, found: Sequence[Entry], expected: Content) -> bool:
+    def _have(self, entries: Sequence[Entry], expected: Content) -> bool:
         """Return whether an entry is a value; for a list, whether one is the list, or several
         have its items.
         """
         if not isinstance(expected, list):
-            return any(self.equals(it, expected) for it in found)
-        lists = [it.children for it in found if it.is_list]
-        is_list = any(
-            len(it) == len(expected) and all(map(self.equals, it, expected)) for it in lists
-        )
-        return is_list or self._are_among(found, expected)
+            return self._is_any_of(entries, [expected])
+        lists = [entry.children for entry in entries if entry.is_list]
+        for items in lists:
+            if len(items) == len(expected) and all(map(self.equals, items, expected)):
+                return True
+        return self._are_among(entries, expected)
 
-    def _are_among(self, found: Sequence[Entry], expected: Sequence[Scalar]) -> bool:
+    def _are_among(self, entries: Sequence[Entry], expected: Sequence[Scalar]) -> bool:
         """Return whether each expected value is that of a different entry, in any order."""
-        fitting = [
-            [index for index, it in enumerate(found) if self.equals(it, value)]
-            for value in expected
-        ]
-        return len(most_pairs(fitting)) == len(expected)
+
+        def fitting(value: Scalar) -> list[int]:
+            return [index for index, entry in enumerate(entries) if self.equals(entry, value)]
+
+        return len(most_pairs([fitting(value) for value in expected])) == len(expected)
 
 
 def _inside(search: Search, entry: Entry, key: str) -> list[Entry]:
     return search.find(entry, steps_of(key, is_xml=entry.is_xml))
 
 
+def _items_of(entries: Sequence[Entry]) -> list[Entry]:
+    """Return entries, with the items of a list in its place."""
+    items: list[Entry] = []
+    for entry in entries:
+        items += entry.children if entry.is_list else [entry]
+    return items
+
+
 def _judge(tree: Entry, wanted: _Wanted, where: str) -> Outcome:
     search = Search()
-    found = search.find(tree, wanted.steps)
-    if not found:
+    entries = search.find(tree, wanted.steps)
+    if not entries:
         return _no_entry(tree, search, wanted, where)
     shown = _shown(wanted.steps, tree)
-    if not wanted.has_own(found):
-        return failed(f"{shown} is {_texts(found)}; {_should(wanted)}", found[0].place)
-    best = wanted.nearest(search, found)
+    if not wanted.has_own(entries):
+        return failed(f"{shown} is {_texts(entries)}; {_should(wanted)}", entries[0].place)
+    best = wanted.nearest(search, entries)
     wrong = wanted.wrong(search, best)
     if not wrong:
         return passed(f"there is {shown}{' with the expected values' if wanted.is_valued else ''}")
-    if wanted.identity in wrong and (len(found) > 1 or wanted.identity == "@name"):
-        return _no_identity(tree, search, found, wanted)
+    if wanted.identity in wrong and (len(entries) > 1 or wanted.identity == "@name"):
+        return _no_identity(tree, search, entries, wanted)
     faults = [_fault_text(key, _inside(search, best, key), wanted.values[key]) for key in wrong]
-    at = next(
-        (
-            it
-            for it in _inside(search, best, wrong[0])
-            if not _is_one(wanted, it, wanted.values[wrong[0]])
-        ),
-        best,
-    )
+    first = wanted.values[wrong[0]]
+    values = first if isinstance(first, list) else [first]
+    at = best
+    for entry in _inside(search, best, wrong[0]):
+        if not any(wanted.equals(entry, value) for value in values):
+            at = entry
+            break
     return failed(f"{shown}: {'; '.join(first_lines(faults, _MAX_NAMED))}", at.place)
-
-
-def _is_one(wanted: _Wanted, entry: Entry, value: Content) -> bool:
-    return any(wanted.equals(entry, one) for one in (value if isinstance(value, list) else [value]))
 
 
 def _no_entry(tree: Entry, search: Search, wanted: _Wanted, where: str) -> Outcome:
@@ -276,19 +263,21 @@ def _no_entry(tree: Entry, search: Search, wanted: _Wanted, where: str) -> Outco
     steps = wanted.steps
     depth = max(count for count in range(len(steps)) if search.find(tree, steps[:count]))
     above, step = search.find(tree, steps[:depth])[0], steps[depth]
-    named = search.find(tree, [*steps[:depth], Step(step.name)])
     shown = _shown(steps[: depth + 1], tree)
-    if step.conditions and named:
-        return _none_fits(search, named, step, shown)
+    if step.conditions:
+        named = search.find(tree, [*steps[:depth], Step(step.name)])
+        if named:
+            return _none_fits(search, named, step, shown)
     if depth or where != _IN_ROBOT:
         place = f" {where}" if not depth or not tree.is_xml else ""
-        detail = did_you_mean(step.name, filter(None, (it.name for it in above.children)))
-        return failed(f"there is no {shown}{place}", above.place, detail=detail)
+        names = [child.name for child in above.children if child.name]
+        message = f"there is no {shown}{place}"
+        return failed(message, above.place, detail=did_you_mean(step.name, names))
     message = f"there is no <{step.name}> {where}"
-    for above, inside in _nested(tree):
-        if inside.name == step.name:
-            return failed(message, inside.place, detail=f"; there is one in <{above.name}>")
-    meant = did_you_mean(step.name, {it.name for it in tree.children})
+    for outer, inner in _nested(tree):
+        if inner.name == step.name:
+            return failed(message, inner.place, detail=f"; there is one in <{outer.name}>")
+    meant = did_you_mean(step.name, {child.name for child in tree.children})
     return failed(message, detail=meant)._replace(absent=() if meant else (shown,))
 
 
@@ -301,25 +290,31 @@ def _nested(entry: Entry) -> Iterator[tuple[Entry, Entry]]:
 
 def _none_fits(search: Search, named: Sequence[Entry], step: Step, shown: str) -> Outcome:
     """Return the failure of entries of which none has the values of the conditions."""
-    rows = [row for it in named for row in (it.children if it.is_list else [it])] or list(named)
-    given = [{key: _inside(search, row, key) for key, _ in step.conditions} for row in rows]
-    texts = [
-        [(key, readable(found[0].text or "")) for key, found in one.items() if found]
-        for one in given
-    ]
-    known = dict.fromkeys(_shown([Step(step.name, tuple(one))], rows[0]) for one in texts)
-    detail = f"; the file has {enumerated([*known], _MAX_NAMED)}"
+    rows = _items_of(named) or list(named)
+    known: dict[str, None] = {}  # the entries, as they would be named
+    texts: dict[str, list[str]] = {key: [] for key, _ in step.conditions}  # that the file has
+    for row in rows:
+        given = []
+        for key, others in texts.items():
+            entries = _inside(search, row, key)
+            if entries:
+                text = readable(entries[0].text or "")
+                given.append((key, text))
+                if text:
+                    others.append(text)
+        known[_shown([Step(step.name, tuple(given))], rows[0])] = None
+    detail = f"; the file has {enumerated(known, _MAX_NAMED)}"
     for key, value in step.conditions:
-        detail += did_you_mean(
-            value, [text for one in texts for name, text in one if name == key and text]
-        )
+        detail += did_you_mean(value, texts[key])
     return failed(f"there is no {shown}", rows[0].place, detail=detail)
 
 
-def _no_identity(tree: Entry, search: Search, found: Sequence[Entry], wanted: _Wanted) -> Outcome:
+def _no_identity(tree: Entry, search: Search, entries: Sequence[Entry], wanted: _Wanted) -> Outcome:
     """Return the failure of elements of which none has the identifying attribute."""
-    names = [it.text or "" for entry in found for it in _inside(search, entry, wanted.identity)]
-    detail = f"; the file has {enumerated([*map(quoted, names)], _MAX_NAMED)}" if names else ""
+    names: list[str] = []
+    for entry in entries:
+        names += [quoted(inner.text or "") for inner in _inside(search, entry, wanted.identity)]
+    detail = f"; the file has {enumerated(names, _MAX_NAMED)}" if names else ""
     identity = quoted(str(wanted.values[wanted.identity]))
     message = f"no {_shown(wanted.steps, tree)} has the {wanted.identity!r} {identity}"
     return failed(message, search.find(tree, wanted.steps[:1])[0].place, detail=detail)
@@ -328,11 +323,8 @@ def _no_identity(tree: Entry, search: Search, found: Sequence[Entry], wanted: _W
 def _shown(steps: Sequence[Step], tree: Entry) -> str:
     """Return a path in words: <sensor> in <gazebo reference="lidar">; 'limits.max'."""
     if not tree.is_xml:
-        texts = (
-            step.name + "".join(f"[{key}={value}]" for key, value in step.conditions)
-            for step in steps
-        )
-        return repr(".".join(texts)) if steps else "the file"
+        texts = [step.name + _conditions_text(step.conditions) for step in steps]
+        return repr(".".join(texts)) if texts else "the file"
     tags = [_tag(step) for step in steps if not step.name.startswith("@")]
     if len(tags) > 1:
         shown = f"{''.join(tags[1:])} in {tags[0]}"
@@ -344,27 +336,35 @@ def _shown(steps: Sequence[Step], tree: Entry) -> str:
 
 
 def _tag(step: Step) -> str:
-    attributes = (f' {key[1:]}="{value}"' for key, value in step.conditions if key.startswith("@"))
-    others = (f"[{key}={value}]" for key, value in step.conditions if not key.startswith("@"))
-    return f"<{step.name}{''.join(attributes)}>{''.join(others)}"
+    attributes = ""
+    others = []
+    for key, value in step.conditions:
+        if key.startswith("@"):
+            attributes += f' {key[1:]}="{value}"'
+        else:
+            others.append((key, value))
+    return f"<{step.name}{attributes}>{_conditions_text(others)}"
 
 
-def _fault_text(key: str, found: Sequence[Entry], expected: Content) -> str:
+def _conditions_text(conditions: Iterable[tuple[str, str]]) -> str:
+    return "".join(f"[{key}={value}]" for key, value in conditions)
+
+
+def _fault_text(key: str, entries: Sequence[Entry], expected: Content) -> str:
     """Return what is wrong with the texts at a path: 'update_rate' is 10; it should be 30."""
-    wanted = expected if isinstance(expected, list) else [expected]
-    should = f"it should be {enumerated([*map(_value_text, wanted)])}"
-    if found:
-        return f"{key!r} is {_texts(found)}; {should}"
+    values = expected if isinstance(expected, list) else [expected]
+    should = f"it should be {enumerated([*map(_value_text, values)])}"
+    if entries:
+        return f"{key!r} is {_texts(entries)}; {should}"
     return f"{key!r} is missing; {should}"
 
 
-def _texts(found: Sequence[Entry]) -> str:
+def _texts(entries: Sequence[Entry]) -> str:
     """Return the texts of entries, or of the items of lists."""
-    items = [item for it in found for item in (it.children if it.is_list else [it])]
-    return enumerated([*map(_text_of, items)], _MAX_NAMED) or "empty"
+    return enumerated([*map(_entry_text, _items_of(entries))], _MAX_NAMED) or "empty"
 
 
-def _text_of(entry: Entry) -> str:
+def _entry_text(entry: Entry) -> str:
     if entry.text is None:
         return "a table"
     if entry.is_quoted:
@@ -405,72 +405,70 @@ def _robot_entry(reading: Reading, root: Element) -> Entry:
 
 def _with_names(step: Step, robot: Configuration) -> Step:
     """Return a step whose conditions have names, not selectors."""
-    found = (
-        (key, selected_name(robot.known, robot.known_parents, value))
-        for key, value in step.conditions
-    )
-    return step._replace(conditions=tuple(found))
+    conditions = []
+    for key, value in step.conditions:
+        conditions.append((key, selected_name(robot.known, robot.known_parents, value)))
+    return step._replace(conditions=tuple(conditions))
 
 
 def _kept(robot: Configuration, root: Element) -> Element:
     """Return a copy of a robot without the inertials, visuals and collisions of links that ROS 2
     drops.
     """
-    parts = (
-        part
-        for link in robot.known.links
-        for part in (link.inertial, *link.visuals, *link.collisions)
-    )
-    tags = {part.location.tag for part in parts if part is not None and part.location is not None}
+    kept_tags = set()
+    for link in robot.known.links:
+        for part in (link.inertial, *link.visuals, *link.collisions):
+            if part is not None and part.location is not None:
+                kept_tags.add(part.location.tag)
     copy = deepcopy(root)
     for tag, element in enumerate([*copy.iter()]):
-        above = element.getparent()
-        if (
-            above is not None
-            and name_of(above) == "link"
-            and name_of(element) in _PARTS
-            and tag not in tags
-        ):
-            above.remove(element)
+        link_element = element.getparent()
+        is_part = name_of(element) in _PARTS and tag not in kept_tags
+        if is_part and link_element is not None and name_of(link_element) == "link":
+            link_element.remove(element)
     return copy
 
 
 def _dropped_part(tree: Entry, wanted: _Wanted) -> MissingElement:
     """Return the error for a part of a link that ROS 2 drops."""
-    search = Search()
-    links = search.find(tree, wanted.steps[:1])
-    link = next(it for it in links if wanted._replace(steps=[*wanted.steps[1:]]).found_in(it))
-    names = [step.name for key in (*wanted.values,) for step in steps_of(key, is_xml=True)]
-    part = next(name for name in (*(step.name for step in wanted.steps), *names) if name in _PARTS)
-    name = next((it.text for it in link.children if it.name == "@name"), "")
+    links = Search().find(tree, wanted.steps[:1])
+    below = wanted._replace(steps=wanted.steps[1:])
+    link = next(link for link in links if below.found_in(link))
+    steps = [*wanted.steps]
+    for key in wanted.values:
+        steps += steps_of(key, is_xml=True)
+    part = next(step.name for step in steps if step.name in _PARTS)
+    name = next((child.text for child in link.children if child.name == "@name"), "")
     message = f"ROS 2 drops {_shown(wanted.steps, tree)}"
     return MissingElement(part, name or "", message=message, location=link.place)
 
 
 def _check_known(reading: Reading, tree: Entry, wanted: _Wanted) -> None:
     """Raise NotDecided if xacro leaves open whether the element is there, or what it contains."""
-    named = (it for it in tree.children if it.name == wanted.first.name or not wanted.steps)
-    fitting = [
-        [*it.element.iter()]
-        for it in named
-        if it.element is not None and _may_fit(it, wanted.first, reading)
-    ]
     assert tree.element is not None  # it is that of <robot>
-    elements = [tree.element, *(inner for it in fitting for inner in it)]
-    for found in (reading.unresolved[it] for it in elements if it in reading.unresolved):
-        for reason in filter(None, (*found.attributes.values(), found.content)):
-            raise NotDecided(reason)
+    elements = [tree.element]
+    for child in tree.children:
+        is_named = child.name == wanted.first.name or not wanted.steps
+        if is_named and child.element is not None and _may_fit(child, wanted.first, reading):
+            elements += child.element.iter()
+    for element in elements:
+        unresolved = reading.unresolved.get(element)
+        if unresolved is not None:
+            for reason in (*unresolved.attributes.values(), unresolved.content):
+                if reason:
+                    raise NotDecided(reason)
 
 
 def _may_fit(entry: Entry, step: Step, reading: Reading) -> bool:
     """Return whether an element, of which not all may be known, can have the attributes of a
     step.
     """
-    left = [(key, value) for key, value in step.conditions if key.startswith("@")]
+    conditions = [(key, value) for key, value in step.conditions if key.startswith("@")]
     unresolved = reading.unresolved.get(entry.element) if entry.element is not None else None
     if unresolved is not None:
-        left = [it for it in left if it[0].removeprefix("@") not in unresolved.attributes]
-    if unresolved is not None and unresolved.content is not None:
-        known = {it.name for it in entry.children}
-        left = [it for it in left if it[0] in known]
-    return Search().fits(entry, Step(step.name, tuple(left)))
+        open_keys = {f"@{name}" for name in unresolved.attributes}
+        conditions = [pair for pair in conditions if pair[0] not in open_keys]
+        if unresolved.content is not None:
+            known = {child.name for child in entry.children}
+            conditions = [pair for pair in conditions if pair[0] in known]
+    return Search().fits(entry, Step(step.name, tuple(conditions)))

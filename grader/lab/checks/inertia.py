@@ -20,7 +20,7 @@ from grader.ros.urdf.mass_properties import (
     uniform_solid,
     with_volume,
 )
-from grader.ros.urdf.model import INERTIA, Geometry, Inertial, Mesh
+from grader.ros.urdf.model import INERTIA, Inertial, Mesh
 from grader.ros.urdf.overlap import penetration
 from grader.ros.urdf.shapes import Shape, UnknownShape, bounding_radius
 from grader.ros.urdf.transforms import IDENTITY, Transform, minus
@@ -175,19 +175,15 @@ def _solid_shapes(robot: Configuration, link: str) -> tuple[str, list[tuple[Shap
             raise NotDecided(
                 f"{link!r} has more than {MAX_SHAPES} shapes", "a link has very many shapes"
             )
-        shapes = [
-            (_measurable(geometry), placed_by(IDENTITY, origin)) for geometry, origin in placed
-        ]
+        shapes: list[tuple[Shape, Transform]] = []
+        for geometry, origin in placed:
+            if isinstance(geometry, Mesh):
+                raise UnknownShape(geometry)
+            shapes.append((geometry, placed_by(IDENTITY, origin)))
         if shapes:
             return word if len(shapes) == 1 else f"{word}s", shapes
     message = f"link {link!r} has no visual or collision shape with a volume"
     raise MissingElement("visual", link, message=message, location=place(found.location))
-
-
-def _measurable(geometry: Geometry) -> Shape:
-    if isinstance(geometry, Mesh):
-        raise UnknownShape(geometry)
-    return geometry
 
 
 def _components_off(

@@ -65,45 +65,34 @@ def joint_limits(
         velocity: The maximum velocity, in rad/s or m/s.
     """
     joint = robot.moving_joint(link)
+    detail = _joint_detail(joint)
     if joint.type not in ("revolute", "prismatic"):
-        message = f"the joint that moves {link!r} is {joint.type}, so it has no limits"
-        message += f"; they should be {_range_text(lower, upper)}"
-        return failed(message, place(joint.location, "type"), detail=_joint_detail(joint))
-    limit, units = joint.limit, "degrees" if joint.type == "revolute" else "m"
-    fault = f"it should be {_range_text(lower, upper)} {units}"
-    if limit is None:
-        return failed(
-            f"the joint that moves {link!r} has no limits; {fault}",
-            joint.location,
-            detail=_joint_detail(joint),
+        message = (
+            f"the joint that moves {link!r} is {joint.type}, so it has no limits; "
+            f"they should be {_range_text(lower, upper)}"
         )
-    given = (limit.lower, limit.upper)
-    ends = {"prismatic": given, "revolute": (degrees(limit.lower), degrees(limit.upper))}
-    low, high = ends.pop(joint.type)
-    [(other, as_other)] = ends.items()
+        return failed(message, place(joint.location, "type"), detail=detail)
+    units, unit_of_json = ("degrees", "deg") if joint.type == "revolute" else ("m", "m")
+    fault = f"it should be {_range_text(lower, upper)} {units}"
+    limit = joint.limit
+    if limit is None:
+        message = f"the joint that moves {link!r} has no limits; {fault}"
+        return failed(message, joint.location, detail=detail)
+    low, high = limit.lower, limit.upper
+    if joint.type == "revolute":
+        low, high = degrees(low), degrees(high)
     numbers = [
         _Number("lower", low, lower, tolerance, fault),
         _Number("upper", high, upper, tolerance, fault),
-        *_expected_numbers(
-            {"effort": (limit.effort, effort), "velocity": (limit.velocity, velocity)}, _EXACT
-        ),
     ]
-    is_meant = all(map(within, as_other, (lower, upper), (tolerance, tolerance)))
-    if (
-        is_meant
-        and (numbers[0].is_wrong or numbers[1].is_wrong)
-        and max(map(abs, given)) <= FULL_TURN
-    ):  # else in degrees
-        range_of_other = f"{_range_text(lower, upper)} {'m' if other == 'prismatic' else 'degrees'}"
-        message = (
-            f"the joint that moves {link!r} is {joint.type}; it should be {other}, with a range "
-            f"of {range_of_other}"
-        )
-        return failed(message, place(joint.location, "type"), detail=_joint_detail(joint))
+    if numbers[0].is_wrong or numbers[1].is_wrong:
+        failure = _wrong_type(joint, link, lower, upper, tolerance)
+        if failure is not None:
+            return failure
+    others = {"effort": (limit.effort, effort), "velocity": (limit.velocity, velocity)}
+    numbers += _expected_numbers(others, _EXACT)
     message = f"the range of the joint that moves {link!r} is {_range_text(low, high)} {units}"
-    return _compare_numbers(
-        message, numbers, joint, limit.location, "deg" if joint.type == "revolute" else "m"
-    )
+    return _compare_numbers(message, numbers, joint, limit.location, unit_of_json)
 
 
 def joint_axis(
@@ -259,6 +248,30 @@ def _mimic_chain(robot: Configuration, joint: Joint, link: str) -> dict[str, tup
 
 def _range_text(lower: float, upper: float) -> str:
     return f"{number_text(lower, 5)} to {number_text(upper, 5)}"
+
+
+def _wrong_type(
+    joint: Joint, link: str, lower: float, upper: float, tolerance: float
+) -> Outcome | None:
+    """Return the failure of limits that are as expected, but in metres instead of degrees or the
+    other way round.
+    """
+    limit = joint.limit
+    assert limit is not None
+    # More than a full turn in radians is a range in degrees, whatever the type of the joint.
+    if max(abs(limit.lower), abs(limit.upper)) > FULL_TURN:
+        return None
+    if joint.type == "revolute":
+        other, ends, units = "prismatic", (limit.lower, limit.upper), "m"
+    else:
+        other, ends, units = "revolute", (degrees(limit.lower), degrees(limit.upper)), "degrees"
+    if not within(ends[0], lower, tolerance) or not within(ends[1], upper, tolerance):
+        return None
+    message = (
+        f"the joint that moves {link!r} is {joint.type}; it should be {other}, with a range "
+        f"of {_range_text(lower, upper)} {units}"
+    )
+    return failed(message, place(joint.location, "type"), detail=_joint_detail(joint))
 
 
 class _Number(NamedTuple):

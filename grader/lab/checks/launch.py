@@ -646,13 +646,18 @@ def _place_not_there(owner: Package, target: str, found: Lookup, file: "NamedFil
         return _FilePlace(file, "missing" if is_of_setup else "wrong", message)
     if found.state == "not installed":
         return _FilePlace(file, "missing", message)
-    name, is_include = posixpath.basename(target), file.purpose == "include"
-    others = {*map(posixpath.basename, owner.tree.files)} - {posixpath.basename(file.location.path)}
-    alike = sorted(it for it in others if it.lower().endswith(_ENDINGS[file.purpose]))
+    names = {*map(posixpath.basename, owner.tree.files)}
+    names.discard(posixpath.basename(file.location.path))
+    alike = sorted(name for name in names if name.lower().endswith(_ENDINGS[file.purpose]))
+    is_include = file.purpose == "include"
     if not alike and not is_include:
         return _FilePlace(file, "missing", message)
-    similar = closest(name, alike) or (alike[0] if len(alike) == 1 and not is_include else None)
-    return _FilePlace(file, "wrong", f"{message}; there is {similar!r}" if similar else message)
+    similar = closest(posixpath.basename(target), alike)
+    if similar is None and len(alike) == 1 and not is_include:
+        similar = alike[0]
+    if similar is not None:
+        message += f"; there is {similar!r}"
+    return _FilePlace(file, "wrong", message)
 
 
 def _path_of(package: Package, name: str) -> str:

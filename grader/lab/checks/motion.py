@@ -83,31 +83,25 @@ def travel_of(
     The direction is a unit vector in the base's frame, perpendicular to the unit vector `up`.
     Raises MissingElement, NotDecided or UnknownShape if it cannot be determined.
     """
-    poses = [
-        (visual.geometry, visual_pose(robot, link, visual, base)) for visual in visuals(robot, link)
-    ]
-    if len(poses) > 1:
-        lowest = min(poses, key=lambda shape: extent(shape[0], shape[1], up)[0])
-    else:
-        lowest = poses[0]
-    low = farthest(*lowest, minus((0.0, 0.0, 0.0), up))
-    moved = _flatten(
-        minus(robot.displacement(link, joint, _SMALL_ANGLE, relative_to=base).apply(low), low), up
-    )
-    travel = unit((-moved[0], -moved[1], -moved[2])) if hypot(*moved) > _STANDSTILL else None
+    shown = visuals(robot, link)
+    placed = [(visual.geometry, visual_pose(robot, link, visual, base)) for visual in shown]
+    geometry, pose = placed[0]
+    if len(placed) > 1:
+        geometry, pose = min(placed, key=lambda shape: extent(shape[0], shape[1], up)[0])
+    low = farthest(geometry, pose, minus((0.0, 0.0, 0.0), up))
+    motion = robot.displacement(link, joint, _SMALL_ANGLE, relative_to=base)
+    # While the ground holds the lowest point, the base moves the other way.
+    x, y, z = _flatten(minus(motion.apply(low), low), up)
+    travel = unit((-x, -y, -z)) if hypot(x, y, z) > _STANDSTILL else None
     if travel is None:
         return None, "its lowest point stays in place"
-    upright = abs(dot(robot.pose(joint.child, relative_to=base).rotate(robot.axis(joint)), up))
-    slope = degrees(asin(min(1.0, upright)))
-    if slope > _MAX_SLOPE + SLACK:
-        is_upright = slope >= 90.0 - _NEARLY
-        return (
-            None,
-            "it turns about a vertical axis"
-            if is_upright
-            else f"its axis is {in_degrees(slope)} off level",
-        )
-    return travel, ""
+    axis = robot.pose(joint.child, relative_to=base).rotate(robot.axis(joint))
+    slope = degrees(asin(min(1.0, abs(dot(axis, up)))))
+    if slope <= _MAX_SLOPE + SLACK:
+        return travel, ""
+    if slope >= 90.0 - _NEARLY:
+        return None, "it turns about a vertical axis"
+    return None, f"its axis is {in_degrees(slope)} off level"
 
 
 def axis_along(
@@ -139,9 +133,9 @@ def axis_along(
     if not fine:
         message += f"; it should point along {point(expected)} ({in_degrees(off)} off)"
     joint = robot.parent_joints.get(link)
-    at = place(joint.origin.location if joint and joint.origin else None, "rpy") or place(
-        robot.link(link).location
-    )
+    origin = joint.origin if joint is not None else None
+    at = place(origin.location, "rpy") if origin is not None else None
+    at = at or place(robot.link(link).location)
     return judged(fine, message, actual, expected, tolerance, "deg", at=at)
 
 

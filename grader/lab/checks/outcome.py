@@ -234,9 +234,12 @@ def other_unit(actual: Sequence[float], expected: Sequence[float]) -> str:
     pairs = [
         (a, b) for a, b in zip(actual, expected, strict=True) if abs(a) > SLACK or abs(b) > SLACK
     ]
-    units = (unit for factor, unit in _UNITS if all(abs(a - b * factor) < abs(b) for a, b in pairs))
-    unit = next(units, "") if pairs else ""
-    return f"a URDF is in metres, not in {unit}" if unit else ""
+    if not pairs:
+        return ""
+    for factor, unit in _UNITS:
+        if all(abs(a - b * factor) < abs(b) for a, b in pairs):
+            return f"a URDF is in metres, not in {unit}"
+    return ""
 
 
 def difference(off: float, over: str = _SIDES[0], under: str = _SIDES[1]) -> str:

@@ -114,15 +114,17 @@ def installs_files(package: Package, *, files: list[str], despite_errors: bool =
         despite_errors: Whether an error that stops the build is ignored, which `setup_imports`
             reports.
     """
-    found = [
-        path for path in package.tree.files if any(fnmatch(path, pattern) for pattern in files)
-    ]
-    if not found:
+
+    def is_wanted(path: str) -> bool:
+        return any(fnmatch(path, pattern) for pattern in files)
+
+    matching = [*filter(is_wanted, package.tree.files)]
+    if not matching:
         patterns = enumerated([repr(pattern) for pattern in files], word="or")
         raise MissingElement(
             "file", files[0], message=f"the package has no file that matches {patterns}"
         )
-    return _require_installed(package, found, None, despite_errors=despite_errors)
+    return _require_installed(package, matching, None, despite_errors=despite_errors)
 
 
 def setup_imports(package: Package) -> Outcome:

@@ -2,7 +2,7 @@
 the robot.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import dist
 from typing import Any, Literal
 
@@ -83,14 +83,12 @@ def parameter_is(
         shown = round(value, _DIGITS) if isinstance(value, float) else value
         wanted, fits = f"should be {_text(shown)}", _equal(actual, value, tolerance)
     if one_of is not None:
-        wanted, fits = (
-            f"should be {enumerated([*map(_text, one_of)], word='or')}",
-            _is_one(actual, one_of, tolerance),
-        )
+        wanted = f"should be {enumerated([*map(_text, one_of)], word='or')}"
+        fits = _has(one_of, actual, tolerance)
     if has is not None:
         items = actual if isinstance(actual, list) else [actual]
         wanted = f"should have {enumerated([*map(_text, has)])}"
-        fits = all(any(_equal(item, one, tolerance) for item in items) for one in has)
+        fits = all(_has(items, expected, tolerance) for expected in has)
     message = f"{said} {parameter} = {_text(actual)}"
     if measure is not None:
         wanted += f", the {measure} of {enumerated([*map(quoted, links or [])])} in the robot"
@@ -175,8 +173,8 @@ def _equal(actual: Any, wanted: Any, tolerance: float) -> bool:
     return False
 
 
-def _is_one(actual: Any, choices: list[Scalar], tolerance: float) -> bool:
-    return any(_equal(actual, one, tolerance) for one in choices)
+def _has(values: Sequence[Any], wanted: Any, tolerance: float) -> bool:
+    return any(_equal(value, wanted, tolerance) for value in values)
 
 
 def _text(value: Any) -> str:

@@ -136,7 +136,7 @@ def _pair_joints(
     """
     own = _find_movers(robot, bases[0], [link for link, _ in pairs])
     others = _find_movers(reference, bases[1], [link for _, link in pairs])
-    shown = enumerated([quoted(link) for link, _ in pairs], _MAX_NAMED)
+    shown = _list_names([link for link, _ in pairs])
     if match == "order":
         if len(own) != len(others):
             message = (
@@ -148,11 +148,15 @@ def _pair_joints(
     else:
         _check_names(robot, [*others])
         joints = [(robot.joint(name), joint) for name, joint in others.items()]
-        extra = [name for name in own if name not in others]
-        if extra:
-            message = f"a joint on the chains to {shown} has no counterpart in the reference"
-            return failed(message, own[extra[0]].location, detail=f" (joint {quoted(extra[0])})")
-    return next(filter(None, (_wrong_type(*found) for found in joints)), joints)
+        for name, joint in own.items():
+            if name not in others:
+                message = f"a joint on the chains to {shown} has no counterpart in the reference"
+                return failed(message, joint.location, detail=f" (joint {quoted(name)})")
+    for joint, expected in joints:
+        failure = _wrong_type(joint, expected)
+        if failure is not None:
+            return failure
+    return joints
 
 
 def _list_names(names: Sequence[str] | dict[str, Joint]) -> str:
@@ -273,10 +277,8 @@ class _MotionComparison(NamedTuple):
         with it.
         """
         known = _EXPECTED.setdefault(self.robots[1], {})
-        names, links = (
-            tuple(joint.name for _, joint in self.joints),
-            tuple(link for _, link in self.links),
-        )
+        names = tuple(joint.name for _, joint in self.joints)
+        links = tuple(link for _, link in self.links)
         key = (self.bases[1], links, names, positions)
         if key not in known:
             posed = self.robots[1].at(dict(zip(names, positions, strict=True)))
@@ -303,13 +305,14 @@ class _MotionComparison(NamedTuple):
     def _positions_text(self, offset: _Offset) -> str:
         if not any(offset.positions):
             return "all joints at 0"
-        moved = [
-            f"{quoted(joint.name)} at {point((position,))} m"
-            if joint.type == "prismatic"
-            else f"{quoted(joint.name)} at {point((degrees(position),))} degrees"
-            for (joint, _), position in zip(self.joints, offset.positions, strict=True)
-            if position
-        ]
+        moved = []
+        for (joint, _), position in zip(self.joints, offset.positions, strict=True):
+            if joint.type == "prismatic":
+                value, unit = position, "m"
+            else:
+                value, unit = degrees(position), "degrees"
+            if position:
+                moved.append(f"{quoted(joint.name)} at {point((value,))} {unit}")
         return enumerated(moved, _MAX_NAMED)
 
 
@@ -363,7 +366,9 @@ def _single_positions(joints: Sequence[Joint]) -> Iterator[tuple[int, tuple[floa
     for index, joint in enumerate(joints):
         low, high = _joint_range(joint)
         for position in (low, high, low + _BETWEEN * (high - low)):
-            yield index, tuple(position if other == index else 0.0 for other in range(len(joints)))
+            positions = [0.0] * len(joints)
+            positions[index] = position
+            yield index, tuple(positions)
 
 
 def _random_positions(joints: Sequence[Joint], count: int) -> list[tuple[float, ...]]:
@@ -372,9 +377,11 @@ def _random_positions(joints: Sequence[Joint], count: int) -> list[tuple[float, 
 
     random = Random(_SEED)  # noqa: S311  not for secrets
     ranges = [_joint_range(joint) for joint in joints]
-    return [
-        tuple(low + (high - low) * random.random() for low, high in ranges) for _ in range(count)
-    ]
+
+    def positions() -> tuple[float, ...]:
+        return tuple(low + (high - low) * random.random() for low, high in ranges)
+
+    return [positions() for _ in range(count)]
 
 
 def _joint_range(joint: Joint) -> tuple[float, float]:

@@ -260,13 +260,17 @@ class _Names(NamedTuple):
             or any(node.when is None for node in opened.nodes)
         ):
             return cls()
-        programs = (
-            ("robot_state_publisher",),
-            ("joint_state_publisher", "joint_state_publisher_gui"),
-            ("rviz2",),
-        )
-        started = [node for node in opened.nodes if node.when]
-        return cls(*([node for node in started if node.executable in names] for names in programs))
+        publishers, joints, viewers = [], [], []
+        for node in opened.nodes:
+            if not node.when:
+                continue
+            if node.executable == "robot_state_publisher":
+                publishers.append(node)
+            elif node.executable in ("joint_state_publisher", "joint_state_publisher_gui"):
+                joints.append(node)
+            elif node.executable == "rviz2":
+                viewers.append(node)
+        return cls(publishers, joints, viewers)
 
     @property
     def described(self) -> set[str] | None:
@@ -285,16 +289,14 @@ class _Names(NamedTuple):
         """Why transforms do not get from the joints to RViz; empty if they do, or if this is not
         known.
         """
+        without_description = [node for node in self.joints if not node.has_description]
         for name, sources, readers in (
             ("joint_states", self.joints, self.publishers),
-            (
-                "robot_description",
-                self.publishers,
-                [node for node in self.joints if not node.has_description],
-            ),
+            ("robot_description", self.publishers, without_description),
             ("/tf", self.publishers, self.viewers),
         ):
-            sent, read = ({node.topic(name) for node in nodes} for nodes in (sources, readers))
+            sent = {node.topic(name) for node in sources}
+            read = {node.topic(name) for node in readers}
             if sent and read and None not in sent | read and not sent & read:
                 who, reader = sources[0].executable, readers[0].executable
                 return f"{who} publishes on {_listed(sent)}, but {reader} reads {_listed(read)}"

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.base.names import did_you_mean
+from grader.base.names import closest
 from grader.base.source import Location
 from grader.base.text import enumerated, quoted
 from grader.ros.build.places import PREFIX
@@ -62,32 +62,34 @@ def find_faults(
         wanted: What else is wanted.
     """
     workspace = submission.workspace
-    named = [
-        replace(node, node_name=workspace.name_of(node))
-        for node in launch.nodes
-        if node.when is not False
-    ]
+    started = [node for node in launch.nodes if node.when is not False]
+    named = [replace(node, node_name=workspace.name_of(node)) for node in started]
     launch = replace(launch, nodes=tuple(named))
-    found = [*_started_although(launch, wanted.absent or ())]
+    faults: list[Fault | None] = [*_started_although(launch, wanted.absent or ())]
     if wanted.remap or wanted.arguments:
-        found += filter(None, (_ill_started(launch, names, wanted) for names in choices))
-    found += filter(None, (_not_included(launch, end) for end in wanted.includes or ()))
-    opened = _Opened(launch, workspace)
-    for kind, topics in (("publisher", wanted.publishes), ("subscription", wanted.subscribes)):
-        types = topics if isinstance(topics, Mapping) else dict.fromkeys(topics or (), "")
-        found += filter(None, (opened.fault_of(kind, name, of) for name, of in types.items()))
-    return found
+        faults += [_ill_started(launch, names, wanted) for names in choices]
+    faults += [_not_included(launch, end) for end in wanted.includes or ()]
+    topics = _NodeTopics(launch, workspace)
+    for name, kind in _typed(wanted.publishes).items():
+        faults.append(topics.fault_of("publisher", name, kind))
+    for name, kind in _typed(wanted.subscribes).items():
+        faults.append(topics.fault_of("subscription", name, kind))
+    return [fault for fault in faults if fault is not None]
+
+
+def _typed(topics: _Topics) -> Mapping[str, str]:
+    """Return the types that a rubric asks of topics; empty texts where it asks for none."""
+    return topics if isinstance(topics, Mapping) else dict.fromkeys(topics or (), "")
 
 
 def _started_although(launch: "Launch", names: Iterable[str]) -> Iterator[Fault]:
     """Yield the nodes that are started, or may be, and should not."""
     for name in names:
-        found = sorted(
-            (node for node in launch.nodes if node.name == name), key=lambda node: node.when is None
-        )
-        if found and found[0].when:
-            yield Fault(f"the launch file starts {name}; it should not", found[0].location)
-        elif found or launch.unknown:
+        nodes = [node for node in launch.nodes if node.name == name]
+        certain = next((node for node in nodes if node.when), None)
+        if certain is not None:
+            yield Fault(f"the launch file starts {name}; it should not", certain.location)
+        elif nodes or launch.unknown:
             yield Fault(f"{name} is started", is_sure=False)
 
 
@@ -95,15 +97,23 @@ def _ill_started(launch: "Launch", names: Sequence[str], wanted: Wanted) -> Faul
     """Return what is wrong with a node, if it is started, and none of its name has the remappings
     and arguments.
     """
-    found = [(node, _fault_of(node, wanted)) for node in launch.nodes if node.name in names]
-    faults = [fault for node, fault in found if fault is not None]
-    if not found or any(fault is None and node.when for node, fault in found):
-        return None
-    is_sure = (
-        not launch.unknown and len(faults) == len(found) and all(fault.is_sure for fault in faults)
-    )
-    if is_sure:
+    faults = []
+    is_sure = not launch.unknown
+    for node in launch.nodes:
+        if node.name not in names:
+            continue
+        fault = _fault_of(node, wanted)
+        if fault is not None:
+            faults.append(fault)
+            is_sure &= fault.is_sure
+        elif node.when:
+            return None
+        else:
+            is_sure = False  # whether it is started is not known
+    if is_sure and faults:
         return faults[0]
+    if not any(node.name in names for node in launch.nodes):
+        return None
     return Fault(f"{' or '.join(names)} has these remappings and arguments", is_sure=False)
 
 
@@ -161,67 +171,77 @@ def _is_word(word: str | None, wanted: str) -> bool:
 
 def _not_included(launch: "Launch", end: str) -> Fault | None:
     """Return that a launch file is not included."""
-    found = [it for it in launch.passed if f"/{it.path}".endswith(f"/{end.removeprefix('/')}")]
-    if any(it.when for it in found):
+    ending = f"/{end.removeprefix('/')}"
+    included = [passed for passed in launch.passed if f"/{passed.path}".endswith(ending)]
+    if any(passed.when for passed in included):
         return None
     # Which files are included by one that is not submitted does not count.
-    places = {it.location for it in launch.passed}
-    if found or any(it.location not in places for it in launch.unknown):
+    places = {passed.location for passed in launch.passed}
+    if included or any(unknown.location not in places for unknown in launch.unknown):
         return Fault(f"{end} is included", is_sure=False)
-    paths = [it.path.removeprefix("share/") for it in launch.passed]
-    detail = f"; it includes {enumerated(paths[:_MAX_NAMED])}" if paths else "; it includes none"
-    return Fault(
-        f"the launch file does not include {end}",
-        launch.passed[0].location if paths else None,
-        detail,
-    )
+    message = f"the launch file does not include {end}"
+    if not launch.passed:
+        return Fault(message, detail="; it includes none")
+    paths = [passed.path.removeprefix("share/") for passed in launch.passed[:_MAX_NAMED]]
+    return Fault(message, launch.passed[0].location, f"; it includes {enumerated(paths)}")
 
 
-class _Opened:
+class _NodeTopic(NamedTuple):
+    """A publisher or subscription of a node; `name` is empty where it is not known."""
+
+    name: str
+    endpoint: "Endpoint"
+    node: "StartedNode"
+
+
+class _NodeTopics:
     """The topics of the nodes of a workspace that a launch file starts."""
 
     def __init__(self, launch: "Launch", workspace: "Workspace") -> None:
-        self._topics: list[tuple[str, Endpoint, StartedNode]] = []
+        self._topics: list[_NodeTopic] = []
         self._is_open = bool(launch.unknown)
         for node in launch.nodes:
-            package, own = workspace.package_of(node), workspace.python_node(node)
-            if package is not None:
-                is_read = (
-                    own is not None
-                    and not own.doubts
-                    and not workspace.python_nodes[package.name].doubts
-                )
-                self._is_open = self._is_open or not is_read
-            for endpoint in (
-                [it for it in own.endpoints if it.kind in _VERBS] if own is not None else ()
+            package, python_node = workspace.package_of(node), workspace.python_node(node)
+            if package is not None and (
+                python_node is None
+                or python_node.doubts
+                or workspace.python_nodes[package.name].doubts
             ):
+                self._is_open = True
+            if python_node is not None:
+                self._add(node, python_node.endpoints)
+
+    def _add(self, node: "StartedNode", endpoints: "Iterable[Endpoint]") -> None:
+        for endpoint in endpoints:
+            if endpoint.kind in _VERBS:
                 topic = node.topic(endpoint.name) if endpoint.name is not None else None
                 self._is_open = self._is_open or topic is None or "~" in topic
-                self._topics.append((topic or "", endpoint, node))
+                self._topics.append(_NodeTopic(topic or "", endpoint, node))
 
-    def fault_of(self, kind: str, name: str, of: str) -> Fault | None:
+    def fault_of(self, kind: str, name: str, message_type: str) -> Fault | None:
         """Return that no node publishes a topic, or subscribes to it, with a type."""
-        full, type_ = f"/{name.removeprefix('/')}", re.sub("[/:]+", ".", of)
-        own = [it for it in self._topics if it[1].kind == kind]
-        found = [it for it in own if it[0] == full]
-        if any(
-            node.when and endpoint.type == (type_ or endpoint.type) for _, endpoint, node in found
-        ):
-            return None
-        is_sure = not self._is_open and all(
-            endpoint.type not in (None, type_) for _, endpoint, node in found
-        )
+        full_name, verb = f"/{name.removeprefix('/')}", _VERBS[kind]
+        python_type = re.sub("[/:]+", ".", message_type)
+        of_kind = [topic for topic in self._topics if topic.endpoint.kind == kind]
+        same = [topic for topic in of_kind if topic.name == full_name]
+        is_sure = not self._is_open
+        for topic in same:
+            actual = topic.endpoint.type
+            if topic.node.when and (actual == python_type or not python_type):
+                return None
+            if actual is None or actual == python_type:
+                is_sure = False
         if not is_sure:
-            return Fault(
-                f"a node {_VERBS[kind]} {full}{f' with {of}' if of else ''}", is_sure=False
-            )
-        if found:
-            actual = (found[0][1].type or "").replace(".", "/")
-            return Fault(
-                f"a node {_VERBS[kind]} {full} with {actual}; it should be {of}",
-                found[0][1].location,
-            )
-        names = [topic for topic, *_ in own]
-        detail = did_you_mean(full, names)
-        at = next((endpoint.location for topic, endpoint, _ in own if repr(topic) in detail), None)
-        return Fault(f"no node {_VERBS[kind]} {full}", at, detail)
+            typed = f" with {message_type}" if message_type else ""
+            return Fault(f"a node {verb} {full_name}{typed}", is_sure=False)
+        if same:
+            endpoint = same[0].endpoint
+            shown = (endpoint.type or "").replace(".", "/")
+            message = f"a node {verb} {full_name} with {shown}; it should be {message_type}"
+            return Fault(message, endpoint.location)
+        message = f"no node {verb} {full_name}"
+        meant = closest(full_name, [topic.name for topic in of_kind])
+        for topic in of_kind:
+            if topic.name == meant:
+                return Fault(message, topic.endpoint.location, f"; did you mean {quoted(meant)}?")
+        return Fault(message)

@@ -205,17 +205,19 @@ def counts(
         "fixed joint": fixed,
     }
     expected = {noun: number for noun, number in wanted.items() if number is not None}
-    found = _count_parts(robot, expected)
-    numbers = tuple(found[noun] for noun in expected), tuple(expected.values())
-    wrong = [noun for noun, number in expected.items() if found[noun] != number]
-    shown = {noun: counted(found[noun], noun) for noun in expected}
-    if not wrong:
-        return judged(True, f"the tree has {enumerated(list(shown.values())) or 'links'}", *numbers)
-    verbs = {noun: "is" if found[noun] == 1 else "are" for noun in wrong}
-    faults = (
-        f"there {verbs[noun]} {shown[noun]}; there should be {expected[noun]}" for noun in wrong
-    )
-    return judged(False, "; ".join(faults), *numbers)
+    counts_of_tree = _count_parts(robot, expected)
+    actual = tuple(counts_of_tree[noun] for noun in expected)
+    faults = []
+    texts = []
+    for noun, number in expected.items():
+        count = counts_of_tree[noun]
+        text = counted(count, noun)
+        texts.append(text)
+        if count != number:
+            verb = "is" if count == 1 else "are"
+            faults.append(f"there {verb} {text}; there should be {number}")
+    message = "; ".join(faults) if faults else f"the tree has {enumerated(texts) or 'links'}"
+    return judged(not faults, message, actual, tuple(expected.values()))
 
 
 def _joint_above_root(

@@ -65,13 +65,20 @@ def xacro_uses(
         return source
     if not (file or properties or macros or includes):
         return _judge_expansion(submission)
-    paths = [path for path in source.documents if submission.is_single or _ends_with(path, file)]
-    found = _take_inventory(source, submission)
-    included = [path for (by, _), every in source.includes.items() if by in paths for path in every]
+    paths = [*source.documents]
+    if not submission.is_single:
+        paths = [path for path in paths if _ends_with(path, file)]
+    inventory = _take_inventory(source, submission)
+    included: dict[str, None] = {}
+    for (path, _), files in source.includes.items():
+        if path in paths:
+            included.update(dict.fromkeys(files))
     lacks = [
-        *_missing_uses("property", "properties", properties, found.properties, found.used, paths),
-        *_missing_uses("macro", "macros", macros, found.macros, found.called, paths),
-        *_missing_includes(includes, [*dict.fromkeys(included)]),
+        *_missing_uses(
+            "property", "properties", properties, inventory.properties, inventory.used, paths
+        ),
+        *_missing_uses("macro", "macros", macros, inventory.macros, inventory.called, paths),
+        *_missing_includes(includes, [*included]),
     ]
     if not lacks:
         names = [path.rpartition("/")[2] for path in paths]
@@ -79,13 +86,12 @@ def xacro_uses(
             f"{enumerated(names, _MAX_NAMED)}: xacro with the expected properties, macros "
             "and includes"
         )
-    _refuse_unknown(source, found)
-    at = next(
-        (lack.location for lack in lacks if lack.location is not None), LazyLocation(source, 0)
-    )
-    return failed(
-        "; ".join(lack.message for lack in lacks), at, detail="".join(lack.detail for lack in lacks)
-    )
+    _refuse_unknown(source, inventory)
+    message = "; ".join(lack.message for lack in lacks)
+    detail = "".join(lack.detail for lack in lacks)
+    places = [lack.location for lack in lacks if lack.location is not None]
+    at = places[0] if places else LazyLocation(source, 0)
+    return failed(message, at, detail=detail)
 
 
 def _take_inventory(source: "ExpandedSource", submission: Submission) -> "Inventory":
@@ -209,35 +215,31 @@ def _missing_uses(
     """Yield what is missing of definitions that are used: some of the named ones, or of a
     number.
     """
-    places = {
-        name: next((place for place in found if place.source.path in paths), None)
-        for name, found in defined.items()
-    }
-    own = {name: place.at("name") for name, place in places.items() if place is not None}
+    first_places: dict[str, Location] = {}
+    for name, places in defined.items():
+        for place in places:
+            if place.source.path in paths:
+                first_places[name] = place.at("name")
+                break
     if isinstance(wanted, int):
-        unused = [name for name in own if name not in used]
-        if len(own) - len(unused) < wanted:
-            message = (
-                f"{counted(len(own) - len(unused), kind, plural)} defined and used; there "
-                f"should be {wanted}"
-            )
+        unused = [name for name in first_places if name not in used]
+        count = len(first_places) - len(unused)
+        if count < wanted:
+            message = f"{counted(count, kind, plural)} defined and used; there should be {wanted}"
             if unused:
                 detail = f"; not used: {enumerated([*map(quoted, unused)], _MAX_NAMED)}"
+                yield _Lack(message, first_places[unused[0]], detail)
             else:
-                detail = ""
-            yield _Lack(message, own[unused[0]] if unused else None, detail)
+                yield _Lack(message)
         return
     for name in wanted:
-        if name not in own:
-            yield _Lack(f"the {kind} {quoted(name)} is not defined", None, did_you_mean(name, own))
+        if name not in first_places:
+            detail = did_you_mean(name, first_places)
+            yield _Lack(f"the {kind} {quoted(name)} is not defined", None, detail)
         elif name not in used:
-            yield _Lack(
-                (
-                    f"the {kind} {quoted(name)} is defined, but never "
-                    f"{'called' if kind == 'macro' else 'used'}"
-                ),
-                own[name],
-            )
+            verb = "called" if kind == "macro" else "used"
+            message = f"the {kind} {quoted(name)} is defined, but never {verb}"
+            yield _Lack(message, first_places[name])
 
 
 def _missing_includes(wanted: int | list[str], included: Sequence[str]) -> Iterator[_Lack]:
@@ -245,15 +247,16 @@ def _missing_includes(wanted: int | list[str], included: Sequence[str]) -> Itera
         if len(included) < wanted:
             yield _Lack(f"{counted(len(included), 'file')} included; there should be {wanted}")
         return
-    missing = [end for end in wanted if not any(_ends_with(path, end) for path in included)]
+
+    def is_included(end: str) -> bool:
+        return any(_ends_with(path, end) for path in included)
+
+    missing = [quoted(end) for end in wanted if not is_included(end)]
     if missing:
         names = [path.rpartition("/")[2] for path in included]
         detail = f"; included: {enumerated(names, _MAX_NAMED) or 'none'}"
-        yield _Lack(
-            f"no file {enumerated([*map(quoted, missing)], _MAX_NAMED, 'and no file')} is included",
-            None,
-            detail,
-        )
+        files = enumerated(missing, _MAX_NAMED, "and no file")
+        yield _Lack(f"no file {files} is included", None, detail)
 
 
 def _ends_with(path: str, end: str) -> bool:
