@@ -97,9 +97,7 @@ class Table(NamedTuple):
     def filled(self) -> list[TableRow]:
         """The rows that are not empty, and do not say what the separator is to Excel."""
         return [
-            row
-            for row in self.rows
-            if any(value.strip() for value in row.values) and row.value(0) != "sep="
+            row for row in self.rows if any(map(str.strip, row.values)) and row.value(0) != "sep="
         ]
 
     def encoded(self) -> bytes:

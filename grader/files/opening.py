@@ -129,26 +129,16 @@ def _combined_tree(
     name: str, parts: Sequence[tuple[str, Tree]], unopened: Sequence[IgnoredFile]
 ) -> Tree:
     """Return one tree of several, each with the start of its paths."""
-    return make_tree(
-        name,
-        [
-            file._replace(path=start + file.path)
-            for start, part in parts
-            for file in part.files.values()
-        ],
-        [start + folder for start, part in parts for folder in part.folders],
-        [
-            *(
-                file._replace(path=start + file.path)
-                for start, part in parts
-                for file in part.ignored
-            ),
-            *unopened,
-        ],
-        [start + path for start, part in parts for path in part.generated],
-        [start + folder for start, part in parts for folder in part.unseen],
-        tuple(part for _, part in parts),
-    )
+    files, ignored = list[File](), list[IgnoredFile]()
+    folders, generated, unseen = list[str](), list[str](), list[str]()
+    for start, part in parts:
+        files += [file._replace(path=start + file.path) for file in part.files.values()]
+        ignored += [file._replace(path=start + file.path) for file in part.ignored]
+        folders += [start + folder for folder in part.folders]
+        generated += [start + path for path in part.generated]
+        unseen += [start + folder for folder in part.unseen]
+    trees = tuple(part for _, part in parts)
+    return make_tree(name, files, folders, [*ignored, *unopened], generated, unseen, trees)
 
 
 def _open_inner(archive: File, allowance: limits.Allowance, depth: int) -> Tree:

@@ -117,10 +117,8 @@ class Tree:
         ends in a slash.
         """
         files = {path: file for path, file in self.files.items() if belongs(path)}
-        folders, unseen = (
-            frozenset(path for path in paths if belongs(f"{path}/"))
-            for paths in (self.folders, self.unseen)
-        )
+        folders = frozenset(path for path in self.folders if belongs(f"{path}/"))
+        unseen = frozenset(path for path in self.unseen if belongs(f"{path}/"))
         ignored = tuple(file for file in self.ignored if belongs(file.path))
         return Tree(
             self.name,

@@ -95,17 +95,18 @@ def source_lines(where: Location, source_of: SourceOf, many: int = _AROUND) -> l
         return []
     if len(line) > _MAX_WIDTH:
         return [(where.line, *excerpt(source, where, _MAX_WIDTH))]
-    around = {
-        number: source.line(number)
-        for number in range(max(1, where.line - many), where.line + many + 1)
-    }
-    last = max(number for number, text in around.items() if text.strip())
-    indent = min(len(text) - len(text.lstrip()) for text in around.values() if text.strip())
-    lines = [
-        (number, printable(text[indent:][:_MAX_WIDTH]), None, "") for number, text in around.items()
-    ]
-    marked = (where.line, *excerpt(source, where, _MAX_WIDTH, indent))
-    return [marked if one[0] == where.line else one for one in lines if one[0] <= last]
+    first, last = max(1, where.line - many), where.line + many
+    while not source.line(last).strip():  # ends at the marked line
+        last -= 1
+    texts = [source.line(number) for number in range(first, last + 1)]
+    indent = min(len(text) - len(text.lstrip()) for text in texts if text.strip())
+    lines = list[SourceLine]()
+    for number, text in enumerate(texts, first):
+        if number == where.line:
+            lines.append((number, *excerpt(source, where, _MAX_WIDTH, indent)))
+        else:
+            lines.append((number, printable(text[indent:][:_MAX_WIDTH]), None, ""))
+    return lines
 
 
 def archive_around(path: str) -> str:
@@ -136,25 +137,26 @@ def _texts_around(edits: list[Edit], source: Source | None) -> tuple[str, str]:
     """
     height = 1 + max(edit.old.count("\n") for edit in edits)
     start = edits[0].line
+    before = ""
     if source is not None:
-        before = "\n".join(source.line(start + number) for number in range(height))
-    else:
-        before = ""
+        before = "\n".join(source.line(number) for number in range(start, start + height))
     after = before
     for edit in reversed(edits):
         column, old = edit.column - 1, edit.old.replace("\r\n", "\n")
         is_there = after.startswith(old, column) and len(after) <= _MAX_LENGTH * height
         if not is_there:
-            return "\n".join(edit.old for edit in edits), "\n".join(edit.new for edit in edits)
+            old_texts = (edit.old for edit in edits)
+            new_texts = (edit.new for edit in edits)
+            return "\n".join(old_texts), "\n".join(new_texts)
         after = after[:column] + edit.new + after[column + len(old) :]
     return before, after
 
 
 def _diff(before: str, after: str) -> Iterator[str]:
-    old, new = ([line.removesuffix("\r") for line in text.split("\n")] for text in (before, after))
-    for kind, old_start, old_end, new_start, new_end in SequenceMatcher(
-        None, old, new, autojunk=False
-    ).get_opcodes():
+    old = [line.removesuffix("\r") for line in before.split("\n")]
+    new = [line.removesuffix("\r") for line in after.split("\n")]
+    changes = SequenceMatcher(None, old, new, autojunk=False).get_opcodes()
+    for kind, old_start, old_end, new_start, new_end in changes:
         if kind != "equal":
             yield from (f"-{line}" for line in old[old_start:old_end])
             yield from (f"+{line}" for line in new[new_start:new_end])

@@ -102,11 +102,11 @@ def import_marks(gradebook: Path, file: Path, by: str) -> str:
     row is wrong.
     """
     book = Gradebook(gradebook)
-    items = review_items(book, with_final=True).items()
-    reader = _mark_import(book)._replace(
-        answers={at: [one.student.key for one in item.members] for at, item in items},
-        points={one.student.key: points_of(book, one) for one in book},
-    )
+    answers = {}
+    for place, item in review_items(book, with_final=True).items():
+        answers[place] = [member.student.key for member in item.members]
+    points = {grade.student.key: points_of(book, grade) for grade in book}
+    reader = _mark_import(book)._replace(answers=answers, points=points)
     new, same = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file))
     _append_marks(book, new, by)
     return f"{printable_path(file)}: {len(new)} recorded, {same} the same as before\n"
@@ -161,13 +161,13 @@ def _grade_text(book: Gradebook, grade: StudentGrade) -> str:
     """Return what counts: an excuse, a final mark, or the points of the criteria."""
     if grade.total is None:
         return "excused" if grade.is_excused else "no submission"
-    whole = book.maximum
-    if not grade.has_final:  # also with marks of parts that are not graded
-        whole = grade.report.max_score
-    final = "final mark " if grade.has_final else ""
+    points = format_points(grade.total)
+    if grade.has_final:
+        text = f"final mark {points} of {format_points(book.maximum)} points"
+    else:  # also with marks of parts that are not graded
+        text = f"{points} of {format_points(grade.report.max_score)} points"
     if grade.late.points:
-        late = f" after the late penalty of {format_points(-grade.late.points)}"
-    else:
-        late = ""
-    pending = f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else ""
-    return f"{final}{format_points(grade.total)} of {format_points(whole)} points{late}{pending}"
+        text += f" after the late penalty of {format_points(-grade.late.points)}"
+    if grade.pending:
+        text += f"; needs manual grading: {counted_points(grade.pending)}"
+    return text

@@ -138,11 +138,7 @@ def review_items(
     keys = sorted(book.keys, key=digest_of) if is_anonymous else book.keys
     numbers = {key: number for number, key in enumerate(keys, 1)}
     counting, comments = book.marks.counting, book.marks.comments
-    results = [
-        stored
-        for stored in book.results.all()
-        if stored.verdict != "unreadable" and stored.student in book.run.totals
-    ]
+    results = _readable_results(book)
     # Several files are a submission named after the student, so digests of members differ, and with
     # them the keys. Those of one member serve all, whatever the order of the items.
     answers_of_files = {(stored.root, stored.paths): stored.answers for stored in results}
@@ -165,3 +161,12 @@ def review_items(
     ]
     items.sort(key=lambda item: (item.criterion.position, not item.answer))
     return {item.place: item for item in items}
+
+
+def _readable_results(book: Gradebook) -> list[StoredResult]:
+    """Return the results of the newest run, without submissions that could not be read."""
+    return [
+        stored
+        for stored in book.results.all()
+        if stored.verdict != "unreadable" and stored.student in book.run.totals
+    ]

@@ -82,41 +82,50 @@ class ClassStatistics(NamedTuple):
 def statistics(book: Gradebook, grades: Iterable[StudentGrade]) -> ClassStatistics:
     """Return the statistics of the grades of a class."""
     everyone = list(grades)
+    present = [grade.stored for grade in everyone if grade.stored is not None and not grade.is_gone]
     enrolled = [
         grade
         for grade in everyone
         if grade.student.is_on_roster and (grade.has_final or not grade.is_gone)
     ]
+    statuses = Counter(grade.status for grade in enrolled)
     counted = [grade for grade in enrolled if grade.is_counted]
-    present = [grade.stored for grade in everyone if grade.stored is not None and not grade.is_gone]
-    totals = list[Decimal]()
-    sections = defaultdict[str, list[Decimal]](list)
-    tenths = [list[str]() for _ in range(_TENTHS)]
-    for grade in counted:
-        total = grade.total or Decimal(0)
-        totals.append(total)
-        sections[grade.student.section].append(total)
-        tenth = int(total * _TENTHS // (book.maximum or 1))
-        tenths[max(0, min(_TENTHS - 1, tenth))].append(grade.student.key)
-    summaries = dict[str, _Summary]()
-    if len(sections) > 1:
-        summaries = {name: summary(section) for name, section in sorted(sections.items())}
+    totals = [grade.total or Decimal(0) for grade in counted]
     criteria, mistakes = _criteria_figures(book, counted)
     return ClassStatistics(
         rubric=book.rubric,
         maximum=book.maximum,
-        statuses=dict(sorted(Counter(grade.status for grade in enrolled).items())),
+        statuses=dict(sorted(statuses.items())),
         all=summary(totals) if totals else None,
         open=sum(grade.obstacle is not None for grade in counted),
         late=sum(grade.late.days > 0 and not grade.has_final for grade in enrolled),
-        tenths=tenths,
+        tenths=_tenths(counted, book.maximum),
         criteria=criteria,
         mistakes=mistakes,
-        sections=summaries,
+        sections=_sections(counted),
         attention=_attention(everyone),
         equal=equal_work(present, book.settings.handed_out),
         names={grade.student.key: grade.student.name for grade in everyone},
     )
+
+
+def _tenths(grades: Iterable[StudentGrade], maximum: Decimal) -> list[list[str]]:
+    """Return the students in each tenth of the maximum; less than nothing is in the first one."""
+    tenths = [list[str]() for _ in range(_TENTHS)]
+    for grade in grades:
+        tenth = int((grade.total or Decimal(0)) * _TENTHS // (maximum or 1))
+        tenths[max(0, min(_TENTHS - 1, tenth))].append(grade.student.key)
+    return tenths
+
+
+def _sections(grades: Iterable[StudentGrade]) -> dict[str, _Summary]:
+    """Return the figures of each section; of none if there is only one."""
+    totals = defaultdict[str, list[Decimal]](list)
+    for grade in grades:
+        totals[grade.student.section].append(grade.total or Decimal(0))
+    if len(totals) <= 1:
+        return {}
+    return {name: summary(section) for name, section in sorted(totals.items())}
 
 
 def _attention(grades: Iterable[StudentGrade]) -> dict[Reason, list[tuple[str, str]]]:

@@ -122,13 +122,11 @@ def _utc_text(time: datetime) -> str:
 
 def append_marks(path: Path, marks: Iterable[Mark]) -> None:
     """Append marks to a grader's file; raises InputError as `_append_rows` does."""
-    _append_rows(
-        path,
-        [
-            {**{name: getattr(mark, name) for name in COLUMNS}, "points": mark.value}
-            for mark in marks
-        ],
-    )
+    rows = []
+    for mark in marks:
+        row = {name: getattr(mark, name) for name in COLUMNS}
+        rows.append({**row, "points": mark.value})
+    _append_rows(path, rows)
 
 
 def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:

@@ -66,9 +66,13 @@ def render_class_page(
             members = [numbers[key] for key in group.keys]
             shown[name] = [printable(group.label), group.word, members]
     bars, cut = _bars(figures)
-    attention = []
-    for reason, students in figures.attention.items():
-        attention.append((str(reason), students[:_MAX_ATTENTION], len(students)))
+    attention = [
+        (str(reason), students[:_MAX_ATTENTION], len(students))
+        for reason, students in figures.attention.items()
+    ]
+    mistakes = [
+        (mistake.criterion, mistake.message, len(mistake.students)) for mistake in figures.mistakes
+    ]
     values = {
         "version": __version__,
         "title": figures.rubric.title,
@@ -79,7 +83,7 @@ def render_class_page(
         "out_of": format_points(figures.maximum),
         "criteria": _criteria(figures),
         "criteria_note": words.SHARE_NOTE,
-        "mistakes": [(one.criterion, one.message, len(one.students)) for one in figures.mistakes],
+        "mistakes": mistakes,
         "equal": figures.equal,
         "equal_note": words.EQUAL_NOTE,
         "attention": attention,

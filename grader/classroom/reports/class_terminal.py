@@ -98,7 +98,7 @@ class ClassTable:
         table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
         titles = ("student", f"of {format_points(self.rubric.points)}", "late", "lost", "open")
         rows = [row for *_, row in self.rows]
-        filled = [at for at in range(len(titles)) if any(row[at] for row in rows)]
+        filled = sorted({at for row in rows for at, cell in enumerate(row) if cell})
         for at in filled:
             table.add_column(titles[at], overflow="fold", justify="right" if at == 1 else "left")
         for row in rows:
@@ -194,10 +194,9 @@ def _attention_line(
 
 
 def _show_criteria(rows: Sequence[CriterionFigures], page: Page) -> None:
+    counted_kinds = {kind for row in rows for kind, count in row.counts.items() if count}
     optional = [
-        name
-        for name in ("carried", "marked", "pending", "errored")
-        if any(row.counts[name] for row in rows)
+        name for name in ("carried", "marked", "pending", "errored") if name in counted_kinds
     ]
     columns = ["passed", "failed", *optional]
     table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0), header_style="bold")
@@ -206,10 +205,12 @@ def _show_criteria(rows: Sequence[CriterionFigures], page: Page) -> None:
         title = "not deducted" if name == "carried" else name
         table.add_column(title, justify="right", no_wrap=name != "carried")
     for row in rows:
-        name = printable(f"{row.criterion.id} (bonus)" if row.criterion.bonus else row.criterion.id)
+        name = row.criterion.id
+        if row.criterion.bonus:
+            name += " (bonus)"
         counts = (str(row.counts[column]) for column in columns)
         share = percent(row.share) if row.share is not None else ""
-        table.add_row(name, format_points(row.criterion.points), *counts, share)
+        table.add_row(printable(name), format_points(row.criterion.points), *counts, share)
     page.leave_row()
     page.table(table)
     page.inset(SHARE_NOTE, "dim", 0)

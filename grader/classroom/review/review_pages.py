@@ -86,14 +86,15 @@ def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) ->
     for number, picture in enumerate(opened.pictures, 1):
         if isinstance(picture, EmbeddedPicture):
             pictures.append((f"{place['address']}/picture/{number}", picture))
-    is_alone = len(members) == 1
-    who = members[0] if is_alone else f"{len(members)} students"
+    who, listed = f"{len(members)} students", members
+    if len(members) == 1:
+        who, listed = members[0], []
     is_older = item.members[0].state == OLDER
     values = {
         **place,
         "title": f"{place['number']} of {place['total']}: {who}, {criterion.title}",
         "who": who,
-        "members": [] if is_alone else members,
+        "members": listed,
         "item": item,
         "maximum": format_points(maximum),
         "each": each,
@@ -106,15 +107,23 @@ def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) ->
         "choices": [f"{text} ({format_points(points)})" for text, points in choices.items()],
     }
     data = {
-        "shown": item.view,
-        "points": _total(marks),
-        "each": [mark.value if mark else "" for mark in marks] if item.also else [],
-        "comment": marks[0].comment if marks[0] else "",
-        "choices": [[text, float(points)] for text, points in choices.items()],
+        **_marked_data(item, marks),
+        "choices": [(text, float(points)) for text, points in choices.items()],
         "maximum": float(maximum),
         "people": members,
     }
     return _page("review.html", values, data)
+
+
+def _marked_data(item: ReviewItem, marks: Sequence[Mark | None]) -> dict[str, Any]:
+    """Return how an item is marked, for the script of its page."""
+    first, each = marks[0], [mark.value if mark else "" for mark in marks]
+    return {
+        "shown": item.view,
+        "points": _total(marks),
+        "each": each if item.also else [],
+        "comment": first.comment if first else "",
+    }
 
 
 def _total(marks: Sequence[Mark | None]) -> str:
@@ -144,17 +153,19 @@ def end_page(marked: int, left: int, place: Mapping[str, Any], gradebook: str, l
 
     It exports the grades to the LMS that the class came from, if that is known.
     """
+    how = "export the grades"
     command = f"grader export {lms or 'csv'} --gradebook {shell_quoted(gradebook)}"
+    if lms:
+        how = f"fill the grade file that {FORMS[lms].lms} has exported"
+        command += " --into EXPORTED.csv --output upload.csv"
     values = {
         **place,
-        "title": "Manual grading complete" if not left else f"{counted(left, 'mark')} left",
+        "title": f"{counted(left, 'mark')} left" if left else "Manual grading complete",
         "summary": f"{counted(marked, 'mark')} given in this review.",
         "left": left,
         "is_filtered": any(chosen not in ("", UNMARKED) for *_, chosen in place["filters"]),
-        "how": f"fill the grade file that {FORMS[lms].lms} has exported"
-        if lms
-        else "export the grades",
-        "command": f"{command} --into EXPORTED.csv --output upload.csv" if lms else command,
+        "how": how,
+        "command": command,
     }
     return _page("review-end.html", values)
 

@@ -228,35 +228,31 @@ class ReviewPage:
             return _html(page, HTTPStatus.SERVICE_UNAVAILABLE)
 
     def _page(self, at: int, path: tuple[str, ...]) -> _Response:
-        session, book = self.session, self.session.book
+        session = self.session
         is_item = 0 <= at < len(session.places)
         match path:
             case ("end",):
-                given = sum(mark.points is not None for mark in session.own.values())
-                folder = printable_path(session.folder)
-                return _html(
-                    pages.end_page(given, session.left, self._place(at), folder, session.lms)
-                )
+                return _html(self._end_page(at))
             case (_, "people") if at >= 0:
-                return _json(
-                    people=[
-                        (label, left, self.address(to)) for label, left, to in session.people(at)
-                    ]
-                )
+                people = [(label, left, self.address(to)) for label, left, to in session.people(at)]
+                return _json(people=people)
             case (_,) if is_item:
                 item = session.item_at(at)
                 place = self._place(at) | {"so_far": session.so_far(item)}
-                return _html(pages.item_page(item, open_item(book, item), place))
+                return _html(pages.item_page(item, open_item(session.book, item), place))
             case (_, "picture", number) if is_item:
-                pictures = enumerate(open_item(book, session.item_at(at)).pictures, 1)
-                found = {str(which): one for which, one in pictures}.get(number)
-                if isinstance(found, EmbeddedPicture):
-                    return _Response(
-                        found.data,
-                        found.kind.media_type,
-                        policy=_PDF_POLICY if found.kind is PDF else _SANDBOX,
-                    )
+                pictures = enumerate(open_item(session.book, session.item_at(at)).pictures, 1)
+                picture = {str(which): picture for which, picture in pictures}.get(number)
+                if isinstance(picture, EmbeddedPicture):
+                    policy = _PDF_POLICY if picture.kind is PDF else _SANDBOX
+                    return _Response(picture.data, picture.kind.media_type, policy=policy)
         return _Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
+
+    def _end_page(self, at: int) -> str:
+        session = self.session
+        given = sum(mark.points is not None for mark in session.own.values())
+        folder = printable_path(session.folder)
+        return pages.end_page(given, session.left, self._place(at), folder, session.lms)
 
     def _place(self, at: int) -> dict[str, Any]:
         session, listed = self.session, self.session.listed

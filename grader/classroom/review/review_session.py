@@ -96,20 +96,19 @@ class ReviewSession:
         """Find the items that are shown, and join those of the same students that are open for
         the same reason.
         """
-        found = ((at, self.items.get(place)) for at, place in enumerate(self.places))
-        some = (
-            (at, item, self.filter.members(item, self._kept))
-            for at, item in found
-            if item is not None
-        )
-        self.shown = {at: item._replace(members=members) for at, item, members in some if members}
-        joined = [those for _, those in alike(self.shown, lambda at: self.shown[at].reason)]
-        self._joined = {
-            at: self.shown[those[0]]._replace(also=tuple(self.shown[other] for other in those[1:]))
-            for those in joined
-            for at in those
-        }
-        self.listed = [those[0] for those in joined]
+        self.shown = {}
+        for at, place in enumerate(self.places):
+            item = self.items.get(place)
+            members = self.filter.members(item, self._kept) if item is not None else ()
+            if item is not None and members:
+                self.shown[at] = item._replace(members=members)
+        self._joined, self.listed = {}, []
+        for _, positions in alike(self.shown, lambda at: self.shown[at].reason):
+            first, *others = positions
+            also = tuple(self.shown[at] for at in others)
+            joined = self.shown[first]._replace(also=also)
+            self._joined.update(dict.fromkeys(positions, joined))
+            self.listed.append(first)
 
     @property
     def sections(self) -> dict[str, str]:

@@ -242,16 +242,7 @@ def _student(row: dict[str, str]) -> Student:
     due, extension_days = row["due"], _days(row["extension"])
     if extension_days is None:  # the column may have a date instead of days
         due, extension_days = due or row["extension"], 0.0
-    days_late, measured_by = _days(row["late"]), ""
-    is_late = _LATE.get(row["late"].casefold())
-    if days_late is not None:
-        is_late = days_late > 0
-    status = _days_of(row["status"])
-    if row["moodle"] and not (row["late"] or row["submitted"]) and status != 0:
-        is_late = True
-        if status is not None:  # Moodle does not know this extension
-            is_late = status > extension_days
-            days_late, measured_by = max(0.0, status - extension_days), "Moodle"
+    is_late, days_late, measured_by = _lateness(row, extension_days)
     return Student(
         key=printable_path(next(filter(None, identifying), "")),
         name=name,
@@ -273,10 +264,26 @@ def _student(row: dict[str, str]) -> Student:
     )
 
 
+def _lateness(
+    row: Mapping[str, str], extension_days: float
+) -> tuple[bool | None, float | None, str]:
+    """Return whether a submission is late, by how many days, and the LMS that measured them."""
+    status = _days_of(row["status"])
+    if row["moodle"] and not (row["late"] or row["submitted"]) and status != 0:
+        if status is None:
+            return True, None, ""
+        # Moodle does not know this extension.
+        return status > extension_days, max(0.0, status - extension_days), "Moodle"
+    days = _days(row["late"])
+    if days is not None:
+        return days > 0, days, ""
+    return _LATE.get(row["late"].casefold()), None, ""
+
+
 def _days(text: str) -> float | None:
-    found = _DAYS.fullmatch(text)
-    if found:
-        return float(found[1].replace(",", "."))
+    days = _DAYS.fullmatch(text)
+    if days:
+        return float(days[1].replace(",", "."))
     return None
 
 

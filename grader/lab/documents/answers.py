@@ -10,6 +10,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from grader.base.source import Location
+from grader.base.text import counted
 from grader.lab.documents.collection import DocumentCollection, Passage, TextDocument
 from grader.lab.documents.converter import PICTURE
 from grader.lab.documents.headings import (
@@ -58,19 +59,19 @@ def find_answer(
     earlier place over a later one.
     """
     read, unread = documents.named(files)
-    search = _AnswerSearch(
-        documents, read, [_read_ordinal(place) or read_label(place) for place in places], question
-    )
-    found = sorted(
-        filter(None, search.passages()), key=lambda it: (it[0].is_empty, not it[0].is_certain)
-    )
-    first, *others = found[0] if found else [None]
-    return _FoundAnswer(
-        first,
-        tuple(it for it in others if it is not None)[:_MAX_OTHERS],
-        tuple(document.file.path for document in read),
-        tuple(map(str, unread)),
-    )
+    wanted = [_read_ordinal(place) or read_label(place) for place in places]
+    candidates = [
+        passages
+        for passages in _AnswerSearch(documents, read, wanted, question).passages()
+        if passages
+    ]
+    first, others = None, list[Passage]()
+    if candidates:
+        first, *others = min(
+            candidates, key=lambda passages: (passages[0].is_empty, not passages[0].is_certain)
+        )
+    paths = tuple(document.file.path for document in read)
+    return _FoundAnswer(first, tuple(others[:_MAX_OTHERS]), paths, tuple(map(str, unread)))
 
 
 class _Ordinal(NamedTuple):
@@ -113,41 +114,31 @@ def _match_answer(
     if not answers:
         return None
     below = [index for index, answer in enumerate(answers) if answer.head.section == task]
-    if (
-        task is not None
-        and len(below) == 1
-        and all(answer.head.section is not None for answer in answers)
-    ):
-        return _AnswerMatch(
-            tuple(below),
-            True,
-            f"the only {_answer_text(answers, below)} below the heading of task {task}",
-        )
+    all_have_task = all(answer.head.section is not None for answer in answers)
+    if task is not None and all_have_task and len(below) == 1:
+        how = f"the only {_answer_text(answers, below)} below the heading of task {task}"
+        return _AnswerMatch(tuple(below), True, how)
     written = [index for index, answer in enumerate(answers) if not answer.is_empty]
     numbers = [answer.head.number for answer in answers if answer.head.number is not None]
     if len(numbers) == len(answers) and max(numbers) <= wanted.total:
         return _answer_by_number(wanted, task, answers, written)
-    for indices in (list(range(len(answers))), written, _answers_after_list(answers, wanted.total)):
-        in_order = all(
-            answers[index].head.number in (None, place)
-            for place, index in enumerate(indices, start=1)
-        )
-        if len(indices) == wanted.total and in_order:
+    every = list(range(len(answers)))
+    for indices in (every, written, _answers_after_list(answers, wanted.total)):
+        if len(indices) == wanted.total and _are_in_order(answers, indices):
             index = indices[wanted.number - 1]
-            how = (
-                f"in order: heading {wanted.number} of {wanted.total} like "
-                f"{_answer_text(answers, [index])}"
-            )
+            title = _answer_text(answers, [index])
+            how = f"in order: heading {wanted.number} of {wanted.total} like {title}"
             return _AnswerMatch((index,), True, how)
-    indices = written or list(range(len(answers)))
-    count = (
-        f"{len(indices)} heading{'' if len(indices) == 1 else 's'} like "
-        f"{_answer_text(answers, indices)}"
-    )
-    return _AnswerMatch(
-        tuple(indices),
-        False,
-        f"{count} for {wanted.total} questions: it may answer another question",
+    indices = written or every
+    headings = f"{counted(len(indices), 'heading')} like {_answer_text(answers, indices)}"
+    how = f"{headings} for {wanted.total} questions: it may answer another question"
+    return _AnswerMatch(tuple(indices), False, how)
+
+
+def _are_in_order(answers: Sequence[Passage], indices: Sequence[int]) -> bool:
+    """Return whether each answer that has a number has that of its place."""
+    return all(
+        answers[index].head.number in (None, place) for place, index in enumerate(indices, start=1)
     )
 
 
@@ -162,16 +153,14 @@ def _answer_by_number(
         hits = [index for index in hits if index in written] or hits
     if not hits:
         return None
+    title = _answer_text(answers, hits)
     if len(hits) > 1:
-        return _AnswerMatch(
-            tuple(hits), False, f"{len(hits)} headings like {_answer_text(answers, hits)}"
-        )
+        return _AnswerMatch(tuple(hits), False, f"{len(hits)} headings like {title}")
     section = answers[hits[0]].head.section
-    is_other = len(wanted.pattern) == 1 and None not in (section, task) and section != task
-    where = f", but below the heading of task {section}" if is_other else ""
-    return _AnswerMatch(
-        tuple(hits), not is_other, f"by the number in {_answer_text(answers, hits)}{where}"
-    )
+    if len(wanted.pattern) == 1 and None not in (section, task) and section != task:
+        how = f"by the number in {title}, but below the heading of task {section}"
+        return _AnswerMatch(tuple(hits), False, how)
+    return _AnswerMatch(tuple(hits), True, f"by the number in {title}")
 
 
 def _answers_after_list(answers: Sequence[Passage], total: int) -> list[int]:
@@ -203,19 +192,16 @@ class _AnswerSearch:
     ) -> None:
         self._documents, self._read, self._wanted = documents, read, wanted
         self._copied = _COPIED | set(WORDS.findall(question.lower()))
-        self._task = next(
-            (label.task for label in wanted if isinstance(label, Label) and label.task is not None),
-            None,
-        )
-        plain = [
-            label
-            for label in wanted
-            if isinstance(label, Label) and not label.steps and label.task is None
-        ]
-        ordinals = [place for place in wanted if isinstance(place, _Ordinal)]
-        self._patterns = {place.pattern for place in ordinals} | {
-            label.words for label in plain if label.words
-        }
+        self._task: int | None = None  # the first that is named
+        self._patterns = set[Pattern]()
+        for place in wanted:
+            if isinstance(place, _Ordinal):
+                self._patterns.add(place.pattern)
+            elif place.task is not None:
+                if self._task is None:
+                    self._task = place.task
+            elif place.words and not place.steps:
+                self._patterns.add(place.words)
 
     def passages(self) -> Iterator[list[Passage]]:
         """Yield the passages for each place: the best one, then others that certainly answer the
@@ -223,14 +209,14 @@ class _AnswerSearch:
         """
         for wanted in self._wanted:
             if isinstance(wanted, _Ordinal):
-                found = self._in_order(wanted)
+                passages = self._in_order(wanted)
             else:
-                found = self._passages_below(wanted)
-            first = [it.text for it in found[:1]]
-            others = (
-                it for it in found[1:] if it.is_certain and not it.is_empty and it.text not in first
-            )
-            yield [*found[:1], *others]
+                passages = self._passages_below(wanted)
+            kept = passages[:1]
+            for passage in passages[1:]:
+                if passage.is_certain and not passage.is_empty and passage.text != kept[0].text:
+                    kept.append(passage)
+            yield kept
 
     def _headings(self, document: TextDocument) -> tuple[Heading, ...]:
         return self._documents.headings(document, self._patterns)
@@ -239,30 +225,30 @@ class _AnswerSearch:
         """Return the passages whose heading, or whose file, is labelled so; items of lists and
         mentions only first.
         """
-        found: list[tuple[tuple[bool, ...], Passage]] = []
+        ranked: list[tuple[tuple[bool, ...], Passage]] = []
         for document in self._read:
-            if matches(
-                wanted, read_label(stem(document.file.name))
-            ):  # the file is named for the place
-                spans = [Heading(0, len(document.lines), "", wanted)]
-            else:
-                spans = [head for head in self._headings(document) if is_about(wanted, head)][
-                    :_MAX_MATCHES
-                ]
-            for head in spans:
+            for head in self._headings_about(wanted, document):
                 passage = self._passage_of(document, head)
                 if passage is None:
                     continue
-                is_short = (
-                    len(passage.text.split(maxsplit=_MAX_HEADING_WORDS)) <= _MAX_HEADING_WORDS
-                )
+                words = passage.text.split(maxsplit=_MAX_HEADING_WORDS)
+                is_short = len(words) <= _MAX_HEADING_WORDS
                 rank = (passage.is_empty, is_short, head.is_item, head.is_mention)
-                found.append((rank, self._explained_passage(passage, document, head, wanted)))
-        found.sort(key=lambda it: it[0])
-        passages = [passage for _, passage in found]
+                ranked.append((rank, self._explained_passage(passage, document, head, wanted)))
+        ranked.sort(key=lambda ranked_passage: ranked_passage[0])
+        passages = [passage for _, passage in ranked]
         return passages[:1] + [
-            it for it in passages[1:] if not (it.head.is_item or it.head.is_mention)
+            passage
+            for passage in passages[1:]
+            if not (passage.head.is_item or passage.head.is_mention)
         ]
+
+    def _headings_about(self, wanted: Label, document: TextDocument) -> list[Heading]:
+        """Return the headings that are labelled so, or one for the whole file if it is named so."""
+        if matches(wanted, read_label(stem(document.file.name))):
+            return [Heading(0, len(document.lines), "", wanted)]
+        heads = [head for head in self._headings(document) if is_about(wanted, head)]
+        return heads[:_MAX_MATCHES]
 
     def _explained_passage(
         self, passage: Passage, document: TextDocument, head: Heading, wanted: Label
@@ -296,23 +282,23 @@ class _AnswerSearch:
         """Return the passages below headings that questions share, or in files of that name, if
         this is clear.
         """
-        found: list[Passage] = []
-        headings = [
-            [(document, head) for head in self._headings(document)] for document in self._read
-        ]
-        for group in (
-            *headings,
-            [(document, _heading_of_file(document, wanted.pattern)) for document in self._read],
-        ):
+        groups = list[list[tuple[TextDocument, Heading]]]()
+        for document in self._read:
+            groups.append([(document, head) for head in self._headings(document)])
+        groups.append(
+            [(document, _heading_of_file(document, wanted.pattern)) for document in self._read]
+        )
+        joined: list[Passage] = []
+        for group in groups:
             heads = [
                 (document, head) for document, head in group if _is_shared(wanted.pattern, head)
             ]
-            cut = (self._passage_of(document, head) for document, head in heads[:_MAX_MATCHES])
-            answers = [passage for passage in cut if passage is not None]
+            passages = [self._passage_of(document, head) for document, head in heads[:_MAX_MATCHES]]
+            answers = [passage for passage in passages if passage is not None]
             match = _match_answer(wanted, self._task, answers)
             if match is not None:
-                found.append(_joined_passage(match, [answers[index] for index in match.indices]))
-        return sorted(found, key=lambda passage: (passage.is_empty, not passage.is_certain))
+                joined.append(_joined_passage(match, [answers[index] for index in match.indices]))
+        return sorted(joined, key=lambda passage: (passage.is_empty, not passage.is_certain))
 
     def _passage_of(self, document: TextDocument, head: Heading) -> Passage | None:
         lines, start, end = document.lines, head.start, head.end

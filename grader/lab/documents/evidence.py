@@ -3,7 +3,7 @@ described, never graded.
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -82,61 +82,61 @@ def find_evidence(
     that were not read or have pictures without headings, and everything of a pre-lab.
     """
     wanted = [read_label(name) for name in names]
-    exact = [it for it in files if any(matches(label, it.label) for label in wanted)]
-    if certain := [it for it in exact if not _PRELAB.search(it.file.path)]:
+    labelled = [file for file in files if _has_label(file, wanted)]
+    certain = [file for file in labelled if not _PRELAB.search(file.file.path)]
+    if certain:
         return FoundEvidence(as_evidence(certain))
-    headings = _headings_about(documents, wanted) if documents is not None else []
-    inside = [
-        (_evidence_below(document, head), _is_certain(label, document, head))
-        for document, head, label in headings
+    below, pictures = list[EvidenceFile](), list[EvidenceFile]()
+    for document, head, label in (
+        _headings_about(documents, wanted) if documents is not None else ()
+    ):
+        evidence = _evidence_below(document, head)
+        below.append(evidence)
+        if _is_certain(label, document, head) and not _PRELAB.search(evidence.path):
+            pictures.append(evidence)
+    if pictures:
+        return FoundEvidence(tuple(pictures))
+    steps = [label.steps for label in wanted if label.steps]
+    perhaps = labelled + [
+        file
+        for file in files
+        if file.label.task is None and any(map(file.label.steps.issuperset, steps))
     ]
-    if found := [
-        file for file, is_certain in inside if is_certain and not _PRELAB.search(file.path)
-    ]:
-        return FoundEvidence(tuple(found))
-    without_task = [
-        it for it in files if any(label.steps and label.steps <= it.label.steps for label in wanted)
-    ]
-    perhaps = [*exact, *(it for it in without_task if it.label.task is None)]
-    return FoundEvidence(
-        (),
-        (
-            *as_evidence(perhaps),
-            *(it for it, _ in inside),
-            *_unlisted_documents(documents, perhaps),
-        ),
-    )
+    unlisted = _unlisted_documents(documents, perhaps)
+    return FoundEvidence((), (*as_evidence(perhaps), *below, *unlisted))
+
+
+def _has_label(file: LabelledFile, wanted: Sequence[Label]) -> bool:
+    return any(matches(label, file.label) for label in wanted)
 
 
 def _unlisted_documents(
     documents: DocumentCollection | None, listed: Sequence[LabelledFile]
 ) -> Iterator[EvidenceFile]:
     paths = {labelled.file.path for labelled in listed}
-    return (
-        EvidenceFile(it.path, it.size) for it in _whole_documents(documents) if it.path not in paths
-    )
+    for file in _whole_documents(documents):
+        if file.path not in paths:
+            yield EvidenceFile(file.path, file.size)
 
 
 def headed(
     documents: DocumentCollection, names: Sequence[str]
 ) -> list[tuple[TextDocument, Heading]]:
     """Return the headings of documents with the first of these labels that occurs."""
-    return [
-        (document, head)
-        for document, head, _ in _headings_about(documents, [read_label(name) for name in names])
-    ]
+    headings = _headings_about(documents, map(read_label, names))
+    return [(document, head) for document, head, _ in headings]
 
 
 def _headings_about(
-    documents: DocumentCollection, wanted: Sequence[Label]
+    documents: DocumentCollection, wanted: Iterable[Label]
 ) -> list[tuple[TextDocument, Heading, Label]]:
     read, _ = documents.named(DOCUMENTS)
     heads = [(document, head) for document in read for head in _step_headings(documents, document)]
-    found = (
-        [(document, head, label) for document, head in heads if is_about(label, head)]
-        for label in wanted
-    )
-    return next(filter(None, found), [])
+    for label in wanted:
+        fitting = [(document, head, label) for document, head in heads if is_about(label, head)]
+        if fitting:
+            return fitting
+    return []
 
 
 def _whole_documents(documents: DocumentCollection | None) -> list[File]:
@@ -148,9 +148,13 @@ def _whole_documents(documents: DocumentCollection | None) -> list[File]:
     if documents is None:
         return []
     read, unread = documents.named(DOCUMENTS)
-    found = [it.file for it in read if it.has_picture() and not _names_steps(documents, it)]
-    found += [documents.tree.files[it.path] for it in unread if it.path]
-    return [file for file in found if not _PRELAB.search(file.path)]
+    files = [
+        document.file
+        for document in read
+        if document.has_picture() and not _names_steps(documents, document)
+    ]
+    files += [documents.tree.files[document.path] for document in unread if document.path]
+    return [file for file in files if not _PRELAB.search(file.path)]
 
 
 def _names_steps(documents: DocumentCollection, document: TextDocument) -> bool:

@@ -144,14 +144,11 @@ def _in_order(wanted: tuple[str, ...], found: tuple[str, ...]) -> bool:
     """Return whether the wanted words occur next to each other, each at least as a prefix: cam in
     camera.
     """
-    span = len(wanted)
-    return any(
-        all(
-            word.startswith(part)
-            for part, word in zip(wanted, found[start : start + span], strict=True)
-        )
-        for start in range(len(found) - span + 1)
-    )
+    for start in range(len(found) - len(wanted) + 1):
+        words = found[start : start + len(wanted)]
+        if all(map(str.startswith, words, wanted)):
+            return True
+    return False
 
 
 class Heading(NamedTuple):

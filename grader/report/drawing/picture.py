@@ -97,27 +97,26 @@ def scene_of(robot: Configuration, frame: str, wheels: Collection[str] = ()) -> 
     """Return the content of a picture of a robot, in the frame of a link; `wheels` are links
     that are meant to roll.
     """
-    omitted: dict[
-        str, dict[str, None]
-    ] = {}  # the links that are not shown, or not wholly, by reason
+    # The links that are not shown, or not wholly, by reason.
+    omitted: dict[str, dict[str, None]] = {}
     poses: dict[str, Transform] = {}
     bodies: dict[Body, None] = {}  # each once
     for link in robot.robot.links:
         pose = _pose(robot, link.name, frame)
         if isinstance(pose, Transform):
             poses[link.name] = pose
-        for found in _bodies(link, pose):
-            if isinstance(found, Body):
-                bodies[found] = None
+        for body in _bodies(link, pose):
+            if isinstance(body, Body):
+                bodies[body] = None
             else:
-                omitted.setdefault(found, {})[link.name] = None
-    missing = [
-        f"Not shown: {enumerated([*map(quoted, names)], _MAX_NAMED)}: {why}"
-        for why, names in omitted.items()
-    ]
+                omitted.setdefault(body, {})[link.name] = None
+    missing = []
+    for why, names in omitted.items():
+        shown = enumerated([quoted(name) for name in names], _MAX_NAMED)
+        missing.append(f"Not shown: {shown}: {why}")
     if len(bodies) > _MAX_BODIES:
         missing.append(f"Not shown: {counted(len(bodies) - _MAX_BODIES, 'more shape')}")
-    scene = Scene(robot, frame, poses, (*bodies,)[:_MAX_BODIES], (), (*missing,))
+    scene = Scene(robot, frame, poses, tuple(bodies)[:_MAX_BODIES], (), tuple(missing))
     turning = (_wheel(scene, link) for link in wheels)
     return replace(scene, wheels=tuple(wheel for wheel in turning if wheel is not None))
 
@@ -153,14 +152,17 @@ def _body(link: str, visual: Visual, pose: Transform) -> Body | str:
             sizes, drawn = (radius, length, 0.0), Cylinder(abs(radius), abs(length))
         case Sphere(radius=radius):
             sizes, drawn = (radius, 0.0, 0.0), Sphere(abs(radius))
-    own = placed_by(Transform(), visual.origin)
-    if is_empty(visual.geometry) or not _is_drawable(sizes) or not _is_drawable(own.translation):
+    place = placed_by(Transform(), visual.origin)
+    if is_empty(visual.geometry) or not _is_drawable(sizes) or not _is_drawable(place.translation):
         return _UNKNOWN
     rgba = visual.material.rgba if visual.material is not None else _WITHOUT_MATERIAL
-    red, green, blue, alpha = (
-        min(1.0, max(0.0, value)) if isfinite(value) else 0.0 for value in rgba
-    )
-    return Body(link, drawn, pose @ own, (red, green, blue, alpha))
+    red, green, blue, alpha = map(_channel, rgba)
+    return Body(link, drawn, pose @ place, (red, green, blue, alpha))
+
+
+def _channel(value: float) -> float:
+    """Return a channel of a colour that can be drawn."""
+    return min(1.0, max(0.0, value)) if isfinite(value) else 0.0
 
 
 def _is_drawable(values: Vector) -> bool:
@@ -237,23 +239,21 @@ def picture_of(report: Report) -> Picture | None:
         return None
     wheels = [*_wheels(report.rubric, robot)]
     scene = scene_of(robot, frame, wheels)
+    reference = None
     if solution is not None and reference_frame:
         reference = scene_of(solution, reference_frame, wheels)
-    else:
-        reference = None
     lost = [result for result in report.results if _is_marked(result)]
-    about = _by_link(lost, robot, solution)
-    outlines, frames = _expected(scene, reference, about) if reference is not None else ((), ())
-    callouts = tuple(
-        _Callout(
-            number,
-            link,
-            scene.centre(link) or (reference.centre(link) if reference is not None else None),
-            tuple(results),
-        )
-        for number, (link, results) in enumerate(about.items(), 1)
-    )
-    return Picture(scene, outlines, frames, callouts)
+    by_link = _by_link(lost, robot, solution)
+    callouts = []
+    for number, (link, results) in enumerate(by_link.items(), 1):
+        point = scene.centre(link)
+        if point is None and reference is not None:
+            point = reference.centre(link)
+        callouts.append(_Callout(number, link, point, tuple(results)))
+    if reference is None:
+        return Picture(scene, (), (), tuple(callouts))
+    outlines, frames = _expected(scene, reference, by_link)
+    return Picture(scene, outlines, frames, tuple(callouts))
 
 
 def _reference(rubric: Rubric) -> Configuration | None:
@@ -273,13 +273,13 @@ def _frames(
     rubric: Rubric, robot: Configuration, solution: Configuration | None
 ) -> tuple[str | None, str | None]:
     """Return the links in whose frames both robots are drawn: the rubric's base, else the roots."""
-    trees = [one.main_tree if one is not None else () for one in (robot, solution)]
-    own, other = (
-        _selected(one, rubric.base) if one is not None else None for one in (robot, solution)
-    )
-    if own in trees[0] and (other is None or other in trees[1]):
-        return own, other
-    return next(iter(trees[0]), None), next(iter(trees[1]), None)
+    tree, base = robot.main_tree, _selected(robot, rubric.base)
+    if solution is None:
+        return (base if base in tree else next(iter(tree), None)), None
+    other_tree, other_base = solution.main_tree, _selected(solution, rubric.base)
+    if base in tree and other_base in other_tree:
+        return base, other_base
+    return next(iter(tree), None), next(iter(other_tree), None)
 
 
 def _wheels(rubric: Rubric, robot: Configuration) -> Iterator[str]:
@@ -328,15 +328,16 @@ def _links(
 
 
 def _expected(
-    scene: Scene, reference: Scene, about: Mapping[str, Sequence[Result]]
+    scene: Scene, reference: Scene, by_link: Mapping[str, Sequence[Result]]
 ) -> tuple[tuple[Body, ...], tuple[Transform, ...]]:
     """Return the bodies and the frames of the reference that the failed criteria are about."""
-    kinds = {
-        link: {it.criterion.check.about.picture for it in results}
-        for link, results in about.items()
-    }
-    shown = {body.link for body in scene.bodies}
-    shapes = {link for link, found in kinds.items() if "outline" in found or link not in shown}
-    frames = {link for link, found in kinds.items() if "frame" in found or link not in scene.poses}
+    links_with_shape = {body.link for body in scene.bodies}
+    shapes, frames = set[str](), set[str]()
+    for link, results in by_link.items():
+        kinds = {result.criterion.check.about.picture for result in results}
+        if "outline" in kinds or link not in links_with_shape:
+            shapes.add(link)
+        if "frame" in kinds or link not in scene.poses:
+            frames.add(link)
     outlines = tuple(body for body in reference.bodies if body.link in shapes)
     return outlines, tuple(pose for link, pose in reference.poses.items() if link in frames)

@@ -141,13 +141,15 @@ def panels_of(picture: Picture, top: float = 0.0) -> tuple[Panel, ...]:
 
 def _bounds(picture: Picture) -> tuple[_Points, _Points]:
     """Return the least and the largest coordinates (m) of what a picture shows, in the frame."""
-    shown = [_points_of(body) for body in (*picture.scene.bodies, *picture.outlines)]
+    points = [_points_of(body) for body in (*picture.scene.bodies, *picture.outlines)]
     origins = [pose.translation for pose in (*frames_of(picture), *picture.frames)]
-    points = np.concatenate([*shown, origins or [(0.0, 0.0, 0.0)]])
-    low, high = points.min(axis=0), points.max(axis=0)
-    far, ground = _FAR * (high - low).max(), picture.scene.ground
-    if ground is not None and low[2] - far <= ground.translation[2] <= high[2] + far:
-        low[2], high[2] = min(low[2], ground.translation[2]), max(high[2], ground.translation[2])
+    points.append(origins or [(0.0, 0.0, 0.0)])
+    every = np.concatenate(points)
+    low, high = every.min(axis=0), every.max(axis=0)
+    if picture.scene.ground is not None:
+        far, height = _FAR * (high - low).max(), picture.scene.ground.translation[2]
+        if low[2] - far <= height <= high[2] + far:
+            low[2], high[2] = min(low[2], height), max(high[2], height)
     return low, high
 
 

@@ -41,26 +41,28 @@ def render_html(report: Report) -> str:
     them.
     """
     picture = picture_of(report) if not report.is_bare else None
-    if picture is not None:
-        callouts = [callout for callout in picture.callouts if callout.point is not None]
-    else:
-        callouts = []
-    called = {
-        result.criterion.id: callout.number for callout in callouts for result in callout.results
+    numbers = {}  # of the callouts in the picture, by criterion
+    for callout in picture.callouts if picture is not None else ():
+        if callout.point is not None:
+            for result in callout.results:
+                numbers[result.criterion.id] = callout.number
+    sections = list(report_sections(report).sections)
+    entries = [entry for section in sections for entry in section.entries]
+    cards = {}
+    for entry in entries:
+        for result in entry.results:
+            cards[result.criterion.id] = entry.id
+    head = {
+        role: [line.text for line in lines]
+        for role, lines in alike(content.head(report), lambda line: line.role)
     }
-    sections = [*report_sections(report).sections]
-    by_part = groupby(groups(report) if not report.is_bare else (), key=lambda group: group.part)
+    what = report.student or content.graded_line(report)
     values = {
         "version": report.version,
-        "title": printable(
-            f"{report.student or content.graded_line(report)}: {content.score_text(report)}"
-        ),
+        "title": printable(f"{what}: {content.score_text(report)}"),
         "report": report,
         "content": content,
-        "head": {
-            role: [line.text for line in some]
-            for role, some in alike(content.head(report), lambda it: it.role)
-        },
+        "head": head,
         "maximum": format_points(report.max_score) if report.counting is not None else "",
         "symbols": SYMBOLS,
         "status_words": STATUS_WORDS,
@@ -70,16 +72,11 @@ def render_html(report: Report) -> str:
         "diff_lines": diff_lines,
         "source_lines": source_lines,
         "kind_of": lambda block: type(block).__name__,
-        "called": called,
+        "called": numbers,
         "sections": sections,
-        "cards": {
-            one.criterion.id: entry.id
-            for part in sections
-            for entry in part.entries
-            for one in entry.results
-        },
-        "parts": [_part_card(report.rubric.part(part).title, [*some]) for part, some in by_part],
-        "pictures": _pictures(report, [entry for part in sections for entry in part.entries]),
+        "cards": cards,
+        "parts": _part_cards(report) if not report.is_bare else [],
+        "pictures": _pictures(report, entries),
         "no_picture": NO_PICTURE,
     }
     return _render("student.html", values, picture, "student.js", "img-src data:")
@@ -94,16 +91,25 @@ def _pictures(report: Report, entries: Sequence[Entry]) -> Mapping[str, list[tup
     for entry in entries:
         if not is_manual(entry.result) or not may_have_pictures(entry.result):
             continue
-        for one in pictures_of(entry.result, report.submission):
-            if isinstance(one, EmbeddedPicture) and one.kind is not PDF and len(one.data) <= room:
-                room -= len(one.data)
-                address = f"data:{one.kind.media_type};base64,{b64encode(one.data).decode()}"
-                shown.setdefault(entry.id, []).append((one.where, address))
+        for picture in pictures_of(entry.result, report.submission):
+            if not isinstance(picture, EmbeddedPicture) or picture.kind is PDF:
+                continue
+            if len(picture.data) <= room:
+                room -= len(picture.data)
+                data = b64encode(picture.data).decode()
+                address = f"data:{picture.kind.media_type};base64,{data}"
+                shown.setdefault(entry.id, []).append((picture.where, address))
     return shown
 
 
-def _part_card(title: str, some: list[CriteriaGroup]) -> tuple[str, str, list[CriteriaGroup]]:
-    return title, earned_text(*(result for group in some for result in group.results)), some
+def _part_cards(report: Report) -> list[tuple[str, str, list[CriteriaGroup]]]:
+    """Return each part with its title, its points and its groups."""
+    cards = []
+    for part, part_groups in groupby(groups(report), key=lambda group: group.part):
+        members = list(part_groups)
+        results = [result for group in members for result in group.results]
+        cards.append((report.rubric.part(part).title, earned_text(*results), members))
+    return cards
 
 
 def inspection_html(inspection: Inspection) -> str:

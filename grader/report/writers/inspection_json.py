@@ -23,14 +23,16 @@ def _poses(inspection: Inspection) -> dict[str, list[list[float]] | None]:
     """Return the poses of links as rows of numbers, rounded to 1e-12, because machines differ
     beyond that.
     """
-    poses = inspection.poses()
-    return {
-        name: _matrix_rows(pose) if isinstance(pose, Transform) else None for name, pose in poses
-    }
+    rows: dict[str, list[list[float]] | None] = {}
+    for link, pose in inspection.poses():
+        rows[link] = None
+        if isinstance(pose, Transform):
+            rows[link] = [list(map(_rounded, row)) for row in pose.matrix]
+    return rows
 
 
-def _matrix_rows(pose: Transform) -> list[list[float]]:
-    return [[round(value, 12) + 0.0 for value in row] for row in pose.matrix]
+def _rounded(value: float) -> float:
+    return round(value, 12) + 0.0  # -0.0 is 0.0
 
 
 def _vector(items: Schema, length: int) -> Schema:

@@ -36,22 +36,18 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
 
 def _problem_rows(console: Console, inspection: Inspection) -> Iterator[Text]:
     """Yield problems with their code and location, errors with their source line."""
-    own = inspection.reading.source.path if inspection.reading is not None else ""
+    urdf = inspection.reading.source.path if inspection.reading is not None else ""
     for problem in inspection.problems[:_MAX_PROBLEMS]:
         where = problem.location
-        head = Text.assemble(
-            "  ", (f"{problem.code} {problem.severity:<7} ", LOOKS[problem.severity])
-        )
-        named = "" if where.path == own else f"{printable(where.path)}:"
-        message = Text.assemble(
-            (f"{named or 'line '}{where.line}{calls_text(where)}: ", "dim"),
-            printable(problem.message),
-        )
+        name = f"{problem.code} {problem.severity:<7} "
+        head = Text.assemble("  ", (name, LOOKS[problem.severity]))
+        file = "line " if where.path == urdf else f"{printable(where.path)}:"
+        place = f"{file}{where.line}{calls_text(where)}: "
+        message = Text.assemble((place, "dim"), printable(problem.message))
         yield block(console, message, len(head), head)
         source = inspection.source(where.path) if problem.severity == "error" else None
         if source is not None:
             yield excerpt_block(console, source, where, min(len(head), console.width // 5))
-    if len(inspection.problems) > _MAX_PROBLEMS:
-        yield block(
-            console, Text(f"... and {len(inspection.problems) - _MAX_PROBLEMS} more"), INDENT
-        )
+    rest = len(inspection.problems) - _MAX_PROBLEMS
+    if rest > 0:
+        yield block(console, Text(f"... and {rest} more"), INDENT)

@@ -83,23 +83,19 @@ def _facts(report: Report) -> dict[str, str]:
 
 def _case(suite: Any, entry: Entry, report: Report, base: Base) -> None:
     result, criterion, where = entry.result, entry.result.criterion, entry.location
-    kind, lines = _kind(result), plain_lines(entry, report.submission.source)
-    name, group = (
-        printable(f"{criterion.title} ({criterion.id})"),
-        f"{report.rubric.id}.{criterion.part}",
-    )
+    name = printable(f"{criterion.title} ({criterion.id})")
+    group = f"{report.rubric.id}.{criterion.part}"
     case = etree.SubElement(suite, "testcase", name=name, classname=group)
     if where is not None and where.path != "-" and not (base.archive or archive_around(where.path)):
         case.set("file", printable(base.folder + where.path))
         case.set("line", str(where.line))
     _properties(case, {"points": earned_text(result)})
-    why = {}
-    if kind:
-        why = {
-            "type": "manual mark" if result.manual_mark else result.outcome.status,
-            "message": lines[0],
-        }
-    _put(case, kind or "system-out", lines, why)
+    kind, lines = _kind(result), plain_lines(entry, report.submission.source)
+    if not kind:
+        _put(case, "system-out", lines)
+        return
+    cause = "manual mark" if result.manual_mark else result.outcome.status
+    _put(case, kind, lines, {"type": cause, "message": lines[0]})
 
 
 def _put(parent: Any, tag: str, lines: list[str], attributes: dict[str, str] | None = None) -> None:

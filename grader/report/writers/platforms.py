@@ -57,10 +57,12 @@ def _gradescope_test(entry: Entry, report: Report) -> dict[str, Any]:
         kinds.append("extra credit")
     if result.is_open:
         kinds.append("manual grading")
-    most = f" ({', '.join((f'up to {counted_points(criterion.points)}', *kinds))})" if kinds else ""
+    name = printable(criterion.title)
+    if kinds:
+        name += f" ({', '.join((f'up to {counted_points(criterion.points)}', *kinds))})"
     return {
         **({} if result.is_open else _gradescope_points(result)),
-        "name": printable(criterion.title) + most,
+        "name": name,
         "output": criterion_markdown(entry, report),
         "output_format": "md",
         "tags": [criterion.id, criterion.part, "adjusted" if result.is_adjusted else status],
@@ -99,17 +101,18 @@ def identity_from(environment: Mapping[str, str]) -> dict[str, str]:
             "runner sets them"
         )
     given = {name: printable(environment[name]) for name in _REQUIRED}
-    time = _TAG.fullmatch(environment["SUBMISSION_TAG"])
-    if time is None:
+    tag = _TAG.fullmatch(environment["SUBMISSION_TAG"])
+    if tag is None:
         raise InputError(
             "SUBMISSION_TAG must look like submit/2026-09-01T10-00-00Z-ab12cd3, not "
             f"{given['SUBMISSION_TAG']!r}"
         )
+    day, hour, minute, second = tag.groups()
     kind = environment.get("ASSIGNMENT_TYPE") or _KINDS[0]
     if kind not in _KINDS:
-        raise InputError(
-            f"ASSIGNMENT_TYPE must be one of {', '.join(_KINDS)}, not {printable(kind)!r}"
-        )
+        kinds = ", ".join(_KINDS)
+        raise InputError(f"ASSIGNMENT_TYPE must be one of {kinds}, not {printable(kind)!r}")
+    review = printable(environment.get("REVIEW_URL") or environment["COMMIT_URL"])
     return {
         "classroom": given["CLASSROOM"],
         "assignment": given["ASSIGNMENT"],
@@ -118,9 +121,8 @@ def identity_from(environment: Mapping[str, str]) -> dict[str, str]:
         "submission": given["SUBMISSION_TAG"],
         "commit": given["COMMIT_URL"],
         "release": given["RELEASE_URL"],
-        "review": printable(environment.get("REVIEW_URL") or environment["COMMIT_URL"]),
-        # the runner replaces it by the commit's time
-        "datetime": f"{time[1]}T{time[2]}:{time[3]}:{time[4]}Z",
+        "review": review,
+        "datetime": f"{day}T{hour}:{minute}:{second}Z",  # replaced by the commit's time
     }
 
 

@@ -15,6 +15,7 @@ from grader.base.text import (
     without_commands,
 )
 from grader.files.limits import ROBOT_ENDINGS
+from grader.lab.authoring.mutants import Mutant
 from grader.lab.authoring.rubric_test import RubricTest
 from grader.lab.authoring.samples import Loss
 from grader.lab.rubric.criterion import worth
@@ -48,15 +49,12 @@ def render_rubric_test(test: RubricTest, width: int) -> str:
     """Return the result in lines of at most this width: what was graded, what is wrong, the score
     last.
     """
-    results = test.reference.results
-    lost = [
-        f"  {it.criterion.id}: {it.outcome.message}"
-        for it in results
-        if it.criterion.id in test.lost
-    ]
     lines = [f"{test.reference.rubric.id}: {test.reference.rubric.title}", "", *_count_lines(test)]
-    if lost:
-        lines += ["", "The reference does not get full marks:", *lost]
+    if test.lost:
+        lines += ["", "The reference does not get full marks:"]
+        for result in test.reference.results:
+            if result.criterion.id in test.lost:
+                lines.append(f"  {result.criterion.id}: {result.outcome.message}")
     differing = test.samples.different if test.samples else ()
     lines += _listed("These equivalents of the reference lose points:", test.losses, width)
     lines += _listed("These samples differ from their expected.toml:", differing, width)
@@ -100,28 +98,31 @@ def _fold(line: str, width: int) -> list[str]:
 def _count_lines(test: RubricTest) -> Iterator[str]:
     report, samples = test.reference, test.samples
     decided = worth(
-        it.criterion for it in report.results if not it.is_open or it.criterion.id in test.lost
+        result.criterion
+        for result in report.results
+        if not result.is_open or result.criterion.id in test.lost
     )
     yield f"Reference    {format_points(report.score)} of {decided.text}"
     if test.equivalents:
-        yield (
-            f"Equivalents  {len(test.equivalents)} graded, "
-            f"{_count_or_none(len(test.losses), 'loses', 'lose')} points"
-        )
+        lose = _count_or_none(len(test.losses), "loses", "lose")
+        yield f"Equivalents  {len(test.equivalents)} graded, {lose} points"
     else:
         yield "Equivalents  none graded: ROS 2 does not load the reference without problems"
     if samples is not None:
-        skipped = f", {samples.skipped} of other rubrics skipped" if samples.skipped else ""
         differ = _count_or_none(len(samples.different), "differs", "differ")
-        yield f"Samples      {samples.tried} graded, {differ} from expected.toml{skipped}"
-    sample = f" of {test.total}" if test.tried < test.total else ""
-    same = f", {test.same} {'is' if test.same == 1 else 'are'} the same robot" if test.same else ""
-    ignored = f", {len(test.ignored)} ignored by the rubric" if test.ignored else ""
-    survive = _count_or_none(len(test.survivors), "survives", "survive")
-    yield (
-        f"Mutants      {test.tried}{sample} graded, {test.caught} lose points{same}{ignored}, "
-        f"{survive}"
-    )
+        line = f"Samples      {samples.tried} graded, {differ} from expected.toml"
+        if samples.skipped:
+            line += f", {samples.skipped} of other rubrics skipped"
+        yield line
+    line = f"Mutants      {test.tried}"
+    if test.tried < test.total:
+        line += f" of {test.total}"
+    line += f" graded, {test.caught} lose points"
+    if test.same:
+        line += f", {test.same} {'is' if test.same == 1 else 'are'} the same robot"
+    if test.ignored:
+        line += f", {len(test.ignored)} ignored by the rubric"
+    yield f"{line}, {_count_or_none(len(test.survivors), 'survives', 'survive')}"
 
 
 def _count_or_none(count: int, one: str, several: str) -> str:
@@ -135,26 +136,28 @@ def _by_element(test: RubricTest) -> list[Loss]:
     groups: dict[str, list[str]] = {}
     diffs: dict[str, str] = {}
     for mutant, diff, _ in test.survivors:
-        label = _NUMBER_OF_ID.sub("", mutant.id.partition(": ")[2].partition(" -> ")[0])
-        of_attribute = " " in label and mutant.family not in _OF_ELEMENT
-        element = label.rpartition(" ")[0] if of_attribute else label
-        is_of_robot = mutant.path.endswith(ROBOT_ENDINGS)
-        if is_of_robot:
-            place = f"{element} in {mutant.path}"
-        else:
-            place = f"{mutant.path}, line {mutant.line}"
+        place = _place(mutant)
         groups.setdefault(place, []).append(mutant.id)
         diffs.setdefault(place, diff)
-    return [
-        Loss(
-            "\n    ".join([f"{place}: {len(ids)} mutants", *first_lines(ids, _MAX_LISTED)]),
-            {},
-            diffs[place],
-        )
-        if len(ids) > 1
-        else Loss(ids[0], {}, diffs[place])
-        for place, ids in groups.items()
-    ]
+    losses = []
+    for place, ids in groups.items():
+        name = ids[0]
+        if len(ids) > 1:
+            listed = first_lines(ids, _MAX_LISTED)
+            name = "\n    ".join([f"{place}: {len(ids)} mutants", *listed])
+        losses.append(Loss(name, {}, diffs[place]))
+    return losses
+
+
+def _place(mutant: Mutant) -> str:
+    """Return the element, or the line of another file, that a mutant changes."""
+    if not mutant.path.endswith(ROBOT_ENDINGS):
+        return f"{mutant.path}, line {mutant.line}"
+    _, _, change = mutant.id.partition(": ")
+    element = _NUMBER_OF_ID.sub("", change.partition(" -> ")[0])
+    if " " in element and mutant.family not in _OF_ELEMENT:
+        element = element.rpartition(" ")[0]  # without its attribute
+    return f"{element} in {mutant.path}"
 
 
 def _listed(title: str, losses: Sequence[Loss], width: int) -> Iterator[str]:
@@ -171,12 +174,16 @@ def _listed(title: str, losses: Sequence[Loss], width: int) -> Iterator[str]:
 
 def _cut(lines: Sequence[str], room: int) -> list[str]:
     """Return the lines of a diff; those that are too long begin shortly before the change."""
-    changed = [it for it in lines if it[:1] in ("-", "+") and it[:4] not in ("--- ", "+++ ")]
-    shared = commonprefix([it[1:] for it in changed]) if len(changed) > 1 else ""  # noqa: RUF071  of texts, not of paths
+    changed = [
+        line for line in lines if line[:1] in ("-", "+") and line[:4] not in ("--- ", "+++ ")
+    ]
+    shared = commonprefix([line[1:] for line in changed]) if len(changed) > 1 else ""  # noqa: RUF071  of texts, not of paths
     start = max(len(shared) - room // 3, 0)
     return [
-        f"{it[0]}...{it[1 + start :]}" if it in changed and start and len(it) > room else it
-        for it in lines
+        f"{line[0]}...{line[1 + start :]}"
+        if line in changed and start and len(line) > room
+        else line
+        for line in lines
     ]
 
 

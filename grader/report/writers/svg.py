@@ -85,16 +85,22 @@ def drawing_element(
     """
     panels = panels_of(picture, _height(above) if title else 0.0)
     parts = _headline(title, above) if title else []
-    parts += [f"<g>{''.join(_view(panel, picture))}</g>" for panel in panels]
+    for panel in panels:
+        parts.append(f"<g>{''.join(_view(panel, picture))}</g>")
     parts += _key(picture, panels[0].top)
-    height, words = panels[-1].top + panels[-1].height, callout_lines(picture)
-    lines = [line for part in words if legend for line in _wrapped(part, _WIDTH)]
-    parts += [
-        _text("text", (_LEFT, height + _LINE * number), line)
-        for number, line in enumerate(lines, 1)
+    height, callouts = panels[-1].top + panels[-1].height, callout_lines(picture)
+    lines = _wrapped_lines(callouts) if legend else []
+    if lines:
+        parts += _lines_of_text("text", lines, height)
+        height += _LINE * len(lines) + 6.0
+    return _svg(title or "Three views of the robot", " ".join(callouts), height, parts)
+
+
+def _lines_of_text(look: str, lines: Sequence[str], top: float) -> list[str]:
+    """Return lines below a height."""
+    return [
+        _text(look, (_LEFT, top + _LINE * number), line) for number, line in enumerate(lines, 1)
     ]
-    below = _LINE * len(lines) + 6.0 if lines else 0.0
-    return _svg(title or "Three views of the robot", " ".join(words), height + below, parts)
 
 
 def _svg(title: str, words: str, height: float, parts: Iterable[str]) -> str:
@@ -109,21 +115,27 @@ def _svg(title: str, words: str, height: float, parts: Iterable[str]) -> str:
 
 def callout_lines(picture: Picture) -> list[str]:
     """Return what each callout of a picture is about, and what is not shown."""
-    called = [
-        f"{one.number}: {one.link or 'the robot'}: {points_of(one.results)} lost"
-        f"{'' if one.point is not None else ' (not in the picture)'}, {enumerated(one.names)}."
-        for one in picture.callouts
-    ]
-    words = [*called, *picture.scene.missing]
+    lines = []
+    for callout in picture.callouts:
+        place = "" if callout.point is not None else " (not in the picture)"
+        what = f"{callout.number}: {callout.link or 'the robot'}"
+        cost = f"{points_of(callout.results)} lost"
+        lines.append(f"{what}: {cost}{place}, {enumerated(callout.names)}.")
+    lines += picture.scene.missing
     if not picture.scene.bodies:
-        words.append(_NO_SHAPES)
-    return [*map(printable, words)]
+        lines.append(_NO_SHAPES)
+    return [printable(line) for line in lines]
 
 
 def _wrapped(words: str, width: float) -> list[str]:
     """Return a text in lines of a width in pixels; of a long text the first."""
     text, most = printable(words[:_MAX_TEXT]), int(width / _LETTER_WIDTH)
     return wrap(text, most, max_lines=_MAX_LINES, placeholder=" ...", break_on_hyphens=False)
+
+
+def _wrapped_lines(texts: Iterable[str]) -> list[str]:
+    """Return texts in lines of the width of the drawing."""
+    return [line for text in texts for line in _wrapped(text, _WIDTH)]
 
 
 def render_svg(report: Report) -> str:
@@ -146,36 +158,29 @@ def inspection_svg(inspection: Inspection) -> str:
     """
     robot = inspection.robot
     picture = plain_picture(robot, inspection.relative_to)
-    name = robot.robot.name if robot is not None else inspection.path
-    words = f"{inspection.path}: {effect(inspection)}"
-    if robot is not None and robot.positions:
-        words += (
-            f"; {', '.join(f'{joint} = {position}' for joint, position in robot.positions.items())}"
-        )
-    return _file(picture, name or inspection.path, (words,), NO_PICTURE)
+    title, words = inspection.path, f"{inspection.path}: {effect(inspection)}"
+    if robot is not None:
+        title = robot.robot.name or title
+        if robot.positions:
+            positions = [f"{joint} = {position}" for joint, position in robot.positions.items()]
+            words += f"; {', '.join(positions)}"
+    return _file(picture, title, (words,), NO_PICTURE)
 
 
 def _file(picture: Picture | None, title: str, words: Iterable[str], reason: str) -> str:
-    above = [line for part in words if part for line in _wrapped(part, _WIDTH)]
+    above = _wrapped_lines(filter(None, words))
     if picture is not None:
         drawn = drawing_element(picture, title, above=above)
     else:
         above += ["", *_wrapped(reason, _WIDTH)]
         drawn = _svg(title, reason, _height(above), _headline(title, above))
-    return (
-        drawn.replace(
-            "<title>", f"<style>svg{{max-width:100%;height:auto}}{STYLE}</style><title>", 1
-        )
-        + "\n"
-    )
+    style = f"<style>svg{{max-width:100%;height:auto}}{STYLE}</style>"
+    return drawn.replace("<title>", f"{style}<title>", 1) + "\n"
 
 
 def _headline(title: str, above: Sequence[str]) -> list[str]:
     shown = [_text("title", (_LEFT, 26.0), line) for line in _wrapped(title, _WIDTH / 1.5)[:1]]
-    return shown + [
-        _text("faint", (_LEFT, 2.0 * _LEFT + _LINE * number), line)
-        for number, line in enumerate(above, 1)
-    ]
+    return shown + _lines_of_text("faint", above, 2.0 * _LEFT)
 
 
 def _height(above: Sequence[str]) -> float:
@@ -187,24 +192,33 @@ def _view(panel: Panel, picture: Picture) -> Iterator[str]:
     places = FreePlaces(panel)
     yield _text("faint", (panel.left + 14.0, panel.top + 14.0), panel.title)
     yield from _ground(panel, picture, places)
-    outlines = [
-        (body, _outline(panel, body)) for body in from_back_to_front(picture.scene.bodies, panel)
-    ]
-    yield from (_shape(body, outline) for body, outline in outlines)
+    outlines = []
+    for body in from_back_to_front(picture.scene.bodies, panel):
+        outline = _outline(panel, body)
+        outlines.append(_polygon(outline))
+        yield _shape(body, outline)
     if len(outlines) > 1:  # what a shape hides shows through
-        yield _path("hidden", "".join(_polygon(outline) for _, outline in outlines))
-    lines: dict[tuple[str, str], None] = {
-        ("reference", _polygon(_outline(panel, body))): None for body in picture.outlines
-    }
-    frames = [("", _AXIS, pose) for pose in frames_of(picture)]
-    frames += [(" dashed", _LONG_AXIS, pose) for pose in picture.frames]
-    lines |= {axis: None for frame in frames for axis in _axes(panel, *frame)}
-    lines |= {
-        ("arrow", data): None for wheel in picture.scene.wheels for data in _travel(panel, wheel)
-    }
+        yield _path("hidden", "".join(outlines))
+    lines = dict.fromkeys(_lines(panel, picture))  # each once
     yield _path("halo", "".join(data for _, data in lines))
-    yield from (_path(*line) for line in lines)
+    for look, data in lines:
+        yield _path(look, data)
     yield from _numbers(panel, picture, places)
+
+
+def _lines(panel: Panel, picture: Picture) -> Iterator[tuple[str, str]]:
+    """Yield the look and the path of each line over the shapes: the outlines and frames of the
+    reference, the frames of the robot, and the driving directions.
+    """
+    for body in picture.outlines:
+        yield "reference", _polygon(_outline(panel, body))
+    for pose in frames_of(picture):
+        yield from _axes(panel, "", _AXIS, pose)
+    for pose in picture.frames:
+        yield from _axes(panel, " dashed", _LONG_AXIS, pose)
+    for wheel in picture.scene.wheels:
+        for data in _travel(panel, wheel):
+            yield "arrow", data
 
 
 def _ground(panel: Panel, picture: Picture, places: FreePlaces) -> Iterator[str]:
@@ -226,11 +240,10 @@ def _outline(panel: Panel, body: Body) -> tuple[str, ...]:
 
 
 def _shape(body: Body, outline: Sequence[str]) -> str:
-    fill, name = (
-        "".join(f"{round(255.0 * value):02x}" for value in body.rgba[:3]),
-        _escaped(body.link[:_MAX_NAME]),
-    )
-    looks = f'class="edge" fill="#{fill}" fill-opacity="{body.rgba[3]:.2g}"'
+    *rgb, alpha = body.rgba
+    fill = "".join(f"{round(255.0 * channel):02x}" for channel in rgb)
+    looks = f'class="edge" fill="#{fill}" fill-opacity="{alpha:.2g}"'
+    name = _escaped(body.link[:_MAX_NAME])
     return f'<polygon {looks} points="{" ".join(outline)}"><title>{name}</title></polygon>'
 
 
@@ -238,14 +251,12 @@ def _axes(panel: Panel, look: str, length: float, pose: Transform) -> Iterator[t
     """Yield the axes of a frame that do not point to the viewer or away: the look and the path of
     each.
     """
-    start = panel.place(pose.translation)
+    x, y = panel.place(pose.translation)
     for name, axis in zip("xyz", AXES, strict=True):
         across, down, _ = panel.direction(pose.rotate(axis))
         if hypot(across, down) > _END_ON:
-            yield (
-                f"axis-{name}{look}",
-                _segment(start, (start[0] + length * across, start[1] + length * down)),
-            )
+            end = x + length * across, y + length * down
+            yield f"axis-{name}{look}", _segment((x, y), end)
 
 
 def _travel(panel: Panel, wheel: Wheel) -> Iterator[str]:
@@ -260,12 +271,12 @@ def _travel(panel: Panel, wheel: Wheel) -> Iterator[str]:
 
 def _arrow(start: Place, across: float, down: float) -> str:
     """Return the path data of an arrow in a direction on the sheet."""
-    tip = start[0] + _ARROW * across, start[1] + _ARROW * down
-    barbs = (
-        (tip[0] - 6.0 * across - side * down, tip[1] - 6.0 * down + side * across)
-        for side in (4.2, -4.2)
-    )
-    return _segment(start, tip) + "".join(_segment(tip, barb) for barb in barbs)
+    tip = x, y = start[0] + _ARROW * across, start[1] + _ARROW * down
+    data = _segment(start, tip)
+    for side in (4.2, -4.2):
+        barb = x - 6.0 * across - side * down, y - 6.0 * down + side * across
+        data += _segment(tip, barb)
+    return data
 
 
 def _numbers(panel: Panel, picture: Picture, places: FreePlaces) -> Iterator[str]:
@@ -273,10 +284,8 @@ def _numbers(panel: Panel, picture: Picture, places: FreePlaces) -> Iterator[str
     for callout in picture.callouts:
         if callout.point is not None:
             x, y = panel.place(callout.point)
-            centre = places.take([(x + across, y + down) for across, down in _AROUND], _BADGE) or (
-                x,
-                y,
-            )
+            around = [(x + across, y + down) for across, down in _AROUND]
+            centre = places.take(around, _BADGE) or (x, y)
             yield _path("leader", _segment((x, y), centre)) + _badge(centre, callout.number)
 
 

@@ -24,6 +24,7 @@ from grader.report.criteria import (
     SYMBOLS,
     Answer,
     Block,
+    CriteriaGroup,
     Diff,
     Entry,
     Line,
@@ -287,16 +288,23 @@ def _show_pending(report: Report, pending: Sequence[Entry], page: Page) -> None:
     if pending:
         points = points_of(result for entry in pending for result in entry.results)
         page.title(f"Needs manual grading ({points})" if report.open_points else "Not graded")
-    every = [one for entry in pending for one in (entry, *entry.also)]
-    for reason, some in alike(every, lambda entry: pending_reason(entry.result)):
-        results = [entry.result for entry in some]
-        if any(one.comment or (is_manual(one) and one.criterion.answer) for one in results):
-            for entry in some:
+    every = list[Entry]()
+    for entry in pending:
+        every += [entry, *entry.also]
+    for reason, entries in alike(every, lambda entry: pending_reason(entry.result)):
+        results = [entry.result for entry in entries]
+        if any(map(_has_own_lines, results)):
+            for entry in entries:
                 _show_entry(entry, report, page, _brief_blocks(entry))
             continue
-        names = enumerated([printable(entry.id) for entry in some], _MAX_NAMES)
+        names = enumerated([printable(entry.id) for entry in entries], _MAX_NAMES)
         points = worth(result.criterion for result in results).short
         page.item("pending", (names, "bold"), f" ({points}): {reason}")
+
+
+def _has_own_lines(result: Result) -> bool:
+    """Return whether there is more to say of an open criterion than why it is open."""
+    return bool(result.comment or (is_manual(result) and result.criterion.answer))
 
 
 def _show_groups(report: Report, page: Page) -> None:
@@ -304,14 +312,16 @@ def _show_groups(report: Report, page: Page) -> None:
 
     Groups of which nothing is known yet are listed elsewhere.
     """
-    known = [
-        group for group in groups(report) if not all(result.is_open for result in group.results)
-    ]
-    kinds = alike(known, lambda group: group.status)
+    kinds = alike(filter(_is_known, groups(report)), lambda group: group.status)
     if kinds:
         page.leave_row()
-    for status, some in [kind for kind in kinds if kind[0] != "passed"] or kinds:
-        page.item(status, ", ".join(f"{printable(group.title)} {group.points}" for group in some))
+    for status, members in [kind for kind in kinds if kind[0] != "passed"] or kinds:
+        titles = [f"{printable(group.title)} {group.points}" for group in members]
+        page.item(status, ", ".join(titles))
+
+
+def _is_known(group: CriteriaGroup) -> bool:
+    return not all(result.is_open for result in group.results)
 
 
 def _show_files(report: Report, page: Page) -> None:
@@ -319,30 +329,28 @@ def _show_files(report: Report, page: Page) -> None:
     not graded.
     """
     problems = content.other_problems(report)
-    listed = [found for found in problems if found.severity != "note"]
+    listed = [problem for problem in problems if problem.severity != "note"]
     if listed:
         page.leave_row()
-    for found in listed[:_MAX_PROBLEMS]:
-        where = f"{printable(found.location.path.rpartition('/')[2])}:{found.location.line}"
-        text = Text.assemble(
-            (f"{found.code} {found.severity} ", LOOKS[found.severity]), (where, "dim")
-        )
-        page.line(text.append(f": {printable(found.message)}"))
+    for problem in listed[:_MAX_PROBLEMS]:
+        file = problem.location.path.rpartition("/")[2]
+        name = (f"{problem.code} {problem.severity} ", LOOKS[problem.severity])
+        place = (f"{printable(file)}:{problem.location.line}", "dim")
+        page.line(Text.assemble(name, place, f": {printable(problem.message)}"))
     rest = len(problems) - len(listed[:_MAX_PROBLEMS])
     if rest:
         words = counted(rest, "more problem" if listed else "note")
         page.line(f"{words}: --verbose shows {'it' if rest == 1 else 'them'}", "dim")
-    others, ignored = (
-        [file.path for file in report.submission.unused_candidates],
-        report.submission.ignored,
-    )
+    others = [file.path for file in report.submission.unused_candidates]
     if others:
-        page.line(
-            printable(f"Not graded: {enumerated(others, _MAX_FILES)} (--verbose says why)"), "dim"
-        )
+        line = f"Not graded: {enumerated(others, _MAX_FILES)} (--verbose says why)"
+        page.line(printable(line), "dim")
+    ignored = report.submission.ignored
     if ignored:
-        more = f" (and {len(ignored) - 1} more: --verbose lists them)" if len(ignored) > 1 else ""
-        page.line(printable(f"Ignored: {ignored[0]}{more}"), "dim")
+        line = f"Ignored: {ignored[0]}"
+        if len(ignored) > 1:
+            line += f" (and {len(ignored) - 1} more: --verbose lists them)"
+        page.line(printable(line), "dim")
 
 
 def _show_end(report: Report, page: Page) -> None:
@@ -390,20 +398,18 @@ def _show_section(section: Section, report: Report, page: Page) -> None:
 
 def _show_parts(report: Report, page: Page) -> None:
     """Add each part with its groups and all their criteria."""
-    for part, of_part in groupby(groups(report), key=lambda group: group.part):
-        found, title = list(of_part), report.rubric.part(part).title
+    for part, part_groups in groupby(groups(report), key=lambda group: group.part):
+        members, title = list(part_groups), report.rubric.part(part).title
         if len(report.parts) > 1:
-            points = earned_text(*(result for group in found for result in group.results))
+            points = earned_text(*(result for group in members for result in group.results))
             page.title(f"{printable(title)}  {points}", "bold underline")
-        for group in found:
-            if len(found) > 1 or group.title != title:
-                page.title(
-                    Text.assemble((printable(group.title), "bold"), (f"  {group.points}", "dim"))
-                )
+        for group in members:
+            if len(members) > 1 or group.title != title:
+                name = (printable(group.title), "bold")
+                page.title(Text.assemble(name, (f"  {group.points}", "dim")))
             for result in group.results:
-                start = Text.assemble(
-                    "  ", page.mark(status_of(result)), f" {earned_text(result):<5} "
-                )
+                mark = page.mark(status_of(result))
+                start = Text.assemble("  ", mark, f" {earned_text(result):<5} ")
                 page.inset(_criterion_row(result), indent=len(start), head=start)
 
 

@@ -124,8 +124,9 @@ def _messages(errors: bytes) -> str:
 
 def _printable(data: bytes) -> str:
     """Return the start of a text, with `?` for every character that is not printable."""
-    lines = data.decode("utf-8", "replace")[:_MAX_CHARACTERS].split("\n")
-    return "\n".join("".join(c if c.isprintable() else "?" for c in line) for line in lines).strip()
+    text = data.decode("utf-8", "replace")[:_MAX_CHARACTERS]
+    characters = (c if c.isprintable() or c == "\n" else "?" for c in text)
+    return "".join(characters).strip()
 
 
 def _report(output: bytes) -> dict[str, Any] | None:
