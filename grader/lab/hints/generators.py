@@ -120,8 +120,6 @@ def _of_reference(situation: Situation, lost: _Lost) -> Iterator[Iterable[Propos
         links = _links_of(lost, difference)
         yield draft.corrections([*difference.names, *JOINT_TYPES])
         yield _proposals(situation, situation.exchanges)
-        yield _proposals(situation, in_another_unit(difference))
-        yield _proposals(situation, of_siblings(difference, links or ()))
         pieces = difference.pieces
         if (
             links is not None
@@ -130,6 +128,9 @@ def _of_reference(situation: Situation, lost: _Lost) -> Iterator[Iterable[Propos
                 pieces, key=lambda it: links.index(it.link) if it.link in links else len(links)
             )
         yield _proposals(situation, pieces, links)
+        # these rarely find a mistake
+        yield _proposals(situation, in_another_unit(difference))
+        yield _proposals(situation, of_siblings(difference, links or ()))
 
 
 def _of_package(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
@@ -150,17 +151,21 @@ def _of_package(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal
 
 
 def _of_names(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
-    for criterion in [it for it in lost if it.check.name in ("names_agree", "parameter_is")]:
-        from grader.lab.hints.name_edits import (  # late: few rubrics ask for names
-            name_proposals,
-            value_proposals,
-        )
+    """Names that do not agree, then values of parameters, which rarely are the mistake."""
+    for check in ("names_agree", "parameter_is"):
+        for criterion in lost:
+            if criterion.check.name != check:
+                continue
+            from grader.lab.hints.name_edits import (  # late: few rubrics ask for names
+                name_proposals,
+                value_proposals,
+            )
 
-        if criterion.check.name == "names_agree":
-            reference = situation.reference_package(criterion.package)
-            yield name_proposals(situation.submission, criterion.arguments["of"], reference)
-        else:
-            yield value_proposals(situation.submission, criterion.arguments)
+            if check == "names_agree":
+                reference = situation.reference_package(criterion.package)
+                yield name_proposals(situation.submission, criterion.arguments["of"], reference)
+            else:
+                yield value_proposals(situation.submission, criterion.arguments)
 
 
 def _of_own_numbers(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:

@@ -132,11 +132,7 @@ def _of_text(
         yield from _reword(source, wanted, what)
     if is_python:
         yield from _missing_entries(own, PythonFile(Source(source.path, wanted)), what)
-        yield from _as_lists(own, what)
         yield from _undefined_names(own, what)
-        yield from _unquoted_names(own, what)
-        yield from _missing_calls(own, what)
-        yield from _indentations(own, what)
     elif ending == other:
         yield from _other_values(source, wanted, what)
     if kind == "launch":
@@ -148,6 +144,10 @@ def _of_text(
     yield from _respellings(
         source, [wanted, *(task.files if kind == SETUP else task.package.installed)], what
     )
+    if is_python:  # these rarely find a mistake
+        yield from _unquoted_names(own, what)
+        yield from _missing_calls(own, what)
+        yield from _indentations(own, what)
 
 
 def _respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Proposal]:
@@ -555,14 +555,6 @@ def _missing_entries(own: PythonFile, like: PythonFile, what: str) -> Iterator[P
             yield from _adding(own, [code], what)
         if len(codes) > 1:
             yield from _adding(own, codes, what)
-
-
-def _as_lists(own: PythonFile, what: str) -> Iterator[Proposal]:
-    """Yield edits that put the one file of an entry of data_files into a list."""
-    for item in _items(own):
-        files = item.elts[-1] if isinstance(item, ast.Tuple) and item.elts else None
-        if isinstance(files, ast.Constant) and isinstance(files.value, str):
-            yield change([own.replaced(files, f"[{own.segment(files)}]")], "a list of files", what)
 
 
 def _adding(own: PythonFile, codes: Sequence[str], what: str) -> Iterator[Proposal]:
