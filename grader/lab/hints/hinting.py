@@ -373,13 +373,14 @@ def _whole_lines(edit: Edit, submission: Submission) -> Edit:
     start, end = source.offset(edit.line, 1), source.offset(last_line + 1, 1)
     at = source.offset(edit.line, edit.column)
     before = text[start:end].splitlines(keepends=True)
-    after_edit = f"{text[start:at]}{edit.new}{text[at + len(edit.old) : end]}"
-    after = after_edit.splitlines(keepends=True)
-    same_first = _common_start(before, after)
-    same_last = _common_start(before[same_first:][::-1], after[same_first:][::-1])
-    old = "".join(before[same_first : len(before) - same_last])
-    new = "".join(after[same_first : len(after) - same_last])
-    return Edit(edit.path, edit.line + same_first, 1, old, new)
+    text_after = f"{text[start:at]}{edit.new}{text[at + len(edit.old) : end]}"
+    after = text_after.splitlines(keepends=True)
+    first = _common_start(before, after)
+    before, after = before[first:], after[first:]
+    last = _common_start(before[::-1], after[::-1])
+    if last:
+        before, after = before[:-last], after[:-last]
+    return Edit(edit.path, edit.line + first, 1, "".join(before), "".join(after))
 
 
 def _common_start(one: Sequence[str], other: Sequence[str]) -> int:
