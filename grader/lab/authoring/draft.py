@@ -128,22 +128,22 @@ def draft(submission: Submission, solution: Solution | None, head: Head, path: P
     subjects: dict[str, Any] = {"submission": submission}
     if solution is not None:
         subjects |= {"urdf": solution.reading, "robot": solution.robot, "reference": solution.robot}
-    tried = [it if isinstance(it, Omission) else _tried(subjects, it) for it in found]
-    facts = ((it.fact, it) for it in tried if isinstance(it, _DraftCriterion))
-    rows = [
-        *{
-            (fact.check, fact.package, toml_literal([fact.args, fact.arguments])): row
-            for fact, row in facts
-        }.values()
-    ]
+    rows_by_fact: dict[tuple[str, str | None, str], _DraftCriterion] = {}
+    omissions: list[Omission] = []
+    for fact in found:
+        row = fact if isinstance(fact, Omission) else _tried(subjects, fact)
+        if isinstance(row, Omission):
+            omissions.append(row)
+        else:
+            arguments = toml_literal([row.fact.args, row.fact.arguments])
+            rows_by_fact[row.fact.check, row.fact.package, arguments] = row
+    rows = [*rows_by_fact.values()]
     if submission.packages:
         values = _values(subjects, submission, {row.fact.words for row in rows})
     else:
         values = {}
     data = _rubric_text(head, rows, values).encode()
-    return RubricDraft(
-        data, read_rubric(data, path), tuple(it for it in tried if isinstance(it, Omission))
-    )
+    return RubricDraft(data, read_rubric(data, path), tuple(omissions))
 
 
 def _values(
@@ -199,13 +199,18 @@ def _outcome(subjects: _Subjects, fact: Fact) -> Outcome:
     check = find_check(fact.check)
     assert check is not None
     _, read = read_toml(f"it = {toml_literal(fact.arguments)}".encode(), Path())
-    given = {name: check.parameters[name].type.parse(value) for name, value in read["it"].items()}
-    given = without_selectors(given, subjects["robot"]) if "robot" in subjects else given
+    given = {}
+    for name, value in read["it"].items():
+        given[name] = check.parameters[name].type.parse(value)
+    if "robot" in subjects:
+        given = without_selectors(given, subjects["robot"])
     usual, _ = _USUAL.get(fact.check, ({}, ""))
-    arguments = {
-        name: str(it).lower() if isinstance(it, bool) else it for name, it in fact.args.items()
-    }
-    submission = subjects["submission"].under(arguments) if arguments else subjects["submission"]
+    arguments = {}
+    for name, value in fact.args.items():
+        arguments[name] = str(value).lower() if isinstance(value, bool) else value
+    submission = subjects["submission"]
+    if arguments:
+        submission = submission.under(arguments)
     if fact.package:
         submission = submission.with_package(fact.package)
     known = {**subjects, "submission": submission, "package": submission.package}
@@ -219,9 +224,10 @@ def _rubric_text(
     of_robot = [row for row in rows if not row.is_of_package]
     of_package = [row for row in rows if row.is_of_package]
     points = _points(of_robot, of_package)
-    checks = {row.fact.check for row in rows} | {
-        it.check for row in rows for it in row.fact.carried
-    }
+    checks: set[str] = set()
+    for row in rows:
+        checks.add(row.fact.check)
+        checks.update(carried.check for carried in row.fact.carried)
     part, usual = (_ROBOT if of_robot else _PACKAGE), Counter(points).most_common(1)[0][0]
     lines = [*_head_lines(head, sum(points)), *_default_lines(part, usual, checks)]
     if of_robot:

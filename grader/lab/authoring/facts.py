@@ -5,7 +5,7 @@ Here are those of the robot: its file, links, joints and tree.
 """
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import permutations
 from math import degrees, isfinite
 from typing import Any, NamedTuple
@@ -313,30 +313,31 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
     fixed = (joint.child for joint in joints if joint.parent == root and joint.type == "fixed")
     rooted = _robot_fact("root_of_tree", link=root, holds=next(fixed, root))
     yield rooted
-    held = tuple(f"{joint.child} {check}" for joint in joints for check in ("held_by", "mimics"))
-    of_types = Carried(held, rooted.check, rooted.arguments)
+    about_types = _words_of_joints(joints, "held_by", "mimics")
+    if_types_differ = Carried(about_types, rooted.check, rooted.arguments)
     moving = [joint for joint in joints if joint.type != "fixed"]
-    kinds = Counter(joint.type for joint in moving)
-    numbers = {
-        "moving": sum(joint.mimic is None for joint in moving),
-        **{kind: kinds[kind] for kind in _COUNTED},
-    }
-    yield _robot_fact("counts", **numbers)._replace(carried=(of_types,))
-    inner = {joint.parent for joint in joints}
-    chains = {name: robot.chain(name) for name in robot.main_tree if name not in inner}
-    tips = [name for name, chain in chains.items() if any(joint.type != "fixed" for joint in chain)]
+    types = Counter(joint.type for joint in moving)
+    numbers = {"moving": sum(joint.mimic is None for joint in moving)}
+    for joint_type in _COUNTED:
+        numbers[joint_type] = types[joint_type]
+    yield _robot_fact("counts", **numbers)._replace(carried=(if_types_differ,))
+    tips = _moving_tips(robot)[:_MAX_TIPS]
     if tips:
-        names = [repr(tip) for tip in tips[:_MAX_TIPS]]
-        title = (
-            f"{enumerated(names)} {'moves' if len(names) == 1 else 'move'} as in the reference "
-            "solution"
-        )
-        known = [
-            f"{joint.child} {check}"
-            for joint in joints
-            for check in ("frame_at", "joint_axis", "mimics")
-        ]
-        motion = _robot_fact("kinematics_match_reference", links=tips[:_MAX_TIPS], match="order")
-        yield motion._replace(
-            title=title, carried=(Carried(tuple(known), "counts", numbers), of_types)
-        )
+        verb = "moves" if len(tips) == 1 else "move"
+        title = f"{enumerated([repr(tip) for tip in tips])} {verb} as in the reference solution"
+        about_poses = _words_of_joints(joints, "frame_at", "joint_axis", "mimics")
+        if_poses_differ = Carried(about_poses, "counts", numbers)
+        motion = _robot_fact("kinematics_match_reference", links=tips, match="order")
+        yield motion._replace(title=title, carried=(if_poses_differ, if_types_differ))
+
+
+def _words_of_joints(joints: Iterable[Joint], *checks: str) -> tuple[str, ...]:
+    """Return the words of the facts that checks find about joints, each about its child."""
+    return tuple(f"{joint.child} {check}" for joint in joints for check in checks)
+
+
+def _moving_tips(robot: Configuration) -> list[str]:
+    """Return the links that hold no other link, and that a joint moves."""
+    inner = {joint.parent for joint in robot.parent_joints.values()}
+    tips = [name for name in robot.main_tree if name not in inner]
+    return [tip for tip in tips if {joint.type for joint in robot.chain(tip)} - {"fixed"}]

@@ -21,6 +21,7 @@ from grader.ros.package.package import MANIFEST, SETUP, Package
 from grader.ros.xml.parsing import Element, XmlFault, XmlFile, read_document
 from grader.ros.xml.urdf_format import JOINT_TYPES, PARTS
 
+_COMMA = re.compile(r"\s*,")
 _NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
 _NAMES = ("name", "link", "joint", "reference")
 _UNTOUCHED = ("version", "encoding", "params")
@@ -81,10 +82,10 @@ def _as_mutants(text: str, path: str, changes: Iterable[MutantEdit]) -> Iterator
 
 def _changes(text: str, hidden: Collection[str]) -> Iterator[MutantEdit]:
     places = list(_places(text))
-    names = {
-        tag: [it.get("name", "") for it, *_ in places if it.tag == tag]
-        for tag in ("link", "joint", "material")
-    }
+    names: dict[str, list[str]] = {"link": [], "joint": [], "material": []}
+    for element, *_ in places:
+        if element.tag in names:
+            names[str(element.tag)].append(element.get("name", ""))
     for element, label, start in places:
         for attribute in attributes(text, start):
             yield from _attribute_changes(text, element, label, attribute, names)
@@ -111,17 +112,26 @@ def _places(text: str) -> Iterator[tuple[Element, str, int]]:
     except XmlFault:
         document = read_document(data, "")
         root, source = document.root, document.source
-    labels: dict[Element | None, str] = {}
+    if root is None:
+        return
+    labels: dict[Element, str] = {}
     counts: Counter[str] = Counter()
-    for index, element in enumerate(root.iter("*") if root is not None else ()):
+    for index, element in enumerate(root.iter("*")):
         parent, (_, start) = element.getparent(), source.element(index)
-        is_named = parent is not None and (element.tag != "material" or parent.getparent() is None)
-        name = (element.get("name") or element.get("reference") or "") if is_named else ""
-        label = f"{text[start + 1 : name_end(text, start)]} {name}".strip()
-        label = f"{labels[parent]}/{label}" if labels.get(parent) else label
+        label = text[start + 1 : name_end(text, start)]
+        if parent is None:
+            counts[label] += 1
+            yield element, label, start
+            continue
+        # Inside a link, the name of a material is a value and no place.
+        if element.tag != "material" or parent is root:
+            label = f"{label} {element.get('name') or element.get('reference') or ''}".strip()
+        if parent is not root:
+            label = f"{labels[parent]}/{label}"
         counts[label] += 1
-        label += f" {counts[label]}" if counts[label] > 1 else ""  # of equal siblings: visual 2
-        labels[element] = label if parent is not None else ""
+        if counts[label] > 1:  # of equal siblings: visual 2
+            label += f" {counts[label]}"
+        labels[element] = label
         yield element, label, start
 
 
@@ -295,23 +305,22 @@ def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> Iterator
     family = "data_files entry deleted" if is_setup else "action removed"
     for item in _entries(file):
         start, end = file.span(item)
-        comma = re.compile(r"\s*,").match(file.text, end)
-        yield MutantEdit(
-            family, f"{label} {_short(file, item)}", start, comma.end() if comma else end, ""
-        )
+        comma = _COMMA.match(file.text, end)
+        end = comma.end() if comma else end
+        yield MutantEdit(family, f"{label} {_short(file, item)}", start, end, "")
     for call in file.calls("add_action"):
         action = call.args[0] if call.args else call
         yield MutantEdit(family, f"{label} {_short(file, action)}", *file.span(call), "None")
-    for node in file.imports if is_setup else ():
-        yield MutantEdit(
-            "import deleted", f"{label} {file.segment(node)}", *file.span(node), "pass"
-        )
+    if is_setup:
+        for node in file.imports:
+            place = f"{label} {file.segment(node)}"
+            yield MutantEdit("import deleted", place, *file.span(node), "pass")
     ignored = [*_for_people(file)]
     for text, start, end in file.literals:
-        if text.strip() and not any(first <= start < last for first, last in ignored):
-            yield MutantEdit(
-                "string misspelt", f"{label} {text[:MAX_LABEL]}", start, end, misspelt(text)
-            )
+        is_ignored = any(first <= start < last for first, last in ignored)
+        if text.strip() and not is_ignored:
+            place = f"{label} {text[:MAX_LABEL]}"
+            yield MutantEdit("string misspelt", place, start, end, misspelt(text))
 
 
 def _entries(file: PythonFile) -> Iterator[ast.expr]:

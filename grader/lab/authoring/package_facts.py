@@ -227,34 +227,32 @@ def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[F
     """Yield that a build installs the URDF, the launch and RViz files, and a file of each other
     folder.
     """
-    own = {
-        target: path
-        for target, path in package.installed.items()
-        if target.startswith(package.share)
-    }
-    elsewhere = {
-        path
-        for target, path in own.items()
-        if any(f"{target}/".startswith(f"{it}/") for it in named)
-    }
-    installed = [path for path in own.values() if path not in elsewhere]
+    installed = []
+    elsewhere = set()  # what other facts are about
+    for target, path in package.installed.items():
+        if not target.startswith(package.share):
+            continue
+        if any(f"{target}/".startswith(f"{folder}/") for folder in named):
+            elsewhere.add(path)
+        installed.append(path)
+    installed = [path for path in installed if path not in elsewhere]
     launches = [
         path for path in package.launch_files if path in installed or not path.startswith("test/")
     ]
     kinds = {"urdf": [urdf] if urdf else [], "launch": launches, "rviz": package.rviz_files}
-    kinds = {
-        kind: [path for path in paths if path not in elsewhere] for kind, paths in kinds.items()
-    }
     for kind, paths in kinds.items():
-        for name in map(posixpath.basename, paths):
-            yield _package_fact("build_installs", name, kind=kind, name=name, despite_errors=True)
-    patterns = {
-        f"{folder}/*{posixpath.splitext(path)[1]}": None
-        for path in installed
-        if (folder := posixpath.dirname(path)) not in ("", "resource")
-        and path not in package.launch_files
-        and not path.endswith(_OWN_KINDS)
-    }
+        for path in paths:
+            if path not in elsewhere:
+                name = posixpath.basename(path)
+                yield _package_fact(
+                    "build_installs", name, kind=kind, name=name, despite_errors=True
+                )
+    patterns: dict[str, None] = {}
+    for path in installed:
+        folder, ending = posixpath.dirname(path), posixpath.splitext(path)[1]
+        is_own_kind = path in package.launch_files or path.endswith(_OWN_KINDS)
+        if folder not in ("", "resource") and not is_own_kind:
+            patterns[f"{folder}/*{ending}"] = None
     with_named = (Carried(("files names_agree",), "package_found", {"name": package.name}),)
     for pattern in patterns:
         fact = _package_fact("installs_files", pattern, files=[pattern], despite_errors=True)
@@ -269,15 +267,17 @@ def _launch_facts(
     """
     name, launch = posixpath.basename(path), package.launch(path)
     yield _package_fact("launch_found", name, name=name)
-    included = {posixpath.basename(it.path) for it in launch.passed}
-    others = tuple(
-        it for it in words_of_launches(submission) if it.split(" ")[-2] in included - {name}
-    )
-    found = Carried((*_builds(submission), *_STOPPING, *others), "launch_found", {"name": name})
+    included = {posixpath.basename(it.path) for it in launch.passed} - {name}
+    causes = [*_builds(submission), *_STOPPING]
+    # The words of a fact about a launch file are its name and the check, the last two.
+    causes += [it for it in words_of_launches(submission) if it.split(" ")[-2] in included]
+    found = Carried(tuple(causes), "launch_found", {"name": name})
     after = found._replace(causes=(*found.causes, f"{prefix}{name} node_runs"))
-    if nodes := _nodes_that_start(launch):
+    nodes = _nodes_that_start(launch)
+    if nodes:
         yield _package_fact("node_runs", name, launch=name, nodes=nodes)._replace(carried=(found,))
-    yield from (it._replace(carried=(after,)) for it in _turned_facts(package, path))
+    for fact in _turned_facts(package, path):
+        yield fact._replace(carried=(after,))
     if launch.named("urdf", "rviz", "include"):
         unread = after._replace(causes=(*after.causes, "parameters names_agree"))
         yield _package_fact("launch_finds_files", name, name=name)._replace(carried=(unread,))
@@ -295,16 +295,17 @@ def _turned_facts(package: Package, path: str) -> Iterator[Fact]:
             continue
         text = str(turned).lower() if isinstance(turned, bool) else turned
         after = _started(package.under({argument: text}).launch(path))
-        nodes, absent = (
-            [it for it in one if it not in other]
-            for one, other in ((after, before), (before, after))
-        )
-        given = {key: names for key, names in (("nodes", nodes), ("not", absent)) if names}
+        nodes = [node for node in after if node not in before]
+        absent = [node for node in before if node not in after]
+        given = {}
+        starts = ""
+        if absent:
+            given["not"] = absent
+            starts = f"does not start {enumerated(absent)}"
+        if nodes:
+            given = {"nodes": nodes, **given}
+            starts = f"starts {enumerated(nodes)}"
         if given:
-            if nodes:
-                starts = f"starts {enumerated(nodes)}"
-            else:
-                starts = f"does not start {enumerated(absent)}"
             fact = _package_fact("node_runs", f"{name} {argument}", launch=name, **given)
             title = f"with {argument}:={text}, the launch file {starts}"
             yield fact._replace(args={argument: turned}, title=title)
@@ -318,15 +319,13 @@ def _nodes_that_start(launch: Launch) -> list[str]:
     """Return the nodes that start, with what a condition replaces: joint_state_publisher for its
     GUI, for example.
     """
-    names = {
-        when: list(dict.fromkeys(it.name for it in launch.nodes if it.when is when))
-        for when in (True, False)
-    }
-    alike = {
-        name: [it for it in names[False] if name.startswith(it) or it.startswith(name)]
-        for name in names[True]
-    }
-    return [" or ".join(dict.fromkeys((name, *others))) for name, others in alike.items()]
+    starting = _started(launch)
+    replaced = dict.fromkeys(node.name for node in launch.nodes if node.when is False)
+    names = []
+    for name in starting:
+        alike = [it for it in replaced if name.startswith(it) or it.startswith(name)]
+        names.append(" or ".join(dict.fromkeys((name, *alike))))
+    return names
 
 
 def _rviz_facts(package: Package) -> Iterator[Fact]:
@@ -338,7 +337,9 @@ def _rviz_facts(package: Package) -> Iterator[Fact]:
         opened.setdefault(package.rviz_opened(package.launch(path)) or "", posixpath.basename(path))
     for path in package.rviz_files:
         rviz, name = package.rviz(path), posixpath.basename(path)
-        of = {"name": name, **({"launch": opened[path]} if path in opened else {})}
+        of = {"name": name}
+        if path in opened:
+            of["launch"] = opened[path]
         yield _package_fact("rviz_found", name, **of)
         if rviz.fixed_frame:
             yield _package_fact("rviz_fixed_frame", name, **of, frame=rviz.fixed_frame)

@@ -61,25 +61,27 @@ def reference_failures(rubric: Rubric) -> _Failures:
     Criteria with one message share a line.
     """
     assert rubric.solution is not None
-    failed: dict[Outcome, list[tuple[TomlPath, str]]] = {}
+    places: dict[Outcome, list[tuple[TomlPath, str]]] = {}
     unearned = grade(rubric, rubric.solution.submission).unearned
-    own = [(_path_of(it.criterion), it.criterion.id, it.outcome) for it in unearned]
+    failures = [(_path_of(it.criterion), it.criterion.id, it.outcome) for it in unearned]
+    failures += _carried_failures(rubric)
+    failures.sort(key=lambda failure: failure[0][1])
     unresolved = {path[1]: (path, line) for path, line in _unresolved_selectors(rubric)}
-    for path, name, outcome in sorted([*own, *_carried_failures(rubric)], key=lambda it: it[0][1]):
+    for path, name, outcome in failures:
         if path[1] not in unresolved:
-            failed.setdefault(Outcome(outcome.status, outcome.message), []).append((path, name))
-    found = [*unresolved.values()]
-    for outcome, places in failed.items():
-        names, verb = (
-            enumerated([name for _, name in places]),
-            "fails" if len(places) == 1 else "fail",
-        )
-        found.append((places[0][0], f"{names} {verb} on the reference: {outcome.message}"))
-    undecided = sum(
-        len(places) for outcome, places in failed.items() if outcome.status == "pending"
-    )
-    is_failed = bool(unresolved) or undecided < sum(map(len, failed.values()))
-    return _Failures(_lines(rubric, found), is_failed, undecided)
+            what = Outcome(outcome.status, outcome.message)
+            places.setdefault(what, []).append((path, name))
+    mistakes = [*unresolved.values()]
+    undecided = 0
+    for outcome, places_of_outcome in places.items():
+        names = [name for _, name in places_of_outcome]
+        verb = "fails" if len(names) == 1 else "fail"
+        what_fails = f"{enumerated(names)} {verb} on the reference: {outcome.message}"
+        mistakes.append((places_of_outcome[0][0], what_fails))
+        if outcome.status == "pending":
+            undecided += len(names)
+    is_failed = bool(unresolved) or undecided < sum(map(len, places.values()))
+    return _Failures(_lines(rubric, mistakes), is_failed, undecided)
 
 
 def _lines(rubric: Rubric, found: Iterable[tuple[TomlPath, str]]) -> tuple[str, ...]:
@@ -148,7 +150,8 @@ def _is_changed_copy(rubric: Rubric) -> bool:
     if rubric.id not in shipped_rubrics() or rubric.is_shipped:
         return False
     shipped = load_rubric(rubric.id).criteria
-    own, copied = ({it.id for it in criteria} for criteria in (rubric.criteria, shipped))
+    own = {criterion.id for criterion in rubric.criteria}
+    copied = {criterion.id for criterion in shipped}
     return rubric.criteria != shipped and 2 * len(own & copied) > len(own)
 
 

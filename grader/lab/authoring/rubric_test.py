@@ -251,29 +251,34 @@ class Trial:
     def equivalents(self) -> Iterator[Loss]:
         """Yield what each rewriting of the reference loses: most lose nothing."""
         urdf = self.reference.urdf
-        if (
-            isinstance(urdf, Read)
-            and urdf.loaded.verdict == "clean"
-            and urdf.reading.root is not None
-        ):
-            has_places = any(
-                name.startswith("@") and not name.startswith(JOINT_OF)
-                for name in _names_in(self.rubric)
-            )
-            for found in equivalents(urdf.reading.root, RewritingRules(self.kept, has_places)):
-                submission = _rewritten(self.reference, urdf, found)
-                lost = self._lost(submission, self._must_pass(submission, found.family))
-                diff = _text_diff(self.robot_files[0], found.before, found.text) if lost else ""
-                yield Loss(found.family, lost, diff)
+        if isinstance(urdf, Read) and urdf.loaded.verdict == "clean":
+            yield from self._robot_equivalents(urdf)
         for family, texts in file_equivalents(self.reference):
-            names = [
-                it.id for it in self.tested if family != EVERY_NODE or it.check.name != "entry_is"
-            ]
-            lost = self._lost(
-                with_files(self.reference, {path: it.encode() for path, it in texts.items()}), names
-            )
+            criteria = self.tested
+            if family == EVERY_NODE:
+                # A path of entry_is names one of several nodes, which are other ones then.
+                criteria = [it for it in criteria if it.check.name != "entry_is"]
+            names = [criterion.id for criterion in criteria]
+            files = {path: text.encode() for path, text in texts.items()}
+            lost = self._lost(with_files(self.reference, files), names)
             diffs = (_text_diff(path, self.text(path), text) for path, text in texts.items())
             yield Loss(family, lost, "\n".join(diffs))
+
+    def _robot_equivalents(self, urdf: Read) -> Iterator[Loss]:
+        root = urdf.reading.root
+        if root is None:
+            return
+        has_places = any(
+            name.startswith("@") and not name.startswith(JOINT_OF)
+            for name in _names_in(self.rubric)
+        )
+        for rewriting in equivalents(root, RewritingRules(self.kept, has_places)):
+            submission = _rewritten(self.reference, urdf, rewriting)
+            lost = self._lost(submission, self._must_pass(submission, rewriting.family))
+            diff = ""
+            if lost:
+                diff = _text_diff(self.robot_files[0], rewriting.before, rewriting.text)
+            yield Loss(rewriting.family, lost, diff)
 
     def _lost(self, submission: Submission, names: Collection[str]) -> Mapping[str, str]:
         """Return the criteria that lose points, with their messages."""
@@ -424,42 +429,65 @@ def _counted(
     places = {mutant: place for place, mutant in enumerate(every)}
     graded = sorted(outcomes, key=lambda outcome: places[outcome.mutant])
     fates = Counter(outcome.fate for outcome in graded)
-    survivors = [
-        _survivor(trial, outcome.mutant) for outcome in graded if outcome.fate == "survived"
-    ]
-    failed = {name for outcome in graded for name in outcome.failed}
-    patterns = [pattern for row in trial.rubric.ignored for pattern in row.mutants]
-    tried, (unexamined, files) = [*trial.equivalents()], trial.unexamined()
+    survivors: list[_Survivor] = []
+    ignored: list[_Survivor] = []
+    faults: list[Loss] = []
+    failed: set[str] = set()
+    for outcome in graded:
+        mutant = outcome.mutant
+        failed.update(outcome.failed)
+        if outcome.fate == "survived":
+            survivor = _survivor(trial, mutant)
+            if survivor.reason:
+                ignored.append(survivor)
+            else:
+                survivors.append(survivor)
+        elif outcome.fate == "faulty":
+            faults.append(Loss(mutant.id, outcome.faults, _mutant_diff(trial, mutant)))
+    idle = [criterion.id for criterion in trial.tested if criterion.id not in failed]
+    equivalents = [*trial.equivalents()]
+    names = [loss.name for loss in equivalents]
+    losses = [loss for loss in equivalents if loss.criteria]
+    unexamined, files = trial.unexamined()
     return RubricTest(
         reference=trial.report,
         total=len(every),
         tried=len(graded),
         caught=fates["caught"],
         same=fates["same"],
-        survivors=tuple(it for it in survivors if not it.reason),
-        ignored=tuple(it for it in survivors if it.reason),
-        unused=tuple(it for it in patterns if not any(_matches(mutant, it) for mutant in every)),
-        idle=tuple(one.id for one in trial.tested if one.id not in failed),
+        survivors=tuple(survivors),
+        ignored=tuple(ignored),
+        unused=_unused_patterns(trial.rubric, every),
+        idle=tuple(idle),
         unexamined=tuple(unexamined),
         files=files,
-        faults=tuple(
-            Loss(it.mutant.id, it.faults, _mutant_diff(trial, it.mutant))
-            for it in graded
-            if it.fate == "faulty"
-        ),
-        equivalents=tuple(it.name for it in tried),
-        losses=tuple(it for it in tried if it.criteria),
+        faults=tuple(faults),
+        equivalents=tuple(names),
+        losses=tuple(losses),
         samples=samples,
     )
 
 
+def _unused_patterns(rubric: Rubric, mutants: Sequence[Mutant]) -> tuple[str, ...]:
+    """Return the patterns of ignored mutants that no mutant matches."""
+    unused: list[str] = []
+    for row in rubric.ignored:
+        unused += [
+            pattern
+            for pattern in row.mutants
+            if not any(_matches(mutant, pattern) for mutant in mutants)
+        ]
+    return tuple(unused)
+
+
 def _survivor(trial: Trial, mutant: Mutant) -> _Survivor:
     """Return a mutant that loses nothing, with the reason for which the rubric ignores it."""
-    ignored = trial.rubric.ignored
-    reasons = (
-        row.reason for row in ignored if any(_matches(mutant, pattern) for pattern in row.mutants)
-    )
-    return _Survivor(mutant, _mutant_diff(trial, mutant), next(reasons, ""))
+    reason = ""
+    for row in trial.rubric.ignored:
+        if any(_matches(mutant, pattern) for pattern in row.mutants):
+            reason = row.reason
+            break
+    return _Survivor(mutant, _mutant_diff(trial, mutant), reason)
 
 
 def _mutant_diff(trial: Trial, mutant: Mutant) -> str:

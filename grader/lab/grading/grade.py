@@ -138,25 +138,27 @@ def _find_evidence(
         return (), ()
     from grader.lab.documents.evidence import as_evidence, find_evidence
 
-    names = [
-        tuple(dict.fromkeys((*evidence.names, *_names_in_criteria(evidence, rubric))))
-        for evidence in wanted
-    ]
-    known = {name for one in names for name in one}
+    names = []
+    for evidence in wanted:
+        names_in_criteria = _names_in_criteria(evidence, rubric)
+        names.append(tuple(dict.fromkeys((*evidence.names, *names_in_criteria))))
+    known = set(chain.from_iterable(names))
     shown = [row.arguments["names"] for row in manual if row.check.function is evidence_shown]
     names += [own for own in shown if known.isdisjoint(own)]
     found = [
-        find_evidence(submission.labelled_files, one, submission.readable_documents)
-        for one in names
+        find_evidence(submission.labelled_files, each, submission.readable_documents)
+        for each in names
     ]
-    found_files = tuple(
-        EvidenceResult(evidence, *one) for evidence, one in zip(wanted, found, strict=False)
-    )
-    listed = {file.path for one in found for file in (*one.files, *one.possible)}
+    results = []
+    for evidence, files in zip(wanted, found, strict=False):
+        results.append(EvidenceResult(evidence, *files))
+    listed: set[str] = set()
+    for files in found:
+        listed.update(file.path for file in (*files.files, *files.possible))
     others = [
         labelled for labelled in submission.labelled_files if labelled.file.path not in listed
     ]
-    return found_files, as_evidence(others[:_MAX_PICTURES])
+    return tuple(results), as_evidence(others[:_MAX_PICTURES])
 
 
 def _names_in_criteria(evidence: Evidence, rubric: Rubric) -> tuple[str, ...]:
@@ -195,32 +197,30 @@ def _explain_by_convention(
     Both are empty if there is nothing to explain. The points stay: the lab says where its frames
     are. The note says that they are lost by one decision, not by many mistakes.
     """
-    lost = {
-        result.criterion.id
-        for result in results
-        if result.is_lost and result.criterion.check.subject == "robot"
-    }
+    lost = []
+    passed = []
+    decided = []
+    for result in results:
+        name, subject = result.criterion.id, result.criterion.check.subject
+        if subject in ("urdf", "robot"):
+            decided.append(name)
+            if result.outcome.status == "passed":
+                passed.append(name)
+        if subject == "robot" and result.is_lost:
+            lost.append(name)
     found = _find_convention(rubric, submission) if len(lost) >= _MIN_OF_CONVENTION else None
     if found is None or not isinstance(submission.urdf, Read):
         return "", frozenset()
     reading = submission.urdf.reading._replace(robot=found.robot)
     other = replace(submission, urdf=submission.urdf._replace(reading=reading))
-    decided = [result for result in results if result.criterion.check.subject in ("urdf", "robot")]
-    after = {
-        result.criterion.id: result
-        for result in decide(rubric, other, {it.criterion.id for it in decided})
-    }
-    before = {result.criterion.id for result in decided if result.outcome.status == "passed"}
-    gained = frozenset(name for name in lost if after[name].outcome.status == "passed")
-    if len(gained) < _MIN_OF_CONVENTION or any(
-        after[name].outcome.status != "passed" for name in before
-    ):
+    after = {result.criterion.id: result for result in decide(rubric, other, {*decided})}
+    gained = [name for name in lost if after[name].outcome.status == "passed"]
+    is_worse = any(after[name].outcome.status != "passed" for name in passed)
+    if len(gained) < _MIN_OF_CONVENTION or is_worse:
         return "", frozenset()
     points = counted_points(sum((after[name].criterion.points for name in gained), Decimal(0)))
-    return (
-        f"everything is {found.description} relative to the handout: one decision, {points}",
-        gained,
-    )
+    note = f"everything is {found.description} relative to the handout: one decision, {points}"
+    return note, frozenset(gained)
 
 
 def _find_convention(rubric: Rubric, submission: Submission) -> "Convention | None":

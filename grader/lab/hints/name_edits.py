@@ -213,7 +213,8 @@ def _meant(
     the last before.
     """
     key = re.compile(rf"{re.escape(name)}[\"']?\s*:\s*(?:\{{?\s*(?:ros__parameters|type)\s*:\s*)?")
-    before, after = [it for it in spans if it[0] < at], [it for it in spans if it[0] >= at]
+    before = [span for span in spans if span[0] < at]
+    after = [span for span in spans if span[0] >= at]
     if before and at - before[-1][0] < _MAX_KEY and key.fullmatch(text, before[-1][0], at):
         return before[-1:]
     return after[:1] or before[-1:]

@@ -434,10 +434,8 @@ def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
         own_name = own.get("name") if own is not None else None
         if own_name and own_name not in known and joint.get("name") not in written:
             joints[joint.get("name") or ""] = own_name
-    own_materials, materials = (
-        [_node_of(material, {}) for material in root.iterchildren("material")]
-        for root in (draft.root, reference.root)
-    )
+    own_materials = [_node_of(it, {}) for it in draft.root.iterchildren("material")]
+    materials = [_node_of(it, {}) for it in reference.root.iterchildren("material")]
     called: dict[str, str] = {}
     for node, like in paired(own_materials, materials).both:
         called[like.values.get("name", "")] = node.values.get("name", "")

@@ -241,9 +241,8 @@ class _Proof(NamedTuple):
 
 def _is_reverse(one: Proposal, other: Proposal) -> bool:
     """Return whether the edits change texts of which the other ones make the old ones."""
-    return {(edit.old, edit.new) for edit in one.edits} == {
-        (edit.new, edit.old) for edit in other.edits
-    }
+    reversed_changes = {(edit.new, edit.old) for edit in other.edits}
+    return {(edit.old, edit.new) for edit in one.edits} == reversed_changes
 
 
 class HintSearch:

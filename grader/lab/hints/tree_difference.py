@@ -76,10 +76,11 @@ def steps(own: Node, like: Node) -> list[Step]:
             moved.append(Step("move", alike, step.like, parent=step.own))
             moved += _steps(alike, step.like)
             spare = [node for node in spare if node is not alike]
-    # What was moved is not removed any more.
-    kept = [
-        step for step in left if step.verb != "remove" or any(node is step.own for node in spare)
-    ]
+    kept: list[Step] = []
+    for step in left:
+        was_moved = not any(node is step.own for node in spare)
+        if step.verb != "remove" or not was_moved:
+            kept.append(step)
     return moved + sorted(kept, key=lambda step: _ORDER.get(step.verb, 0))
 
 

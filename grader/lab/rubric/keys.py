@@ -386,14 +386,13 @@ def rubric_schema() -> _Schema:
     """Return the JSON Schema of a rubric, with the arguments of every check, also of installed
     plug-ins.
     """
-    named = {name: usable_check(name) for name in check_names()}
-    checks = [check for check in named.values() if check is not None]
-    facts = [check.documentation.fact if check is not None else "" for check in named.values()]
+    checks = {name: usable_check(name) for name in check_names()}
+    facts = [check.documentation.fact if check is not None else "" for check in checks.values()]
     schema, criterion = RUBRIC.schema, CRITERION.schema
     carried = criterion["properties"]["carried"]
     for row in (criterion, carried, carried["items"]):
         row["properties"]["check"] |= {
-            "enum": list(named),
+            "enum": list(checks),
             "x-taplo": {"docs": {"enumValues": facts}},
         }
         # In a row with allOf, taplo completes no key.
@@ -401,23 +400,22 @@ def rubric_schema() -> _Schema:
     # Only the loader knows which of the missing keys and arguments the defaults give.
     criterion["required"] = [key for key in criterion["required"] if key not in DEFAULTS.keys]
     schema["properties"]["criterion"]["items"] = criterion
-    defaults = {check.name: {"$ref": f"#/$defs/{check.name}"} for check in checks}
+    definitions: _Schema = {}
+    arguments_of_checks: _Schema = {}
+    rules: list[_Schema] = []
+    for check in checks.values():
+        if check is None:
+            continue
+        arguments = {name: _argument_type(check, name) for name in check.parameters}
+        definitions[check.name] = KeyTable(check.name, arguments).schema
+        reference = {"$ref": f"#/$defs/{check.name}"}
+        arguments_of_checks[check.name] = reference
+        is_check = {"properties": {"check": {"const": check.name}}, "required": ["check"]}
+        rules.append({"if": is_check, "then": {"properties": {"with": reference}}})
     schema["properties"]["defaults"]["properties"]["with"] |= {
-        "properties": defaults,
+        "properties": arguments_of_checks,
         "additionalProperties": False,
     }
-    tables = [
-        KeyTable(check.name, {name: _argument_type(check, name) for name in check.parameters})
-        for check in checks
-    ]
-    definitions = {table.name: table.schema for table in tables}
-    chosen = [
-        ({"check": {"const": name}}, {"with": arguments}) for name, arguments in defaults.items()
-    ]
-    rules = [
-        {"if": {"properties": it, "required": ["check"]}, "then": {"properties": then}}
-        for it, then in chosen
-    ]
     definitions["arguments"] = {"allOf": rules}
     return {"$schema": _DRAFT, "title": "grader rubric", **schema, "$defs": definitions}
 

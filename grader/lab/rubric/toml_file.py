@@ -48,6 +48,7 @@ _CLOSING = {
     'Expected "\'"': "'",
     "Expected \"'''\"": "'''",
 }  # what an error misses
+_HERE = "\0"  # where an error is, in a line that has no such character
 _TWICE = "this table is already given above"
 _SAID = {
     "Cannot overwrite a value": "this key is given twice",
@@ -140,24 +141,26 @@ def _syntax_mistake(error: str, text: str) -> str:
     lines = text.split("\n")
     said, line, column, _ = re.split(_PLACE, error)
     row, at = (int(line), int(column)) if line else (len(lines), len(lines[-1]) + 1)
-    if (
-        opened := text.rfind(_CLOSING.get(said, "\0"))
-    ) >= 0:  # else the place is the end of the file
+    opened = text.rfind(_CLOSING[said]) if said in _CLOSING else -1
+    if opened >= 0:  # else the place is the end of the file
         row, at = text.count("\n", 0, opened) + 1, opened - text.rfind("\n", 0, opened)
         said = "a text in quotes begins here and does not end"
-    said = next((words for start, words in _SAID.items() if said.startswith(start)), said)
-    before, after = (
-        lines[row - 1][max(0, at - _MAX_WIDTH) : at - 1],
-        lines[row - 1][at - 1 : at + _MAX_WIDTH],
-    )
-    marked = "\0".join(part.replace("\0", " ") for part in (before, after))
-    meant = (
-        words.format(*slip.groups())
-        for pattern, words in _SLIPS
-        if (slip := re.search(pattern, marked))
-    )
+    for start, words in _SAID.items():
+        if said.startswith(start):
+            said = words
+            break
+    before = lines[row - 1][max(0, at - _MAX_WIDTH) : at - 1]
+    after = lines[row - 1][at - 1 : at + _MAX_WIDTH]
+    # The patterns of slips name the place by a character that the text does not have.
+    marked = f"{before.replace(_HERE, ' ')}{_HERE}{after.replace(_HERE, ' ')}"
+    meant = said[0].lower() + said[1:]
+    for pattern, words in _SLIPS:
+        slip = re.search(pattern, marked)
+        if slip is not None:
+            meant = words.format(*slip.groups())
+            break
     around = (before + after).strip() or "an empty line"
-    return f"{row}:{at}: {next(meant, said[0].lower() + said[1:])}: {printable(around)}"
+    return f"{row}:{at}: {meant}: {printable(around)}"
 
 
 def _why_not_utf8(data: bytes, at: int) -> str:

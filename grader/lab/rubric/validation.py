@@ -33,11 +33,9 @@ class Validation:
 
     def __init__(self, table: TomlRow) -> None:
         self._reader = TomlRowReader()
-        self._row, self._guess, self._complain = (
-            self._reader.row,
-            self._reader.guess,
-            self._reader.complain,
-        )
+        self._row = self._reader.row
+        self._guess = self._reader.guess
+        self._complain = self._reader.complain
         self.bound: list[BoundCheck] = []
         self.carried: list[list[BoundCarried]] = []
         self._find_check, self._check_names = cache(find_check), cache(check_names)
@@ -48,15 +46,10 @@ class Validation:
         self.parts = self._read_rows("part", keys.PART)
         self.criteria = self._read_rows("criterion", keys.CRITERION, self._defaults)
         self.evidence = self._read_rows("evidence", keys.EVIDENCE)
-        self.late = (
-            self._row(("late",), self.rubric["late"], keys.LATE) if "late" in self.rubric else None
-        )
-        self.ignored = [
-            self._row(("test", "ignore", index), row, keys.IGNORE)
-            for index, row in enumerate(
-                self._row(("test",), self.rubric.get("test", {}), keys.TEST).get("ignore", ())
-            )
-        ]
+        self.late: TomlRow | None = None
+        if "late" in self.rubric:
+            self.late = self._row(("late",), self.rubric["late"], keys.LATE)
+        self.ignored = self._read_ignored()
         part_ids, positions = self._find_positions("part"), self._find_positions("criterion")
         self._check_part(("defaults",), self._defaults, part_ids)
         self._check_criteria(part_ids, positions)
@@ -84,16 +77,17 @@ class Validation:
                 self.bound.append(bound)
                 self._check_subject(where, row, bound[0])
             given = row.get("carried", [])
-            tables: list[tuple[tuple[int, ...], dict[str, Any]]]
+            tables: list[tuple[TomlPath, TomlRow]]
             if isinstance(given, dict):
-                tables = [((), given)]
+                tables = [((*where, "carried"), given)]
             else:
-                tables = [((i,), table) for i, table in enumerate(given)]
-            found = [
-                self._bind_carried((*where, "carried", *i), row, table, positions)
-                for i, table in tables
-            ]
-            self.carried.append([*filter(None, found)])
+                tables = [((*where, "carried", i), table) for i, table in enumerate(given)]
+            carried = []
+            for place, table in tables:
+                bound_table = self._bind_carried(place, row, table, positions)
+                if bound_table:
+                    carried.append(bound_table)
+            self.carried.append(carried)
             if use := {TOTAL: "final marks", DEADLINE: "deadlines"}.get(row.get("id", "")):
                 self._complain(
                     (*where, "id"),
@@ -115,6 +109,14 @@ class Validation:
     ) -> list[TomlRow]:
         rows = enumerate(self.rubric.get(key, ()))
         return [self._row((key, index), row, table, defaults or {}) for index, row in rows]
+
+    def _read_ignored(self) -> list[TomlRow]:
+        """Return the tables of mutants that may keep full marks."""
+        test = self._row(("test",), self.rubric.get("test", {}), keys.TEST)
+        return [
+            self._row(("test", "ignore", index), row, keys.IGNORE)
+            for index, row in enumerate(test.get("ignore", ()))
+        ]
 
     def _read_defaults(self) -> None:
         """Read the values that criteria have unless they give others, and the default arguments
@@ -150,17 +152,12 @@ class Validation:
                 "robot nor a package"
             )
             self._complain((*where, "args"), message)
-        links = [
-            *texts_in(
-                [value for key, value in row.get("with", {}).items() if key in LINK_ARGUMENTS]
-            )
-        ]
-        unknown = [
-            text
-            for text in (*row.get("at", ()), *links)
-            if text.startswith("@") and not is_selector(text)
-        ]
-        for name in (*unknown, *(text for text in links if text.startswith(JOINT_OF))):
+        arguments = row.get("with", {})
+        links = [*texts_in([value for key, value in arguments.items() if key in LINK_ARGUMENTS])]
+        places = [*row.get("at", ()), *links]
+        unknown = [text for text in places if text.startswith("@") and not is_selector(text)]
+        unknown += [text for text in links if text.startswith(JOINT_OF)]
+        for name in unknown:
             self._complain(
                 where,
                 f"no link is named by {name!r}: write @root, @tip, or @moved:1, @moved:2 and so on",

@@ -2,7 +2,7 @@
 files, and why.
 """
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -203,6 +203,11 @@ class _Places(NamedTuple):
             return place
         return None
 
+    def best_of(self, paths: Iterable[str]) -> Belonging | None:
+        """Return the best place of files; None if all are in folders that are not searched."""
+        places = map(self.place_of, paths)
+        return min((place for place in places if place is not None), default=None)
+
     def only(self, tree: Tree, places: Collection[Belonging]) -> Tree:
         """Return the files that are in these places."""
         return _part_of(tree, lambda path: self.place_of(path) in places)
@@ -252,10 +257,12 @@ def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     own_tree = places.own(tree) if has_own_folder else searched_tree
 
     # The packages are those of the best place that has any: all others are elsewhere.
-    places_of_files = {path: places.place_of(path) for path in package_files}
-    package_place = min(
-        (place for place in places_of_files.values() if place is not None), default=None
-    )
+    package_place = places.best_of(package_files)
+    files_elsewhere = [
+        path
+        for path in package_files
+        if package_place is None or places.place_of(path) is not package_place
+    ]
     packages: tuple[Package, ...] = ()
     if package_place is not None:
         package_tree = places.only(tree, (package_place,))
@@ -263,11 +270,6 @@ def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
             packages = every_package
         else:
             packages = read_packages(package_tree, lab.urdf, lab.package, lab.packages)
-    files_elsewhere = [
-        path
-        for path, place in places_of_files.items()
-        if place is None or place is not package_place
-    ]
     paths_elsewhere = sorted(project_robots)
     paths_elsewhere += [path for path in files_elsewhere if path.rpartition("/")[2] == MANIFEST]
     others = [
