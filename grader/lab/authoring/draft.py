@@ -128,22 +128,22 @@ def draft(submission: Submission, solution: Solution | None, head: Head, path: P
     subjects: dict[str, Any] = {"submission": submission}
     if solution is not None:
         subjects |= {"urdf": solution.reading, "robot": solution.robot, "reference": solution.robot}
-    tried = [it if isinstance(it, Omission) else _tried(subjects, it) for it in found]
-    facts = ((it.fact, it) for it in tried if isinstance(it, _DraftCriterion))
-    rows = [
-        *{
-            (fact.check, fact.package, toml_literal([fact.args, fact.arguments])): row
-            for fact, row in facts
-        }.values()
-    ]
+    rows_by_fact: dict[tuple[str, str | None, str], _DraftCriterion] = {}
+    omissions: list[Omission] = []
+    for fact in found:
+        row = fact if isinstance(fact, Omission) else _tried(subjects, fact)
+        if isinstance(row, Omission):
+            omissions.append(row)
+        else:
+            arguments = toml_literal([row.fact.args, row.fact.arguments])
+            rows_by_fact[row.fact.check, row.fact.package, arguments] = row
+    rows = [*rows_by_fact.values()]
     if submission.packages:
         values = _values(subjects, submission, {row.fact.words for row in rows})
     else:
         values = {}
     data = _rubric_text(head, rows, values).encode()
-    return RubricDraft(
-        data, read_rubric(data, path), tuple(it for it in tried if isinstance(it, Omission))
-    )
+    return RubricDraft(data, read_rubric(data, path), tuple(omissions))
 
 
 def _values(
@@ -225,9 +225,10 @@ def _rubric_text(
     of_robot = [row for row in rows if not row.is_of_package]
     of_package = [row for row in rows if row.is_of_package]
     points = _points(of_robot, of_package)
-    checks = {row.fact.check for row in rows} | {
-        it.check for row in rows for it in row.fact.carried
-    }
+    checks: set[str] = set()
+    for row in rows:
+        checks.add(row.fact.check)
+        checks.update(carried.check for carried in row.fact.carried)
     part, usual = (_ROBOT if of_robot else _PACKAGE), Counter(points).most_common(1)[0][0]
     lines = [*_head_lines(head, sum(points)), *_default_lines(part, usual, checks)]
     if of_robot:

@@ -37,13 +37,12 @@ def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
     """
     covered = needed_interfaces(solution.submission.workspace)
     robot = solution.robot.robot
-    joints, links = {joint.name for joint in robot.joints}, {link.name for link in robot.links}
-    free = robot.joints if are_joints_free(solution) else ()
-    selectors = {
-        it.name: f"{JOINT_OF}{it.child}"
-        for it in free
-        if it.name not in links and "'" not in it.child
-    }
+    joints = {joint.name for joint in robot.joints}
+    links = {link.name for link in robot.links}
+    selectors: dict[str, str] = {}
+    for joint in robot.joints if are_joints_free(solution) else ():
+        if joint.name not in links and "'" not in joint.child:
+            selectors[joint.name] = f"{JOINT_OF}{joint.child}"
     joints.update(selectors.values())
     are_compared = read_agreement(solution.submission.workspace).holds("topics")
 

@@ -21,6 +21,7 @@ from grader.ros.package.package import MANIFEST, SETUP, Package
 from grader.ros.xml.parsing import Element, XmlFault, XmlFile, read_document
 from grader.ros.xml.urdf_format import JOINT_TYPES, PARTS
 
+_COMMA = re.compile(r"\s*,")
 _NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
 _NAMES = ("name", "link", "joint", "reference")
 _UNTOUCHED = ("version", "encoding", "params")
@@ -81,10 +82,10 @@ def _as_mutants(text: str, path: str, changes: Iterable[MutantEdit]) -> Iterator
 
 def _changes(text: str, hidden: Collection[str]) -> Iterator[MutantEdit]:
     places = list(_places(text))
-    names = {
-        tag: [it.get("name", "") for it, *_ in places if it.tag == tag]
-        for tag in ("link", "joint", "material")
-    }
+    names: dict[str, list[str]] = {"link": [], "joint": [], "material": []}
+    for element, *_ in places:
+        if element.tag in names:
+            names[str(element.tag)].append(element.get("name", ""))
     for element, label, start in places:
         for attribute in attributes(text, start):
             yield from _attribute_changes(text, element, label, attribute, names)
@@ -111,7 +112,9 @@ def _places(text: str) -> Iterator[tuple[Element, str, int]]:
     except XmlFault:
         document = read_document(data, "")
         root, source = document.root, document.source
-    labels: dict[Element | None, str] = {}
+    if root is None:
+        return
+    labels: dict[Element, str] = {}
     counts: Counter[str] = Counter()
     if root is None:
         return

@@ -304,16 +304,17 @@ def _turned_facts(package: Package, path: str) -> Iterator[Fact]:
             continue
         text = str(turned).lower() if isinstance(turned, bool) else turned
         after = _started(package.under({argument: text}).launch(path))
-        nodes, absent = (
-            [it for it in one if it not in other]
-            for one, other in ((after, before), (before, after))
-        )
-        given = {key: names for key, names in (("nodes", nodes), ("not", absent)) if names}
+        nodes = [node for node in after if node not in before]
+        absent = [node for node in before if node not in after]
+        given = {}
+        starts = ""
+        if absent:
+            given["not"] = absent
+            starts = f"does not start {enumerated(absent)}"
+        if nodes:
+            given = {"nodes": nodes, **given}
+            starts = f"starts {enumerated(nodes)}"
         if given:
-            if nodes:
-                starts = f"starts {enumerated(nodes)}"
-            else:
-                starts = f"does not start {enumerated(absent)}"
             fact = _package_fact("node_runs", f"{name} {argument}", launch=name, **given)
             title = f"with {argument}:={text}, the launch file {starts}"
             yield fact._replace(args={argument: turned}, title=title)
@@ -327,15 +328,13 @@ def _nodes_that_start(launch: Launch) -> list[str]:
     """Return the nodes that start, with what a condition replaces: joint_state_publisher for its
     GUI, for example.
     """
-    names = {
-        when: list(dict.fromkeys(it.name for it in launch.nodes if it.when is when))
-        for when in (True, False)
-    }
-    alike = {
-        name: [it for it in names[False] if name.startswith(it) or it.startswith(name)]
-        for name in names[True]
-    }
-    return [" or ".join(dict.fromkeys((name, *others))) for name, others in alike.items()]
+    starting = _started(launch)
+    replaced = dict.fromkeys(node.name for node in launch.nodes if node.when is False)
+    names = []
+    for name in starting:
+        alike = [it for it in replaced if name.startswith(it) or it.startswith(name)]
+        names.append(" or ".join(dict.fromkeys((name, *alike))))
+    return names
 
 
 def _rviz_facts(package: Package) -> Iterator[Fact]:
@@ -347,7 +346,9 @@ def _rviz_facts(package: Package) -> Iterator[Fact]:
         opened.setdefault(package.rviz_opened(package.launch(path)) or "", posixpath.basename(path))
     for path in package.rviz_files:
         rviz, name = package.rviz(path), posixpath.basename(path)
-        of = {"name": name, **({"launch": opened[path]} if path in opened else {})}
+        of = {"name": name}
+        if path in opened:
+            of["launch"] = opened[path]
         yield _package_fact("rviz_found", name, **of)
         if rviz.fixed_frame:
             yield _package_fact("rviz_fixed_frame", name, **of, frame=rviz.fixed_frame)

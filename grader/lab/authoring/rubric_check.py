@@ -150,7 +150,8 @@ def _is_changed_copy(rubric: Rubric) -> bool:
     if rubric.id not in shipped_rubrics() or rubric.is_shipped:
         return False
     shipped = load_rubric(rubric.id).criteria
-    own, copied = ({it.id for it in criteria} for criteria in (rubric.criteria, shipped))
+    own = {criterion.id for criterion in rubric.criteria}
+    copied = {criterion.id for criterion in shipped}
     return rubric.criteria != shipped and 2 * len(own & copied) > len(own)
 
 

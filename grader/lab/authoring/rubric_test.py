@@ -463,13 +463,26 @@ def _counted(
     )
 
 
+def _unused_patterns(rubric: Rubric, mutants: Sequence[Mutant]) -> tuple[str, ...]:
+    """Return the patterns of ignored mutants that no mutant matches."""
+    unused: list[str] = []
+    for row in rubric.ignored:
+        unused += [
+            pattern
+            for pattern in row.mutants
+            if not any(_matches(mutant, pattern) for mutant in mutants)
+        ]
+    return tuple(unused)
+
+
 def _survivor(trial: Trial, mutant: Mutant) -> _Survivor:
     """Return a mutant that loses nothing, with the reason for which the rubric ignores it."""
-    ignored = trial.rubric.ignored
-    reasons = (
-        row.reason for row in ignored if any(_matches(mutant, pattern) for pattern in row.mutants)
-    )
-    return _Survivor(mutant, _mutant_diff(trial, mutant), next(reasons, ""))
+    reason = ""
+    for row in trial.rubric.ignored:
+        if any(_matches(mutant, pattern) for pattern in row.mutants):
+            reason = row.reason
+            break
+    return _Survivor(mutant, _mutant_diff(trial, mutant), reason)
 
 
 def _mutant_diff(trial: Trial, mutant: Mutant) -> str:

@@ -214,14 +214,18 @@ class _Grading:
         """
         because = result.because
         cause = self.results.get(because) if because else None
-        origins = (because, cause.carried if cause is not None else "") if because else None
-        for before in (self.results[name] for name in causes if name in self.results):
-            mistake = self.results.get(
-                before.because or before.criterion.id
-            )  # None for one that is below
+        origins = [because]
+        if cause is not None:
+            origins.append(cause.carried)
+        for name in causes:
+            if name not in self.results:
+                continue
+            before = self.results[name]
+            # None for one that is below
+            mistake = self.results.get(before.because or before.criterion.id)
             if mistake is None or mistake.outcome.status != "failed":
                 continue
-            if origins is None or mistake.criterion.id in origins:
+            if not because or mistake.criterion.id in origins:
                 return mistake
         return None
 
@@ -300,14 +304,14 @@ class _Grading:
     def _is_unbuilt(self, name: str) -> bool:
         """Return whether no link of the robot may be meant by the name of a missing one."""
         robot, wanted = self.submission.robot, self._rubric.links
-        if robot is not None:
-            others = [link.known for link in robot.links if link.known.name not in wanted]
-        else:
-            others = []
-        return not (
-            any(link.visuals for link in others)
-            or near(name, [link.name for link in others], "link")
-        )
+        others = []
+        for link in robot.links if robot is not None else ():
+            if link.known.name in wanted:
+                continue
+            if link.known.visuals:
+                return False
+            others.append(link.known.name)
+        return not near(name, others, "link")
 
     def _first_miss(self, criterion: Criterion, thing: tuple[str, str, str]) -> str:
         """Return the first criterion that misses a thing, which may be this one; an adjusted one

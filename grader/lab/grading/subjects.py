@@ -62,6 +62,19 @@ class Subjects:
                 self._known["robot"] = self.robot
             self._known["urdf"] = submission.urdf.as_it_stands or reading
 
+    def _read_robot(self, read: Read) -> None:
+        urdf = read.reading
+        self.source = urdf.source
+        # What is read as it was meant is no problem of the robot that is examined.
+        self.problems = tuple(
+            it for it in urdf.problems if not (urdf.is_meant and it.kind.effect == "rejects")
+        )
+        examined = urdf
+        if urdf.robot is not None:
+            self.robot = Configuration(urdf.robot, is_guarded=bool(urdf.unresolved))
+            examined = urdf._replace(robot=self.robot.robot)
+        self._known["urdf"] = read.as_it_stands or examined
+
     def _with_transforms(
         self, robot: Configuration, owner: Submission | ReferenceSolution
     ) -> Configuration:
@@ -97,16 +110,15 @@ class Subjects:
         known, at = self._known, criterion.at
         if criterion.package:
             known = {**known, "submission": self.submission.with_package(criterion.package)}
-        found = [
+        subjects = [
             known[name] if name in known else self._needed_subject(name, known)
             for name in check.examined
         ]
-        return [
-            self._pose_robot(it, at)
-            if at and isinstance(it, Configuration) and it is self.robot
-            else it
-            for it in found
-        ]
+        if at:
+            for index, subject in enumerate(subjects):
+                if isinstance(subject, Configuration) and subject is self.robot:
+                    subjects[index] = self._pose_robot(subject, at)
+        return subjects
 
     def pose_text(self, at: Mapping[str, float]) -> str:
         """Return the positions of joints that are there: 'joint_2' at 40 degrees and 'slide' at

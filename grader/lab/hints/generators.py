@@ -107,7 +107,7 @@ _Lost = Sequence[Criterion]
 Stage = Callable[[Situation, _Lost], Iterator[Iterable[Proposal]]]
 
 
-def _of_reference(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
+def _reference_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
     """What undoes a slip, then what differs from the other side of the robot, and from the
     reference.
     """
@@ -120,57 +120,60 @@ def _of_reference(situation: Situation, lost: _Lost) -> Iterator[Iterable[Propos
         links = _links_of(lost, difference)
         yield draft.corrections([*difference.names, *JOINT_TYPES])
         yield _proposals(situation, situation.exchanges)
+        pieces = difference.pieces
+        if links is not None:
+            # Those of the links that criteria name come first: there may be more than can be tried.
+            order = {link: index for index, link in enumerate(links)}
+            pieces = sorted(pieces, key=lambda piece: order.get(piece.link, len(order)))
+        yield _proposals(situation, pieces, links)
+        # these rarely find a mistake
         yield _proposals(situation, in_another_unit(difference))
         yield _proposals(situation, of_siblings(difference, links or ()))
-        pieces = difference.pieces
-        if (
-            links is not None
-        ):  # those of the links that criteria name come first: there may be more than can be tried
-            pieces = sorted(
-                pieces, key=lambda it: links.index(it.link) if it.link in links else len(links)
-            )
-        yield _proposals(situation, pieces, links)
 
 
-def _of_package(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
+def _package_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
     """The edits of the files of a package, by the kinds of files that checks look at."""
-    own = [criterion for criterion in lost if criterion.check.subject not in ("urdf", "robot")]
-    for name in dict.fromkeys(criterion.package for criterion in own):
+    by_package: dict[str, list[Criterion]] = {}
+    for criterion in lost:
+        if criterion.check.subject not in ("urdf", "robot"):
+            by_package.setdefault(criterion.package, []).append(criterion)
+    for name, criteria in by_package.items():
         submission = situation.submission.with_package(name) if name else situation.submission
         if submission.package is not None:
-            from grader.lab.hints.package_edits import (
-                package_proposals,  # late: a robot on its own needs none
-            )
+            # Late: a robot on its own needs none.
+            from grader.lab.hints.package_edits import package_proposals
 
-            wanted = [(it.check.about.looks_at, it.arguments) for it in own if it.package == name]
-            yield from package_proposals(
-                submission.package, situation.reference_package(name), wanted
-            )
-        yield from _of_names(situation, [it for it in own if it.package == name])
+            wanted = [(it.check.about.looks_at, it.arguments) for it in criteria]
+            reference = situation.reference_package(name)
+            yield from package_proposals(submission.package, reference, wanted)
+        yield from _name_edits(situation, criteria)
 
 
-def _of_names(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
-    for criterion in [it for it in lost if it.check.name in ("names_agree", "parameter_is")]:
-        from grader.lab.hints.name_edits import (  # late: few rubrics ask for names
-            name_proposals,
-            value_proposals,
-        )
+def _name_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
+    """Yield edits of names that do not agree, then of parameters, which rarely are the mistake."""
+    for check in ("names_agree", "parameter_is"):
+        for criterion in lost:
+            if criterion.check.name != check:
+                continue
+            # Late: few rubrics ask for names.
+            from grader.lab.hints.name_edits import name_proposals, value_proposals
 
-        if criterion.check.name == "names_agree":
-            reference = situation.reference_package(criterion.package)
-            yield name_proposals(situation.submission, criterion.arguments["of"], reference)
-        else:
-            yield value_proposals(situation.submission, criterion.arguments)
+            if check == "names_agree":
+                reference = situation.reference_package(criterion.package)
+                yield name_proposals(situation.submission, criterion.arguments["of"], reference)
+            else:
+                yield value_proposals(situation.submission, criterion.arguments)
 
 
-def _of_own_numbers(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
+def _own_number_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
     """The student's own numbers with another sign, order or unit."""
     if situation.difference is not None:
-        links = _links_of([it for it in lost if it.check.subject == "robot"], situation.difference)
+        of_robot = [criterion for criterion in lost if criterion.check.subject == "robot"]
+        links = _links_of(of_robot, situation.difference)
         yield _proposals(situation, of_own(situation.difference, links or ()))
 
 
-def _of_links(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
+def _whole_link_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
     """All values of the reference of a link and its joint, or of one element."""
     if situation.difference is not None and any(
         criterion.check.subject == "robot" for criterion in lost
@@ -183,12 +186,12 @@ def _of_links(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]
 # What is tried, in this order; the reference and the package again, after the edits that were
 # found.
 STAGES: tuple[Stage, ...] = (
-    _of_reference,
-    _of_package,
-    _of_own_numbers,
-    _of_links,
-    _of_reference,
-    _of_package,
+    _reference_edits,
+    _package_edits,
+    _own_number_edits,
+    _whole_link_edits,
+    _reference_edits,
+    _package_edits,
 )
 
 
@@ -196,41 +199,44 @@ def _proposals(
     situation: Situation, pieces: Iterable[Piece], links: Collection[str] | None = None
 ) -> Iterator[Proposal]:
     """Yield the edits of the text that pieces of these links stand for."""
-    assert situation.draft is not None
+    draft = situation.draft
+    assert draft is not None
     for piece in pieces:
         if situation.has_reversed and piece.is_pose:
             continue
-        if links is None or piece.link in links or not situation.is_known(piece.link):
-            shared = situation.draft.shared(piece.sets)
-            for way, edits in enumerate(situation.draft.ways(piece.sets)):
-                if edits or piece.edits:
-                    yield Proposal(
-                        (*edits, *piece.edits), piece.cause, piece.link, piece.rank, way, shared
-                    )
+        if links is not None and piece.link not in links and situation.is_known(piece.link):
+            continue
+        shared = draft.shared(piece.sets)
+        for way, edits in enumerate(draft.ways(piece.sets)):
+            if edits or piece.edits:
+                every = (*edits, *piece.edits)
+                yield Proposal(every, piece.cause, piece.link, piece.rank, way, shared)
 
 
 def _links_of(criteria: Iterable[Criterion], difference: RobotDifference) -> list[str] | None:
     """Return the links whose joints and shapes decide criteria, with all above them; None if all
     may.
     """
-    found: dict[str, None] = {}
+    links: dict[str, None] = {}
     robot, reference = difference.draft.robot, difference.reference.robot
     posed = Configuration(robot)
-    for criterion in (it for it in criteria if it.check.subject in ("urdf", "robot")):
-        given = (
-            selected_or_name(posed.robot, posed.parent_joints, name)
-            for name in texts_in(criterion.arguments)
-        )
-        named = [name for name in given if reference.has_link(name) or robot.has_link(name)]
+    for criterion in criteria:
+        if criterion.check.subject not in ("urdf", "robot"):
+            continue
+        named = []
+        for text in texts_in(criterion.arguments):
+            name = selected_or_name(posed.robot, posed.parent_joints, text)
+            if reference.has_link(name) or robot.has_link(name):
+                named.append(name)
         if not named:
             return None
         for name in named:
             link: str | None = name
-            while link is not None and link not in found:
-                found[link] = None
+            while link is not None and link not in links:
+                links[link] = None
                 joint = posed.parent_joints.get(link)
                 link = joint.parent if joint is not None else None
-    return [*found][:_MAX_LINKS]
+    return [*links][:_MAX_LINKS]
 
 
 def _repairs(reading: Reading) -> Iterator[Proposal]:
@@ -244,13 +250,14 @@ def _repairs(reading: Reading) -> Iterator[Proposal]:
             yield Proposal(edits, "the syntax of tags")
     draft = Draft.of(reading)
     if draft is not None and reading.undone:
-        edits = tuple(edit for word in reading.undone for edit in _of_word(draft, word))
-        yield Proposal(
-            edits, "the spelling of a word" if len(reading.undone) == 1 else "the spelling of words"
-        )
+        edits_of_words: list[Edit] = []
+        for word in reading.undone:
+            edits_of_words += _word_edits(draft, word)
+        cause = "the spelling of a word" if len(reading.undone) == 1 else "the spelling of words"
+        yield Proposal(tuple(edits_of_words), cause)
 
 
-def _of_word(draft: Draft, word: Word) -> Edits:
+def _word_edits(draft: Draft, word: Word) -> Edits:
     """Return the edits of a word: of a tag, of an attribute's name, or of its value."""
     element, attribute = word.element, word.attribute
     if attribute is None:
@@ -270,12 +277,10 @@ def _with_xacro(submission: Submission) -> Iterator[Proposal]:
 
     package = submission.package
     if package is not None:
-        sources = [submission.source(package.path(path)) for path in package.launch_files]
-    else:
-        sources = []
-    for source in sources:
-        if source is not None:
-            yield from (Proposal(edits, _RAW_XACRO) for edits in with_xacro(source))
+        for path in package.launch_files:
+            source = submission.source(package.path(path))
+            if source is not None:
+                yield from (Proposal(edits, _RAW_XACRO) for edits in with_xacro(source))
     if not urdf.path.endswith(".xacro"):
         renamed = f"{urdf.path.removesuffix('.urdf')}.urdf.xacro"
         yield Proposal((Edit(urdf.path, 1, 1, "", "", renamed),), _RAW_XACRO)
@@ -304,43 +309,47 @@ def missing_hints(
     """
     if difference is None or written is None or difference.draft is difference.reference:
         return {}
-    found: dict[str, FoundHint] = {}
-    left = sorted(
-        difference.missing, key=lambda part: part.tag, reverse=True
-    )  # links first, each with its joints
+    hints: dict[str, FoundHint] = {}
+    # links first, each with its joints
+    left = sorted(difference.missing, key=lambda part: part.tag, reverse=True)
     while left:
         link, is_link = left[0].link, left[0].tag == "link"
         parts = [part for part in left if part.link == link or (is_link and part.parent == link)]
         left = [part for part in left if part not in parts]
-        robots = [
-            name for name in lost if name not in found and criteria[name].check.subject == "robot"
+        names = [
+            name for name in lost if name not in hints and criteria[name].check.subject == "robot"
         ]
-        own = [name for name in robots if criteria[name].arguments.get("link") == link]
-        names = own or [name for name in robots if link in texts_in(criteria[name].arguments)]
-        if names:
-            found[max(names, key=lambda name: lost[name])] = _hint_of_parts(written, parts)
-    has_link = difference.draft.robot.has_link
-    joints = [part for part in difference.missing if has_link(part.link) and has_link(part.parent)]
+        about_link = [name for name in names if criteria[name].arguments.get("link") == link]
+        if not about_link:
+            about_link = [name for name in names if link in texts_in(criteria[name].arguments)]
+        if about_link:
+            hints[max(about_link, key=lambda name: lost[name])] = _hint_of_parts(written, parts)
     loading = [name for name in lost if criteria[name].check.subject == "urdf"]
+    joints = _missing_joints(difference)
     if not loading or not joints:
-        return found
+        return hints
     if len(joints) == 1:
-        found = {name: hint for name, hint in found.items() if hint.proposal.link != joints[0].link}
-        found[loading[0]] = _hint_of_parts(written, joints)
+        # The URDF does not load without it: one criterion says so, no other one.
+        hints = {name: hint for name, hint in hints.items() if hint.proposal.link != joints[0].link}
+        hints[loading[0]] = _hint_of_parts(written, joints)
     else:
         lacking = enumerated([repr(part.link) for part in joints], _MAX_NAMED)
         cause = f"the joints of {lacking} are missing"
-        found[loading[0]] = FoundHint(Proposal((), cause), {}, words=f"add the joints of {lacking}")
-    return found
+        hints[loading[0]] = FoundHint(Proposal((), cause), {}, words=f"add the joints of {lacking}")
+    return hints
+
+
+def _missing_joints(difference: RobotDifference) -> list[MissingPart]:
+    """Return the missing joints between links that exist."""
+    has_link = difference.draft.robot.has_link
+    return [part for part in difference.missing if has_link(part.link) and has_link(part.parent)]
 
 
 def _hint_of_parts(written: Draft, parts: list[MissingPart]) -> FoundHint:
     first = parts[0].link if parts[0].tag == "link" else ""
     causes = enumerated([_cause_of_part(part, first) for part in parts])
-    words = (
-        "add "
-        f"{enumerated([_part_in_words(part) for part in parts])}{_lines_of_similar(written, parts)}"
-    )
+    parts_in_words = enumerated([_part_in_words(part) for part in parts])
+    words = f"add {parts_in_words}{_lines_of_similar(written, parts)}"
     verb = "is" if len(parts) == 1 else "are"
     return FoundHint(Proposal((), f"{causes} {verb} missing", parts[0].link), {}, words=words)
 
@@ -364,8 +373,11 @@ def _lines_of_similar(draft: Draft, parts: list[MissingPart]) -> str:
     """Return where the first elements like the missing ones are."""
     lines: set[int] = set()
     for part in parts:
-        joints = (joint for joint in draft.joints() if joint.get("type") == part.joint_type)
-        like = next(draft.links() if part.tag == "link" else joints, None)
+        if part.tag == "link":
+            like = next(draft.links(), None)
+        else:
+            joints = (joint for joint in draft.joints() if joint.get("type") == part.joint_type)
+            like = next(joints, None)
         if like is not None:
             lines.add(draft.line(like))
     if not lines:

@@ -66,22 +66,29 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
         trials, _draft(solution), partial(_package, solution), report.by_convention
     ).run()
     costs = costs_of(results)
-    shown = {name: found for found in reversed(search.found) for name in found.gains}
+    # Of several hints with which a criterion passes, it shows the first.
+    shown: dict[str, FoundHint] = {}
+    for found in reversed(search.found):
+        shown |= dict.fromkeys(found.gains, found)
     entries = {found.edits: _entry(found, shown, results, costs) for found in search.found}
     hints: dict[str, Hint] = {}
-    for name, one in {**search.missing, **shown}.items():
+    for name, found in {**search.missing, **shown}.items():
         with trials.isolated():
-            entry = entries.get(one.edits, name)
-            before = search.found[: search.found.index(one)] if one.is_late else []
-            found = _first_at(one, results[entry].outcome.location)
-            earlier = tuple(dict.fromkeys(entries[it.edits] for it in before))
-            shown_before = tuple(it for it in earlier if results[it].outcome.status == "failed")
-            text = message(found, level, submission, shown_before)
-            in_words = level == "edit" and any(map(_loses_expression, found.edits))
-            told = found._replace(gains={}) if in_words else found
-            hint = _hint(
-                told, text, entry, results[name], keeps_edits=level == "edit" and not in_words
-            )
+            entry = entries.get(found.edits, name)
+            earlier: tuple[str, ...] = ()
+            if found.is_late:
+                found_before = search.found[: search.found.index(found)]
+                earlier = tuple(dict.fromkeys(entries[before.edits] for before in found_before))
+            # A hint that is shown at a skipped criterion is not where a reader would look for it.
+            named = [it for it in earlier if results[it].outcome.status == "failed"]
+            in_order = _first_at(found, results[entry].outcome.location)
+            text = message(in_order, level, submission, named)
+            keeps_edits = level == "edit"
+            if keeps_edits and any(map(_loses_expression, in_order.edits)):
+                # The student writes an expression, which no program has graded.
+                keeps_edits = False
+                in_order = in_order._replace(gains={})
+            hint = _hint(in_order, text, entry, results[name], keeps_edits=keeps_edits)
             hints[name] = hint._replace(after=earlier)
     if level == "edit":
         others = enumerated(list(dict.fromkeys(entries.values())), _MAX_NAMED)
@@ -91,9 +98,10 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
                 hints[name] = Hint(f"Make the edits for {others}.", at, {})
     with_hints = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
     report = report._replace(results=tuple(with_hints), hints_complete=search.is_complete)
-    return _HintedReport(
-        report, tuple(edit for one in _written(search.found) for edit in one.edits), trials.faults
-    )
+    edits: list[Edit] = []
+    for found in _written(search.found):
+        edits += found.edits
+    return _HintedReport(report, tuple(edits), trials.faults)
 
 
 def _written(found: Sequence[FoundHint]) -> list[FoundHint]:
@@ -114,11 +122,9 @@ def _loses_expression(edit: Edit) -> bool:
     """Return whether an edit writes a value in place of an expression of xacro: which one is
     better, a person knows.
     """
-    return (
-        edit.path.endswith(ROBOT_ENDINGS)
-        and edit.old.count("$") > edit.new.count("$")
-        and bool(edit.new)
-    )
+    if not edit.new or not edit.path.endswith(ROBOT_ENDINGS):
+        return False
+    return edit.old.count("$") > edit.new.count("$")
 
 
 def fixed(found: _HintedReport, submission: Submission) -> Fix:
@@ -150,17 +156,14 @@ def _entry(
     """
 
     def rank(name: str) -> tuple[bool, bool, bool, Decimal]:
-        where, at = results[name].outcome.location, found.edits[0]
-        is_there = where is not None and (where.path, where.line) == (at.path, at.line)
+        where, edit = results[name].outcome.location, found.edits[0]
+        is_there = where is not None and (where.path, where.line) == (edit.path, edit.line)
+        is_of_robot = results[name].criterion.check.subject != "urdf"
         cost = costs.get(name, found.gains[name])
-        return (
-            name not in costs,
-            not is_there,
-            results[name].criterion.check.subject != "urdf",
-            -cost,
-        )
+        return name not in costs, not is_there, is_of_robot, -cost
 
-    return min([name for name in found.gains if shown.get(name) is found] or found.gains, key=rank)
+    showing = [name for name in found.gains if shown.get(name) is found]
+    return min(showing or found.gains, key=rank)
 
 
 def _first_at(found: FoundHint, where: Location | None) -> FoundHint:
@@ -174,20 +177,20 @@ def _first_at(found: FoundHint, where: Location | None) -> FoundHint:
 
 
 def _hint(found: FoundHint, text: str, shown_by: str, result: Result, *, keeps_edits: bool) -> Hint:
-    places = [
-        Location(edit.path, edit.line, edit.column) for edit in found.edits
-    ]  # of two alternatives, none
-    at = next(iter(places), result.outcome.location or Location("", 1, 1))
+    at = result.outcome.location or Location("", 1, 1)
+    if found.edits:  # of two alternatives, there are none
+        first = found.edits[0]
+        at = Location(first.path, first.line, first.column)
     shown = (found.edits, found.proposal.cause) if keeps_edits else ((), "")
     return Hint(text, at, found.gains, *shown, shown_by, found.certainty)
 
 
 def _draft(reference: ReferenceSolution | None) -> Draft | None:
     """Return the robot of the reference solution."""
-    with suppress(InputError):
-        if reference is not None:
-            return Draft.of(reference.reading)
+    if reference is None:
         return None
+    with suppress(InputError):
+        return Draft.of(reference.reading)
     return None
 
 
@@ -195,12 +198,12 @@ def _package(reference: ReferenceSolution | None, name: str) -> "Package | None"
     """Return the package of the reference solution, or that of this name if the rubric has
     several.
     """
+    if reference is None:
+        return None
     with suppress(InputError):
-        submission = reference.submission if reference is not None else None
-        if submission is not None:
-            if name:
-                return submission.with_package(name).package
-            return submission.package
+        if name:
+            return reference.submission.with_package(name).package
+        return reference.submission.package
     return None
 
 
@@ -211,15 +214,16 @@ def message(
     hints come first.
     """
     if found.words:
-        text = _of_missing(found, level)
+        text = _words_of_missing(found, level)
     elif found.alternative is not None:
-        each = [
-            found._replace(proposal=it, alternative=None)
-            for it in (found.proposal, found.alternative)
-        ]
-        one, other = (message(it, level, submission, ()).removesuffix(".") for it in each)
-        both = f"{one}, or {other[0].lower()}{other[1:]}: both work, so look which one is meant"
-        text = both if one != other else one
+        texts = []
+        for proposal in (found.proposal, found.alternative):
+            alone = found._replace(proposal=proposal, alternative=None)
+            texts.append(message(alone, level, submission, ()).removesuffix("."))
+        text, other = texts
+        if text != other:
+            either = f"{text}, or {other[0].lower()}{other[1:]}"
+            text = f"{either}: both work, so look which one is meant"
     elif level == "edit":
         text = _changes(found.edits, submission)
     elif level == "cause":
@@ -227,14 +231,13 @@ def message(
     else:
         text = f"check {_texts_to_check(found.edits, submission)}"
     if earlier:
-        return (
-            f"After the edit{'s' if len(earlier) > 1 else ''} for "
-            f"{enumerated(earlier, _MAX_NAMED)}, {text}."
-        )
+        edits = "edits" if len(earlier) > 1 else "edit"
+        return f"After the {edits} for {enumerated(earlier, _MAX_NAMED)}, {text}."
     return f"{text[0].upper()}{text[1:]}."
 
 
-def _of_missing(found: FoundHint, level: HintLevel) -> str:
+def _words_of_missing(found: FoundHint, level: HintLevel) -> str:
+    """Return the words for what is missing and has no edit."""
     match level:
         case "edit":
             return found.words
@@ -272,31 +275,31 @@ def _places(edits: Sequence[Edit], submission: Submission) -> str:
         files.setdefault(edit.path, []).append(edit.line)
     texts = []
     for path, lines in files.items():
-        numbers = sorted(set(lines))
-        named = (
-            f"line{'s' if len(numbers) > 1 else ''} "
-            f"{enumerated([str(line) for line in numbers], _MAX_LINES)}"
-        )
+        named = _lines(sorted(set(lines)))
         texts.append(named if path == submission.path else f"{path}, {named}")
     return "; ".join(texts)
+
+
+def _lines(numbers: Sequence[int]) -> str:
+    """Return lines in words: lines 65 and 73."""
+    texts = [str(number) for number in numbers]
+    return f"{'lines' if len(texts) > 1 else 'line'} {enumerated(texts, _MAX_LINES)}"
 
 
 def _calls(edits: Sequence[Edit], source: "ExpandedSource", main: str | None) -> str:
     """Return where the macros of xacro that edits are in are called, if that is more than once."""
     from grader.lab.hints.xacro_edits import ExpandedEdits  # late: most robots are not xacro
 
-    every = ExpandedEdits(source)
-    macros = {
-        name: calls for edit in edits for name, calls in every.calls(edit).items() if len(calls) > 1
-    }
-    texts = (
-        (
-            f"the macro {name} is called in "
-            f"{enumerated([_at(call, main) for call in calls], _MAX_NAMED)}"
-        )
-        for name, calls in macros.items()
-    )
-    return f" ({'; '.join(texts)})" if macros else ""
+    expanded = ExpandedEdits(source)
+    texts: dict[str, str] = {}
+    for edit in edits:
+        for macro, calls in expanded.calls(edit).items():
+            if len(calls) > 1:
+                places = enumerated([_at(call, main) for call in calls], _MAX_NAMED)
+                texts[macro] = f"the macro {macro} is called in {places}"
+    if not texts:
+        return ""
+    return f" ({'; '.join(texts.values())})"
 
 
 def _at(place: Location | Edit, main: str | None) -> str:
@@ -313,33 +316,32 @@ def _moves(edits: Sequence[Edit], submission: Submission) -> list[str]:
         return []
     first, second = edits
     if first.old and (first.old, first.new) == (second.new, second.old):
-        places = (f"{_quote(edit.old)} ({_where(edit, submission)})" for edit in edits)
+        places = [f"{_quote(edit.old)} ({_where(edit, submission)})" for edit in edits]
         return [f"exchange {' and '.join(places)}"]
+    removed, added = sorted(edits, key=lambda edit: not edit.old)
+    is_move = bool(removed.old) and not added.old
     texts = {" ".join((edit.old + edit.new).split()) for edit in edits}
-    if len(texts) > 1 or {bool(edit.old) for edit in edits} != {True, False}:
+    if not is_move or len(texts) > 1:
         return []
-    old, new = sorted(edits, key=lambda edit: not edit.old)
-    return [f"move {_quote(old.old)} ({_where(old, submission)}) to {_insertion(new, submission)}"]
+    place = _insertion(added, submission)
+    return [f"move {_quote(removed.old)} ({_where(removed, submission)}) to {place}"]
 
 
 def _indents(edits: Sequence[Edit], submission: Submission) -> list[str]:
     """Return what becomes of the indentation of lines, if nothing else changes."""
-    if any(
-        (edit.old + edit.new).strip(" \t") or edit.column > 1 or edit.old == edit.new
-        for edit in edits
-    ):
-        return []
-    tabs, spaces = edits[0].new.count("\t"), edits[0].new.count(" ")
-    width = (
-        " and ".join(counted(*it) for it in ((tabs, "tab"), (spaces, "space")) if it[0])
-        or "nothing"
-    )
-    lines = (
-        f"line{'s' if len(edits) > 1 else ''} "
-        f"{enumerated([str(edit.line) for edit in edits], _MAX_LINES)}"
-    )
-    path = edits[0].path
-    return [f"indent {lines if path == submission.path else f'{lines} of {path}'} with {width}"]
+    for edit in edits:
+        is_text = bool((edit.old + edit.new).strip(" \t"))
+        if is_text or edit.column > 1 or edit.old == edit.new:
+            return []
+    path, indent = edits[0].path, edits[0].new
+    widths = []
+    for character, word in (("\t", "tab"), (" ", "space")):
+        if character in indent:
+            widths.append(counted(indent.count(character), word))
+    lines = _lines([edit.line for edit in edits])
+    if path != submission.path:
+        lines = f"{lines} of {path}"
+    return [f"indent {lines} with {' and '.join(widths) or 'nothing'}"]
 
 
 def _change(edit: Edit, submission: Submission) -> str:
@@ -365,16 +367,20 @@ def _whole_lines(edit: Edit, submission: Submission) -> Edit:
     """Return an edit of a part of an expression as one of the lines that it changes."""
     if all(map(_is_whole, (edit.old, edit.new))):
         return edit
-    text = (content(submission, edit.path) or b"").decode("utf-8", "surrogateescape")
+    text = _text(submission, edit.path)
     source = Source(edit.path, text)
-    start, end = source.offset(edit.line, 1), source.offset(edit.line + edit.old.count("\n") + 1, 1)
+    last_line = edit.line + edit.old.count("\n")
+    start, end = source.offset(edit.line, 1), source.offset(last_line + 1, 1)
     at = source.offset(edit.line, edit.column)
-    old = text[start:end].splitlines(keepends=True)
-    new = f"{text[start:at]}{edit.new}{text[at + len(edit.old) : end]}".splitlines(keepends=True)
-    first = _common_start(old, new)
-    last = _common_start(old[first:][::-1], new[first:][::-1])
-    before, after = ("".join(lines[first : len(lines) - last]) for lines in (old, new))
-    return Edit(edit.path, edit.line + first, 1, before, after)
+    before = text[start:end].splitlines(keepends=True)
+    text_after = f"{text[start:at]}{edit.new}{text[at + len(edit.old) : end]}"
+    after = text_after.splitlines(keepends=True)
+    first = _common_start(before, after)
+    before, after = before[first:], after[first:]
+    last = _common_start(before[::-1], after[::-1])
+    if last:
+        before, after = before[:-last], after[:-last]
+    return Edit(edit.path, edit.line + first, 1, "".join(before), "".join(after))
 
 
 def _common_start(one: Sequence[str], other: Sequence[str]) -> int:
@@ -395,34 +401,41 @@ def _is_whole(text: str) -> bool:
 def _insertion(edit: Edit, submission: Submission) -> str:
     """Return the line before, after or in which a text is added, or at the end of which."""
     line, at = _line(edit, submission), _at(edit, submission.path)
-    before = edit._replace(line=edit.line - 1)
-    if (
-        edit.new.endswith("\n")
-        and not edit.path.endswith(ROBOT_ENDINGS)
-        and _line(before, submission).strip()
-    ):
-        return f"after {_at(before, submission.path)}"
-    if edit.new.endswith("\n") or not line[: edit.column - 1].strip():
+    is_line = edit.new.endswith("\n")
+    if is_line and not edit.path.endswith(ROBOT_ENDINGS):
+        before = edit._replace(line=edit.line - 1)
+        if _line(before, submission).strip():
+            return f"after {_at(before, submission.path)}"
+    if is_line or not line[: edit.column - 1].strip():
         return f"before {at}"
-    end = "after" if "\n" in edit.new else "at the end of"
-    return f"{'in' if line[edit.column - 1 :].strip() else end} {at}"
+    if line[edit.column - 1 :].strip():
+        return f"in {at}"
+    if "\n" in edit.new:
+        return f"after {at}"
+    return f"at the end of {at}"
 
 
 def _where(edit: Edit, submission: Submission) -> str:
     """Return the line of an edit, and which of the texts in it is meant if it is there several
     times.
     """
-    line = _line(edit, submission)
+    line, place = _line(edit, submission), _at(edit, submission.path)
     number = line.count(edit.old) if edit.old else 0
+    if number < 2:
+        return place
     nth = line.count(edit.old, 0, edit.column - 1) + 1
-    return f"{_at(edit, submission.path)}{f', number {nth} of {number}' if number > 1 else ''}"
+    return f"{place}, number {nth} of {number}"
 
 
 def _line(edit: Edit, submission: Submission) -> str:
-    lines = (content(submission, edit.path) or b"").decode("utf-8", "surrogateescape").split("\n")
+    lines = _text(submission, edit.path).split("\n")
     if 0 < edit.line <= len(lines):
         return lines[edit.line - 1].removeprefix("\ufeff")
     return ""
+
+
+def _text(submission: Submission, path: str) -> str:
+    return (content(submission, path) or b"").decode("utf-8", "surrogateescape")
 
 
 def _quote(text: str) -> str:

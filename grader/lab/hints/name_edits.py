@@ -5,7 +5,6 @@ parameters.
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain, combinations
-from operator import attrgetter
 from os.path import commonprefix
 from typing import Any, NamedTuple
 
@@ -43,35 +42,40 @@ def name_proposals(
     Of two names the one is kept that more places write, in the submission or else in the reference;
     if as many do, both ways are proposed. A name that a file puts together from pieces has none.
     """
-    workspace, others = (
-        submission.workspace,
-        reference.packages.values() if reference is not None else (),
-    )
-    robot = workspace.robot
-    frames = [*map(attrgetter("name"), (*robot.links, *robot.joints))] if robot is not None else []
-    own, known = (
-        [source for it in each for source in workspace.sources_of(it, _TEXTS)]
-        for each in (workspace.packages, others)
-    )
+    workspace = submission.workspace
+    sources = [it for package in workspace.packages for it in workspace.sources_of(package, _TEXTS)]
+    spelling = _spelling(submission, sources, family, reference)
+    wrong = wrong_names(workspace, family, submission.lab_packages.values())
+    proposals = [[*_ways(submission, each.corrections, spelling)] for each in wrong]
+    yield from chain.from_iterable(proposals)
+    if family == "topics":
+        yield from chain.from_iterable(map(_exchanged_remappings, sources))
+    best = [it for it in chain.from_iterable(proposals) if it.rank == 0]
+    counts = range(2, len(proposals) + 1) if len(proposals) <= _MAX_WRONG else [len(proposals)]
+    for count in counts:
+        for chosen in combinations(best, count):
+            edits = dict.fromkeys(chain.from_iterable(proposal.edits for proposal in chosen))
+            yield Proposal(tuple(edits), "names that do not agree", rank=count)
+
+
+def _spelling(
+    submission: Submission, sources: Sequence[Source], family: Family, reference: Package | None
+) -> "_Spelling":
+    """Return where the names of a family are counted."""
+    workspace = submission.workspace
+    texts = [source.text for source in sources]
+    if workspace.robot is not None:
+        texts += [link.name for link in workspace.robot.links]
+        texts += [joint.name for joint in workspace.robot.joints]
+    texts_of_reference: list[str] = []
+    for package in reference.packages.values() if reference is not None else ():
+        texts_of_reference += [source.text for source in workspace.sources_of(package, _TEXTS)]
     # A part of a path is a name of its own, a part of a topic is none.
     if family in ("files", "programs"):
         pattern = r"(?<![\w-]){}(?![\w-])"
     else:
         pattern = r"(?<![\w/.-]){}(?![\w/-])"
-    texts = ("\n".join([*(it.text for it in own), *frames]), "\n".join(it.text for it in known))
-    spelling = _Spelling(own, texts, pattern)
-    ways = [
-        [*_ways(submission, it.corrections, spelling)]
-        for it in wrong_names(submission.workspace, family, submission.lab_packages.values())
-    ]
-    yield from chain.from_iterable(ways)
-    if family == "topics":
-        yield from chain.from_iterable(map(_exchanged_remappings, own))
-    best = [it for one in ways for it in one if it.rank == 0]
-    for count in range(2, len(ways) + 1) if len(ways) <= _MAX_WRONG else [len(ways)]:
-        for chosen in combinations(best, count):
-            edits = tuple(dict.fromkeys(edit for it in chosen for edit in it.edits))
-            yield Proposal(edits, "names that do not agree", rank=count)
+    return _Spelling(sources, ("\n".join(texts), "\n".join(texts_of_reference)), pattern)
 
 
 class _Spelling(NamedTuple):
@@ -87,9 +91,17 @@ class _Spelling(NamedTuple):
         """Return by how much more often one name is written than the other; 0 if neither text
         tells.
         """
-        patterns = [re.compile(self.pattern.format(re.escape(it))) for it in (new, old)]
-        own, reference = ([len(it.findall(text)) for it in patterns] for text in self.texts)
-        return (own[0] - own[1] if own[0] else 0) or reference[0] - reference[1]
+        text, text_of_reference = self.texts
+        count_of_new = self._count(new, text)
+        # A name that the submission never writes is not compared with one that it writes.
+        if count_of_new:
+            difference = count_of_new - self._count(old, text)
+            if difference:
+                return difference
+        return self._count(new, text_of_reference) - self._count(old, text_of_reference)
+
+    def _count(self, name: str, text: str) -> int:
+        return len(re.findall(self.pattern.format(re.escape(name)), text))
 
     def only_edit(self, correction: Correction) -> Edits:
         """Return the edit of a name in the one place where the submission writes it; none where it
@@ -108,24 +120,29 @@ def _ways(
     """Yield the edits that make a correction, or the reverse one; none into the name that fewer
     places write.
     """
-    made = [correction_edits(submission, it) or spelling.only_edit(it) for it in either]
-    for edits in filter(None, made):
+    ways = [correction_edits(submission, it) or spelling.only_edit(it) for it in either]
+    is_only = len(ways) == 1
+    for edits in ways:
+        if not edits:
+            continue
+        cause = f"the name `{edits[0].old}`"
         preference = spelling.preference(edits[0].new, edits[0].old)
-        is_only = len(made) == 1
-        if is_only or preference > 0 or (preference == 0 and all(made)):
-            yield Proposal(
-                edits, f"the name `{edits[0].old}`", rank=int(preference == 0 and not is_only)
-            )
+        if is_only or preference > 0:
+            yield Proposal(edits, cause)
+        elif preference == 0 and all(ways):
+            yield Proposal(edits, cause, rank=1)
 
 
 def _exchanged_remappings(source: Source) -> Iterator[Proposal]:
     """Yield the edits that exchange both names of a remapping in a launch file: it may be written
     backward.
     """
-    lists = [it.span() for it in _REMAPPINGS.finditer(source.text)]
-    pairs = [it for span in lists for it in _PAIR.finditer(source.text, *span)]
-    for found in [*pairs, *_FROM_TO.finditer(source.text)][:_MAX_REMAPPINGS]:
-        edits = source.edit(*found.span(1), found[2]), source.edit(*found.span(2), found[1])
+    pairs: list[re.Match[str]] = []
+    for remappings in _REMAPPINGS.finditer(source.text):
+        pairs += _PAIR.finditer(source.text, *remappings.span())
+    pairs += _FROM_TO.finditer(source.text)
+    for pair in pairs[:_MAX_REMAPPINGS]:
+        edits = (source.edit(*pair.span(1), pair[2]), source.edit(*pair.span(2), pair[1]))
         yield Proposal(edits, "the order of names in a remapping")
 
 
@@ -143,14 +160,18 @@ def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Iterat
     source, key = submission.source(at.path), re.escape(name.rpartition(".")[2])
     if source is None:
         return
-    plain = re.compile(
-        rf"(?<![\w-]){key}[\"']?\s*:\s*[\"']?({re.escape(str(value))})(?!\w)", re.IGNORECASE
-    )
+    if not isinstance(meant, str | int | float):
+        return
+    new = str(meant)
+    if isinstance(value, float) and type(meant) is int:  # ROS 2 rejects another type
+        new = str(float(meant))
+    written = re.escape(str(value))
+    plain = re.compile(rf"(?<![\w-]){key}[\"']?\s*:\s*[\"']?({written})(?!\w)", re.IGNORECASE)
     offset = source.offset(at.line, at.column)
-    found = next((it for it in plain.finditer(source.text) if it.end() > offset), None)
-    if found is not None and isinstance(meant, str | int | float):
-        new = str(float(meant)) if isinstance(value, float) and type(meant) is int else str(meant)
-        yield Proposal((source.edit(*found.span(1), new),), f"the value of `{name}`")
+    for place in plain.finditer(source.text):
+        if place.end() > offset:
+            yield Proposal((source.edit(*place.span(1), new),), f"the value of `{name}`")
+            return
 
 
 def correction_edits(submission: Submission, correction: Correction) -> Edits:
@@ -192,7 +213,8 @@ def _meant(
     the last before.
     """
     key = re.compile(rf"{re.escape(name)}[\"']?\s*:\s*(?:\{{?\s*(?:ros__parameters|type)\s*:\s*)?")
-    before, after = [it for it in spans if it[0] < at], [it for it in spans if it[0] >= at]
+    before = [span for span in spans if span[0] < at]
+    after = [span for span in spans if span[0] >= at]
     if before and at - before[-1][0] < _MAX_KEY and key.fullmatch(text, before[-1][0], at):
         return before[-1:]
     return after[:1] or before[-1:]

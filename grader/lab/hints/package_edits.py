@@ -17,7 +17,7 @@ from typing import Any
 from grader.base.markup import indentation, indented
 from grader.base.merge_conflicts import find_conflicts
 from grader.base.names import closest
-from grader.base.source import Edit, Source
+from grader.base.source import Edit, Edits, Source
 from grader.lab.hints.edits import Proposal, edited
 from grader.lab.hints.package_task import WHAT, PackageTask, change, file_proposals, package_names
 from grader.lab.hints.python_file import PythonFile, argument, called
@@ -63,7 +63,6 @@ _MAX_FILES = 200
 _LAUNCH = "the launch file"
 _DESCRIPTION = "LaunchDescription"
 _MAX_AROUND = 30  # lines that are indented together
-_WITH_METHOD = ast.Call | ast.Attribute
 _MAX_ITEMS = 30
 _MAX_MADE, _MAX_PROPOSALS = 100, 24  # for one kind of files
 
@@ -81,8 +80,8 @@ def package_proposals(
     for looks_at, arguments in wanted:
         kinds |= dict.fromkeys(looks_at)
         for value in arguments.values():
-            values = value if isinstance(value, list) else [value]
-            given.update(it for it in values if isinstance(it, str))
+            texts = value if isinstance(value, list) else [value]
+            given.update(text for text in texts if isinstance(text, str))
     task = PackageTask(package, reference, frozenset(given))
     for kind in ("", *kinds):
         yield _best_of_kind(task, kind)
@@ -92,11 +91,15 @@ def _best_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
     """Yield the best proposals for a kind of files, each edit once: a later one says better what
     changes.
     """
-    own = {it.edits: it for it in islice(_of_kind(task, kind), _MAX_MADE) if it.edits}
-    yield from sorted(own.values(), key=lambda it: (it.rank, it.size))[:_MAX_PROPOSALS]
+    proposals: dict[Edits, Proposal] = {}
+    for proposal in islice(_proposals_of_kind(task, kind), _MAX_MADE):
+        if proposal.edits:
+            proposals[proposal.edits] = proposal
+    in_order = sorted(proposals.values(), key=lambda proposal: (proposal.rank, proposal.size))
+    yield from in_order[:_MAX_PROPOSALS]
 
 
-def _of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
+def _proposals_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
     """Yield edits of the file of a kind, and those that rename or create one; without a kind, of
     the package's name.
     """
@@ -109,10 +112,12 @@ def _of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
     path, like = task.file(task.package, kind), task.file(task.reference, kind)
     source = task.source(path)
     if source is not None and path is not None:
-        yield from (it for it in _of_text(task, kind, source, path, like) if it.edits)
+        for proposal in _proposals_of_file(task, kind, source, path, like):
+            if proposal.edits:
+                yield proposal
 
 
-def _of_text(
+def _proposals_of_file(
     task: PackageTask, kind: str, source: Source, path: str, like: str | None
 ) -> Iterator[Proposal]:
     """Yield the edits of a file: its difference to the reference, its syntax, its names, its
@@ -121,23 +126,18 @@ def _of_text(
     what, wanted = WHAT.get(kind, kind), task.wanted(like) or ""
     removed = [span for conflict in find_conflicts(source.text) for span in conflict.removed]
     if removed:  # whose marker lines no other edit removes together
-        yield change(
-            [source.edit(*span, "") for span in removed], "an unresolved merge conflict", what
-        )
+        edits = [source.edit(*span, "") for span in removed]
+        yield change(edits, "an unresolved merge conflict", what)
         return
-    own = PythonFile(source)
-    ending, other = (posixpath.splitext(it or "")[1] for it in (path, like))
+    file = PythonFile(source)
+    ending, ending_of_like = posixpath.splitext(path)[1], posixpath.splitext(like or "")[1]
     is_python = ending in (".py", "")
-    if wanted and (ending == other or is_python):
+    if wanted and (ending == ending_of_like or is_python):
         yield from _reword(source, wanted, what)
     if is_python:
-        yield from _missing_entries(own, PythonFile(Source(source.path, wanted)), what)
-        yield from _as_lists(own, what)
-        yield from _undefined_names(own, what)
-        yield from _unquoted_names(own, what)
-        yield from _missing_calls(own, what)
-        yield from _indentations(own, what)
-    elif ending == other:
+        yield from _missing_entries(file, PythonFile(Source(source.path, wanted)), what)
+        yield from _undefined_names(file, what)
+    elif ending == ending_of_like:
         yield from _other_values(source, wanted, what)
     if kind == "launch":
         launch = task.launch(path, source)
@@ -145,9 +145,12 @@ def _of_text(
         yield from _programs(task, launch, source)
     elif kind == SETUP:
         yield from _setup_paths(task)
-    yield from _respellings(
-        source, [wanted, *(task.files if kind == SETUP else task.package.installed)], what
-    )
+    paths = task.files if kind == SETUP else task.package.installed
+    yield from _respellings(source, [wanted, *paths], what)
+    if is_python:  # these rarely find a mistake
+        yield from _unquoted_names(file, what)
+        yield from _missing_calls(file, what)
+        yield from _indentations(file, what)
 
 
 def _respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Proposal]:
@@ -159,28 +162,26 @@ def _respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Pr
     places: dict[str, list[re.Match[str]]] = {}
     for match in _WORD.finditer(source.text):
         places.setdefault(match[0], []).append(match)
-    right = {word for text in (*known, *kwlist, *USUAL_NAMES) for word in _WORD.findall(text)}
+    right: set[str] = set()
+    for text in (*known, *kwlist, *USUAL_NAMES):
+        right.update(_WORD.findall(text))
     bound = PythonFile(source).bound if source.path.endswith(".py") else frozenset()
-    suspects = sorted(
-        (word for word in places if word not in right and len(word) > 1),
-        key=lambda it: len(places[it]),
-    )
-    guesses = (
-        (word, _slip(word, right) or _slip(word, places)) for word in suspects[:_MAX_SUSPECTS]
-    )
-    slips = (
-        (word, guess) for word, guess in guesses if guess and not {word, guess} <= bound
-    )  # two things
-    for word, guess in islice(slips, _MAX_WORDS):
-        yield change(
-            [source.edit(*place.span(), guess) for place in places[word]],
-            "the spelling of a word",
-            what,
-        )
+    suspects = [word for word in places if word not in right and len(word) > 1]
+    suspects.sort(key=lambda word: len(places[word]))
+    count = 0
+    for word in suspects[:_MAX_SUSPECTS]:
+        guess = _slip(word, right) or _slip(word, places)
+        if not guess or {word, guess} <= bound:  # names that are both bound are two things
+            continue
+        edits = [source.edit(*place.span(), guess) for place in places[word]]
+        yield change(edits, "the spelling of a word", what)
+        count += 1
+        if count == _MAX_WORDS:
+            break
     yield from _replace_words(source, _PROGRAM, [" "], what)
     quotes = [
-        source.edit(*it.span(), "'" if it[0] in _SINGLE else '"')
-        for it in _TYPOGRAPHIC.finditer(source.text)
+        source.edit(*match.span(), "'" if match[0] in _SINGLE else '"')
+        for match in _TYPOGRAPHIC.finditer(source.text)
     ]
     yield change(quotes, "a syntax error", what)
     if not source.path.endswith(".py"):
@@ -191,20 +192,22 @@ def _replace_words(
     source: Source, pattern: re.Pattern[str], words: Iterable[str], what: str
 ) -> Iterator[Proposal]:
     """Yield edits that write another word everywhere for what a pattern finds."""
-    places = [*pattern.finditer(source.text)]
-    for old, word in product(dict.fromkeys(it[0] for it in places), words):
-        yield change(
-            [source.edit(*it.span(), word) for it in places if it[0] == old], "a word", what
-        )
+    places: dict[str, list[re.Match[str]]] = {}
+    for match in pattern.finditer(source.text):
+        places.setdefault(match[0], []).append(match)
+    for matches, word in product(places.values(), words):
+        edits = [source.edit(*match.span(), word) for match in matches]
+        yield change(edits, "a word", what)
 
 
 def _slip(word: str, known: Iterable[str]) -> str | None:
     """Return the known word that a slip of the hand makes this one: a letter or two more, less,
     other or swapped.
     """
-    guess = closest(word, (other for other in known if abs(len(other) - len(word)) <= _MAX_MORE))
-    same = SequenceMatcher(None, word.lower(), (guess or "").lower(), autojunk=False).ratio()
-    return guess if same >= _LIKENESS else None
+    similar = [other for other in known if abs(len(other) - len(word)) <= _MAX_MORE]
+    guess = closest(word, similar)
+    likeness = SequenceMatcher(None, word.lower(), (guess or "").lower(), autojunk=False).ratio()
+    return guess if likeness >= _LIKENESS else None
 
 
 def _reword(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
@@ -212,22 +215,19 @@ def _reword(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
     if there are few.
     """
     start_of_text = int(source.text.startswith("\ufeff"))
-    own, right = _TOKEN.findall(source.text[start_of_text:]), _TOKEN.findall(wanted)
+    own = _TOKEN.findall(source.text[start_of_text:])
+    right = _TOKEN.findall(wanted)
     if len(own) + len(right) > _MAX_TOKENS:
         return
-    changes = [
-        it
-        for it in SequenceMatcher(None, own, right, autojunk=False).get_opcodes()
-        if it[0] != "equal"
-    ]
+    matcher = SequenceMatcher(None, own, right, autojunk=False)
+    changes = [opcode for opcode in matcher.get_opcodes() if opcode[0] != "equal"]
     if len(changes) > _MAX_DIFFERENCES:
         return
     for _, first, last, start, end in changes:
-        offset, old = start_of_text + len("".join(own[:first])), "".join(own[first:last])
+        offset = start_of_text + len("".join(own[:first]))
+        old, new = "".join(own[first:last]), "".join(right[start:end])
         cause = "a line" if first < last else "a missing line"
-        yield change(
-            [source.edit(offset, offset + len(old), "".join(right[start:end]))], cause, what
-        )
+        yield change([source.edit(offset, offset + len(old), new)], cause, what)
 
 
 def _other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
@@ -235,16 +235,15 @@ def _other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
     has for it.
     """
     known: dict[str, list[str]] = {}
-    for found in _SETTING.finditer(wanted):
-        known.setdefault(found["key"], []).append(found["value"])
-    for found in _SETTING.finditer(source.text):
-        values = dict.fromkeys(known.get(found["key"], ()))
-        if found["value"] in values:
+    for setting in _SETTING.finditer(wanted):
+        known.setdefault(setting["key"], []).append(setting["value"])
+    for setting in _SETTING.finditer(source.text):
+        values = dict.fromkeys(known.get(setting["key"], ()))
+        if setting["value"] in values:
             continue
         for value in [*values][:_MAX_VALUES]:
-            yield change(
-                [source.edit(*found.span("value"), value)], f"the value of `{found['key']}`", what
-            )
+            edit = source.edit(*setting.span("value"), value)
+            yield change([edit], f"the value of `{setting['key']}`", what)
 
 
 def _undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
@@ -255,53 +254,63 @@ def _undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
         start = file.source.offset(file.parsed.location.line, 1)
         end = start + len(file.text[start:].partition("\n")[0].rstrip())
         yield change([file.source.edit(end, end, ",")], "a syntax error", what)
-    names = [node for node in file.nodes if isinstance(node, ast.Name)]
     yield change(file.with_imports(sorted(file.used)), "the imports", what)
-    for word in sorted(file.used - file.bound - {*dir(builtins)} - {*USUAL_NAMES})[:_MAX_WORDS]:
-        own = sorted(file.values, key=lambda it: -SequenceMatcher(None, it, word).ratio())[
-            :_MAX_MEANT
-        ]
-        for other in own:
-            edits = [file.replaced(node, other) for node in names if node.id == word]
-            yield change(edits, f"the spelling of `{word}`", what)
-    for statement in file.imports:  # the function glob instead of the module, or the reverse
-        if [alias.name for alias in statement.names] == ["glob"]:
-            new = "from glob import glob" if isinstance(statement, ast.Import) else "import glob"
-            found = change([file.replaced(statement, new)], "an import", what)
-            yield found._replace(
-                rank=-1
-            )  # says better what changes than the difference of the lines
+    yield from _meant_names(file, what)
+    yield from _other_imports(file, what)
     for node in file.nodes:
+        # ("a", "b")("c", "d") is two tuples without a comma between them
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Tuple):
             end = file.span(node.func)[1]
             yield change([file.source.edit(end, end, ",")], "a syntax error", what)
 
 
+def _meant_names(file: PythonFile, what: str) -> Iterator[Proposal]:
+    """Yield edits that write the most similar names that have values for undefined ones."""
+    names = [node for node in file.nodes if isinstance(node, ast.Name)]
+    undefined = file.used - file.bound - {*dir(builtins), *USUAL_NAMES}
+    for word in sorted(undefined)[:_MAX_WORDS]:
+        uses = [node for node in names if node.id == word]
+
+        def likeness(other: str, word: str = word) -> float:
+            return SequenceMatcher(None, other, word).ratio()
+
+        for other in sorted(file.values, key=likeness, reverse=True)[:_MAX_MEANT]:
+            edits = [file.replaced(node, other) for node in uses]
+            yield change(edits, f"the spelling of `{word}`", what)
+
+
+def _other_imports(file: PythonFile, what: str) -> Iterator[Proposal]:
+    """Yield edits that import the function glob instead of the module, or the reverse."""
+    for statement in file.imports:
+        if [alias.name for alias in statement.names] == ["glob"]:
+            new = "from glob import glob" if isinstance(statement, ast.Import) else "import glob"
+            proposal = change([file.replaced(statement, new)], "an import", what)
+            # It says better what changes than the difference of the lines.
+            yield proposal._replace(rank=-1)
+
+
 def _unquoted_names(file: PythonFile, what: str) -> Iterator[Proposal]:
     """Yield edits that write a name without the quotes around it."""
-    found = [
-        (it, it.value)
-        for it in file.nodes
-        if isinstance(it, ast.Constant) and isinstance(it.value, str)
-    ]
-    for node, name in [pair for pair in found if pair[1] in file.values][:_MAX_WORDS]:
-        yield change([file.replaced(node, name)], f"`{name}` in quotes, which is a text", what)
+    constants = [node for node in file.nodes if isinstance(node, ast.Constant)]
+    names = [node for node in constants if node.value in file.values]
+    for node in names[:_MAX_WORDS]:
+        cause = f"`{node.value!s}` in quotes, which is a text"
+        yield change([file.replaced(node, str(node.value))], cause, what)
 
 
 def _missing_calls(file: PythonFile, what: str) -> Iterator[Proposal]:
     """Yield edits that call a method which is only named, such as infp.read."""
-    inside = {
-        it.func if isinstance(it, ast.Call) else it.value
-        for it in file.nodes
-        if isinstance(it, _WITH_METHOD)
-    }
-    methods = [
-        node for node in file.nodes if isinstance(node, ast.Attribute) and node not in inside
-    ]
-    for node in [it for it in methods if isinstance(it.ctx, ast.Load)][:_MAX_WORDS]:
-        yield change(
-            [file.replaced(node, f"{file.segment(node)}()")], f"`{node.attr}` without ()", what
-        )
+    inside: set[ast.expr] = set()  # of a call or of another attribute
+    for node in file.nodes:
+        if isinstance(node, ast.Call):
+            inside.add(node.func)
+        elif isinstance(node, ast.Attribute):
+            inside.add(node.value)
+    attributes = [node for node in file.nodes if isinstance(node, ast.Attribute)]
+    read = [node for node in attributes if isinstance(node.ctx, ast.Load)]
+    for method in [node for node in read if node not in inside][:_MAX_WORDS]:
+        edit = file.replaced(method, f"{file.segment(method)}()")
+        yield change([edit], f"`{method.attr}` without ()", what)
 
 
 def _indentations(file: PythonFile, what: str) -> Iterator[Proposal]:
@@ -313,28 +322,30 @@ def _indentations(file: PythonFile, what: str) -> Iterator[Proposal]:
     if not isinstance(file.parsed, SyntaxFault):
         return
     lines = file.text.split("\n")
-    at = file.parsed.location.line - 1
-    for first in (it for it in (at, at - 1) if 0 <= it < len(lines) and lines[it].strip()):
-        around = [
-            it
-            for it in (*lines[max(first - _MAX_AROUND, 0) : first], *lines[first + 1 :][:1])
-            if it.strip()
-        ]
-        known = dict.fromkeys(map(_indent_of, reversed(around)))
-        deeper = f"{next(iter(known), '')}    "
-        last = next((it for it in range(first, len(lines)) if not lines[it].strip()), len(lines))
-        for indent, end in product(
-            dict.fromkeys((*known, deeper)), dict.fromkeys((first + 1, last))
-        ):
-            edits = [
-                _indented_line(file, it + 1, indent)
-                for it in range(first, min(end, first + _MAX_AROUND))
-            ]
+    stop = file.parsed.location.line - 1
+    for first in (stop, stop - 1):
+        if not 0 <= first < len(lines) or not lines[first].strip():
+            continue
+        end_of_block = first
+        while end_of_block < len(lines) and lines[end_of_block].strip():
+            end_of_block += 1
+        indents = _indents_around(lines, first)
+        for indent, end in product(indents, dict.fromkeys((first + 1, end_of_block))):
+            rows = range(first, min(end, first + _MAX_AROUND))
+            edits = [_indented_line(file, row + 1, indent) for row in rows]
             text = edited(file.text, file.source.path, edits)
-            if text is not None and isinstance(
-                parse(text.encode("utf-8", "surrogateescape"), ""), Code
-            ):
+            if text is None:
+                continue
+            if isinstance(parse(text.encode("utf-8", "surrogateescape"), ""), Code):
                 yield change(edits, "the indentation", what)
+
+
+def _indents_around(lines: Sequence[str], row: int) -> list[str]:
+    """Return the indentations of the lines around one, the nearest first, and a deeper one."""
+    around = [*lines[max(row - _MAX_AROUND, 0) : row], *lines[row + 1 : row + 2]]
+    known = dict.fromkeys(_indent_of(line) for line in reversed(around) if line.strip())
+    deeper = f"{next(iter(known), '')}    "
+    return [*dict.fromkeys((*known, deeper))]
 
 
 def _indented_line(file: PythonFile, number: int, indent: str) -> Edit:
@@ -350,24 +361,27 @@ def _programs(task: PackageTask, launch: Launch, source: Source) -> Iterator[Pro
     """Yield edits that start the program which a check names in place of another one of its
     package, or the reverse.
     """
-    named = [name.partition("/") for text in task.given for name in text.split(" or ")]
-    wanted = [(package, name or package) for package, _, name in named]
-    for node in [it for it in launch.nodes if (it.package, it.executable) not in wanted][
-        :_MAX_PATHS
-    ]:
+    wanted = []
+    for text in task.given:
+        for name in text.split(" or "):
+            package, _, executable = name.partition("/")
+            wanted.append((package, executable or package))
+    wrong = [node for node in launch.nodes if (node.package, node.executable) not in wanted]
+    for node in wrong[:_MAX_PATHS]:
         for package, executable in wanted:
             texts = {node.package: package, node.executable: executable}
-            if len(texts) == 2 and (node.package == package) != (node.executable == executable):
-                spans = [
-                    (start, end)
-                    for start, end in _path_offsets(source)
-                    if source.text[start:end] in texts
-                ]
-                edits = [source.edit(*span, texts[source.text[slice(*span)]]) for span in spans]
-                edits.sort(key=lambda edit: abs(edit.line - node.location.line))
-                for edit in [edit for edit in edits if edit.old != edit.new][:_MAX_EDITS]:
-                    rank = -1 if edit.old == node.executable else 0
-                    yield change([edit], "the program of a node", _LAUNCH)._replace(rank=rank)
+            is_half_right = (node.package == package) != (node.executable == executable)
+            if len(texts) < 2 or not is_half_right:
+                continue
+            edits = []
+            for start, end in _path_offsets(source):
+                text = source.text[start:end]
+                if texts.get(text, text) != text:
+                    edits.append(source.edit(start, end, texts[text]))
+            edits.sort(key=lambda edit: abs(edit.line - node.location.line))
+            for edit in edits[:_MAX_EDITS]:
+                rank = -1 if edit.old == node.executable else 0
+                yield change([edit], "the program of a node", _LAUNCH)._replace(rank=rank)
 
 
 def _setup_paths(task: PackageTask) -> Iterator[Proposal]:
@@ -375,25 +389,23 @@ def _setup_paths(task: PackageTask) -> Iterator[Proposal]:
     source, setup = task.source(SETUP), task.package.installation
     if source is None or setup is None or setup.is_cmake:
         return
-    wrong = [(it.path.rstrip("/"), it.at.line) for it in setup.stops] + [
-        (it.pattern, it.at.line) for it in setup.empty
-    ]
-    files = {path: posixpath.dirname(path) for path in islice(task.files, _MAX_FILES)}
-    patterns = [
-        f"{folder}/*{end}"
-        for path, folder in files.items()
-        for end in ("", posixpath.splitext(path)[1])
-    ]
+    wrong = [(named.path.rstrip("/"), named.at.line) for named in setup.stops]
+    wrong += [(named.pattern, named.at.line) for named in setup.empty]
+    files = [*islice(task.files, _MAX_FILES)]
+    patterns = []
+    for path in files:
+        folder, ending = posixpath.dirname(path), posixpath.splitext(path)[1]
+        patterns += [f"{folder}/*", f"{folder}/*{ending}"]
     for path, line in wrong[:_MAX_PATHS]:
-        is_folder, above = path in task.package.tree.folders, posixpath.dirname(path)
         known, texts = [*files, *patterns], [path]
-        if is_folder:
+        if path in task.package.tree.folders:
+            above = posixpath.dirname(path)
             known = [it for it in patterns if posixpath.dirname(it) in (above, path)]
             texts.append(f"{above}/*")
         for actual in texts:
             for wanted in _similar(actual, known)[:_MAX_EDITS]:
-                edits = _moved(source, actual, wanted, line)[:2]
-                yield from (change([edit], "a path", SETUP) for edit in edits)
+                for edit in _moved(source, actual, wanted, line)[:2]:
+                    yield change([edit], "a path", SETUP)
 
 
 def _similar(path: str, known: Iterable[str]) -> list[str]:
@@ -408,16 +420,14 @@ def _launch_paths(task: PackageTask, launch: Launch, source: Source) -> Iterator
     """Yield edits with which a launch file finds its files: of all together, then of one path
     each.
     """
-    installed = task.package.installed
     named = [it for it in launch.references[:_MAX_PATHS] if it.path is not None]
-    wrong = [
-        it
-        for it in named
-        if posixpath.normpath(it.path or "").removeprefix(f"{PREFIX}/") not in installed
-    ]
-    ways = [
-        way for way in (_edits_of_path(task, source, named)[:_MAX_EDITS] for named in wrong) if way
-    ]
+    ways = []
+    for reference in named:
+        path = posixpath.normpath(reference.path or "").removeprefix(f"{PREFIX}/")
+        if path not in task.package.installed:
+            edits_of_path = _edits_of_path(task, source, reference)[:_MAX_EDITS]
+            if edits_of_path:
+                ways.append(edits_of_path)
     if len(ways) > 1:
         yield change([edit for way in ways for edit in way[0]], "the paths", _LAUNCH)
     for way in ways:
@@ -429,8 +439,11 @@ def _targets(task: PackageTask, purpose: str) -> list[str]:
     purpose.
     """
     share = f"share/{task.package.name}/"
-    own = (it.removeprefix(share) for it in task.package.installed if it.startswith(share))
-    return [it for it in own if it.lower().endswith(_ENDINGS[purpose])]
+    return [
+        path.removeprefix(share)
+        for path in task.package.installed
+        if path.startswith(share) and path.lower().endswith(_ENDINGS[purpose])
+    ]
 
 
 def _edits_of_path(task: PackageTask, source: Source, named: NamedFile) -> list[list[Edit]]:
@@ -440,11 +453,11 @@ def _edits_of_path(task: PackageTask, source: Source, named: NamedFile) -> list[
         if actual.startswith(PREFIX):
             return [[edit] for edit in _moved(source, actual, share + below, named.location.line)]
         if source.path.endswith(".py"):
-            return [*_of_one_machine(task.package.name, PythonFile(source), actual, below)]
+            return [*_share_edits(task.package.name, PythonFile(source), actual, below)]
     return []
 
 
-def _of_one_machine(name: str, file: PythonFile, actual: str, target: str) -> Iterator[list[Edit]]:
+def _share_edits(name: str, file: PythonFile, actual: str, target: str) -> Iterator[list[Edit]]:
     """Yield the edits that replace a path of one machine, or relative to the working folder, by the
     share folder.
 
@@ -452,24 +465,27 @@ def _of_one_machine(name: str, file: PythonFile, actual: str, target: str) -> It
     launch-home-path, sensors-launch-home-path.
     """
     share = f"{_SHARE_FUNCTION}({name!r})"
-    for literal in [
-        it
-        for it in file.nodes
-        if isinstance(it, ast.Constant) and it.value and isinstance(it.value, str)
-    ]:
-        for path in (
-            str(literal.value).rstrip("/").replace("~", HOME, 1),
-            f"{WORKING_FOLDER}/{literal.value!s}",
-        ):
-            if f"{actual}/".startswith(f"{path}/"):
-                rest = actual.removeprefix(path).strip("/")
-            else:
-                rest = None
-            others = _moved(file.source, rest, target)[:1] if rest and rest != target else []
-            if rest in ("", target) or others:
-                new = share if rest else f"os.path.join({share}, {target!r})"
-                imports = file.with_imports([_SHARE_FUNCTION] if rest else [_SHARE_FUNCTION, "os"])
-                yield [*imports, file.replaced(literal, new), *others]
+    for node in file.nodes:
+        if not isinstance(node, ast.Constant) or not isinstance(node.value, str) or not node.value:
+            continue
+        at_home = node.value.rstrip("/").replace("~", HOME, 1)
+        for path in (at_home, f"{WORKING_FOLDER}/{node.value}"):
+            if not f"{actual}/".startswith(f"{path}/"):
+                continue
+            rest = actual.removeprefix(path).strip("/")
+            if not rest:  # the text is the whole path
+                new = f"os.path.join({share}, {target!r})"
+                imports = file.with_imports([_SHARE_FUNCTION, "os"])
+                yield [*imports, file.replaced(node, new)]
+                continue
+            imports = file.with_imports([_SHARE_FUNCTION])
+            edits = [*imports, file.replaced(node, share)]
+            if rest != target:
+                others = _moved(file.source, rest, target)[:1]
+                if not others:
+                    continue
+                edits += others
+            yield edits
 
 
 def _path_offsets(source: Source) -> Iterator[tuple[int, int]]:
@@ -484,29 +500,27 @@ def _moved(source: Source, actual: str, wanted: str, line: int = 1) -> list[Edit
     """Return the edits of one text each with which a path becomes the wanted one; those nearest
     to a line first.
     """
-    found: dict[Edit, int] = {}
+    distances: dict[Edit, int] = {}  # in lines
     for start, end in islice(_path_offsets(source), _MAX_PIECES):
         piece = source.text[start:end]
-        if piece.strip("./") and piece in actual:
-            is_package = (
-                _PACKAGE_ARGUMENT.search(source.text, max(start - _MAX_CALL, 0), start) is not None
-            )
-            for new in _replacements(piece, actual, wanted):
-                if is_package and ("/" in new or not new):
-                    continue  # the name of a package has no folders
-                edit = source.edit(start, end, new) if new else _without(source, start, end)
-                found.setdefault(edit, abs(edit.line - line))
-    return sorted(found, key=lambda edit: (found[edit], -edit.line))
+        if not piece.strip("./") or piece not in actual:
+            continue
+        before = max(start - _MAX_CALL, 0)
+        is_package = _PACKAGE_ARGUMENT.search(source.text, before, start) is not None
+        for new in _replacements(piece, actual, wanted):
+            if is_package and ("/" in new or not new):
+                continue  # the name of a package has no folders
+            edit = source.edit(start, end, new) if new else _without(source, start, end)
+            distances.setdefault(edit, abs(edit.line - line))
+    return sorted(distances, key=lambda edit: (distances[edit], -edit.line))
 
 
 def _replacements(piece: str, actual: str, wanted: str) -> Iterator[str]:
     for place in re.finditer(re.escape(piece), actual):
         head, tail = actual[: place.start()], actual[place.end() :]
-        if (
-            wanted.startswith(head)
-            and wanted.endswith(tail)
-            and len(head) + len(tail) <= len(wanted)
-        ):
+        if len(head) + len(tail) > len(wanted):
+            continue
+        if wanted.startswith(head) and wanted.endswith(tail):
             new = wanted[len(head) : len(wanted) - len(tail)]
             if new != piece:
                 yield new
@@ -517,14 +531,14 @@ def _without(source: Source, start: int, end: int) -> Edit:
     one.
     """
     text = source.text
-    after = _REST_OF_ARGUMENT.match(text, end + 1)
-    if (
-        text[start - 1 : start] in "'\""
-        and text[end : end + 1] == text[start - 1 : start]
-        and after is not None
-    ):
-        return source.edit(start - 1, after.end(), "")
-    return source.edit(start, end + 1 if text.startswith("/", end) else end, "")
+    quote = text[start - 1 : start]
+    is_quoted = quote in "'\"" and text[end : end + 1] == quote
+    rest_of_argument = _REST_OF_ARGUMENT.match(text, end + 1)
+    if is_quoted and rest_of_argument is not None:
+        return source.edit(start - 1, rest_of_argument.end(), "")
+    if text.startswith("/", end):
+        return source.edit(start, end + 1, "")
+    return source.edit(start, end, "")
 
 
 def _missing_entries(own: PythonFile, like: PythonFile, what: str) -> Iterator[Proposal]:
@@ -533,51 +547,51 @@ def _missing_entries(own: PythonFile, like: PythonFile, what: str) -> Iterator[P
 
     A node of a package of which the file has one is not added: that one is wrong.
     """
-    made = [
-        name
-        for name, value in own.values.items()
-        if isinstance(value, ast.Call) and called(value)[:1].isupper()
-    ]
-    unused = [name for name in made if name not in own.used]
-    known = {own.plain(it) for it in _items(own)}
-    known |= {own.plain(it.elts[-1]) for it in _items(own) if isinstance(it, ast.Tuple) and it.elts}
-    known |= {
-        package for call in own.calls("Node") if (package := _package_of(own, call)) is not None
-    }
-    missing = [
-        it for it in _items(like) if known.isdisjoint((like.plain(it), _package_of(like, it)))
-    ]
-    missing = [
-        it for it in missing if not (isinstance(it, ast.Tuple) and like.plain(it.elts[-1]) in known)
-    ]
-    for codes in (unused, [like.written(item, own.bound) for item in missing]):
-        for code in codes:
-            yield from _adding(own, [code], what)
-        if len(codes) > 1:
-            yield from _adding(own, codes, what)
-
-
-def _as_lists(own: PythonFile, what: str) -> Iterator[Proposal]:
-    """Yield edits that put the one file of an entry of data_files into a list."""
+    unused = []
+    for name, value in own.values.items():
+        is_made = isinstance(value, ast.Call) and called(value)[:1].isupper()
+        if is_made and name not in own.used:
+            unused.append(name)
+    known: set[str] = set()
     for item in _items(own):
-        files = item.elts[-1] if isinstance(item, ast.Tuple) and item.elts else None
-        if isinstance(files, ast.Constant) and isinstance(files.value, str):
-            yield change([own.replaced(files, f"[{own.segment(files)}]")], "a list of files", what)
+        known |= _codes_of_entry(own, item)
+    for call in own.calls("Node"):
+        known |= _package_of(own, call)
+    missing = [
+        like.written(item, own.bound)
+        for item in _items(like)
+        if known.isdisjoint(_codes_of_entry(like, item) | _package_of(like, item))
+    ]
+    for codes_to_add in (unused, missing):
+        for code in codes_to_add:
+            yield from _adding(own, [code], what)
+        if len(codes_to_add) > 1:
+            yield from _adding(own, codes_to_add, what)
 
 
 def _adding(own: PythonFile, codes: Sequence[str], what: str) -> Iterator[Proposal]:
     edit = _add(own, codes)
     if edit is not None:
-        needs = own.with_imports(sorted({name for code in codes for name in own.names_in(code)}))
-        yield change([*needs, edit], f"a missing part of {what}")
+        names: set[str] = set()
+        for code in codes:
+            names |= own.names_in(code)
+        yield change([*own.with_imports(sorted(names)), edit], f"a missing part of {what}")
 
 
-def _package_of(file: PythonFile, code: ast.expr) -> str | None:
-    """Return the package of the program that a node starts."""
+def _codes_of_entry(file: PythonFile, item: ast.expr) -> set[str]:
+    """Return what an entry is recognised by: its code, and that of the files of data_files."""
+    codes = {file.plain(item)}
+    if isinstance(item, ast.Tuple) and item.elts:
+        codes.add(file.plain(item.elts[-1]))
+    return codes
+
+
+def _package_of(file: PythonFile, code: ast.expr) -> set[str]:
+    """Return the package of the program that a node starts, if it names one."""
     given = argument(code, "package") if isinstance(code, ast.Call) else None
     if given is not None:
-        return file.plain(given.value)
-    return None
+        return {file.plain(given.value)}
+    return set()
 
 
 def _list(file: PythonFile) -> ast.expr | None:
@@ -592,24 +606,22 @@ def _list(file: PythonFile) -> ast.expr | None:
 
 def _items(file: PythonFile) -> list[ast.expr]:
     """Return the entries of the list, and those that are added to it."""
-    found = _list(file)
-    own = found.elts if isinstance(found, ast.List) else []
-    return [
-        *map(file.meant, own),
-        *(file.meant(it.args[0]) for it in file.calls("add_action") if it.args),
-    ][:_MAX_ITEMS]
+    entries = _list(file)
+    items = [*entries.elts] if isinstance(entries, ast.List) else []
+    items += [call.args[0] for call in file.calls("add_action") if call.args]
+    return [file.meant(item) for item in items[:_MAX_ITEMS]]
 
 
 def _add(file: PythonFile, codes: Sequence[str]) -> Edit | None:
     """Return the edit that adds code after the last entry, in lines of their own if that has
     one.
     """
-    found, actions = _list(file), file.calls("add_action")
-    if isinstance(found, ast.List) and not (actions and not found.elts):
-        nodes: Sequence[ast.expr] = found.elts
-        start, end = file.span(nodes[-1] if nodes else found)
-        if not nodes:
+    entries, actions = _list(file), file.calls("add_action")
+    if isinstance(entries, ast.List) and not (actions and not entries.elts):
+        if not entries.elts:
+            _, end = file.span(entries)
             return file.source.edit(end - 1, end - 1, ", ".join(codes))
+        start, end = file.span(entries.elts[-1])
         before = ","
     elif actions:
         start, end = file.span(actions[-1])
@@ -617,8 +629,7 @@ def _add(file: PythonFile, codes: Sequence[str]) -> Edit | None:
         codes, before = [f"{owner}({code})" for code in codes], ""
     else:
         return None
-    line = indentation(file.text, start)
-    space = f"{file.newline}{line}" if line else " "
-    return file.source.edit(
-        end, end, "".join(f"{before}{space}{indented(it, line, file.newline)}" for it in codes)
-    )
+    indent = indentation(file.text, start)
+    space = f"{file.newline}{indent}" if indent else " "
+    added = [f"{before}{space}{indented(code, indent, file.newline)}" for code in codes]
+    return file.source.edit(end, end, "".join(added))

@@ -3,14 +3,14 @@ undo a mistake.
 """
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
 from grader.base.names import near
 from grader.base.source import Edits
 from grader.lab.hints.robot_draft import Draft, Set, child_of, end_of, escaped
-from grader.lab.hints.robot_numbers import Values, mistake_in, values_of
+from grader.lab.hints.robot_numbers import mistake_in, values_of
 from grader.lab.hints.tree_difference import Node, Step, paired, steps
 from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import CHILDREN, TAGS
@@ -143,35 +143,32 @@ class RobotDifference:
         """
         own = {it.get("name") or "": it for it in self.draft.root.iterchildren("material")}
         uses = Counter(it.get("name") or "" for it in self.draft.root.iterfind("link//material"))
+        undefined = [name for name, count in uses.items() if count > 1 and name not in own]
         for name in sorted(own.keys() - uses.keys()):
-            meant = near(
-                name,
-                [it for it, number in uses.items() if number > 1 and it not in own],
-                "material",
-            )
+            meant = near(name, undefined, "material")
             if meant is not None:
-                yield self.piece(
-                    own[name], "the name of {}", sets=(Set(own[name], "", "name", meant),)
-                )
+                sets = (Set(own[name], "", "name", meant),)
+                yield self.piece(own[name], "the name of {}", sets=sets)
         for used in self.draft.root.iter("material"):
-            link = self.reference.link(self.draft.link_of(used))
-            if link is not None:
-                names = [it.get("name") or "" for it in link.iter("material")]
-            else:
-                names = []
-            like = self.reference.material(names[0]) if names else None
-            colour = child_of(like, "color") if like is not None else None
-            if like is None or colour is None:
-                continue
-            if (used.get("name") or "") not in own:
-                yield self.of_sets([Set(used, "color", "rgba", colour.get("rgba") or "")])
-            elif all(
-                self.draft.material(it) is None
-                for it in (names[0], self._names["material"].get(names[0], ""))
-            ):
-                yield self.piece(
-                    used, "the material of {}", self.draft.replace(used, self.reference.text(like))
-                )
+            yield from self._material(used, own)
+
+    def _material(self, used: Element, own: Collection[str]) -> Iterator[Piece]:
+        link = self.reference.link(self.draft.link_of(used))
+        shown = next(link.iter("material"), None) if link is not None else None
+        if shown is None:
+            return
+        name = shown.get("name") or ""
+        like = self.reference.material(name)
+        colour = child_of(like, "color") if like is not None else None
+        if like is None or colour is None:
+            return
+        if (used.get("name") or "") not in own:
+            yield self.of_sets([Set(used, "color", "rgba", colour.get("rgba") or "")])
+            return
+        own_name = self._names["material"].get(name, "")
+        if self.draft.material(name) is None and self.draft.material(own_name) is None:
+            replaced = self.draft.replace(used, self.reference.text(like))
+            yield self.piece(used, "the material of {}", replaced)
 
     def _joint_names(self) -> Iterator[Piece]:
         """Rename joints as in the reference, also where they are mimicked."""
@@ -198,20 +195,18 @@ class RobotDifference:
 
     def _pieces(self, found: Sequence[Step]) -> Iterator[Piece]:
         for values in _values_of_one(found):
-            yield from self._of_values(values)
+            yield from self._value_pieces(values)
         for step in found:
             own, like = step.own, step.like
             match step.verb:
                 case "rename" | "unset" if new := step.other or _meant_attribute(
                     own.tag, step.name
                 ):
+                    edits: Edits = ()
                     if new not in own.values:
                         edits = self.draft.rename_attribute(own.of, step.name, new)
-                    else:
-                        edits = ()
-                    yield self.piece(
-                        own.of, f"the name of the attribute {new} of {{}}", edits, rank=SIBLING
-                    )
+                    cause = f"the name of the attribute {new} of {{}}"
+                    yield self.piece(own.of, cause, edits, rank=SIBLING)
                 case "retag" if like is not None:
                     edits = self.draft.rename_tag(own.of, like.tag)
                     yield self.piece(own.of, f"the name of the tag <{like.tag}>", edits)
@@ -222,7 +217,7 @@ class RobotDifference:
                 case "remove":
                     yield from self._remove(own)
 
-    def _of_values(self, found: Sequence[Step]) -> Iterator[Piece]:
+    def _value_pieces(self, found: Sequence[Step]) -> Iterator[Piece]:
         """Yield the values of one element: each alone, and all together."""
         element: Element = found[0].own.of
         wanted = {step.name: _wanted_value(step) for step in found}
@@ -240,10 +235,9 @@ class RobotDifference:
         that is what lacks.
         """
         name = element.get("link") or ""
-        is_own = (
-            element.tag == "parent" and self.draft.link(name) is not None and name not in self.known
-        )
-        return is_own and self.draft.joint_of(name) is None
+        if element.tag != "parent" or name in self.known or self.draft.link(name) is None:
+            return False
+        return self.draft.joint_of(name) is None
 
     def _rename(self, element: Element, name: str) -> Iterator[Piece]:
         """Rename a link with all that names it, or alone; a joint; a material where it is used or
@@ -253,28 +247,24 @@ class RobotDifference:
         is_begun = 2 * sum(map(self.draft.robot.has_link, self.names)) >= len(self.names)
         if tag == "link" and not is_begun and old and near(old, [name], "link") is None:
             return  # nothing shows that it is this one
-        own = (Set(element, "", "name", name),)
-        everywhere = _rename_link(self.draft, old, name) if tag == "link" else own
-        for sets in dict.fromkeys((everywhere, own)):
+        alone = (Set(element, "", "name", name),)
+        everywhere = _rename_link(self.draft, old, name) if tag == "link" else alone
+        link = name if tag == "link" else ""
+        for sets in dict.fromkeys((everywhere, alone)):
             if sets:
-                yield self.piece(
-                    element, f"the name of a {tag}", sets=sets, link=name if tag == "link" else ""
-                )
+                yield self.piece(element, f"the name of a {tag}", sets=sets, link=link)
 
     def _remove(self, node: Node) -> Iterator[Piece]:
         """Remove what the reference does not have; an origin or axis gets its default."""
         element, tag = node.of, node.tag
+        around = element.getparent()
         if tag in ("origin", "axis"):
-            defaults = dict.fromkeys(node.values, "1 0 0" if tag == "axis" else "0 0 0")
-            yield from self.each(
-                [Set(element, "", name, value) for name, value in defaults.items()]
-            )
-        elif element.getparent() is self.draft.root and not self._is_twice(element):
+            default = "1 0 0" if tag == "axis" else "0 0 0"
+            yield from self.each([Set(element, "", name, default) for name in node.values])
+        elif around is self.draft.root and not self._is_twice(element):
             return
-        elif (
-            element.getparent() is not None and element.getparent().tag != "geometry"
-        ):  # there the shape is replaced
-            cause = f"an extra <{tag}>: {{}}" if tag not in ("link", "joint") else f"an extra {tag}"
+        elif around is not None and around.tag != "geometry":  # there the shape is replaced
+            cause = f"an extra {tag}" if tag in ("link", "joint") else f"an extra <{tag}>: {{}}"
             yield self.piece(element, cause, self.draft.remove(element), rank=STRUCTURE)
 
     def _is_twice(self, element: Element) -> bool:
@@ -292,47 +282,40 @@ class RobotDifference:
         """Add an element to another one: values of an origin or axis, another shape, or the element
         as it is.
         """
-        tag, own = str(element.tag), child_of(parent, str(element.tag))
+        tag = str(element.tag)
         if tag in ("origin", "axis"):  # one with default values only does not count
-            values = {
-                str(key): normal(tag, str(key), str(value)) for key, value in element.attrib.items()
-            }
-            mine = {name: own.get(name) if own is not None else None for name in values}
-            off = [name for name, value in values.items() if normal(tag, name, mine[name]) != value]
-            yield from self.each([Set(parent, tag, name, values[name]) for name in off])
+            own = child_of(parent, tag)
+            sets = []
+            for key, text in element.attrib.items():
+                name, wanted = str(key), normal(tag, str(key), str(text))
+                written = own.get(name) if own is not None else None
+                if normal(tag, name, written) != wanted:
+                    sets.append(Set(parent, tag, name, wanted))
+            yield from self.each(sets)
             return
-        shape = next(
-            (it for it in parent if parent.tag == "geometry" and it.tag in CHILDREN["geometry"]),
-            None,
-        )
+        shapes = parent.iterchildren(*CHILDREN["geometry"]) if parent.tag == "geometry" else ()
+        shape = next(iter(shapes), None)
+        text = self._text(element)
         if shape is None:
-            yield self.piece(
-                parent,
-                f"the <{tag}> of {{}} is missing",
-                self.draft.insert(parent, self._text(element)),
-            )
+            cause = f"the <{tag}> of {{}} is missing"
+            yield self.piece(parent, cause, self.draft.insert(parent, text))
         else:
-            yield self.piece(
-                parent, "the shape of {}", self.draft.replace(shape, self._text(element))
-            )
+            yield self.piece(parent, "the shape of {}", self.draft.replace(shape, text))
 
     def _text(self, element: Element) -> str:
         """Return an element of the reference with the robot's names, an undefined material with its
         colour.
         """
-        name = element.get("name") or ""
         own = self._names["material" if element.tag == "material" else "joint"]
         text = self.reference.text(element)
         if element.tag in ("material", "mimic"):
             for old, new in own.items():
                 text = text.replace(f'"{old}"', f'"{escaped(new)}"')
-        defined = self.reference.material(name)
-        if (
-            element.tag == "material"
-            and defined is not None
-            and self.draft.material(own.get(name, name)) is None
-        ):
-            return self.reference.text(defined)
+        if element.tag == "material":
+            name = element.get("name") or ""
+            defined = self.reference.material(name)
+            if defined is not None and self.draft.material(own.get(name, name)) is None:
+                return self.reference.text(defined)
         return text
 
 
@@ -354,19 +337,18 @@ def _cause(sets: Sequence[Set]) -> str:
     if all(one.attribute not in one.element.attrib for one in sets if one.element is not None):
         return f"{what} is missing"
     parts: list[str] = []
-    old: Values = ()
-    new: Values = ()
+    old: list[float] = []
+    new: list[float] = []
     for one in sets:
         known = TAGS[tag].attributes.get(one.attribute) if tag in TAGS else None
         text = one.element.get(one.attribute) if one.element is not None else None
         if known is None or not known.parts:
             return what
         parts += [part or one.attribute for part in known.parts]
-        old, new = (
-            (*old, *values_of(known.default if text is None else text)),
-            (*new, *values_of(one.value)),
-        )
-    return mistake_in(parts, TAGS[tag].attributes[sets[-1].attribute].unit, old, new)
+        old += values_of(known.default if text is None else text)
+        new += values_of(one.value)
+    unit = TAGS[tag].attributes[sets[-1].attribute].unit
+    return mistake_in(parts, unit, tuple(old), tuple(new))
 
 
 def _unique(pieces: Iterable[Piece]) -> list[Piece]:
@@ -401,34 +383,35 @@ def _wanted_value(step: Step) -> str | None:
     return known.default or None if known is not None else None
 
 
-def _node_of(element: Element, names: Mapping[str, Mapping[str, str]] | None = None) -> Node:
+def _node_of(element: Element, names: Mapping[str, Mapping[str, str]]) -> Node:
     """Return the node of an element, without values and elements that are the default."""
     tag = str(element.tag)
+    attributes = TAGS[tag].attributes if tag in TAGS else {}
     values = {}
-    for name, value in element.attrib.items():
-        text = normal(tag, str(name), str(value))
-        if (
-            tag in TAGS
-            and str(name) in TAGS[tag].attributes
-            and text == normal(tag, str(name), None)
-        ):
+    for key, value in element.attrib.items():
+        name = str(key)
+        text = normal(tag, name, str(value))
+        if name in attributes and text == normal(tag, name, None):
             continue
-        values[str(name)] = (names or {}).get(_NAMES.get((tag, str(name)), ""), {}).get(text, text)
-    if tag not in TAGS and not len(element) and (element.text or "").strip():
-        values[""] = (element.text or "").strip()
-    children = [_node_of(child, names) for child in element if isinstance(child.tag, str)]
+        translation = names.get(_NAMES.get((tag, name), ""), {})
+        values[name] = translation.get(text, text)
+    content = (element.text or "").strip()
+    if tag not in TAGS and not len(element) and content:
+        values[""] = content
     is_moving = tag != "joint" or element.get("type") in _MOVING
-    children = [child for child in children if not _is_default(child, is_moving=is_moving)]
+    children = []
+    for child in element:
+        if isinstance(child.tag, str):
+            node = _node_of(child, names)
+            if not _is_default(node, is_moving=is_moving):
+                children.append(node)
     return Node(tag, _keys(element, values), values, children, element)
 
 
 def _keys(element: Element, values: Mapping[str, str]) -> tuple[str, ...]:
     name = values.get("name", "") or values.get("reference", "")
-    if (
-        element.tag == "joint"
-        and element.getparent() is not None
-        and child_of(element, "child") is not None
-    ):
+    is_joint = element.tag == "joint" and element.getparent() is not None
+    if is_joint and child_of(element, "child") is not None:
         return end_of(element, "child"), name
     if name and element.tag not in ("visual", "collision"):
         return (name,)
@@ -443,20 +426,21 @@ def _is_default(node: Node, *, is_moving: bool) -> bool:
 
 def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
     """Return what the joints and materials of the reference are called in the robot."""
-    names: dict[str, dict[str, str]] = {"joint": {}, "material": {}}
+    joints: dict[str, str] = {}
     known = {joint.name for joint in reference.robot.joints}
+    written = {joint.get("name") for joint in draft.joints()}
     for joint in reference.joints():
         own = draft.joint_of(end_of(joint, "child"))
-        is_there = any(it.get("name") == joint.get("name") for it in draft.joints())
-        if own is not None and own.get("name") and own.get("name") not in known and not is_there:
-            names["joint"][joint.get("name") or ""] = own.get("name") or ""
-    mine = [_node_of(found) for found in draft.root.iterchildren("material")]
-    pairs = paired(mine, [_node_of(found) for found in reference.root.iterchildren("material")])
-    called = {
-        like.values.get("name", ""): own_node.values.get("name") for own_node, like in pairs.both
-    }
-    names["material"] = {name: own_name for name, own_name in called.items() if own_name}
-    return names
+        own_name = own.get("name") if own is not None else None
+        if own_name and own_name not in known and joint.get("name") not in written:
+            joints[joint.get("name") or ""] = own_name
+    own_materials = [_node_of(it, {}) for it in draft.root.iterchildren("material")]
+    materials = [_node_of(it, {}) for it in reference.root.iterchildren("material")]
+    called: dict[str, str] = {}
+    for node, like in paired(own_materials, materials).both:
+        called[like.values.get("name", "")] = node.values.get("name", "")
+    named = {name: own_name for name, own_name in called.items() if own_name}
+    return {"joint": joints, "material": named}
 
 
 def _values_of_one(found: Iterable[Step]) -> Iterator[list[Step]]:

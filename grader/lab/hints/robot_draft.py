@@ -1,12 +1,12 @@
 """The edits of the elements of a robot in the text that they are written in."""
 
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, cast
 
 from grader.base import markup
-from grader.base.source import Edits, Source
+from grader.base.source import Edit, Edits, Source
 from grader.lab.hints.edits import (
     Proposal,
     element_text,
@@ -24,7 +24,7 @@ from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import PARTS
 
 if TYPE_CHECKING:
-    from grader.lab.hints.xacro_edits import ExpandedEdits
+    from grader.lab.hints.xacro_edits import ExpandedEdits, NumberDefinition
     from grader.ros.xacro.expansion import ExpandedSource
 
 
@@ -110,11 +110,14 @@ class Draft:
     @cached_property
     def _materials(self) -> dict[str, Element]:
         own = list(self.root.iterchildren("material"))
-        inside = (found for found in self.root.iter("material") if len(found))
-        found: dict[str, Element] = {}
-        for material in (*(it for it in own if len(it)), *inside, *own):
-            found.setdefault(material.get("name") or "", material)
-        return found
+        materials: dict[str, Element] = {}
+        # One without content only names another one.
+        for material in (*own, *self.root.iter("material")):
+            if len(material):
+                materials.setdefault(material.get("name") or "", material)
+        for material in own:
+            materials.setdefault(material.get("name") or "", material)
+        return materials
 
     def owner(self, element: Element) -> Element:
         """Return the child of the root that an element is or is in; the root itself for the
@@ -144,13 +147,12 @@ class Draft:
         while inner is not owner and inner is not self.root:
             path.insert(0, str(inner.tag))
             inner = inner.getparent()  # type: ignore[assignment]
-        path = [
-            name for index, name in enumerate(path) if name != "geometry" or index == len(path) - 1
-        ]
+        # The geometry around a shape says nothing.
+        path = [name for name in path[:-1] if name != "geometry"] + path[-1:]
         if owner.tag != "link" or not path:
             path.insert(0, str(owner.tag))
         name = self.link_of(owner) if owner.tag in ("link", "joint") else owner.get("name") or ""
-        what = " ".join(path[:1] + path[1:][-1:])
+        what = path[0] if len(path) == 1 else f"{path[0]} {path[-1]}"
         if name not in known:
             return f"the {what}"
         if what == "link":
@@ -188,10 +190,8 @@ class Draft:
             return self._expanded.corrections(names)
         return []
 
-    def numbers(self, element: Element, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
-        """Return the numbers from which xacro computes an attribute, each with what makes the
-        edit of it.
-        """
+    def numbers(self, element: Element, attribute: str) -> "list[NumberDefinition]":
+        """Return the definitions of the numbers from which xacro computes an attribute."""
         if self._expanded is None:
             return []
         return self._expanded.numbers(self._tags[element], attribute)
@@ -202,13 +202,13 @@ class Draft:
         """Return the values that are set for the elements that come from the same text as one."""
         if self._expanded is None:
             return {}
-        same = [self._elements[it] for it in self._expanded.siblings(self._tags[element])]
-        return {
-            it: one.value
-            for it in same
-            for one in sets
-            if one.attribute == attribute and one.element is it
-        }
+        same = {self._elements[tag] for tag in self._expanded.siblings(self._tags[element])}
+        values: dict[Element, str] = {}
+        for change in sets:
+            if change.attribute == attribute and change.element in same:
+                assert change.element is not None
+                values[change.element] = change.value
+        return values
 
     def shared(self, sets: Iterable[Set]) -> frozenset[str]:
         """Return the links whose elements come from the same text of xacro as those that are
@@ -216,45 +216,46 @@ class Draft:
         """
         if self._expanded is None:
             return frozenset()
-        tags = [self._tags[one.element] for one in sets if one.element is not None]
-        return frozenset(
-            self.link_of(self._elements[it]) for tag in tags for it in self._expanded.siblings(tag)
-        )
+        links: set[str] = set()
+        for change in sets:
+            if change.element is not None:
+                siblings = self._expanded.siblings(self._tags[change.element])
+                links.update(self.link_of(self._elements[tag]) for tag in siblings)
+        return frozenset(links)
 
     def ways(self, sets: Collection[Set]) -> list[Edits]:
         """Return the ways to set values; attributes and elements that are missing are added."""
-        found: list[Edits] = [()]
+        ways: list[Edits] = [()]
         attributes: dict[Element, dict[str, str]] = {}
         children: dict[tuple[Element, str], dict[str, str]] = {}
         done: set[tuple[Element, str]] = set()
-        for one in dict.fromkeys(sets):
-            element = one.element
-            if element is not None and (element, one.attribute) in done:
-                continue
+        for change in dict.fromkeys(sets):
+            element, name = change.element, change.attribute
             if element is None:
-                children.setdefault((one.owner, one.tag), {})[one.attribute] = one.value
-            elif one.attribute in element.attrib:
-                others = self._siblings(element, one.attribute, sets)
-                done |= {(it, one.attribute) for it in others}
-                is_numeric = bool(PARTS.get(one.attribute))
-                if is_numeric:
-                    value = merged(element.get(one.attribute) or "", one.value)
-                else:
-                    value = one.value
-                ways = self._ways_of(element, one.attribute, value, others)
-                found = [(*before, *more) for before in found for more in ways][:_MAX_WAYS]
+                children.setdefault((change.owner, change.tag), {})[name] = change.value
+            elif (element, name) in done:
+                continue
+            elif name in element.attrib:
+                siblings = self._siblings(element, name, sets)
+                done |= {(sibling, name) for sibling in siblings}
+                value = change.value
+                if PARTS.get(name):  # numbers
+                    value = merged(element.get(name) or "", value)
+                ways_of_value = self._ways_of(element, name, value, siblings)
+                ways = [(*before, *edits) for before in ways for edits in ways_of_value]
+                ways = ways[:_MAX_WAYS]
             else:
-                attributes.setdefault(element, {})[one.attribute] = one.value
-        added = [self.add_attributes(element, values) for element, values in attributes.items()]
-        added += [
-            self.insert(owner, _empty_element(tag, values))
-            for (owner, tag), values in children.items()
-        ]
-        rest = tuple(edit for edits in added for edit in edits)
-        return [
-            tuple(edit for edit in dict.fromkeys((*edits, *rest)) if edit.old != edit.new)
-            for edits in self._exchanged(sets, found)[:_MAX_WAYS]
-        ]
+                attributes.setdefault(element, {})[name] = change.value
+        added: list[Edit] = []
+        for element, values in attributes.items():
+            added += self.add_attributes(element, values)
+        for (owner, tag), values in children.items():
+            added += self.insert(owner, _empty_element(tag, values))
+        ways_that_change: list[Edits] = []
+        for edits in self._exchanged(sets, ways)[:_MAX_WAYS]:
+            every_edit = dict.fromkeys((*edits, *added))
+            ways_that_change.append(tuple(edit for edit in every_edit if edit.old != edit.new))
+        return ways_that_change
 
     def _exchanged(self, sets: Collection[Set], ways: list[Edits]) -> list[Edits]:
         """Return the ways to set values: two that are exchanged get the text of each other.
@@ -264,19 +265,20 @@ class Draft:
         element = next((one.element for one in sets), None)
         if element is None or len(sets) != 2 or any(one.element is not element for one in sets):
             return ways
-        source, start = self.source.element(self._tags[element])
-        pair = [markup.attribute(source.text, start, one.attribute) for one in sets]
-        texts = [
-            source.text[it.value_start : it.value_end] for it in reversed(pair) if it is not None
-        ]
-        wanted = [values_of(element.get(one.attribute)) for one in sets][::-1]
-        if len(texts) != 2 or not all(wanted) or [values_of(one.value) for one in sets] != wanted:
+        first, second = sets
+        wanted = [values_of(element.get(second.attribute)), values_of(element.get(first.attribute))]
+        if not all(wanted) or [values_of(first.value), values_of(second.value)] != wanted:
             return ways
-        edits = tuple(
-            with_attribute(source, start, it.attribute, text)
-            for it, text in zip(sets, texts, strict=True)
+        source, start = self.source.element(self._tags[element])
+        first_text = _attribute_text(source, start, first.attribute)
+        second_text = _attribute_text(source, start, second.attribute)
+        if first_text is None or second_text is None:
+            return ways
+        edits = (
+            with_attribute(source, start, first.attribute, second_text),
+            with_attribute(source, start, second.attribute, first_text),
         )
-        if all("$" in text for text in texts):
+        if "$" in first_text and "$" in second_text:
             return [*ways[:1], edits]
         return [edits]
 
@@ -288,9 +290,8 @@ class Draft:
         """
         tag = self._tags[element]
         wanted = {tag: (element.get(attribute) or "", escaped(value))}
-        wanted |= {
-            self._tags[it]: (it.get(attribute) or "", escaped(text)) for it, text in others.items()
-        }
+        for other, text in others.items():
+            wanted[self._tags[other]] = (other.get(attribute) or "", escaped(text))
         if self._expanded is not None:
             return self._expanded.rewrites(attribute, wanted)
         source, start = self.source.element(tag)
@@ -304,13 +305,11 @@ class Draft:
         it is written.
         """
         places = [self.source.element(self._tags[element]) for element in elements]
-        spans = [markup.attribute(source.text, start, attribute) for source, start in places]
-        pairs = zip(places, spans, strict=True)
-        texts = [
-            source.text[it.value_start : it.value_end]
-            for (source, _), it in pairs
-            if it is not None
-        ]
+        texts = []
+        for source, start in places:
+            text = _attribute_text(source, start, attribute)
+            if text is not None:
+                texts.append(text)
         if len(texts) != 2 or texts[0] == texts[1]:
             return ()
         return tuple(
@@ -393,6 +392,14 @@ class Draft:
         """Return the edit that replaces an element."""
         source, start = self.source.element(self._tags[element])
         return (with_element(source, start, xml),)
+
+
+def _attribute_text(source: Source, start: int, name: str) -> str | None:
+    """Return the text of an attribute of the start tag at an offset, as it is written."""
+    found = markup.attribute(source.text, start, name)
+    if found is None:
+        return None
+    return source.text[found.value_start : found.value_end]
 
 
 def _empty_element(tag: str, values: Mapping[str, str]) -> str:

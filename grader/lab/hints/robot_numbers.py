@@ -26,6 +26,10 @@ class _NumberMistake(NamedTuple):
     correct: Callable[[float], float]
     cause: str
 
+    def may_be_of(self, unit: str) -> bool:
+        """Return whether it is made with numbers of this unit."""
+        return not self.units or unit in self.units
+
 
 _LENGTHS, _ANGLES, _ANY = ("m",), ("rad", "rad or m"), ()
 _MISTAKES = (
@@ -47,15 +51,20 @@ def mistake_in(parts: Sequence[str], unit: str, old: Values, new: Values) -> str
     """Return what is wrong with numbers; {} stands for what has them."""
     if not len(parts) == len(old) == len(new):
         return "the numbers of {}"
-    off = [index for index, pair in enumerate(zip(old, new, strict=True)) if not _is_same(*pair)]
-    names = [_with_article(parts[index]) for index in off]
-    wrong = f"{enumerated(names) if len(off) < 4 else 'the numbers'} of {{}}"
+    off = [index for index in range(len(old)) if not _is_same(old[index], new[index])]
+    if len(off) < 4:
+        wrong = f"{enumerated([_with_article(parts[index]) for index in off])} of {{}}"
+    else:
+        wrong = "the numbers of {}"
     for mistake in _MISTAKES:
-        fits = (_is_same(mistake.correct(old[index]), new[index], 2e-3) for index in off)
-        if (not mistake.units or unit in mistake.units) and off and all(fits):
-            return mistake.cause.replace("{}", wrong)
-    if len(off) == 2 and all(_is_same(old[one], new[other]) for one, other in (off, off[::-1])):
-        return f"{wrong} are exchanged"
+        if off and mistake.may_be_of(unit):
+            fits = (_is_same(mistake.correct(old[index]), new[index], 2e-3) for index in off)
+            if all(fits):
+                return mistake.cause.replace("{}", wrong)
+    if len(off) == 2:
+        first, second = off
+        if _is_same(old[first], new[second]) and _is_same(old[second], new[first]):
+            return f"{wrong} are exchanged"
     return wrong
 
 
@@ -69,22 +78,22 @@ def plausible(unit: str, old: Values) -> Iterator[Values]:
     """Yield numbers that a person may have meant: another sign, another unit, twice or half of it,
     another order.
     """
+    largest = max(map(abs, old), default=0.0)
     for mistake in _MISTAKES:
-        if max(map(abs, old), default=0.0) >= mistake.least and (
-            not mistake.units or unit in mistake.units
-        ):
-            for index in (
-                index
-                for index, value in enumerate(old)
-                if value and not (mistake.least and len(old) > 1)
-            ):
-                yield (*old[:index], mistake.correct(old[index]), *old[index + 1 :])
-            if mistake.least and len(old) > 1:
-                yield tuple(map(mistake.correct, old))
+        if largest < mistake.least or not mistake.may_be_of(unit):
+            continue
+        # All numbers of a vector have the same unit.
+        if mistake.least and len(old) > 1:
+            yield tuple(map(mistake.correct, old))
+            continue
+        for index, value in enumerate(old):
+            if value:
+                yield (*old[:index], mistake.correct(value), *old[index + 1 :])
     for one, other in combinations(range(len(old)), 2):
         if old[one] != old[other]:
-            pair = {one: old[other], other: old[one]}
-            yield tuple(pair.get(index, value) for index, value in enumerate(old))
+            exchanged = [*old]
+            exchanged[one], exchanged[other] = old[other], old[one]
+            yield tuple(exchanged)
 
 
 def _is_same(one: float, other: float, relative: float = 1e-9) -> bool:

@@ -6,7 +6,7 @@ the other side; and all steps that one link, or one element, needs together.
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import combinations
+from itertools import chain, combinations
 from math import inf
 
 from grader.base.source import Edits
@@ -41,7 +41,6 @@ _SIDES = {
 }
 _WORD = re.compile(r"[^\W\d_]+")
 _MAX_NAMED = 3  # values whose mistakes are named one by one
-_FRAME = "the frame of {!r} and what it shows"
 _WITH_NUMBERS = (
     "origin",
     "axis",
@@ -81,20 +80,22 @@ def of_siblings(difference: RobotDifference, links: Iterable[str]) -> Iterator[P
     unlike the reference.
     """
     for link in links:
-        other = _other_side(link)
-        theirs = _first_parts(difference.draft, other) if other != link else {}
-        if theirs:
-            like, mine = (
-                _first_parts(difference.reference, other),
-                _first_parts(difference.reference, link),
-            )
-            for path, element in _parts(difference.draft, link):
-                if path in theirs:
-                    known = [it for it in (element, mine.get(path)) if it is not None]
-                    yield from _of_sibling(difference, theirs[path], like.get(path), known)
+        other_link = _other_side(link)
+        theirs = _first_parts(difference.draft, other_link) if other_link != link else {}
+        if not theirs:
+            continue
+        like_theirs = _first_parts(difference.reference, other_link)
+        like_own = _first_parts(difference.reference, link)
+        for path, element in _parts(difference.draft, link):
+            if path not in theirs:
+                continue
+            known = [element]
+            if path in like_own:
+                known.append(like_own[path])
+            yield from _mirror_numbers(difference, theirs[path], like_theirs.get(path), known)
 
 
-def _of_sibling(
+def _mirror_numbers(
     difference: RobotDifference, other: Element, like: Element | None, known: Sequence[Element]
 ) -> Iterator[Piece]:
     """Yield the mirrored numbers of another element that are not `known`: those of its own
@@ -102,21 +103,24 @@ def _of_sibling(
     """
     tag = str(other.tag)
     for name, attribute in TAGS[tag].attributes.items():
-        text, given = other.get(name), like.get(name) if like is not None else None
+        text = other.get(name)
+        text_of_reference = like.get(name) if like is not None else None
         values = values_of(text)
-        if len(values) == len(attribute.parts) and normal(tag, name, text) != normal(
-            tag, name, given
-        ):
-            tried = {normal(tag, name, it.get(name)) for it in known}
-            for mirrored in map(format_numbers, _mirrored(values)):
-                if normal(tag, name, mirrored) not in tried:
-                    yield difference.of_sets([Set(known[0], "", name, mirrored)], SIBLING)
+        if len(values) != len(attribute.parts):
+            continue
+        if normal(tag, name, text) == normal(tag, name, text_of_reference):
+            continue
+        tried = {normal(tag, name, element.get(name)) for element in known}
+        for mirrored in map(format_numbers, _mirrored(values)):
+            if normal(tag, name, mirrored) not in tried:
+                yield difference.of_sets([Set(known[0], "", name, mirrored)], SIBLING)
 
 
 def _mirrored(values: Values) -> Iterator[Values]:
     yield values
-    for index in (index for index, value in enumerate(values) if value):
-        yield (*values[:index], -values[index], *values[index + 1 :])
+    for index, value in enumerate(values):
+        if value:
+            yield (*values[:index], -value, *values[index + 1 :])
 
 
 def of_own(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]:
@@ -124,79 +128,98 @@ def of_own(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]
 
     Where xacro computes them, the numbers that they come from.
     """
-    seen: set[object] = set()
+    seen: set[Edits] = set()
     is_alone = difference.draft is difference.reference
     for link in links:
         like = _first_parts(difference.reference, link)
         for path, element in _parts(difference.draft, link):
             tag = str(element.tag)
-            numbers = TAGS[tag].attributes
-            single = [
-                name
-                for name, known in numbers.items()
-                if len(known.parts) == 1 and element.get(name)
-            ]
-            if len(single) == 2:
-                pair = zip(single, single[::-1], strict=True)
-                yield difference.of_sets(
-                    [Set(element, "", one, element.get(other) or "") for one, other in pair], OWN
-                )
-            for name in numbers:
-                given = like[path].get(name) if path in like else None
-                if is_alone or normal(tag, name, element.get(name)) != normal(tag, name, given):
-                    for piece in _of_number(difference, element, name):
-                        if piece.edits not in seen:
-                            yield piece
-                        if piece.edits:
-                            seen.add(piece.edits)
+            yield from _exchange_of_two(difference, element)
+            for name in TAGS[tag].attributes:
+                of_reference = like[path].get(name) if path in like else None
+                is_same = normal(tag, name, element.get(name)) == normal(tag, name, of_reference)
+                if is_same and not is_alone:
+                    continue
+                for piece in _meant_numbers(difference, element, name):
+                    if piece.edits not in seen:
+                        yield piece
+                    if piece.edits:
+                        seen.add(piece.edits)
 
 
-def _of_number(difference: RobotDifference, element: Element, name: str) -> Iterator[Piece]:
+def _exchange_of_two(difference: RobotDifference, element: Element) -> Iterator[Piece]:
+    """Yield what exchanges the two single numbers of an element, such as radius and length."""
+    single = []
+    for name, attribute in TAGS[str(element.tag)].attributes.items():
+        if len(attribute.parts) == 1 and element.get(name):
+            single.append(name)
+    if len(single) == 2:
+        first, second = single
+        sets = [
+            Set(element, "", first, element.get(second) or ""),
+            Set(element, "", second, element.get(first) or ""),
+        ]
+        yield difference.of_sets(sets, OWN)
+
+
+def _meant_numbers(difference: RobotDifference, element: Element, name: str) -> Iterator[Piece]:
+    """Yield the numbers that an attribute may be meant to have, where it is written, else those
+    that xacro computes it from.
+    """
     unit = TAGS[str(element.tag)].attributes[name].unit
     least = 0.0 if unit == "m" and element.tag != "origin" else -inf  # of a size
-    defined = [
-        found for found in difference.draft.numbers(element, name) if values_of(found[0])
-    ]  # not 1e400
-    if not defined:
-        for values in plausible(unit, values_of(element.get(name))):
+    written = values_of(element.get(name))
+    # A number like 1e400 has no values.
+    definitions = [it for it in difference.draft.numbers(element, name) if values_of(it.text)]
+    if not definitions:
+        for values in plausible(unit, written):
             if min(values) > least:
                 yield difference.of_sets([Set(element, "", name, format_numbers(values))], OWN)
-    coordinates = values_of(element.get(name)) if element.tag == "origin" else ()
-    for text, edits_with in defined:
-        (old,) = values_of(text)
-        for (value,) in plausible(unit, (old,)):
-            is_side = abs(old) == 1.0 and value != -old  # 1 and -1 are the sides
-            is_length = old > 0.0 > value and abs(old) != 1.0 and old not in coordinates
-            edits = edits_with(format_number(value))
-            if edits and value > least and not is_length and not is_side:
-                cause = f"a number from which the {name} of {{}} is computed"
-                yield difference.piece(element, cause, edits, rank=OWN)
-    lengths = [it for it in defined if abs(values_of(it[0])[0]) != 1.0]
-    for (one, with_one), (other, with_other) in combinations(lengths, 2):
-        edits = (*with_one(other), *with_other(one)) if one != other else ()
-        yield difference.piece(
-            element, f"the numbers from which the {name} of {{}} is computed", edits, rank=OWN
-        )
+    coordinates = written if element.tag == "origin" else ()
+    cause = f"a number from which the {name} of {{}} is computed"
+    for definition in definitions:
+        (old,) = values_of(definition.text)
+        for (new,) in plausible(unit, (old,)):
+            if new > least and _may_be_meant(old, new, coordinates):
+                edits = definition.edits_with(format_number(new))
+                if edits:
+                    yield difference.piece(element, cause, edits, rank=OWN)
+    lengths = [it for it in definitions if abs(values_of(it.text)[0]) != 1.0]
+    cause = f"the numbers from which the {name} of {{}} is computed"
+    for one, other in combinations(lengths, 2):
+        edits = ()
+        if one.text != other.text:
+            edits = (*one.edits_with(other.text), *other.edits_with(one.text))
+        yield difference.piece(element, cause, edits, rank=OWN)
+
+
+def _may_be_meant(old: float, new: float, coordinates: Values) -> bool:
+    """Return whether a number of xacro may be another one: 1 and -1 are the sides, and a length
+    stays positive.
+    """
+    if abs(old) == 1.0:
+        return new == -old
+    return old in coordinates or not old > 0.0 > new
 
 
 def reversed_joints(difference: RobotDifference) -> list[Element]:
     """Return the joints whose parent should be below their child: in the reference, the child is
     above the parent.
     """
-    parents = {
-        end_of(joint, "child"): end_of(joint, "parent") for joint in difference.reference.joints()
-    }
+    parents: dict[str, str] = {}
+    for joint in difference.reference.joints():
+        parents[end_of(joint, "child")] = end_of(joint, "parent")
 
     def links_above(link: str) -> set[str]:
-        found: set[str] = set()
-        while (link := parents.get(link, "")) and link not in found:
-            found.add(link)
-        return found
+        above: set[str] = set()
+        while (link := parents.get(link, "")) and link not in above:
+            above.add(link)
+        return above
 
     return [
-        it
-        for it in difference.draft.joints()
-        if end_of(it, "child") in links_above(end_of(it, "parent"))
+        joint
+        for joint in difference.draft.joints()
+        if end_of(joint, "child") in links_above(end_of(joint, "parent"))
     ]
 
 
@@ -204,21 +227,21 @@ def exchanges(difference: RobotDifference) -> list[Piece]:
     """Return what exchanges parent and child of reversed joints, and the children of two joints
     of both sides.
     """
-    found: list[Piece] = []
+    pieces: list[Piece] = []
     for joint in reversed_joints(difference):
         edits = _exchange_ends(difference.draft, (joint, "parent"), (joint, "child"))
-        found.append(difference.piece(joint, "parent and child of a joint are exchanged", edits))
-    if len(found) > 1:
-        edits = tuple(dict.fromkeys(edit for piece in found for edit in piece.edits))
-        found.append(
-            found[0]._replace(cause="parents and children of joints are exchanged", edits=edits)
-        )
+        pieces.append(difference.piece(joint, "parent and child of a joint are exchanged", edits))
+    if len(pieces) > 1:
+        every_edit = dict.fromkeys(edit for piece in pieces for edit in piece.edits)
+        cause = "parents and children of joints are exchanged"
+        pieces.append(pieces[0]._replace(cause=cause, edits=tuple(every_edit)))
     for joint in difference.draft.joints():
         other = difference.draft.joint_of(_other_side(end_of(joint, "child")))
         if other is not None and other is not joint:
             edits = _exchange_ends(difference.draft, (joint, "child"), (other, "child"))
-            found.append(difference.piece(joint, "the children of two joints are exchanged", edits))
-    return found
+            cause = "the children of two joints are exchanged"
+            pieces.append(difference.piece(joint, cause, edits))
+    return pieces
 
 
 def _exchange_ends(draft: Draft, *ends: tuple[Element, str]) -> Edits:
@@ -235,23 +258,24 @@ def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:
     """Yield all lengths in metres, for a robot of which they are all in centimetres or
     millimetres.
     """
-    found: list[tuple[Element, str, Values]] = []
+    lengths: list[tuple[Element, str, Values]] = []
+    is_large = False
     for element in difference.draft.root.iter():
         if element.tag not in TAGS:
             continue
-        for name, known in TAGS[str(element.tag)].attributes.items():
-            values = values_of(element.get(name)) if known.unit == "m" else ()
+        for name, attribute in TAGS[str(element.tag)].attributes.items():
+            values = values_of(element.get(name)) if attribute.unit == "m" else ()
             if any(values):
-                found.append((element, name, values))
-    if not any(max(values) >= LARGE for element, _, values in found if element.tag != "origin"):
+                lengths.append((element, name, values))
+                is_large |= element.tag != "origin" and max(values) >= LARGE
+    if not is_large:
         return
     for factor, unit in ((100.0, "centimetres"), (1000.0, "millimetres")):
-        metres = [
-            (it, name, tuple(value / factor for value in values)) for it, name, values in found
-        ]
-        sets = tuple(Set(it, "", name, format_numbers(values)) for it, name, values in metres)
-        cause = f"the unit of all lengths: {unit}, not metres"
-        yield Piece(cause, "", sets, (), OWN)
+        sets = []
+        for element, name, values in lengths:
+            metres = format_numbers(tuple(value / factor for value in values))
+            sets.append(Set(element, "", name, metres))
+        yield Piece(f"the unit of all lengths: {unit}, not metres", "", tuple(sets), (), OWN)
 
 
 def whole_links(difference: RobotDifference) -> Iterator[Piece]:
@@ -260,34 +284,39 @@ def whole_links(difference: RobotDifference) -> Iterator[Piece]:
     """
     links: dict[str, list[Set]] = {}
     for piece in difference.pieces:
-        own = links.setdefault(piece.link, [])
-        own += [one for one in piece.sets if one not in own and one.attribute != "name"]
+        sets = links.setdefault(piece.link, [])
+        for change in piece.sets:
+            if change not in sets and change.attribute != "name":
+                sets.append(change)
+    every_set = list(chain.from_iterable(links.values()))
     for link, sets in links.items():
         if link not in difference.known:
             continue
-        poses = [
-            one
-            for one in sets
-            if "origin" in (one.tag, one.owner.tag) or "axis" in (one.tag, one.owner.tag)
-        ]
+        poses = [change for change in sets if _is_pose(change)]
         carried = {joint for joint in difference.draft.joints() if end_of(joint, "parent") == link}
         after = [
-            one
-            for own in links.values()
-            for one in own
-            if not carried.isdisjoint((one.owner, one.owner.getparent()))
+            change
+            for change in every_set
+            if change.owner in carried or change.owner.getparent() in carried
         ]
-        yield from _group(difference, link, poses, _FRAME.format(link))
-        yield from _group(difference, link, poses + after, f"{_FRAME} and carries".format(link))
+        frame = f"the frame of {link!r} and what it shows"
+        yield from _group(difference, link, poses, frame)
+        yield from _group(difference, link, poses + after, f"{frame} and carries")
         yield from _group(difference, link, sets, f"the values of {link!r}")
 
 
+def _is_pose(change: Set) -> bool:
+    """Return whether a value says where a link is, or how it moves."""
+    tags = (change.tag, change.owner.tag)
+    return "origin" in tags or "axis" in tags
+
+
 def _group(difference: RobotDifference, link: str, sets: list[Set], what: str) -> Iterator[Piece]:
-    changed = {(one.owner, one.tag): one for one in sets}
+    changed = {(change.owner, change.tag): change for change in sets}
     if len(changed) < 2:
         return
     if len(changed) == len(sets) <= _MAX_NAMED:
-        what = " and ".join(difference.of_sets([one]).cause for one in changed.values())
+        what = " and ".join(difference.of_sets([change]).cause for change in changed.values())
     yield Piece(what, link, tuple(dict.fromkeys(sets)), (), STRUCTURE)
 
 
@@ -295,22 +324,21 @@ def whole_elements(difference: RobotDifference) -> Iterator[Piece]:
     """Yield the changes in one element together, and in one child of the robot; of links and joints
     no values.
     """
+    draft = difference.draft
     for is_owner in (False, True):
         groups: dict[Element, list[Piece]] = {}
         for piece in difference.pieces:
-            if piece.around is not None:
-                owner = difference.draft.owner(piece.around)
-            else:
-                owner = difference.draft.root
+            if piece.around is None:
+                continue
+            owner = draft.owner(piece.around)
             has_values = owner.tag in ("link", "joint", "material", "robot")
             is_removed = not piece.sets and not any(edit.new for edit in piece.edits)
-            if piece.around is not None and not is_removed and (piece.edits or not has_values):
+            if not is_removed and (piece.edits or not has_values):
                 groups.setdefault(owner if is_owner else piece.around, []).append(piece)
-        for pieces in (
-            those for element, those in groups.items() if element is not difference.draft.root
-        ):
+        for element, pieces in groups.items():
+            if element is draft.root or len(pieces) < 2:
+                continue
             cause = " and ".join(dict.fromkeys(piece.cause for piece in pieces))
-            edits = tuple(edit for piece in pieces for edit in piece.edits)
-            sets = tuple(one for piece in pieces for one in piece.sets)
-            if len(pieces) > 1:
-                yield Piece(cause, pieces[0].link, sets, edits, STRUCTURE)
+            edits = chain.from_iterable(piece.edits for piece in pieces)
+            sets = chain.from_iterable(piece.sets for piece in pieces)
+            yield Piece(cause, pieces[0].link, tuple(sets), tuple(edits), STRUCTURE)

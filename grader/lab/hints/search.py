@@ -56,7 +56,7 @@ class Trials:
             name: result for name, result in results.items() if result.criterion.part in parts
         }
         self._edited = dict[tuple[Edits, bool], Submission | None]()
-        self._of_reference = dict[str, bool]()
+        self._is_of_reference = dict[str, bool]()  # by path
         self.left = _MAX_GRADINGS
         self.faults: list[str] = []  # the types of exceptions
         # whether the last one is read with words undone, and the submission is not
@@ -102,18 +102,18 @@ class Trials:
         """Return whether a file of the robot is the same in the reference, so that the mistake
         is in another one.
         """
-        if path not in self._of_reference and path.endswith(ROBOT_ENDINGS):
+        if not path.endswith(ROBOT_ENDINGS):
+            return False
+        if path not in self._is_of_reference:
+            self._is_of_reference[path] = False
             data, solution = content(self.submission, path), self.rubric.solution
-            self._of_reference[path] = False
             if data and solution is not None and self.submission.package is not None:
                 with suppress(InputError):
-                    same = [
-                        it
-                        for it in solution.submission.whole_tree.files.values()
-                        if it.size == len(data)
-                    ]
-                    self._of_reference[path] = any(it.read(URDF_LIMIT) == data for it in same)
-        return self._of_reference.get(path, False)
+                    for file in solution.submission.whole_tree.files.values():
+                        if file.size == len(data) and file.read(URDF_LIMIT) == data:
+                            self._is_of_reference[path] = True
+                            break
+        return self._is_of_reference[path]
 
     def edited(self, edits: Edits, *, whole: bool = False) -> Submission | None:
         """Return the submission with edits; None where they do not fit. What was tried is proven
@@ -128,16 +128,11 @@ class Trials:
         files = edited_files(self.submission, edits)
         if files is None:
             return None
-        is_robot = isinstance(self.submission.urdf, Read) and None not in files.values()
-        is_decoded = all(
-            edit.old.isascii() for edit in edits
-        )  # else a launch file that could not read it now may
-        if (
-            is_robot
-            and is_decoded
-            and not whole
-            and all(_is_of_robot(path, self.submission) for path in files)
-        ):
+        is_read = isinstance(self.submission.urdf, Read) and None not in files.values()
+        # A launch file that could not decode it now may, and so load another robot.
+        is_decoded = all(edit.old.isascii() for edit in edits)
+        is_of_robot = all(_is_of_robot(path, self.submission) for path in files)
+        if is_read and is_decoded and is_of_robot and not whole:
             return with_urdf(self.submission, files)
         try:
             return with_files(self.submission, files)
@@ -155,20 +150,22 @@ def _has_new_problems(before: Submission, after: Submission) -> bool:
         return True  # a macro that is called twice makes two links of one name
     if before.urdf.loaded.verdict == "rejected":
         return False
-    known = {
-        problem.kind for problem in before.urdf.loaded.problems if problem.kind.effect in _HARMFUL
-    }
-    return any(
-        it.kind not in known for it in after.urdf.loaded.problems if it.kind.effect in _HARMFUL
-    )
+    harmful = (it.kind for it in before.urdf.loaded.problems if it.kind.effect in _HARMFUL)
+    known = set(harmful)
+    for problem in after.urdf.loaded.problems:
+        if problem.kind.effect in _HARMFUL and problem.kind not in known:
+            return True
+    return False
 
 
 def _repeated(urdf: Read) -> set[tuple[str, str]]:
     """Return the names that several links have, and the links that several joints move."""
     draft = Draft.of(urdf.loaded)
-    links = [("link", it.get("name") or "") for it in draft.links()] if draft is not None else []
-    joints = [("joint", end_of(it, "child")) for it in draft.joints()] if draft is not None else []
-    return {key for key, count in Counter(links + joints).items() if count > 1}
+    if draft is None:
+        return set()
+    names = Counter(("link", link.get("name") or "") for link in draft.links())
+    names.update(("joint", end_of(joint, "child")) for joint in draft.joints())
+    return {key for key, count in names.items() if count > 1}
 
 
 def _is_assumed(submission: Submission) -> bool:
@@ -191,12 +188,10 @@ def is_worse(before: Result, after: Result) -> bool:
     """Return whether a criterion no longer passes, has fewer points, or is undecided now; never
     an adjusted one.
     """
-    status = after.outcome.status
+    was, status = before.outcome.status, after.outcome.status
     if after.is_adjusted:
         return False
-    if before.outcome.status != status and (
-        before.outcome.status == "passed" or status in ("pending", "errored")
-    ):
+    if was != status and (was == "passed" or status in ("pending", "errored")):
         return True
     return after.points < before.points
 
@@ -246,9 +241,8 @@ class _Proof(NamedTuple):
 
 def _is_reverse(one: Proposal, other: Proposal) -> bool:
     """Return whether the edits change texts of which the other ones make the old ones."""
-    return {(edit.old, edit.new) for edit in one.edits} == {
-        (edit.new, edit.old) for edit in other.edits
-    }
+    reversed_changes = {(edit.new, edit.old) for edit in other.edits}
+    return {(edit.old, edit.new) for edit in one.edits} == reversed_changes
 
 
 class HintSearch:
@@ -295,18 +289,16 @@ class HintSearch:
             for stage in STAGES:
                 self._take(stage)
             self.is_complete = not self._is_cut or not self._lost
-        self.trials.left = max(
-            self.trials.left, 1 + self.trials.submission.cost
-        )  # for the last one
+        # One grading is left to verify all hints.
+        self.trials.left = max(self.trials.left, 1 + self.trials.submission.cost)
         with self.trials.isolated():
             self._verify()
         with self.trials.isolated():
-            known = {name for found in self.found for name in found.gains} | self.missing.keys()
-            lost = {
-                name: points
-                for name, points in costs_of(self.trials.results).items()
-                if name not in known
-            }
+            explained = {name for found in self.found for name in found.gains}
+            explained |= self.missing.keys()
+            lost = costs_of(self.trials.results)
+            for name in explained:
+                lost.pop(name, None)
             after = self._situation_after(self.edits)
             if after.is_whole:
                 self.missing |= missing_hints(
@@ -338,13 +330,11 @@ class HintSearch:
         if not self._lost or self._tried_after.get(stage) == self.edits:
             return
         self._tried_after[stage] = self.edits
-        made = [
-            it.edits
-            for it in self._situation.exchanges
-            if it.edits and {*it.edits} <= {*self.edits}
-        ]
-        if made:  # what else is wrong shows when joints have the right ends; no line moves
-            self._situation = self._situation_after(made[-1])
+        for exchange in reversed(self._situation.exchanges):
+            # What else is wrong shows when joints have the right ends; no line moves.
+            if exchange.edits and {*exchange.edits} <= {*self.edits}:
+                self._situation = self._situation_after(exchange.edits)
+                break
         tried: list[_Tried] = []
         with self.trials.isolated():
             self._try(stage, tried)
@@ -354,7 +344,7 @@ class HintSearch:
 
     def _try(self, stage: Stage, tried: list[_Tried]) -> None:
         """Grade the proposals of a stage, each once; add those with which a criterion passes."""
-        before, has_package = self.edits, self.trials.submission.package is not None
+        has_package = self.trials.submission.package is not None
         lost = [
             name
             for name in self._lost
@@ -367,23 +357,26 @@ class HintSearch:
                     if proposal.edits in seen:
                         continue
                     seen.add(proposal.edits)
-                    if any(
-                        self.trials.is_of_reference(it.path)
-                        for it in proposal.edits
-                        if not it.renamed
-                    ):
+                    if self._is_in_reference(proposal):
                         continue
                     if self.trials.left < _RESERVE:
                         self._is_cut = True
                         return
-                    results = self.trials.graded((*before, *proposal.edits), lost)
-                    passes = frozenset(
-                        name
-                        for name, result in results.items()
-                        if result.outcome.status == "passed"
-                    )
+                    passes = self._passes_with(proposal, lost)
                     if passes:
                         tried.append(_Tried(proposal, passes, self.trials.is_assumed))
+
+    def _is_in_reference(self, proposal: Proposal) -> bool:
+        """Return whether a proposal edits a file that is the same in the reference."""
+        changed = [edit.path for edit in proposal.edits if not edit.renamed]
+        return any(map(self.trials.is_of_reference, changed))
+
+    def _passes_with(self, proposal: Proposal, lost: Collection[str]) -> frozenset[str]:
+        """Return which of the lost criteria pass with a proposal."""
+        results = self.trials.graded((*self.edits, *proposal.edits), lost)
+        return frozenset(
+            name for name, result in results.items() if result.outcome.status == "passed"
+        )
 
     def _best(self, tried: Iterable[_Tried]) -> _Tried | None:
         lost = set(self._lost)
@@ -442,13 +435,13 @@ class HintSearch:
             alone, _ = self._gains((), edits, self.trials.results)
             is_late = wanted.isdisjoint(alone)
             gains = together if is_late else alone
-        if gains.keys().isdisjoint(wanted) or any(
-            after[name].outcome.status != "passed" for name in gains
-        ):
+        if gains.keys().isdisjoint(wanted):
+            return None
+        if any(after[name].outcome.status != "passed" for name in gains):
             return None
         known = {name for found in self.found for name in found.gains}
-        gains = {name: points for name, points in gains.items() if name not in known} or gains
-        return _Proof(proposal._replace(edits=edits), gains, together, after, is_late)
+        new_gains = {name: points for name, points in gains.items() if name not in known}
+        return _Proof(proposal._replace(edits=edits), new_gains or gains, together, after, is_late)
 
     def _needed(
         self, edits: Edits, gains: dict[str, Decimal], after: _Results
@@ -477,32 +470,30 @@ class HintSearch:
         Another text that may be missing at the same place is one, too: a value of another call of a
         macro, or negated.
         """
-        lost, known = set(self._lost), {best.proposal.edits, *self._refused}
-        added = {
-            edit.new.strip(_AROUND) for edit in best.proposal.edits if not edit.old
-        }  # also in the next line
-        others = (it for it in tried if it.passes >= wanted and it.proposal.edits not in known)
-        others = (
-            it
-            for it in others
-            if not added.issuperset(edit.new.strip(_AROUND) for edit in it.proposal.edits)
-        )
+        lost = set(self._lost)
+        known = {best.proposal.edits, *self._refused}
         order, places = self._order(best, lost), best.proposal.places
+        added: set[str] = set()  # also in the next line
+        for edit in best.proposal.edits:
+            if not edit.old:
+                added.add(edit.new.strip(_AROUND))
         is_added = all(
             not edit.old and edit.path.endswith(ROBOT_ENDINGS) for edit in best.proposal.edits
         )
-        for one in others:
-            is_apart = self._order(one, lost) == order and one.proposal.places.isdisjoint(places)
-            is_other_text = (
-                self._order(one, lost)[:-1] == order[:-1]
-                and one.proposal.places == places
-                and is_added
-            )
-            if not is_apart and not is_other_text:
+        for other in tried:
+            proposal = other.proposal
+            if proposal.edits in known or not other.passes >= wanted:
                 continue
-            others_gains, _ = self._gains(self.edits, one.proposal.edits, self.results)
-            if gains.keys() <= others_gains.keys():
-                return one
+            if added.issuperset(edit.new.strip(_AROUND) for edit in proposal.edits):
+                continue
+            order_of_other = self._order(other, lost)
+            is_apart = order_of_other == order and proposal.places.isdisjoint(places)
+            is_as_good = order_of_other[:-1] == order[:-1]  # apart from the size
+            is_other_text = is_added and is_as_good and proposal.places == places
+            if is_apart or is_other_text:
+                gains_of_other, _ = self._gains(self.edits, proposal.edits, self.results)
+                if gains.keys() <= gains_of_other.keys():
+                    return other
         return None
 
     def _is_half(self, best: _Tried, after: _Results) -> bool:
@@ -510,13 +501,15 @@ class HintSearch:
         macro, or of its link.
         """
         lost = [self._criteria[name] for name, result in after.items() if result.is_lost]
-        if leaves_others(
-            best.proposal.shared, [self._criteria[name] for name in best.passes], lost
-        ):
+        passing = [self._criteria[name] for name in best.passes]
+        if leaves_others(best.proposal.shared, passing, lost):
             return True
-        is_own = best.proposal.rank not in (REFERENCE, STRUCTURE) and bool(best.proposal.link)
-        chains = (self._situation.own_chain(it.arguments.get("link")) for it in lost if is_own)
-        return any(best.proposal.link in chain for chain in chains)
+        if best.proposal.rank in (REFERENCE, STRUCTURE) or not best.proposal.link:
+            return False
+        for criterion in lost:
+            if best.proposal.link in self._situation.own_chain(criterion.arguments.get("link")):
+                return True
+        return False
 
     def _gains(
         self, before: Edits, edits: Edits, against: _Results

@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple
 
 from grader.base.names import closest
 
-_LAST = ("add", "remove")
+_ORDER = {"add": 1, "remove": 2}  # of the steps, after all that set values
 
 
 class Node(NamedTuple):
@@ -63,28 +63,33 @@ def steps(own: Node, like: Node) -> list[Step]:
     """Return the steps from a tree to another: what is to move, the values, then what is to be
     added and removed.
     """
-    found = [*_steps(own, like)]
-    spare = [step.own for step in found if step.verb == "remove"]
-    taken: list[Node] = []
+    every_step = [*_steps(own, like)]
+    spare = [step.own for step in every_step if step.verb == "remove"]
     moved: list[Step] = []
     left: list[Step] = []
-    for step in found:
-        added = step.like if step.verb == "add" else None
-        alike = next((node for node in spare if added is not None and _is_alike(node, added)), None)
-        if added is None or alike is None:
+    for step in every_step:
+        alike = _first_alike(spare, step.like) if step.verb == "add" else None
+        if alike is None:
             left.append(step)
         else:
-            moved += [Step("move", alike, added, parent=step.own), *_steps(alike, added)]
+            assert step.like is not None
+            moved.append(Step("move", alike, step.like, parent=step.own))
+            moved += _steps(alike, step.like)
             spare = [node for node in spare if node is not alike]
-            taken.append(alike)
-    kept = [
-        step
-        for step in left
-        if step.verb != "remove" or not any(node is step.own for node in taken)
-    ]
-    return moved + sorted(
-        kept, key=lambda step: _LAST.index(step.verb) if step.verb in _LAST else -1
-    )
+    kept: list[Step] = []
+    for step in left:
+        was_moved = not any(node is step.own for node in spare)
+        if step.verb != "remove" or not was_moved:
+            kept.append(step)
+    return moved + sorted(kept, key=lambda step: _ORDER.get(step.verb, 0))
+
+
+def _first_alike(nodes: Sequence[Node], other: Node | None) -> Node | None:
+    """Return the first node that may be another one in another place."""
+    for node in nodes:
+        if other is not None and _is_alike(node, other):
+            return node
+    return None
 
 
 def _steps(own: Node, like: Node) -> Iterator[Step]:
@@ -116,38 +121,51 @@ def paired(own: Sequence[Node], like: Sequence[Node]) -> _Pairs:
     """Pair nodes: by tag and all keys, then by each key, then by tag and likeness, then by similar
     tags.
     """
-    extra, missing = [*own], [*like]
-    both: list[tuple[Node, Node]] = []
+    pairing = _Pairing(own, like)
     depth = max((len(node.keys) for node in (*own, *like)), default=0)
-    for part in (slice(0, depth), *(slice(index, index + 1) for index in range(depth))):
-        for other in [*missing]:
-            alike = [
-                node
-                for node in extra
-                if node.tag == other.tag and node.keys[part] == other.keys[part]
-            ]
-            found = next(iter(alike), None) if any(other.keys[part]) else None
-            if found is not None:
-                _pair(found, other, extra, missing, both)
-    for other in [*missing]:
-        alike = [node for node in extra if node.tag == other.tag]
+    parts = [slice(0, depth), *(slice(index, index + 1) for index in range(depth))]
+    for part in parts:
+        pairing.pair_by_keys(part)
+    for other in [*pairing.missing]:
+        alike = [node for node in pairing.extra if node.tag == other.tag]
         if alike:
-            _pair(max(alike, key=lambda node: _likeness(node, other)), other, extra, missing, both)
-    for other in [*missing]:
-        near = closest(other.tag, [node.tag for node in extra])
-        found = next((node for node in extra if node.tag == near), None)
-        if found is not None:
-            _pair(found, other, extra, missing, both)
-    in_order = [pair for node in own for pair in both if pair[0] is node]
-    return _Pairs(in_order, extra, missing)
+            scores = [_likeness(node, other) for node in alike]
+            pairing.pair(alike[scores.index(max(scores))], other)
+    for other in [*pairing.missing]:
+        near_tag = closest(other.tag, [node.tag for node in pairing.extra])
+        for node in pairing.extra:
+            if node.tag == near_tag:
+                pairing.pair(node, other)
+                break
+    return _Pairs(pairing.in_order(), pairing.extra, pairing.missing)
 
 
-def _pair(
-    node: Node, other: Node, extra: list[Node], missing: list[Node], both: list[tuple[Node, Node]]
-) -> None:
-    extra[:] = [one for one in extra if one is not node]
-    missing[:] = [one for one in missing if one is not other]
-    both.append((node, other))
+class _Pairing:
+    """The nodes of two lists that are being paired."""
+
+    def __init__(self, own: Sequence[Node], like: Sequence[Node]) -> None:
+        self.own = own
+        self.extra, self.missing = [*own], [*like]
+        self.both: list[tuple[Node, Node]] = []
+
+    def pair(self, node: Node, other: Node) -> None:
+        """Pair two nodes, which belong to no other one then."""
+        self.extra = [one for one in self.extra if one is not node]
+        self.missing = [one for one in self.missing if one is not other]
+        self.both.append((node, other))
+
+    def pair_by_keys(self, part: slice) -> None:
+        """Pair the nodes with the same tag and the same keys, of which one part counts."""
+        for other in [*self.missing]:
+            for node in self.extra:
+                is_same = node.tag == other.tag and node.keys[part] == other.keys[part]
+                if is_same and any(other.keys[part]):
+                    self.pair(node, other)
+                    break
+
+    def in_order(self) -> list[tuple[Node, Node]]:
+        """Return the pairs in the order of the first list."""
+        return [pair for node in self.own for pair in self.both if pair[0] is node]
 
 
 def _likeness(one: Node, other: Node) -> float:
@@ -160,14 +178,15 @@ def _likeness(one: Node, other: Node) -> float:
 
 def _is_alike(one: Node, other: Node) -> bool:
     """Return whether a node is another one in another place."""
-    return one.tag == other.tag and (
-        _likeness(one, other) > 0.5 or bool(set(one.keys) & set(other.keys) - {""})
-    )
+    if one.tag != other.tag:
+        return False
+    has_same_key = bool(set(one.keys) & set(other.keys) - {""})
+    return has_same_key or _likeness(one, other) > 0.5
 
 
 def _content(node: Node) -> set[tuple[str, ...]]:
-    return {
-        item
-        for inner in node.walk()
-        for item in ((inner.tag,), *((inner.tag, *pair) for pair in inner.values.items()))
-    }
+    content: set[tuple[str, ...]] = set()
+    for inner in node.walk():
+        content.add((inner.tag,))
+        content.update((inner.tag, *pair) for pair in inner.values.items())
+    return content

@@ -9,7 +9,7 @@ other calls of a macro give.
 """
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import islice
 from math import isclose
@@ -96,7 +96,7 @@ class _TextChange(NamedTuple):
     new: str
 
 
-def _edits_of(changes: Iterable[_TextChange]) -> Edits | None:
+def _make_edits(changes: Iterable[_TextChange]) -> Edits | None:
     """Return the edits that make changes, one for each attribute; None where two of them
     overlap.
     """
@@ -118,6 +118,12 @@ def _edits_of(changes: Iterable[_TextChange]) -> Edits | None:
     return tuple(edits)
 
 
+def _edits_alone(changes: Iterable[_TextChange]) -> list[Edits]:
+    """Return the edits that make changes, if there are any."""
+    edits = _make_edits(changes)
+    return [edits] if edits else []
+
+
 def _find_text(place: ScopePlace, attribute: str, scope: XacroScope) -> _Written | None:
     """Return the value of an attribute, or without a name the text of an element without children.
 
@@ -126,22 +132,22 @@ def _find_text(place: ScopePlace, attribute: str, scope: XacroScope) -> _Written
     source, at = place.source.element(place.tag)
     if attribute:
         found = markup.attribute(source.text, at, attribute)
-        start, end, span = (
-            (found.value_start, found.value_end, (found.start, found.end))
-            if found
-            else (0, 0, None)
-        )
+        if found is None:
+            return None
+        start, end, span = found.value_start, found.value_end, (found.start, found.end)
     else:
         start = markup.head_end(source.text, at)[0]
         end = source.text.rfind("</", start, markup.element_end(source.text, at))
-        text = source.text[start:end]
-        start, end = start + len(text) - len(text.lstrip()), start + len(text.rstrip())
-        span = (start, end) if text.strip() else None
+        content = source.text[start:end]
+        if not content.strip():
+            return None
+        end = start + len(content.rstrip())
+        start += len(content) - len(content.lstrip())
+        span = (start, end)
     text = source.text[start:end]
-    is_read = span is not None and not re.search("[&<]", text) and len(text) <= _MAX_LENGTH
-    if span is not None and is_read:
-        return _Written(source, start, text, scope, span)
-    return None
+    if len(text) > _MAX_LENGTH or re.search("[&<]", text):
+        return None
+    return _Written(source, start, text, scope, span)
 
 
 def _definition_text(definition: XacroDefinition) -> _Written | None:
@@ -191,18 +197,20 @@ class _Rewriter:
         computed = self._computed(parts)
         # Where it is used, it would change for other calls of a macro, too.
         ways = [*computed, *ways] if len(changed) < len(uses) else [*ways, *computed]
-        edits = _edits_of(by_place.values()) if has_definition and is_one else None
+        edits = _make_edits(by_place.values()) if has_definition and is_one else None
         return [*dict.fromkeys([edits, *ways] if edits else ways)]
 
     def _computed(self, parts: Iterable[tuple[_Use, _Written, str, str]]) -> list[Edits]:
         """Return the edits of what parts of a text are computed from: of one definition for each
         part.
         """
-        each = [
-            islice(self._origins(part, use.scope, old, new), _MAX_ORIGINS)
-            for use, part, old, new in parts
-        ]
-        return [edits for changes in zip(*each, strict=False) if (edits := _edits_of(changes))]
+        origins = []
+        for use, part, old, new in parts:
+            origins.append(islice(self._origins(part, use.scope, old, new), _MAX_ORIGINS))
+        ways = []
+        for changes in zip(*origins, strict=False):
+            ways += _edits_alone(changes)
+        return ways
 
     def _origins(
         self, text: _Written, scope: XacroScope, old: str, new: str, depth: int = _MAX_DEPTH
@@ -212,35 +220,35 @@ class _Rewriter:
         """
         defined = self._defined(text, scope, old, new)
         if defined is None:
-            names = [
-                name
-                for name in _NAME.findall(text.text)
-                if depth and self._of_name(name, scope) is not None
-            ]
-            for name in [*dict.fromkeys(names)][:_MAX_ORIGINS]:
-                for was, value in self._solved(text, name, scope, old, new):
-                    alone = text._replace(text=f"${{{name}}}")
-                    found = self._origins(alone, scope, was, value, depth - 1)
-                    keeps_sign = was.startswith("-") == value.startswith("-") or was in (
-                        "1.0",
-                        "-1.0",
-                    )
-                    for change in found:
-                        if _may_change(change.written, keeps_sign=keeps_sign):
-                            yield change
+            if depth:
+                yield from self._solved_origins(text, scope, old, new, depth)
             return
         own, inside, was, value = defined
-        parts = _parts(own, _Use(inside, was, value))
         if _LOADED.match(own.text):
             return
+        parts = _parts(own, _Use(inside, was, value))
         if not self.definitions(own):
             yield self._rewritten(own, value)
         elif len(parts) == 1 and depth:
             part, before, after = parts[0]
             yield from self._origins(part, inside, before, after, depth - 1)
-            if _is_equal(before, format_number(-float(after)) if _NUMBER.fullmatch(after) else ""):
+            if _NUMBER.fullmatch(after) and _is_equal(before, format_number(-float(after))):
                 yield _TextChange(part, negated(part.text))
             yield _TextChange(part, after)
+
+    def _solved_origins(
+        self, text: _Written, scope: XacroScope, old: str, new: str, depth: int
+    ) -> Iterator[_TextChange]:
+        """Yield the changes of one number in an expression with which it has another value."""
+        names = [name for name in _NAME.findall(text.text) if self._definition_of(name, scope)]
+        for name in [*dict.fromkeys(names)][:_MAX_ORIGINS]:
+            for was, value in self._solved(text, name, scope, old, new):
+                alone = text._replace(text=f"${{{name}}}")
+                is_side = was in ("1.0", "-1.0")
+                keeps_sign = is_side or was.startswith("-") == value.startswith("-")
+                for change in self._origins(alone, scope, was, value, depth - 1):
+                    if _may_change(change.written, keeps_sign=keeps_sign):
+                        yield change
 
     def _solved(
         self, text: _Written, name: str, scope: XacroScope, old: str, new: str
@@ -271,7 +279,7 @@ class _Rewriter:
         of its macro.
         """
         name = text.text[2:-1].strip() if text.text.startswith("${") else ""
-        definition = self._of_name(name, changed[0].scope)
+        definition = self._definition_of(name, changed[0].scope)
         if definition is None or definition.attribute != "params":
             return []
         calls = {use.call: use.new for use in changed if use.call is not None}
@@ -284,24 +292,23 @@ class _Rewriter:
         """
         around = {_around(text, use) for use in changed}
         if len(around) == 1 and "" not in around:
-            edits = _edits_of([_TextChange(text, around.pop())])
-            return [edits] if edits else []
-        if len({use.new for use in changed}) != 1 or self._is_loaded(text):
+            return _edits_alone([_TextChange(text, around.pop())])
+        new = changed[0].new
+        if any(use.new != new for use in changed) or self._is_loaded(text):
             return []
         parts = _parts(text, changed[0])
-        if len(parts) == 2 and parts[0][1:] == parts[1][:0:-1]:  # two expressions are exchanged
-            edits = _edits_of(
-                [
-                    _TextChange(parts[0][0], parts[1][0].text),
-                    _TextChange(parts[1][0], parts[0][0].text),
-                ]
-            )
-        else:
-            written, _, new = parts[0] if len(parts) == 1 else (text, "", changed[0].new)
-            edits = _edits_of(
-                [_TextChange(written, new if "$" in written.text else merged(written.text, new))]
-            )
-        return [edits] if edits else []
+        if len(parts) == 2:
+            (first, first_old, first_new), (second, second_old, second_new) = parts
+            if (first_old, first_new) == (second_new, second_old):  # they are exchanged
+                return _edits_alone(
+                    [_TextChange(first, second.text), _TextChange(second, first.text)]
+                )
+        written = text
+        if len(parts) == 1:
+            written, _, new = parts[0]
+        if "$" not in written.text:
+            new = merged(written.text, new)
+        return _edits_alone([_TextChange(written, new)])
 
     def _definitions(
         self, text: _Written, scope: XacroScope, old: str, new: str, depth: int = _MAX_DEPTH
@@ -334,11 +341,14 @@ class _Rewriter:
         )
         if found is None or not is_inside:
             return None
-        inner, was = (it[len(before) : len(it) - len(after)] for it in (new, old))
+        inner = new[len(before) : len(new) - len(after)]
+        was = old[len(before) : len(old) - len(after)]
         if found["sign"]:
-            inner, was = (it[1:] if it.startswith("-") else f"-{it}" for it in (inner, was))
+            inner, was = _negate(inner), _negate(was)
         name = found["argument"]
-        definition = self._texts.defaults.get(name) if name else self._of_name(found["name"], scope)
+        definition = (
+            self._texts.defaults.get(name) if name else self._definition_of(found["name"], scope)
+        )
         own = _definition_text(definition) if definition is not None else None
         if definition is not None and own is not None:
             return (own, definition.scope, was, inner)
@@ -375,7 +385,7 @@ class _Rewriter:
     def _named(self, text: _Written) -> Iterator[XacroDefinition]:
         for expression in _EXPRESSION.findall(text.text):
             for name in _NAME.findall(expression):
-                definition = self._of_name(name, text.scope)
+                definition = self._definition_of(name, text.scope)
                 if definition is not None:
                     yield definition
         for argument in re.findall(r"\$\(\s*arg\s+([^\s()]+)\s*\)", text.text):
@@ -423,6 +433,10 @@ def _around(text: _Written, use: _Use) -> str:
     return ""
 
 
+def _negate(number: str) -> str:
+    return number[1:] if number.startswith("-") else f"-{number}"
+
+
 def _is_equal(one: str, other: str) -> bool:
     """Return whether two texts are equal, or are the same number."""
     try:
@@ -450,6 +464,21 @@ def _conditions(source: Source, known: Sequence[str]) -> list[Edits]:
     return found
 
 
+class NumberDefinition(NamedTuple):
+    """A number of xacro from which an attribute is computed."""
+
+    written: _Written
+
+    @property
+    def text(self) -> str:
+        """The number as it is written."""
+        return self.written.text.strip()
+
+    def edits_with(self, new: str) -> Edits:
+        """Return the edits that define another number."""
+        return _make_edits([_TextChange(self.written, new)]) or ()
+
+
 class ExpandedEdits:
     """Makes the edits of an expanded xacro file; elements are named by their indices in the
     expanded document.
@@ -475,17 +504,11 @@ class ExpandedEdits:
             uses.append(_Use(node.place.scope or scope, *wanted.get(tag, (text, text)), call))
         return self._rewriter.ways(place, attribute, uses)
 
-    def numbers(self, tag: int, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
-        """Return the numbers from which an attribute is computed, each with what makes the edit
-        of its definition.
-        """
-
-        def changing(written: _Written) -> Callable[[str], Edits]:
-            return lambda new: _edits_of([_TextChange(written, new)]) or ()
-
+    def numbers(self, tag: int, attribute: str) -> "list[NumberDefinition]":
+        """Return the definitions of the numbers from which an attribute is computed."""
         place = self._source.nodes[tag].place
         found = self._rewriter.numbers(place, attribute, place.scope or XacroScope())
-        return [(it.text.strip(), changing(it)) for it in found]
+        return [NumberDefinition(written) for written in found]
 
     def siblings(self, tag: int) -> list[int]:
         """Return the indices of the expanded elements that come from the same place of the

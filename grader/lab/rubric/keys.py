@@ -405,9 +405,20 @@ def rubric_schema() -> _Schema:
     # Only the loader knows which of the missing keys and arguments the defaults give.
     criterion["required"] = [key for key in criterion["required"] if key not in DEFAULTS.keys]
     schema["properties"]["criterion"]["items"] = criterion
-    defaults = {check.name: {"$ref": f"#/$defs/{check.name}"} for check in checks}
+    definitions: _Schema = {}
+    arguments_of_checks: _Schema = {}
+    rules: list[_Schema] = []
+    for check in checks.values():
+        if check is None:
+            continue
+        arguments = {name: _argument_type(check, name) for name in check.parameters}
+        definitions[check.name] = KeyTable(check.name, arguments).schema
+        reference = {"$ref": f"#/$defs/{check.name}"}
+        arguments_of_checks[check.name] = reference
+        is_check = {"properties": {"check": {"const": check.name}}, "required": ["check"]}
+        rules.append({"if": is_check, "then": {"properties": {"with": reference}}})
     schema["properties"]["defaults"]["properties"]["with"] |= {
-        "properties": defaults,
+        "properties": arguments_of_checks,
         "additionalProperties": False,
     }
     definitions = {}

@@ -268,14 +268,14 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         path=path,
         package=rubric.get("package", ""),
         packages=rubric.get("packages", ()),
-        evidence=tuple(Evidence(**row) for row in valid.evidence),
-        late=Late(**valid.late) if valid.late is not None else None,
+        evidence=tuple(evidence),
+        late=late,
         answers=rubric.get("answers", ""),
         folders=rubric.get("folders", ()),
         without_urdf=rubric.get("without_urdf", ""),
         without_package=rubric.get("without_package", ""),
         hints=rubric.get("hints", "cause"),
-        ignored=tuple(Ignored(**row) for row in valid.ignored),
+        ignored=tuple(ignored),
         transforms=rubric.get("transforms", ()),
         solution=_reference_solution(rubric, path, data),
         links=frozenset(_links_named(valid.bound)),
@@ -294,11 +294,11 @@ def _validate(data: bytes, path: Path) -> Validation:
 def _links_named(bound: Iterable[BoundCheck]) -> Iterator[str]:
     """Yield the names of links in the arguments of checks."""
     for check, given in bound:
-        own = (
-            LINK_ARGUMENTS if "robot" in check.examined else ("links",)
-        )  # names_agree has another `of`
-        names = texts_in([value for key, value in given.items() if key in own])
-        yield from (name for name in names if name and not is_selector(name))
+        # names_agree has another `of`
+        arguments = LINK_ARGUMENTS if "robot" in check.examined else ("links",)
+        for name in texts_in([value for key, value in given.items() if key in arguments]):
+            if name and not is_selector(name):
+                yield name
 
 
 def _reference_solution(rubric: TomlRow, path: Path, data: bytes) -> ReferenceSolution | None:
@@ -341,9 +341,8 @@ def _make_criterion(
         "position": position,
         "answer": answer if answers else "",
     }
-    own["has_selectors"] = any(
-        map(is_selector, texts_in((arguments, *(given for _, _, given in carried))))
-    )
+    texts = texts_in((arguments, *(given for _, _, given in carried)))
+    own["has_selectors"] = any(map(is_selector, texts))
     return Criterion(**own, carried=tuple(Carried(*one) for one in carried))
 
 

@@ -48,6 +48,7 @@ _CLOSING = {
     'Expected "\'"': "'",
     "Expected \"'''\"": "'''",
 }  # what an error misses
+_HERE = "\0"  # where an error is, in a line that has no such character
 _TWICE = "this table is already given above"
 _SAID = {
     "Cannot overwrite a value": "this key is given twice",

@@ -83,16 +83,17 @@ class Validation:
                 self.bound.append(bound)
                 self._check_subject(where, row, bound[0])
             given = row.get("carried", [])
-            tables: list[tuple[tuple[int, ...], dict[str, Any]]]
+            tables: list[tuple[TomlPath, TomlRow]]
             if isinstance(given, dict):
-                tables = [((), given)]
+                tables = [((*where, "carried"), given)]
             else:
-                tables = [((i,), table) for i, table in enumerate(given)]
-            found = [
-                self._bind_carried((*where, "carried", *i), row, table, positions)
-                for i, table in tables
-            ]
-            self.carried.append([*filter(None, found)])
+                tables = [((*where, "carried", i), table) for i, table in enumerate(given)]
+            carried = []
+            for place, table in tables:
+                bound_table = self._bind_carried(place, row, table, positions)
+                if bound_table:
+                    carried.append(bound_table)
+            self.carried.append(carried)
             if use := {TOTAL: "final marks", DEADLINE: "deadlines"}.get(row.get("id", "")):
                 self._complain(
                     (*where, "id"),
@@ -114,6 +115,14 @@ class Validation:
     ) -> list[TomlRow]:
         rows = enumerate(self.rubric.get(key, ()))
         return [self._row((key, index), row, table, defaults or {}) for index, row in rows]
+
+    def _read_ignored(self) -> list[TomlRow]:
+        """Return the tables of mutants that may keep full marks."""
+        test = self._row(("test",), self.rubric.get("test", {}), keys.TEST)
+        return [
+            self._row(("test", "ignore", index), row, keys.IGNORE)
+            for index, row in enumerate(test.get("ignore", ()))
+        ]
 
     def _read_defaults(self) -> None:
         """Read the values that criteria have unless they give others, and the default arguments

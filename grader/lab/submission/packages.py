@@ -1,6 +1,7 @@
 """The graded package of a submission, and the reasons against the others."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import product
 
 from grader.base.text import enumerated, quoted
@@ -24,27 +25,39 @@ def best_named(packages: tuple[Package, ...], name: str) -> Package | None:
     """Return the package that has this name, or is in a folder of this name; any if the name is
     empty.
     """
-    for package in packages[:1]:
-        if not name or name_distance(package, name) <= IN_NAMED_FOLDER:
-            return package
-        return None
+    if packages and (not name or name_distance(packages[0], name) <= IN_NAMED_FOLDER):
+        return packages[0]
     return None
+
+
+def with_preferred(packages: Sequence[Package], preferred: Package) -> tuple[Package, ...]:
+    """Return the packages read anew, with a table in which `preferred` is the one of its name.
+
+    Of several packages of one name, ROS 2 would find the first in the environment; for the files
+    of a robot, its own package is meant.
+    """
+    table: dict[str, Package] = {}
+    renewed = {package: replace(package, packages=table) for package in packages}
+    for package in packages:
+        table.setdefault(package.name, renewed[package])
+    table[preferred.name] = renewed[preferred]
+    return tuple(renewed.values())
 
 
 def packages_of_lab(packages: Sequence[Package], names: Sequence[str]) -> dict[str, Package]:
     """Return the package that each name means: that of the name, else in a folder of it, else of a
     similar name.
     """
-    found: dict[str, Package] = {}
+    chosen: dict[str, Package] = {}
     for distance, name in product((NAMED, IN_NAMED_FOLDER, SIMILAR), names):
-        spare = (
-            it
-            for it in packages
-            if it not in found.values() and name_distance(it, name) <= distance
-        )
-        if name not in found and (package := next(spare, None)) is not None:
-            found[name] = package
-    return found
+        if name in chosen:
+            continue
+        for package in packages:
+            is_spare = package not in chosen.values()
+            if is_spare and name_distance(package, name) <= distance:
+                chosen[name] = package
+                break
+    return chosen
 
 
 def why_none(
@@ -59,18 +72,16 @@ def why_none(
     ]
     there = f"; there {'are' if len(names) > 1 else 'is'} {enumerated(names, _MAX_NAMED)}"
     if packages:
-        broken = (
-            it.manifest.refusals
-            for it in packages
-            if it.manifest is not None and it.manifest.refusals
-        )
-        for problem, *_ in broken:
-            there += (
-                f"; {problem.message} (line {problem.location.line} of {problem.location.path})"
-            )
-            break
+        for package in packages:
+            if package.manifest is not None and package.manifest.refusals:
+                problem = package.manifest.refusals[0]
+                place = f"line {problem.location.line} of {problem.location.path}"
+                there += f"; {problem.message} ({place})"
+                break
         return f"no package is named {name!r}, and none contains the graded URDF", there
-    return ("no package was submitted for this lab", there) if names else (NO_PACKAGE, "")
+    if names:
+        return "no package was submitted for this lab", there
+    return NO_PACKAGE, ""
 
 
 def why_not(graded: Package | None, other: Package, urdf: str) -> str:

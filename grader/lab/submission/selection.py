@@ -2,7 +2,7 @@
 files, and why.
 """
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -20,6 +20,7 @@ from grader.lab.submission.packages import (
     packages_of_lab,
     why_none,
     why_not,
+    with_preferred,
 )
 from grader.lab.submission.submission import Lab, NoPackage, Opening
 from grader.ros.build.places import SHARE
@@ -105,46 +106,55 @@ class _Selection(NamedTuple):
 
 def select(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     """Select what is graded of the files of a submission."""
-    found = _searched(tree, lab, opening)
-    packages, urdf, others, fitting = (
-        found.packages,
-        found.choice.path,
-        found.choice.others,
-        found.choice.fitting,
-    )
-    around = package_around(packages, urdf)
+    selection = _search(tree, lab, opening)
+    urdf = selection.choice.path
+    packages = selection.packages
+    around_urdf = package_around(packages, urdf)
+    if around_urdf is not None and around_urdf.packages[around_urdf.name] is not around_urdf:
+        packages = with_preferred(packages, around_urdf)
+        around_urdf = package_around(packages, urdf)
     if lab.packages:
-        lab_packages = _several_packages(packages, lab, around)
-        graded = lab_packages.get(lab.package or _main_package(lab_packages, lab, around))
+        lab_packages = _several_packages(packages, lab, around_urdf)
+        graded = lab_packages.get(lab.package or _main_package(lab_packages, lab, around_urdf))
     else:
-        named = best_named(packages, lab.package)
-        is_of_robot = around is not None and (
-            not lab.package or named is None or around.name == named.name
-        )
-        graded = around if is_of_robot else named
+        graded = _only_package(packages, lab, around_urdf)
         lab_packages = {lab.package: graded} if graded is not None else {}
-    if around is not None:
-        # of several packages of this name, the robot's own one is meant
-        around.packages[around.name] = around
-    unused = (it for it in packages if it not in lab_packages.values())
-    others += tuple(
-        OtherCandidate(it.path(MANIFEST), why_not(graded, it, lab.urdf)) for it in unused
-    )
+    unused_packages = []
+    for package in packages:
+        if package not in lab_packages.values():
+            reason = why_not(graded, package, lab.urdf)
+            unused_packages.append(OtherCandidate(package.path(MANIFEST), reason))
     several = ""
+    fitting = selection.choice.fitting
     if fitting:
         which = f"{urdf} was graded, not {enumerated(fitting, _MAX_NAMED)}"
         several = (
             f"{len(fitting) + 1} robots fit this lab: {which}; to grade another one, name its "
             "file or folder"
         )
-    notes = tuple(note for note in (several, _note_on_folders(found)) if note)
-    return found._replace(
+    notes = (several, _note_on_folders(selection))
+    return selection._replace(
+        packages=packages,
         package=graded,
         lab_packages=lab_packages,
-        others=others + found.others,
-        notes=notes,
+        others=(*selection.choice.others, *unused_packages, *selection.others),
+        notes=tuple(note for note in notes if note),
         several=several,
     )
+
+
+def _only_package(
+    packages: tuple[Package, ...], lab: Lab, around_urdf: Package | None
+) -> Package | None:
+    """Return the package of a lab that names one, or none: that around the URDF, unless another
+    one has the name.
+    """
+    named = best_named(packages, lab.package)
+    if around_urdf is None:
+        return named
+    if not lab.package or named is None or around_urdf.name == named.name:
+        return around_urdf
+    return named
 
 
 def _several_packages(
@@ -165,17 +175,15 @@ def _main_package(packages: Mapping[str, Package], lab: Lab, around: Package | N
     return next((name for name, package in packages.items() if package is around), lab.packages[0])
 
 
-def _note_on_folders(found: _Selection) -> str:
+def _note_on_folders(selection: _Selection) -> str:
     """Return the note on the folders that were searched, if there is one."""
-    why, urdf = (
-        f"{found.own_folder}, the folder of this lab, has no robot of this lab",
-        found.choice.path,
-    )
-    if found.other_lab:
-        if not found.own_folder:
+    own_folder, urdf = selection.own_folder, selection.choice.path
+    why = f"{own_folder}, the folder of this lab, has no robot of this lab"
+    if selection.other_lab:
+        if not own_folder:
             why = "no folder of this lab was found"
-        return f"{why}: {found.other_lab}, the folder of another lab, was graded"
-    if found.own_folder and urdf and urdf not in found.tree.files:
+        return f"{why}: {selection.other_lab}, the folder of another lab, was graded"
+    if own_folder and urdf and urdf not in selection.tree.files:
         return f"{why}: {urdf}, which is outside of it, was graded"
     return ""
 
@@ -186,17 +194,23 @@ class _Places(NamedTuple):
     labs: LabFolders
     other_lab: str
 
-    def of(self, path: str) -> Belonging | None:
+    def place_of(self, path: str) -> Belonging | None:
         """Return where a file is; None of one in the folder of another lab that is not searched."""
         place = self.labs.belonging(path)
-        is_open = place is not Belonging.OTHER_LAB or (
-            self.other_lab and path.startswith(f"{self.other_lab}/")
-        )
-        return place if is_open else None
+        if place is not Belonging.OTHER_LAB:
+            return place
+        if self.other_lab and path.startswith(f"{self.other_lab}/"):
+            return place
+        return None
+
+    def best_of(self, paths: Iterable[str]) -> Belonging | None:
+        """Return the best place of files; None if all are in folders that are not searched."""
+        places = map(self.place_of, paths)
+        return min((place for place in places if place is not None), default=None)
 
     def only(self, tree: Tree, places: Collection[Belonging]) -> Tree:
         """Return the files that are in these places."""
-        return _part_of(tree, lambda path: self.of(path) in places)
+        return _part_of(tree, lambda path: self.place_of(path) in places)
 
     def own(self, tree: Tree) -> Tree:
         """Return the files in the folders of this lab, and those beside its archives: documents may
@@ -204,7 +218,9 @@ class _Places(NamedTuple):
         """
         return _part_of(
             tree,
-            lambda path: self.of(path) is Belonging.THIS_LAB or self.labs.is_beside_archive(path),
+            lambda path: (
+                self.place_of(path) is Belonging.THIS_LAB or self.labs.is_beside_archive(path)
+            ),
         )
 
 
@@ -214,7 +230,7 @@ def _part_of(tree: Tree, belongs: Callable[[str], bool]) -> Tree:
     return tree.only(belongs)
 
 
-def _searched(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
+def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     """Return where a lab is searched in the files of a submission, and which of its robots is
     graded.
 
@@ -243,8 +259,8 @@ def _searched(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     own_tree = places.own(tree) if has_own else search_tree
     of_packages = min((place for place in map(places.of, roots) if place is not None), default=None)
     packages: tuple[Package, ...] = ()
-    if of_packages is not None:
-        package_tree = places.only(tree, (of_packages,))
+    if package_place is not None:
+        package_tree = places.only(tree, (package_place,))
         if package_tree is tree:
             packages = every_package
         else:
@@ -254,34 +270,52 @@ def _searched(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     other_roots = [
         path for path in roots if places.of(path) is None or places.of(path) is not of_packages
     ]
-    elsewhere = [
-        *sorted(projects),
-        *(path for path in other_roots if path.rpartition("/")[2] == MANIFEST),
-    ]
-    first = lab.package_names[0]
-    reason, which = why_none(packages, every_package if other_roots else (), first)
-    built = next(
-        (
-            was_not_committed(path)
-            for path in search_tree.generated
-            if path.endswith(f"/{MANIFEST}")
-        ),
-        "",
-    )
     return _Selection(
         choice,
         tree=own_tree,
         packages=packages,
-        no_package=NoPackage(
-            reason, which if packages else which + built, first if lab.packages else ""
+        no_package=_why_no_package(
+            packages, every_package if files_elsewhere else (), lab, searched_tree
         ),
-        others=tuple(
-            OtherCandidate(path, _ELSEWHERE[labs.belonging(path)])
-            for path in elsewhere[:_MAX_ELSEWHERE]
-        ),
-        own_folder=next(map(labs.around, own_tree.files), "") if has_own else "",
-        other_lab=places.other_lab,
+        others=tuple(others),
+        own_folder=next(map(labs.around, own_tree.files), "") if has_own_folder else "",
+        other_lab=other_lab,
     )
+
+
+def _project_robots(robots: Sequence[RobotFile], labs: LabFolders) -> set[str]:
+    """Return the paths of the robots in the folders of final projects."""
+    paths = set()
+    for robot in robots:
+        if labs.belonging(robot.path) is Belonging.OTHER_LAB and labs.is_project(robot.path):
+            paths.add(robot.path)
+    return paths
+
+
+def _robots_in_packages(
+    robots: Sequence[RobotFile], packages: Sequence[Package], lab: Lab
+) -> Sequence[RobotFile]:
+    """Return the robots in the packages that a lab names; all of them if there is none there."""
+    inside: set[RobotFile] = set()
+    for package in packages_of_lab(packages, lab.packages).values():
+        inside.update(robot for robot in robots if package.holds(robot.path))
+    if not inside:
+        return robots
+    return [robot for robot in robots if robot in inside]
+
+
+def _why_no_package(
+    packages: tuple[Package, ...], elsewhere: tuple[Package, ...], lab: Lab, searched: Tree
+) -> NoPackage:
+    """Return why no package is graded, if none is. `elsewhere` are those outside of this lab."""
+    name = lab.package_names[0]
+    message, detail = why_none(packages, elsewhere, name)
+    if not packages:
+        for path in searched.generated:
+            if path.endswith(f"/{MANIFEST}"):
+                detail += was_not_committed(path)
+                break
+    return NoPackage(message, detail, name if lab.packages else "")
 
 
 def _other_lab(tree: Tree, labs: LabFolders, urdf: str | None, roots: Sequence[str]) -> str:
@@ -359,53 +393,74 @@ class UrdfSearch(NamedTuple):
         """Return which of the robots is graded. Only if there are several, they and launch files
         are read.
         """
-        labs = self.labs
-        copies = [path for path in self.tree.generated if path.lower().endswith(".urdf")]
-        copies = [path for path in copies if labs.belonging(path) < Belonging.OTHER_LAB]
-        generated = tuple(OtherCandidate(path, _GENERATED) for path in copies[:_MAX_GENERATED])
+        copies = []
+        for path in self.tree.generated:
+            is_urdf = path.lower().endswith(".urdf")
+            if is_urdf and self.labs.belonging(path) is not Belonging.OTHER_LAB:
+                copies.append(OtherCandidate(path, _GENERATED))
+        generated = tuple(copies[:_MAX_GENERATED])
         if len(robots) < 2:
-            return UrdfChoice(next((robot.path for robot in robots), None), generated)
-        best, *others = sorted(self._candidates(robots))
-        named = (
-            OtherCandidate(
-                it.path, _reason_against(best, it, self.lab), it.is_part or it.is_fragment
-            )
-            for it in others
-        )
-        fitting = tuple(it.path for it in others if _may_be_meant(best, it, self.lab))
-        return UrdfChoice(best.path, (*named, *generated), fitting, best.reading)
+            only_path = robots[0].path if robots else None
+            return UrdfChoice(only_path, generated)
+        best, *rest = sorted(self._candidates(robots))
+        others = []
+        fitting = []
+        for candidate in rest:
+            reason = _reason_against(best, candidate, self.lab)
+            is_part = candidate.is_part or candidate.is_fragment
+            others.append(OtherCandidate(candidate.path, reason, is_part))
+            if _may_be_meant(best, candidate, self.lab):
+                fitting.append(candidate.path)
+        return UrdfChoice(best.path, (*others, *generated), tuple(fitting), best.reading)
 
     def _candidates(self, robots: Sequence[RobotFile]) -> Iterator[_Candidate]:
-        labs, urdf = self.labs, self.lab.urdf
-        readings = self._readings(
-            sorted(robots, key=lambda it: (labs.belonging(it.path), _tier_of(it, urdf), it.path))
+        labs, lab = self.labs, self.lab
+        tiers = {robot.path: _tier_of(robot, lab.urdf) for robot in robots}
+        # What is read first is what may be graded: there may be more than can be read.
+        in_order = sorted(
+            robots, key=lambda robot: (labs.belonging(robot.path), tiers[robot.path], robot.path)
         )
-        launched, parts = self._launched_paths(robots), parts_of(robots)
-        folders = [package.folder for package in self.packages]
+        readings = self._readings(in_order)
+        launched = self._launched_paths(robots)
+        included = parts_of(robots)
         for robot in robots:
-            path, tier, around = (
-                robot.path,
-                _tier_of(robot, urdf),
-                package_around(self.packages, robot.path),
+            yield self._candidate(
+                robot,
+                tiers[robot.path],
+                readings[robot.path],
+                is_launched=robot.path in launched,
+                is_included=robot.path in included,
             )
-            yield _Candidate(
-                is_another=readings[path].is_another,
-                place=labs.belonging(path),
-                is_fragment=readings[path].is_fragment and path not in launched,
-                is_unlaunched=path not in launched,
-                is_unnamed=any(self.lab.package_names)
-                and not self.lab.links
-                and tier is not _Tier.EXACT,
-                links=-readings[path].links,
-                is_part=path in parts and tier > _Tier.OTHER_ENDING,
-                is_backup=is_backup(path),
-                tier=(tier, not robot.is_urdf),
-                package=folders.index(around.folder) if around is not None else len(folders),
-                depth=path.count("/"),
-                path=path,
-                is_loose=around is None,
-                reading=readings[path],
-            )
+
+    def _candidate(
+        self,
+        robot: RobotFile,
+        tier: _Tier,
+        reading: _ReadCandidate,
+        *,
+        is_launched: bool,
+        is_included: bool,
+    ) -> _Candidate:
+        path = robot.path
+        around = package_around(self.packages, path)
+        folders = [package.folder for package in self.packages]
+        has_only_packages_named = any(self.lab.package_names) and not self.lab.links
+        return _Candidate(
+            is_another=reading.is_another,
+            place=self.labs.belonging(path),
+            is_fragment=reading.is_fragment and not is_launched,
+            is_unlaunched=not is_launched,
+            is_unnamed=has_only_packages_named and tier is not _Tier.EXACT,
+            links=-reading.links,
+            is_part=is_included and tier > _Tier.OTHER_ENDING,
+            is_backup=is_backup(path),
+            tier=(tier, not robot.is_urdf),
+            package=len(folders) if around is None else folders.index(around.folder),
+            depth=path.count("/"),
+            path=path,
+            is_loose=around is None,
+            reading=reading,
+        )
 
     def _readings(self, robots: Sequence[RobotFile]) -> dict[str, _ReadCandidate]:
         """Return each robot as it is read, expanded by xacro, by its path; of very many only the
@@ -438,19 +493,24 @@ class UrdfSearch(NamedTuple):
         loose = [
             robot.path for robot in robots if package_around(self.packages, robot.path) is None
         ]
-        found: set[str] = set()
+        launched: set[str] = set()
         for package in (*self.packages, *launch_folders(self.tree, self.packages, loose)):
-            for reference in {reference.path or "" for reference in package.robot_references()}:
-                name = reference.removeprefix(f"{SHARE}/").partition("/")[0]
-                target = package if name in package.names else package.find(name) or package
-                source = target.source_of(reference)
-                same = [
-                    it.path
-                    for it in robots
-                    if it.name == reference.rpartition("/")[2] and target.holds(it.path)
-                ]
-                found.update([target.path(source)] if source else same)
-        return found
+            for reference in {named.path or "" for named in package.robot_references()}:
+                owner_name = reference.removeprefix(f"{SHARE}/").partition("/")[0]
+                if owner_name in package.names:
+                    owner = package
+                else:
+                    owner = package.find(owner_name) or package
+                source = owner.source_of(reference)
+                if source:
+                    launched.add(owner.path(source))
+                    continue
+                # Where the build is not understood, the name of the file has to do.
+                file_name = reference.rpartition("/")[2]
+                for robot in robots:
+                    if robot.name == file_name and owner.holds(robot.path):
+                        launched.add(robot.path)
+        return launched
 
 
 def _count_links(read: Read, surroundings: Surroundings, name: str, lab: Lab) -> _ReadCandidate:
@@ -471,22 +531,16 @@ def _may_be_meant(best: _Candidate, other: _Candidate, lab: Lab) -> bool:
     """Return whether another robot may be meant as well: one in another package, or loose, perhaps
     of a teammate.
     """
-    stems = [
-        path.partition(".")[0] for path in (best.path, other.path)
-    ]  # my_robot.urdf.xacro makes my_robot.urdf
-    is_elsewhere = best.package != other.package or (best.is_loose and stems[0] != stems[1])
-    is_worse = (
-        other.is_another
-        or other.is_fragment
-        or other.is_part
-        or other.is_backup
-        or other.place != best.place
-    )
-    return (
-        is_elsewhere
-        and not is_worse
-        and (bool(lab.links) or other.tier[0] <= max(best.tier[0], _Tier.SAME_ROBOT))
-    )
+    if other.is_another or other.is_fragment or other.is_part or other.is_backup:
+        return False
+    if other.place != best.place:
+        return False
+    if best.package == other.package:
+        # my_robot.urdf.xacro makes my_robot.urdf: both are one robot
+        is_same_stem = best.path.partition(".")[0] == other.path.partition(".")[0]
+        if not best.is_loose or is_same_stem:
+            return False
+    return bool(lab.links) or other.tier[0] <= max(best.tier[0], _Tier.SAME_ROBOT)
 
 
 def _tier_of(robot: RobotFile, urdf: str) -> _Tier:

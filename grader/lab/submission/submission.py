@@ -305,14 +305,15 @@ class Submission:
         known = {
             package: package.under(arguments) for package in (*self.packages, *self.neighbours)
         }
+        lab_packages = {}
+        for name, package in self.lab_packages.items():
+            lab_packages[name] = known.get(package, package)
         changed = replace(
             self,
-            packages=tuple(known[package] for package in self.packages),
-            neighbours=tuple(known[package] for package in self.neighbours),
+            packages=tuple(map(known.__getitem__, self.packages)),
+            neighbours=tuple(map(known.__getitem__, self.neighbours)),
             package=known.get(self.package, self.package) if self.package is not None else None,
-            lab_packages={
-                name: known.get(package, package) for name, package in self.lab_packages.items()
-            },
+            lab_packages=lab_packages,
             budget=Budget(),
         )
         if not isinstance(self.urdf, Read) or not self.urdf.has_xacro:
