@@ -198,20 +198,19 @@ def _outcome(subjects: _Subjects, fact: Fact) -> Outcome:
     """
     check = find_check(fact.check)
     assert check is not None
-    # The arguments are read as those of a rubric are: -0.0 and 1.0 change.
-    _, table = read_toml(f"it = {toml_literal(fact.arguments)}".encode(), Path())
+    _, read = read_toml(f"it = {toml_literal(fact.arguments)}".encode(), Path())
     given = {}
-    for name, value in table["it"].items():
+    for name, value in read["it"].items():
         given[name] = check.parameters[name].type.parse(value)
     if "robot" in subjects:
         given = without_selectors(given, subjects["robot"])
     usual, _ = _USUAL.get(fact.check, ({}, ""))
-    launch_arguments = {}
+    arguments = {}
     for name, value in fact.args.items():
-        launch_arguments[name] = str(value).lower() if isinstance(value, bool) else value
+        arguments[name] = str(value).lower() if isinstance(value, bool) else value
     submission = subjects["submission"]
-    if launch_arguments:
-        submission = submission.under(launch_arguments)
+    if arguments:
+        submission = submission.under(arguments)
     if fact.package:
         submission = submission.with_package(fact.package)
     known = {**subjects, "submission": submission, "package": submission.package}

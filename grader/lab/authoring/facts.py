@@ -307,8 +307,7 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
     the tips move.
     """
     robot = solution.robot
-    joints = robot.parent_joints.values()
-    root = robot.main_tree[0]
+    joints, root = robot.parent_joints.values(), robot.main_tree[0]
     words = words_of_foreign(solution.root)
     used = {joint.name: joint.child for joint in joints if joint.name in words}
     if used and not are_joints_free(solution):
@@ -316,36 +315,31 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
     fixed = (joint.child for joint in joints if joint.parent == root and joint.type == "fixed")
     rooted = _robot_fact("root_of_tree", link=root, holds=next(fixed, root))
     yield rooted
-    # A wrong type of a joint is the mistake of another criterion.
-    of_types = CarriedFact(
-        _words_of_joints(joints, "held_by mimics"), rooted.check, rooted.arguments
-    )
+    about_types = _words_of_joints(joints, "held_by", "mimics")
+    if_types_differ = CarriedFact(about_types, rooted.check, rooted.arguments)
     moving = [joint for joint in joints if joint.type != "fixed"]
-    kinds = Counter(joint.type for joint in moving)
+    types = Counter(joint.type for joint in moving)
     numbers = {"moving": sum(joint.mimic is None for joint in moving)}
-    for kind in _COUNTED:
-        numbers[kind] = kinds[kind]
-    yield _robot_fact("counts", **numbers)._replace(carried=(of_types,))
-    tips = _moving_tips(robot)
+    for joint_type in _COUNTED:
+        numbers[joint_type] = types[joint_type]
+    yield _robot_fact("counts", **numbers)._replace(carried=(if_types_differ,))
+    tips = _moving_tips(robot)[:_MAX_TIPS]
     if tips:
         verb = "moves" if len(tips) == 1 else "move"
-        title = f"{enumerated(list(map(repr, tips)))} {verb} as in the reference solution"
-        known = _words_of_joints(joints, "frame_at joint_axis mimics")
+        title = f"{enumerated([repr(tip) for tip in tips])} {verb} as in the reference solution"
+        about_poses = _words_of_joints(joints, "frame_at", "joint_axis", "mimics")
+        if_poses_differ = CarriedFact(about_poses, "counts", numbers)
         motion = _robot_fact("kinematics_match_reference", links=tips, match="order")
-        carried = (CarriedFact(known, "counts", numbers), of_types)
-        yield motion._replace(title=title, carried=carried)
+        yield motion._replace(title=title, carried=(if_poses_differ, if_types_differ))
 
 
-def _words_of_joints(joints: Iterable[Joint], checks: str) -> tuple[str, ...]:
-    """Return the words of the facts that checks, with spaces between, say of the joints' links."""
-    return tuple(f"{joint.child} {check}" for joint in joints for check in checks.split())
+def _words_of_joints(joints: Iterable[Joint], *checks: str) -> tuple[str, ...]:
+    """Return the words of the facts that checks find about joints, each about its child."""
+    return tuple(f"{joint.child} {check}" for joint in joints for check in checks)
 
 
 def _moving_tips(robot: Configuration) -> list[str]:
-    """Return the first links that hold no other one, and that a joint moves."""
+    """Return the links that hold no other link, and that a joint moves."""
     inner = {joint.parent for joint in robot.parent_joints.values()}
-    tips = []
-    for name in robot.main_tree:
-        if name not in inner and any(joint.type != "fixed" for joint in robot.chain(name)):
-            tips.append(name)
-    return tips[:_MAX_TIPS]
+    tips = [name for name in robot.main_tree if name not in inner]
+    return [tip for tip in tips if {joint.type for joint in robot.chain(tip)} - {"fixed"}]

@@ -116,21 +116,22 @@ def _places(text: str) -> Iterator[tuple[Element, str, int]]:
         return
     labels: dict[Element, str] = {}
     counts: Counter[str] = Counter()
-    if root is None:
-        return
     for index, element in enumerate(root.iter("*")):
-        parent = element.getparent()
-        _, start = source.element(index)
+        parent, (_, start) = element.getparent(), source.element(index)
         label = text[start + 1 : name_end(text, start)]
-        if parent is not None and (element.tag != "material" or parent.getparent() is None):
-            name = element.get("name") or element.get("reference") or ""
-            label = f"{label} {name}".strip()
-        if labels.get(parent):
+        if parent is None:
+            counts[label] += 1
+            yield element, label, start
+            continue
+        # Inside a link, the name of a material is a value and no place.
+        if element.tag != "material" or parent is root:
+            label = f"{label} {element.get('name') or element.get('reference') or ''}".strip()
+        if parent is not root:
             label = f"{labels[parent]}/{label}"
         counts[label] += 1
         if counts[label] > 1:  # of equal siblings: visual 2
             label += f" {counts[label]}"
-        labels[element] = label if parent is not None else ""
+        labels[element] = label
         yield element, label, start
 
 
@@ -304,9 +305,8 @@ def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> Iterator
     family = "data_files entry deleted" if is_setup else "action removed"
     for item in _entries(file):
         start, end = file.span(item)
-        comma = re.compile(r"\s*,").match(file.text, end)
-        if comma is not None:
-            end = comma.end()
+        comma = _COMMA.match(file.text, end)
+        end = comma.end() if comma else end
         yield MutantEdit(family, f"{label} {_short(file, item)}", start, end, "")
     for call in file.calls("add_action"):
         action = call.args[0] if call.args else call
@@ -315,9 +315,10 @@ def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> Iterator
         for node in file.imports:
             place = f"{label} {file.segment(node)}"
             yield MutantEdit("import deleted", place, *file.span(node), "pass")
-    ignored = list(_for_people(file))
+    ignored = [*_for_people(file)]
     for text, start, end in file.literals:
-        if text.strip() and not any(first <= start < last for first, last in ignored):
+        is_ignored = any(first <= start < last for first, last in ignored)
+        if text.strip() and not is_ignored:
             place = f"{label} {text[:MAX_LABEL]}"
             yield MutantEdit("string misspelt", place, start, end, misspelt(text))
 

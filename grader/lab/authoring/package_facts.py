@@ -228,18 +228,17 @@ def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[F
     folder.
     """
     installed = []
-    elsewhere = set()  # other criteria name these
+    elsewhere = set()  # what other facts are about
     for target, path in package.installed.items():
         if not target.startswith(package.share):
             continue
-        installed.append(path)
-        if any(f"{target}/".startswith(f"{place}/") for place in named):
+        if any(f"{target}/".startswith(f"{folder}/") for folder in named):
             elsewhere.add(path)
+        installed.append(path)
     installed = [path for path in installed if path not in elsewhere]
-    launches = []
-    for path in package.launch_files:
-        if path in installed or not path.startswith("test/"):
-            launches.append(path)
+    launches = [
+        path for path in package.launch_files if path in installed or not path.startswith("test/")
+    ]
     kinds = {"urdf": [urdf] if urdf else [], "launch": launches, "rviz": package.rviz_files}
     for kind, paths in kinds.items():
         for path in paths:
@@ -248,21 +247,16 @@ def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[F
                 yield _package_fact(
                     "build_installs", name, kind=kind, name=name, despite_errors=True
                 )
-    with_named = (CarriedFact(("files names_agree",), "package_found", {"name": package.name}),)
-    for pattern in _patterns_of_others(package, installed):
-        fact = _package_fact("installs_files", pattern, files=[pattern], despite_errors=True)
-        yield fact._replace(carried=with_named)
-
-
-def _patterns_of_others(package: Package, installed: Iterable[str]) -> list[str]:
-    """Return a pattern for each folder and ending of files of other kinds, in the files' order."""
     patterns: dict[str, None] = {}
     for path in installed:
-        folder = posixpath.dirname(path)
-        is_own = path in package.launch_files or path.endswith(_OWN_KINDS)
-        if folder not in ("", "resource") and not is_own:
-            patterns[f"{folder}/*{posixpath.splitext(path)[1]}"] = None
-    return list(patterns)
+        folder, ending = posixpath.dirname(path), posixpath.splitext(path)[1]
+        is_own_kind = path in package.launch_files or path.endswith(_OWN_KINDS)
+        if folder not in ("", "resource") and not is_own_kind:
+            patterns[f"{folder}/*{ending}"] = None
+    with_named = (CarriedFact(("files names_agree",), "package_found", {"name": package.name}),)
+    for pattern in patterns:
+        fact = _package_fact("installs_files", pattern, files=[pattern], despite_errors=True)
+        yield fact._replace(carried=with_named)
 
 
 def _launch_facts(
@@ -271,22 +265,19 @@ def _launch_facts(
     """Yield what may be true of a launch file, which costs nothing if it starts nothing by a
     mistake of others.
     """
-    name = posixpath.basename(path)
-    launch = package.launch(path)
+    name, launch = posixpath.basename(path), package.launch(path)
     yield _package_fact("launch_found", name, name=name)
-    included = {posixpath.basename(passed.path) for passed in launch.passed} - {name}
+    included = {posixpath.basename(it.path) for it in launch.passed} - {name}
     causes = [*_builds(submission), *_STOPPING]
-    for words in words_of_launches(submission):
-        if words.split(" ")[-2] in included:
-            causes.append(words)
+    # The words of a fact about a launch file are its name and the check, the last two.
+    causes += [it for it in words_of_launches(submission) if it.split(" ")[-2] in included]
     found = CarriedFact(tuple(causes), "launch_found", {"name": name})
-    after = found._replace(causes=(*causes, f"{prefix}{name} node_runs"))
+    after = found._replace(causes=(*found.causes, f"{prefix}{name} node_runs"))
     nodes = _nodes_that_start(launch)
     if nodes:
-        started = _package_fact("node_runs", name, launch=name, nodes=nodes)
-        yield started._replace(carried=(found,))
-    for turned in _turned_facts(package, path):
-        yield turned._replace(carried=(after,))
+        yield _package_fact("node_runs", name, launch=name, nodes=nodes)._replace(carried=(found,))
+    for fact in _turned_facts(package, path):
+        yield fact._replace(carried=(after,))
     if launch.named("urdf", "rviz", "include"):
         unread = after._replace(causes=(*after.causes, "parameters names_agree"))
         yield _package_fact("launch_finds_files", name, name=name)._replace(carried=(unread,))

@@ -61,27 +61,27 @@ def reference_failures(rubric: Rubric) -> _Failures:
     Criteria with one message share a line.
     """
     assert rubric.solution is not None
-    failures = []
-    for result in grade(rubric, rubric.solution.submission).unearned:
-        failures.append((_path_of(result.criterion), result.criterion.id, result.outcome))
+    places: dict[Outcome, list[tuple[TomlPath, str]]] = {}
+    unearned = grade(rubric, rubric.solution.submission).unearned
+    failures = [(_path_of(it.criterion), it.criterion.id, it.outcome) for it in unearned]
     failures += _carried_failures(rubric)
     failures.sort(key=lambda failure: failure[0][1])
     unresolved = {path[1]: (path, line) for path, line in _unresolved_selectors(rubric)}
-    alike: dict[Outcome, list[tuple[TomlPath, str]]] = {}
     for path, name, outcome in failures:
         if path[1] not in unresolved:
-            alike.setdefault(Outcome(outcome.status, outcome.message), []).append((path, name))
-    lines = list(unresolved.values())
-    undecided = failed = 0
-    for outcome, places in alike.items():
-        names = enumerated([name for _, name in places])
-        verb = "fails" if len(places) == 1 else "fail"
-        lines.append((places[0][0], f"{names} {verb} on the reference: {outcome.message}"))
+            what = Outcome(outcome.status, outcome.message)
+            places.setdefault(what, []).append((path, name))
+    mistakes = [*unresolved.values()]
+    undecided = 0
+    for outcome, places_of_outcome in places.items():
+        names = [name for _, name in places_of_outcome]
+        verb = "fails" if len(names) == 1 else "fail"
+        what_fails = f"{enumerated(names)} {verb} on the reference: {outcome.message}"
+        mistakes.append((places_of_outcome[0][0], what_fails))
         if outcome.status == "pending":
-            undecided += len(places)
-        else:
-            failed += len(places)
-    return _Failures(_lines(rubric, lines), bool(unresolved or failed), undecided)
+            undecided += len(names)
+    is_failed = bool(unresolved) or undecided < sum(map(len, places.values()))
+    return _Failures(_lines(rubric, mistakes), is_failed, undecided)
 
 
 def _lines(rubric: Rubric, found: Iterable[tuple[TomlPath, str]]) -> tuple[str, ...]:

@@ -250,34 +250,35 @@ class Trial:
 
     def equivalents(self) -> Iterator[Loss]:
         """Yield what each rewriting of the reference loses: most lose nothing."""
-        yield from self._robot_equivalents()
+        urdf = self.reference.urdf
+        if isinstance(urdf, Read) and urdf.loaded.verdict == "clean":
+            yield from self._robot_equivalents(urdf)
         for family, texts in file_equivalents(self.reference):
-            asked = self.tested
-            if family == EVERY_NODE:  # entry_is asks for the keys as they are written
-                asked = [criterion for criterion in asked if criterion.check.name != "entry_is"]
+            criteria = self.tested
+            if family == EVERY_NODE:
+                # A path of entry_is names one of several nodes, which are other ones then.
+                criteria = [it for it in criteria if it.check.name != "entry_is"]
+            names = [criterion.id for criterion in criteria]
             files = {path: text.encode() for path, text in texts.items()}
-            names = [criterion.id for criterion in asked]
             lost = self._lost(with_files(self.reference, files), names)
             diffs = (_text_diff(path, self.text(path), text) for path, text in texts.items())
             yield Loss(family, lost, "\n".join(diffs))
 
-    def _robot_equivalents(self) -> Iterator[Loss]:
-        """Yield what each rewriting of the reference's robot loses."""
-        urdf = self.reference.urdf
-        if not isinstance(urdf, Read) or urdf.loaded.verdict != "clean":
-            return
+    def _robot_equivalents(self, urdf: Read) -> Iterator[Loss]:
         root = urdf.reading.root
         if root is None:
             return
-        selectors = [name for name in _names_in(self.rubric) if name.startswith("@")]
-        has_places = not all(name.startswith(JOINT_OF) for name in selectors)
-        for equivalent in equivalents(root, RewritingRules(self.kept, has_places)):
-            submission = _rewritten(self.reference, urdf, equivalent)
-            lost = self._lost(submission, self._must_pass(submission, equivalent.family))
+        has_places = any(
+            name.startswith("@") and not name.startswith(JOINT_OF)
+            for name in _names_in(self.rubric)
+        )
+        for rewriting in equivalents(root, RewritingRules(self.kept, has_places)):
+            submission = _rewritten(self.reference, urdf, rewriting)
+            lost = self._lost(submission, self._must_pass(submission, rewriting.family))
             diff = ""
             if lost:
-                diff = _text_diff(self.robot_files[0], equivalent.before, equivalent.text)
-            yield Loss(equivalent.family, lost, diff)
+                diff = _text_diff(self.robot_files[0], rewriting.before, rewriting.text)
+            yield Loss(rewriting.family, lost, diff)
 
     def _lost(self, submission: Submission, names: Collection[str]) -> Mapping[str, str]:
         """Return the criteria that lose points, with their messages."""
@@ -428,21 +429,25 @@ def _counted(
     places = {mutant: place for place, mutant in enumerate(every)}
     graded = sorted(outcomes, key=lambda outcome: places[outcome.mutant])
     fates = Counter(outcome.fate for outcome in graded)
-    survivors = [
-        _survivor(trial, outcome.mutant) for outcome in graded if outcome.fate == "survived"
-    ]
-    failed = {name for outcome in graded for name in outcome.failed}
-    unused = []
-    for row in trial.rubric.ignored:
-        for pattern in row.mutants:
-            if not any(_matches(mutant, pattern) for mutant in every):
-                unused.append(pattern)
-    faults = []
+    survivors: list[_Survivor] = []
+    ignored: list[_Survivor] = []
+    faults: list[Loss] = []
+    failed: set[str] = set()
     for outcome in graded:
-        if outcome.fate == "faulty":
-            diff = _mutant_diff(trial, outcome.mutant)
-            faults.append(Loss(outcome.mutant.id, outcome.faults, diff))
-    rewritings = list(trial.equivalents())
+        mutant = outcome.mutant
+        failed.update(outcome.failed)
+        if outcome.fate == "survived":
+            survivor = _survivor(trial, mutant)
+            if survivor.reason:
+                ignored.append(survivor)
+            else:
+                survivors.append(survivor)
+        elif outcome.fate == "faulty":
+            faults.append(Loss(mutant.id, outcome.faults, _mutant_diff(trial, mutant)))
+    idle = [criterion.id for criterion in trial.tested if criterion.id not in failed]
+    equivalents = [*trial.equivalents()]
+    names = [loss.name for loss in equivalents]
+    losses = [loss for loss in equivalents if loss.criteria]
     unexamined, files = trial.unexamined()
     return RubricTest(
         reference=trial.report,
@@ -450,15 +455,15 @@ def _counted(
         tried=len(graded),
         caught=fates["caught"],
         same=fates["same"],
-        survivors=tuple(survivor for survivor in survivors if not survivor.reason),
-        ignored=tuple(survivor for survivor in survivors if survivor.reason),
-        unused=tuple(unused),
-        idle=tuple(criterion.id for criterion in trial.tested if criterion.id not in failed),
+        survivors=tuple(survivors),
+        ignored=tuple(ignored),
+        unused=_unused_patterns(trial.rubric, every),
+        idle=tuple(idle),
         unexamined=tuple(unexamined),
         files=files,
         faults=tuple(faults),
-        equivalents=tuple(loss.name for loss in rewritings),
-        losses=tuple(loss for loss in rewritings if loss.criteria),
+        equivalents=tuple(names),
+        losses=tuple(losses),
         samples=samples,
     )
 

@@ -363,7 +363,7 @@ class _Rewriter:
         """Return whether a YAML file gives a text."""
         return any(_LOADED.match(it.text) for it in self.definitions(text))
 
-    def _of_name(self, name: str, scope: XacroScope) -> XacroDefinition | None:
+    def _definition_of(self, name: str, scope: XacroScope) -> XacroDefinition | None:
         holder = scope.holder(name)
         if holder is not None:
             return holder.properties[name].definition

@@ -386,20 +386,15 @@ def rubric_schema() -> _Schema:
     """Return the JSON Schema of a rubric, with the arguments of every check, also of installed
     plug-ins.
     """
-    names = check_names()
-    checks = []
-    facts = []
-    for name in names:
-        check = usable_check(name)
-        facts.append("" if check is None else check.documentation.fact)
-        if check is not None:
-            checks.append(check)
-    schema = RUBRIC.schema
-    criterion = CRITERION.schema
+    checks = {name: usable_check(name) for name in check_names()}
+    facts = [check.documentation.fact if check is not None else "" for check in checks.values()]
+    schema, criterion = RUBRIC.schema, CRITERION.schema
     carried = criterion["properties"]["carried"]
-    documented = {"enum": list(names), "x-taplo": {"docs": {"enumValues": facts}}}
     for row in (criterion, carried, carried["items"]):
-        row["properties"]["check"] |= documented
+        row["properties"]["check"] |= {
+            "enum": list(checks),
+            "x-taplo": {"docs": {"enumValues": facts}},
+        }
         # In a row with allOf, taplo completes no key.
         row |= {"if": {"required": ["check"]}, "then": {"$ref": "#/$defs/arguments"}}
     # Only the loader knows which of the missing keys and arguments the defaults give.
@@ -421,14 +416,6 @@ def rubric_schema() -> _Schema:
         "properties": arguments_of_checks,
         "additionalProperties": False,
     }
-    definitions = {}
-    for check in checks:
-        types = {name: _argument_type(check, name) for name in check.parameters}
-        definitions[check.name] = KeyTable(check.name, types).schema
-    rules = []
-    for name, arguments in defaults.items():
-        is_named = {"properties": {"check": {"const": name}}, "required": ["check"]}
-        rules.append({"if": is_named, "then": {"properties": {"with": arguments}}})
     definitions["arguments"] = {"allOf": rules}
     return {"$schema": _DRAFT, "title": "grader rubric", **schema, "$defs": definitions}
 

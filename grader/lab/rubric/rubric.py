@@ -257,6 +257,9 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         criterion = _make_criterion(position, row, bound, carried, answers=answers)
         criteria.append(_adjust(criterion, adjusted))
     parts = [Part(row["id"], row["title"], row.get("needs", "urdf")) for row in valid.parts]
+    evidence = [Evidence(**row) for row in valid.evidence]
+    ignored = [Ignored(**row) for row in valid.ignored]
+    late = Late(**valid.late) if valid.late is not None else None
     return Rubric(
         id=rubric["id"],
         title=rubric["title"],

@@ -140,20 +140,20 @@ def _syntax_mistake(error: str, text: str) -> str:
     text = text.replace("\r\n", "\n")
     lines = text.split("\n")
     said, line, column, _ = re.split(_PLACE, error)
-    if line:
-        row, at = int(line), int(column)
-    else:  # the place is the end of the file
-        row, at = len(lines), len(lines[-1]) + 1
-    opened = text.rfind(_CLOSING.get(said, "\0"))
-    if opened >= 0:
-        row = text.count("\n", 0, opened) + 1
-        at = opened - text.rfind("\n", 0, opened)
+    row, at = (int(line), int(column)) if line else (len(lines), len(lines[-1]) + 1)
+    opened = text.rfind(_CLOSING[said]) if said in _CLOSING else -1
+    if opened >= 0:  # else the place is the end of the file
+        row, at = text.count("\n", 0, opened) + 1, opened - text.rfind("\n", 0, opened)
         said = "a text in quotes begins here and does not end"
-    said = next((words for start, words in _SAID.items() if said.startswith(start)), said)
+    for start, words in _SAID.items():
+        if said.startswith(start):
+            said = words
+            break
     before = lines[row - 1][max(0, at - _MAX_WIDTH) : at - 1]
     after = lines[row - 1][at - 1 : at + _MAX_WIDTH]
+    # The patterns of slips name the place by a character that the text does not have.
+    marked = f"{before.replace(_HERE, ' ')}{_HERE}{after.replace(_HERE, ' ')}"
     meant = said[0].lower() + said[1:]
-    marked = "\0".join(part.replace("\0", " ") for part in (before, after))
     for pattern, words in _SLIPS:
         slip = re.search(pattern, marked)
         if slip is not None:

@@ -38,8 +38,7 @@ class Validation:
         self._complain = self._reader.complain
         self.bound: list[BoundCheck] = []
         self.carried: list[list[BoundCarried]] = []
-        self._find_check = cache(find_check)
-        self._check_names = cache(check_names)
+        self._find_check, self._check_names = cache(find_check), cache(check_names)
         self.rubric = self._row((), table, keys.RUBRIC)
         self._defaults: TomlRow = {}
         self._default_arguments: dict[str, TomlRow] = {}
@@ -50,18 +49,13 @@ class Validation:
         self.late: TomlRow | None = None
         if "late" in self.rubric:
             self.late = self._row(("late",), self.rubric["late"], keys.LATE)
-        self.ignored: list[TomlRow] = []
-        test = self._row(("test",), self.rubric.get("test", {}), keys.TEST)
-        for index, row in enumerate(test.get("ignore", ())):
-            self.ignored.append(self._row(("test", "ignore", index), row, keys.IGNORE))
-        part_ids = self._find_positions("part")
-        positions = self._find_positions("criterion")
+        self.ignored = self._read_ignored()
+        part_ids, positions = self._find_positions("part"), self._find_positions("criterion")
         self._check_part(("defaults",), self._defaults, part_ids)
         self._check_criteria(part_ids, positions)
         for index, row in enumerate(self.evidence):
             self._check_part(("evidence", index), row, part_ids)
-        main = self.rubric.get("package", "")
-        packages = self.rubric.get("packages", ())
+        main, packages = self.rubric.get("package", ""), self.rubric.get("packages", ())
         if main and packages and main not in packages:
             self._complain(("package",), f"packages does not list the package {main!r}")
         self.adjusted = self._read_adjustments(positions)
@@ -159,13 +153,15 @@ class Validation:
             )
             self._complain((*where, "args"), message)
         arguments = row.get("with", {})
-        links = list(texts_in([arguments[key] for key in arguments if key in LINK_ARGUMENTS]))
-        places = [text for text in (*row.get("at", ()), *links) if text.startswith("@")]
-        unknown = [text for text in places if not is_selector(text)]
+        links = [*texts_in([value for key, value in arguments.items() if key in LINK_ARGUMENTS])]
+        places = [*row.get("at", ()), *links]
+        unknown = [text for text in places if text.startswith("@") and not is_selector(text)]
         unknown += [text for text in links if text.startswith(JOINT_OF)]
         for name in unknown:
-            message = "write @root, @tip, or @moved:1, @moved:2 and so on"
-            self._complain(where, f"no link is named by {name!r}: {message}")
+            self._complain(
+                where,
+                f"no link is named by {name!r}: write @root, @tip, or @moved:1, @moved:2 and so on",
+            )
         if "reference" in check.examined and not self.rubric.get("reference"):
             message = (
                 f"the check {check.name} compares with the reference solution: the rubric needs "

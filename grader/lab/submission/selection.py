@@ -238,26 +238,31 @@ def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     the lab's folder exists, no robot of a final project is graded.
     """
     labs = LabFolders(lab.folders, tree.files)
-    robots = find_robots(tree, lab.urdf.rpartition("/")[2], opening.max_size)
-    roots = [path for path in tree.files if path.rpartition("/")[2] in PACKAGE_FILES]
-    has_own = any(labs.belonging(path) is Belonging.THIS_LAB for path in tree.files)
-    projects = {
-        it.path
-        for it in robots
-        if labs.belonging(it.path) is Belonging.OTHER_LAB and labs.is_project(it.path)
-    }
-    projects = projects if has_own or len(projects) < len(robots) else set()
+    has_own_folder = any(labs.belonging(path) is Belonging.THIS_LAB for path in tree.files)
     every_package = read_packages(tree, lab.urdf, lab.package, lab.packages, lab.launch_cache)
-    robots = tuple(robot for robot in robots if robot.path not in projects)
-    of_lab = packages_of_lab(every_package, lab.packages).values()
-    robots = (
-        tuple(it for it in robots if any(package.holds(it.path) for package in of_lab)) or robots
-    )
-    choice = UrdfSearch(tree, lab, labs, opening, every_package).choose(robots)
-    places = _Places(labs, _other_lab(tree, labs, choice.path, () if has_own else roots))
-    search_tree = places.only(tree, tuple(Belonging))
-    own_tree = places.own(tree) if has_own else search_tree
-    of_packages = min((place for place in map(places.of, roots) if place is not None), default=None)
+
+    every_robot = find_robots(tree, lab.urdf.rpartition("/")[2], opening.max_size)
+    project_robots = _project_robots(every_robot, labs)
+    # Without a folder of the lab, a final project may be all that there is.
+    if not has_own_folder and len(project_robots) == len(every_robot):
+        project_robots = set()
+    robots = [robot for robot in every_robot if robot.path not in project_robots]
+    search = UrdfSearch(tree, lab, labs, opening, every_package)
+    choice = search.choose(_robots_in_packages(robots, every_package, lab))
+
+    package_files = [path for path in tree.files if path.rpartition("/")[2] in PACKAGE_FILES]
+    other_lab = _other_lab(tree, labs, choice.path, () if has_own_folder else package_files)
+    places = _Places(labs, other_lab)
+    searched_tree = places.only(tree, tuple(Belonging))
+    own_tree = places.own(tree) if has_own_folder else searched_tree
+
+    # The packages are those of the best place that has any: all others are elsewhere.
+    package_place = places.best_of(package_files)
+    files_elsewhere = [
+        path
+        for path in package_files
+        if package_place is None or places.place_of(path) is not package_place
+    ]
     packages: tuple[Package, ...] = ()
     if package_place is not None:
         package_tree = places.only(tree, (package_place,))
@@ -267,8 +272,11 @@ def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
             packages = read_packages(
                 package_tree, lab.urdf, lab.package, lab.packages, lab.launch_cache
             )
-    other_roots = [
-        path for path in roots if places.of(path) is None or places.of(path) is not of_packages
+    paths_elsewhere = sorted(project_robots)
+    paths_elsewhere += [path for path in files_elsewhere if path.rpartition("/")[2] == MANIFEST]
+    others = [
+        OtherCandidate(path, _ELSEWHERE[labs.belonging(path)])
+        for path in paths_elsewhere[:_MAX_ELSEWHERE]
     ]
     return _Selection(
         choice,
