@@ -130,13 +130,15 @@ class Rubric:
     transforms: tuple[str, ...] = ()  # launch files whose static transforms are part of the robot
     solution: ReferenceSolution | None = field(default=None, compare=False, repr=False)
     links: frozenset[str] = frozenset()  # that criteria name
-    launch_cache: LaunchCache = field(default_factory=LaunchCache, compare=False, repr=False)
+    _launch_cache: LaunchCache = field(
+        default_factory=LaunchCache, init=False, compare=False, repr=False
+    )  # of its submissions
 
     @property
     def lab(self) -> Lab:
         """What is searched in a submission."""
         return Lab(
-            self.urdf, self.package, self.folders, self.links, self.packages, self.launch_cache
+            self.urdf, self.package, self.folders, self.links, self.packages, self._launch_cache
         )
 
     @property
