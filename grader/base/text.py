@@ -12,6 +12,7 @@ from pathlib import Path
 _LINE_COMMAND = re.compile(r"^(\s*):(?=:)", re.MULTILINE)
 _TAG_COMMAND = re.compile(r"##(vso)?\[", re.IGNORECASE)
 _MAX_NAME = 60  # characters of a name that are shown
+MAX_NAMED = 5  # names that a message lists, where nothing asks for more or fewer
 
 
 def printable(text: str) -> str:

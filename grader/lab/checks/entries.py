@@ -8,7 +8,7 @@ from grader.base.errors import MissingElement, NotDecided
 from grader.base.names import did_you_mean
 from grader.base.pairing import most_pairs
 from grader.base.source import LazyLocation
-from grader.base.text import enumerated, first_lines, quoted
+from grader.base.text import MAX_NAMED, enumerated, first_lines, quoted
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.checks.toml_types import Constraint, Content, NonNegative, Scalar
@@ -28,7 +28,6 @@ _ROBOT, _IN_ROBOT = "robot", "directly in <robot>"
 _READ_BY_ROS = ("link", "joint", "material")
 _PARTS = ("inertial", "visual", "collision")  # of a link
 _IDENTIFYING = ("@name", "@reference", "@filename", "@type")  # the first that a rubric gives
-_MAX_NAMED = 5  # entries and values in a message
 _TOLERANCE = 1e-6  # of numbers, where a rubric gives none
 _SLACK = 1e-12  # a tolerance includes its end
 _Path = Annotated[str, Constraint("a path such as gazebo[@reference='lidar']/sensor", is_path)]
@@ -253,7 +252,7 @@ def _judge(tree: Entry, wanted: _Wanted, where: str) -> Outcome:
         if not any(wanted.equals(entry, value) for value in values):
             at = entry
             break
-    return failed(f"{shown}: {'; '.join(first_lines(faults, _MAX_NAMED))}", at.place)
+    return failed(f"{shown}: {'; '.join(first_lines(faults, MAX_NAMED))}", at.place)
 
 
 def _no_entry(tree: Entry, search: Search, wanted: _Wanted, where: str) -> Outcome:
@@ -303,7 +302,7 @@ def _none_fits(search: Search, named: Sequence[Entry], step: Step, shown: str) -
                 if text:
                     others.append(text)
         known[_shown([Step(step.name, tuple(given))], rows[0])] = None
-    detail = f"; the file has {enumerated(known, _MAX_NAMED)}"
+    detail = f"; the file has {enumerated(known, MAX_NAMED)}"
     for key, value in step.conditions:
         detail += did_you_mean(value, texts[key])
     return failed(f"there is no {shown}", rows[0].place, detail=detail)
@@ -314,7 +313,7 @@ def _no_identity(tree: Entry, search: Search, entries: Sequence[Entry], wanted: 
     names: list[str] = []
     for entry in entries:
         names += [quoted(inner.text or "") for inner in _inside(search, entry, wanted.identity)]
-    detail = f"; the file has {enumerated(names, _MAX_NAMED)}" if names else ""
+    detail = f"; the file has {enumerated(names, MAX_NAMED)}" if names else ""
     identity = quoted(str(wanted.values[wanted.identity]))
     message = f"no {_shown(wanted.steps, tree)} has the {wanted.identity!r} {identity}"
     return failed(message, search.find(tree, wanted.steps[:1])[0].place, detail=detail)
@@ -361,7 +360,7 @@ def _fault_text(key: str, entries: Sequence[Entry], expected: Content) -> str:
 
 def _texts(entries: Sequence[Entry]) -> str:
     """Return the texts of entries, or of the items of lists."""
-    return enumerated([*map(_entry_text, _items_of(entries))], _MAX_NAMED) or "empty"
+    return enumerated([*map(_entry_text, _items_of(entries))], MAX_NAMED) or "empty"
 
 
 def _entry_text(entry: Entry) -> str:

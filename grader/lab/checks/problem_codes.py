@@ -7,7 +7,7 @@ from typing import Annotated
 
 from grader.base.errors import MissingElement
 from grader.base.problems import Problem
-from grader.base.text import counted, enumerated
+from grader.base.text import MAX_NAMED, counted, enumerated
 from grader.lab.checks.check import About, everything
 from grader.lab.checks.outcome import Outcome, failed, passed, pending
 from grader.lab.checks.toml_types import Constraint
@@ -30,7 +30,6 @@ _KNOWN = Constraint(
     {"items": {"enum": _CODES}},
 )
 _Codes = Annotated[list[str], _KNOWN]
-_MAX_NAMED = 5  # codes in a message
 
 
 def without_problems(urdf: Reading, submission: Submission, *, problems: _Codes) -> Outcome:
@@ -58,7 +57,7 @@ def without_problems(urdf: Reading, submission: Submission, *, problems: _Codes)
         raise MissingElement(
             "robot", "", message="ROS 2 cannot read the file, so there is no robot"
         )
-    return passed(f"the URDF has none of the problems {enumerated(problems, _MAX_NAMED)}")
+    return passed(f"the URDF has none of the problems {enumerated(problems, MAX_NAMED)}")
 
 
 def _fail_with_problems(found: Sequence[Problem]) -> Outcome:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.base.names import closest
 from grader.base.source import Location
-from grader.base.text import enumerated, quoted
+from grader.base.text import MAX_NAMED, enumerated, quoted
 from grader.ros.build.places import PREFIX
 from grader.ros.xml.urdf_format import numbers_in
 
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from grader.ros.package.python_nodes import Endpoint
     from grader.ros.workspace.workspace import Workspace
 
-_MAX_NAMED = 5
 _VERBS = {"publisher": "publishes", "subscription": "subscribes to"}
 _Topics = Sequence[str] | Mapping[str, str] | None  # a table has their types
 
@@ -182,7 +181,7 @@ def _not_included(launch: "Launch", end: str) -> Fault | None:
     message = f"the launch file does not include {end}"
     if not launch.passed:
         return Fault(message, detail="; it includes none")
-    paths = [passed.path.removeprefix("share/") for passed in launch.passed[:_MAX_NAMED]]
+    paths = [passed.path.removeprefix("share/") for passed in launch.passed[:MAX_NAMED]]
     return Fault(message, launch.passed[0].location, f"; it includes {enumerated(paths)}")
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader.base.errors import InputError, MissingElement, NotDecided
 from grader.base.names import did_you_mean
 from grader.base.source import LazyLocation, Location, Source
-from grader.base.text import counted, enumerated, quoted
+from grader.base.text import MAX_NAMED, counted, enumerated, quoted
 from grader.files.reading import URDF_LIMIT
 from grader.lab.checks.check import About, everything
 from grader.lab.checks.outcome import Outcome, failed, passed
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 ABOUT = {
     "xacro_uses": About(("xacro:property", "xacro:macro", "xacro:include"), breaks_under=everything)
 }
-
-_MAX_NAMED = 5  # names in a message
 
 
 class _Lack(NamedTuple):
@@ -83,7 +81,7 @@ def xacro_uses(
     if not lacks:
         names = [path.rpartition("/")[2] for path in paths]
         return passed(
-            f"{enumerated(names, _MAX_NAMED)}: xacro with the expected properties, macros "
+            f"{enumerated(names, MAX_NAMED)}: xacro with the expected properties, macros "
             "and includes"
         )
     _refuse_unknown(source, inventory)
@@ -138,7 +136,7 @@ def _find_source(submission: Submission, file: str) -> "ExpandedSource | Outcome
             if path.lower().endswith(".xacro") and path != urdf.path
         ]
         if others:
-            listed = enumerated(others, _MAX_NAMED)
+            listed = enumerated(others, MAX_NAMED)
             message = f"the graded URDF is {urdf.path}, which is no xacro, but there is {listed}"
             raise NotDecided(message, "the graded URDF is no xacro, but the submission has xacro")
         if reading.root is None:
@@ -159,7 +157,7 @@ def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome"
     found = [path for path in submission.tree.files if _ends_with(path, file)]
     if len(found) > 1:
         raise NotDecided(
-            f"several files are called {file}: {enumerated(found, _MAX_NAMED)}",
+            f"several files are called {file}: {enumerated(found, MAX_NAMED)}",
             "several files have the name",
         )
     if not found:
@@ -227,7 +225,7 @@ def _missing_uses(
         if count < wanted:
             message = f"{counted(count, kind, plural)} defined and used; there should be {wanted}"
             if unused:
-                detail = f"; not used: {enumerated([*map(quoted, unused)], _MAX_NAMED)}"
+                detail = f"; not used: {enumerated([*map(quoted, unused)], MAX_NAMED)}"
                 yield _Lack(message, first_places[unused[0]], detail)
             else:
                 yield _Lack(message)
@@ -254,8 +252,8 @@ def _missing_includes(wanted: int | list[str], included: Sequence[str]) -> Itera
     missing = [quoted(end) for end in wanted if not is_included(end)]
     if missing:
         names = [path.rpartition("/")[2] for path in included]
-        detail = f"; included: {enumerated(names, _MAX_NAMED) or 'none'}"
-        files = enumerated(missing, _MAX_NAMED, "and no file")
+        detail = f"; included: {enumerated(names, MAX_NAMED) or 'none'}"
+        files = enumerated(missing, MAX_NAMED, "and no file")
         yield _Lack(f"no file {files} is included", None, detail)
 
 

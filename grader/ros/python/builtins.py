@@ -91,7 +91,7 @@ def make_dict(*args: py.Value, **kwargs: py.Value) -> py.Value:
     """Return dict() of values."""
     if not args or isinstance(args[0], dict):
         return dict(*args, **kwargs)
-    pairs = [[list(iterate(pair)) for pair in iterate(value)] for value in args]
+    pairs = [list(map(list, map(iterate, iterate(value)))) for value in args]
     for key, *_ in filter(None, pairs[0]):
         checked_key(known(key))
     return dict(*pairs, **kwargs)

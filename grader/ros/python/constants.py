@@ -61,9 +61,10 @@ class Constants(Interpreter):
         """`nodes` are those of the module; of calls, those of the functions are evaluated."""
         super().__init__(functions, {}, budget=Budget(_MAX_STEPS))
         self._full_name, self._is_package, self._is_open = name, is_package, binds_unseen(nodes)
-        self._shared = {
-            it for node in nodes if isinstance(node, ast.Global | ast.Nonlocal) for it in node.names
-        }
+        self._shared: set[str] = set()  # names that functions of the module may bind
+        for node in nodes:
+            if isinstance(node, ast.Global | ast.Nonlocal):
+                self._shared.update(node.names)
 
     def value_of(self, node: ast.expr | None, scope: Scope) -> Value:
         """Return the value of an expression; None for none."""
@@ -88,41 +89,42 @@ class Constants(Interpreter):
         nodes = sorted(nodes, key=offset_of)
         counts, values = _bindings(nodes)
         unknown = Unknown("it is not bound once", START)
-        star = max(
-            (it.lineno for it in nodes if isinstance(it, ast.ImportFrom) and _replaces_names(it)),
-            default=0,
-        )
         names = [name for name in counts if name.partition(".")[0] not in self._shared]
         scope.names |= dict.fromkeys(names, unknown)
+        last_star = 0  # the line of the last star import, which may bind what is assigned above it
         for node in nodes:
+            if isinstance(node, ast.ImportFrom) and _replaces_names(node):
+                last_star = max(last_star, node.lineno)
             if isinstance(node, ast.Import | ast.ImportFrom):
-                found = {
-                    name: it
-                    for alias in node.names
-                    for name, it in self._imported(node, alias).items()
+                imported = self._imported_names(node)
+                scope.names |= {
+                    name: value for name, value in imported.items() if counts[name] == 1
                 }
-                scope.names |= {name: it for name, it in found.items() if counts[name] == 1}
-        assigned = [
-            it for it in values if it in names and counts[it] == 1 and values[it].lineno > star
-        ]
-        for name in assigned if not self._is_open else ():
-            value = self.value_of(values[name], scope)
-            scope.names[name] = (
-                unknown if isinstance(value, list | dict) else value
-            )  # which may be changed
+        if self._is_open:
+            return scope
+        for name, expression in values.items():
+            if name in names and counts[name] == 1 and expression.lineno > last_star:
+                value = self.value_of(expression, scope)
+                # A list or a dictionary may be changed.
+                scope.names[name] = unknown if isinstance(value, list | dict) else value
         return scope
 
-    def _imported(
-        self, node: ast.Import | ast.ImportFrom, alias: ast.alias
-    ) -> dict[str, QualifiedName]:
-        level = node.level if isinstance(node, ast.ImportFrom) else 0
-        module = (node.module or "") if isinstance(node, ast.ImportFrom) else ""
-        if level:
-            above = self._full_name.split(".")[
-                : None if self._is_package and level == 1 else -level + self._is_package
-            ]
-            module = ".".join(filter(None, (*above, module)))
-        return imported_names(module, alias, {})
+    def _imported_names(self, node: ast.Import | ast.ImportFrom) -> dict[str, QualifiedName]:
+        """Return what an import binds."""
+        module = ""
+        if isinstance(node, ast.ImportFrom):
+            module = node.module or ""
+            if node.level:
+                # Of a package, one level is the package itself.
+                above = self._full_name.split(".")
+                count = node.level - self._is_package
+                if count:
+                    above = above[:-count]
+                module = ".".join(filter(None, (*above, module)))
+        names: dict[str, QualifiedName] = {}
+        for alias in node.names:
+            names |= imported_names(module, alias, {})
+        return names
 
     def _constant_name(self, node: ast.Name, scope: Scope) -> Value:
         unknown = Unknown("it is not a constant", position_of(node))
@@ -183,29 +185,33 @@ def _bindings(nodes: Sequence[ast.AST]) -> tuple[Counter[str], dict[str, ast.exp
     counts, values = Counter[str](), dict[str, ast.expr]()
     for part in nodes:
         match part:
-            case ast.Name(ctx=ast.Store() | ast.Del()):
-                counts[part.id] += 1
-            case ast.Attribute(ctx=ast.Store() | ast.Del()):
-                counts.update((dotted(part), dotted(part.value)))
-            case ast.Subscript(ctx=ast.Store() | ast.Del()):
-                counts[dotted(part.value)] += 1
-            case (
-                ast.Assign(targets=[target], value=value)
-                | ast.AnnAssign(target=target, value=ast.expr() as value)
-            ):
+            case ast.Assign(targets=[target], value=value):
                 values[dotted(target)] = value
-            case (
-                ast.FunctionDef(name=name)
-                | ast.AsyncFunctionDef(name=name)
-                | ast.ClassDef(name=name)
-            ):
-                counts[name] += 1
-            case (
-                ast.arg(arg=name) | ast.ExceptHandler(name=str(name)) | ast.MatchAs(name=str(name))
-            ):
-                counts[name] += 1
-            case ast.MatchStar(name=str(name)) | ast.MatchMapping(rest=str(name)):
-                counts[name] += 1
-            case ast.alias(name=full, asname=asname):
-                counts[asname or full.partition(".")[0]] += 1
+            case ast.AnnAssign(target=target, value=ast.expr() as value):
+                values[dotted(target)] = value
+            case _:
+                counts.update(_bound_by(part))
     return counts, values
+
+
+def _bound_by(part: ast.AST) -> Sequence[str]:
+    """Return the names with dots that one node binds or changes."""
+    names: list[str] = []
+    match part:
+        case ast.Name(ctx=ast.Store() | ast.Del()):
+            names = [part.id]
+        case ast.Attribute(ctx=ast.Store() | ast.Del()):
+            names = [dotted(part), dotted(part.value)]
+        case ast.Subscript(ctx=ast.Store() | ast.Del()):
+            names = [dotted(part.value)]
+        case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
+            names = [part.name]
+        case ast.arg(arg=name):
+            names = [name]
+        case ast.ExceptHandler(name=str(name)) | ast.MatchAs(name=str(name)):
+            names = [name]
+        case ast.MatchStar(name=str(name)) | ast.MatchMapping(rest=str(name)):
+            names = [name]
+        case ast.alias(name=full, asname=asname):
+            names = [asname or full.partition(".")[0]]
+    return names

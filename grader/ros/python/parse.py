@@ -188,29 +188,23 @@ def own_nodes(node: ast.AST) -> list[ast.AST]:
 def bound_in(node: ast.FunctionDef | ast.Module) -> frozenset[str]:
     """Return the names that a function or module binds itself."""
     nodes = own_nodes(node)
-    declared = {
-        name for part in nodes if isinstance(part, ast.Global | ast.Nonlocal) for name in part.names
-    }
-    loops = [
-        part.target for part in nodes if isinstance(part, ast.comprehension)
-    ]  # they have scopes of their own
-    inner = {id(part) for target in loops for part in ast.walk(target)}
+    declared: set[str] = set()  # names of a scope around this one
+    inner: set[ast.AST] = set()  # targets in comprehensions, which have scopes of their own
+    for part in nodes:
+        if isinstance(part, ast.Global | ast.Nonlocal):
+            declared.update(part.names)
+        elif isinstance(part, ast.comprehension):
+            inner.update(ast.walk(part.target))
     names: set[str] = set()
     for part in nodes:
         match part:
-            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) if id(part) not in inner:
+            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) if part not in inner:
                 names.add(name)
-            case (
-                ast.FunctionDef(name=name)
-                | ast.AsyncFunctionDef(name=name)
-                | ast.ClassDef(name=name)
-            ):
+            case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
+                names.add(part.name)
+            case ast.ExceptHandler(name=str(name)) | ast.MatchAs(name=str(name)):
                 names.add(name)
-            case (
-                ast.ExceptHandler(name=str() as name)
-                | ast.MatchAs(name=str() as name)
-                | ast.MatchStar(name=str() as name)
-            ):
+            case ast.MatchStar(name=str(name)):
                 names.add(name)
             case ast.alias(name=full, asname=asname):
                 names.add(asname or full.partition(".")[0])

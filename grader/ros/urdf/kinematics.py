@@ -260,19 +260,15 @@ class Configuration:
     positions: Mapping[str, float] = field(default_factory=dict)
     # reading what is open in `robot` raises NotDecided
     is_guarded: bool = field(default=False, kw_only=True)
-    # what `at` hands on, as it does not change with positions
-    _shared: _Views | None = field(default=None, kw_only=True)
     _relative: dict[tuple[str, str | None], Transform] = field(default_factory=dict, init=False)
 
     def __post_init__(self) -> None:
-        if self._shared is not None:
-            return  # `at` makes it of a robot that moves, at positions of its joints
         for name, position in self.positions.items():
             _check_position(self.known.joint(name), position)
 
     @cached_property
     def _views(self) -> _Views:
-        return self._shared or _views_of(self.known, is_guarded=self.is_guarded)
+        return _views_of(self.known, is_guarded=self.is_guarded)
 
     @cached_property
     def _frames(self) -> _Frames:
@@ -456,7 +452,9 @@ class Configuration:
 
     def at(self, positions: Mapping[str, float]) -> "Configuration":
         """Return the same robot with its joints at other positions, which are not validated."""
-        return Configuration(self.known, positions, is_guarded=self.is_guarded, _shared=self._views)
+        return _MovedConfiguration(
+            self.known, positions, is_guarded=self.is_guarded, shared_views=self._views
+        )
 
     def displacement(self, link: str, joint: Joint, angle: float, *, relative_to: str) -> Transform:
         """Return the motion of points on a link when a turning or sliding joint moves by `angle`
@@ -480,6 +478,22 @@ class Configuration:
     def position(self, joint: Joint) -> float:
         """Return the position of a joint: its own, that of the joint that it mimics, or 0."""
         return self._frames.position(joint.known)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class _MovedConfiguration(Configuration):
+    """A configuration that another one made by moving joints: it shares what positions do not
+    change, and does not validate positions.
+    """
+
+    shared_views: _Views = field(kw_only=True)
+
+    def __post_init__(self) -> None:
+        pass  # the positions are those of joints of the robot
+
+    @cached_property
+    def _views(self) -> _Views:
+        return self.shared_views
 
 
 def last_moving(path: tuple[Joint, ...], link: str, types: Collection[str], message: str) -> Joint:

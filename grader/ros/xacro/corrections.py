@@ -92,32 +92,29 @@ class Corrections:
         """
         tag = {"property": "xacro:property", "macro": "xacro:macro"}.get(unknown.kind)
         root = next(iter(self._files.documents.values()))
-        found = [
-            (child, node)
-            for child in root.elements
-            for node in ([child] if child.tag == tag else self._included(child, tag))
-            if node.attributes.get("name", "").removeprefix("xacro:") == unknown.name
-        ]
-        if len(found) != 1 or found[0][0] is root.elements[0]:
+        definitions = []  # each with the child of the root that it is, or that includes it
+        for child in root.elements:
+            nodes = [child] if child.tag == tag else self._included(child, tag)
+            definitions += [(child, node) for node in nodes if _defined_name(node) == unknown.name]
+        if len(definitions) != 1:
             return None
-        child, node = found[0]
+        [(child, node)] = definitions
+        if child is root.elements[0]:
+            return None
         source, start = child.place.source.element(child.place.tag)
         _, first = source.element(root.elements[0].place.tag)
         end = markup.element_end(source.text, start)
         block = source.text[start:end]
         indent = markup.indentation(source.text, first)
         newline = "\r\n" if "\r\n" in source.text else "\n"
+        inserted = source.edit(first, first, f"{block}{newline}{indent}")
         line = start - len(markup.indentation(source.text, start))
-        is_alone = (
-            source.text[end : end + 1] in ("\n", "\r")
-            and line > 0
-            and source.text[line - 1] == "\n"
-        )
-        if is_alone:
+        begins_line = line > 0 and source.text[line - 1] == "\n"
+        if begins_line and source.text[end : end + 1] in ("\n", "\r"):
             removed = source.edit(line, end + len(newline), "")
         else:
             removed = source.edit(start, end, "")
-        return (source.edit(first, first, f"{block}{newline}{indent}"), removed), node.place.at()
+        return (inserted, removed), node.place.at()
 
     def _included(self, child: XacroNode, tag: str | None) -> list[XacroNode]:
         """Return the definitions in the files that an element includes."""
@@ -218,22 +215,17 @@ class Corrections:
         if not isinstance(error, MacroError):
             return ()
         source, start = place.source.element(place.tag)
-        called = (
-            source.text[start + 1 : markup.name_end(source.text, start)]
-            .rpartition(":")[2]
-            .rpartition(".")[2]
-        )
+        tag = source.text[start + 1 : markup.name_end(source.text, start)]
+        called = tag.rpartition(":")[2].rpartition(".")[2]
         for node in self.nodes():
-            params = node.attributes.get("params", "")
-            if (
-                node.tag == "xacro:macro"
-                and node.attributes.get("name", "").removeprefix("xacro:") == called
-            ):
-                new = _SEPARATOR.sub(
-                    lambda it: it[0] if it["separator"] is None else " ", params
-                ).rstrip()
-                if " ".join(new.split()) != " ".join(params.split()):
-                    return _with_value(node.place, "params", " ".join(new.split()))
+            if node.tag == "xacro:macro" and _defined_name(node) == called:
+                params = node.attributes.get("params", "")
+                separated = _SEPARATOR.sub(
+                    lambda match: match[0] if match["separator"] is None else " ", params
+                )
+                new = " ".join(separated.split())
+                if new != " ".join(params.split()):
+                    return _with_value(node.place, "params", new)
         return ()
 
     def _decimal_commas(self, refusal: Refusal) -> Edits:
@@ -285,6 +277,11 @@ class Corrections:
                         edits += _with_value(node.place, name, new)
                 waiting += [(child, known) for child in node.elements]
         return tuple(edits)
+
+
+def _defined_name(node: XacroNode) -> str:
+    """Return the name that a property or macro defines, without a prefix, which macros may have."""
+    return node.attributes.get("name", "").removeprefix("xacro:")
 
 
 def _marked(text: str, known: Iterable[str]) -> str:

@@ -125,12 +125,11 @@ _XACRO: dict[str, PlainFunction] = {
     "dotify": PlainFunction("dotify", _dotify),
     "abs_filename": PlainFunction("abs_filename", _no_path),
 }
+_PYTHON = {name: value for name, value in BUILTINS.items() if name not in _NOT_IN_XACRO}
 GLOBALS: Mapping[str, Value] = {
     **MATH,
     **{name: BUILTINS[name] for name in _OLD_BUILTINS},
-    "python": namespace(
-        "python", {name: it for name, it in BUILTINS.items() if name not in _NOT_IN_XACRO}
-    ),
+    "python": namespace("python", _PYTHON),
     "math": namespace("math", MATH),
 }
 

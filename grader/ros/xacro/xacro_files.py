@@ -125,10 +125,8 @@ class Files:
 
     def _share_path(self, package: str, inside: str) -> str:
         """Return the path of a file that $(find package) names."""
-        folder, source = (
-            self._workspace.package(package),
-            self._workspace.installed(package, inside),
-        )
+        folder = self._workspace.package(package)
+        source = self._workspace.installed(package, inside)
         if folder is None and source is None:
             raise Undetermined(f"the package {package} is not part of the submission")
         if source is not None:
@@ -165,25 +163,19 @@ class Files:
         """
         self._budget.charge(len(self._workspace.paths))
         folder, name = posixpath.split(path)
-        names = [
-            posixpath.basename(other)
-            for other in self._workspace.paths
-            if posixpath.dirname(other) == folder
-        ]
+        beside = [other for other in self._workspace.paths if posixpath.dirname(other) == folder]
+        names = [posixpath.basename(other) for other in beside]
         self._budget.charge(_OF_NAME * len(names))
         same = [other for other in self._workspace.paths if other.lower() == path.lower()]
         if len(same) != 1:
-            return FileFails(
-                message, UnknownName(name, dict.fromkeys(names), "file", near(name, names))
-            )
+            unknown = UnknownName(name, dict.fromkeys(names), "file", near(name, names))
+            return FileFails(message, unknown)
+        # The part from the first folder that differs is what is misspelt.
         parts, others = path.split("/"), same[0].split("/")
-        first = next(
-            index
-            for index, (one, other) in enumerate(zip(parts, others, strict=True))
-            if one != other
-        )
-        meant = "/".join(others[first:])
-        unknown = UnknownName("/".join(parts[first:]), {meant: None}, "file", meant)
+        while parts[0] == others[0]:
+            del parts[0], others[0]
+        meant = "/".join(others)
+        unknown = UnknownName("/".join(parts), {meant: None}, "file", meant)
         return FileFails(f"{message}, but {same[0]}: capital letters count", unknown)
 
     def _not_xml(self, path: str, data: bytes, message: str) -> XmlFails:

@@ -115,30 +115,23 @@ def _edited(source: Source, edits: Edits) -> tuple[str, Callable[[int], int]]:
 
     Of edits that overlap, the first counts.
     """
-    removed = {
-        edit.old.strip(): source.offset(edit.line, edit.column)
-        + len(edit.old)
-        - len(edit.old.lstrip())
-        for edit in edits
-        if not edit.new
-    }
+    placed = [(source.offset(edit.line, edit.column), edit) for edit in edits]
+    removed: dict[str, int] = {}  # texts that are removed, and where each begins
+    for start, edit in placed:
+        if not edit.new:
+            removed[edit.old.strip()] = start + len(edit.old) - len(edit.old.lstrip())
     pieces: list[str] = []
-    places: list[
-        tuple[int, int]
-    ] = []  # of the pieces: the offset after the edits, and the one before
+    # of the pieces: the offset after the edits, and the one before
+    places: list[tuple[int, int]] = []
     length = position = 0
-    for start, edit in sorted(
-        ((source.offset(it.line, it.column), it) for it in edits), key=lambda pair: pair[0]
-    ):
+    for start, edit in sorted(placed, key=lambda pair: pair[0]):
         if start < position:
             continue
-        for piece, at in (
-            (source.text[position:start], position),
-            (edit.new, removed.get(edit.new.strip(), start)),
-        ):
-            places.append((length, at))
-            pieces.append(piece)
-            length += len(piece)
+        kept = source.text[position:start]
+        places.append((length, position))
+        places.append((length + len(kept), removed.get(edit.new.strip(), start)))
+        pieces += [kept, edit.new]
+        length += len(kept) + len(edit.new)
         position = start + len(edit.old)
     places.append((length, position))
 

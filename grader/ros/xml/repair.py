@@ -86,22 +86,25 @@ class _Repair(NamedTuple):
 def repair(text: str) -> _Repair:
     """Return the changes that repair a text, and the robot that is read after them."""
     conflicts = find_conflicts(text)
-    changes = [_TextEdit(*span, "") for conflict in conflicts for span in conflict.removed]
+    changes: list[_TextEdit] = []
+    for conflict in conflicts:
+        changes += [_TextEdit(start, end, "") for start, end in conflict.removed]
     kept = without_conflicts(text, conflicts)
     assumed: list[Difference] = []
     for start, end in unclosed_comments(kept):
         changes.append(_TextEdit(end - 2, end, "-->"))
-        assumed.append(
-            Difference(xml_problems.RECOVERED, "the comment ends here: -> is read as -->", end - 2)
-        )
+        message = "the comment ends here: -> is read as -->"
+        assumed.append(Difference(xml_problems.RECOVERED, message, end - 2))
         kept = f"{kept[:start]}{_VISIBLE.sub(' ', kept[start:end])}{kept[end:]}"
-    found = _Repairer(kept).run()
-    assumed = [*assumed, *found.assumed] if found.xml else []
-    around = [
-        range(change.start, change.end) for change in found.changes
-    ]  # a tag with a comment in a value
-    own = [change for change in changes if not any(change.start in tag for tag in around)]
-    return found._replace(changes=sorted([*found.changes, *own]), assumed=assumed)
+    repaired = _Repairer(kept).run()
+    assumed = [*assumed, *repaired.assumed] if repaired.xml else []
+
+    def is_in_tag(change: _TextEdit) -> bool:
+        """Return whether a change is in a tag that is replaced: a comment in a value."""
+        return any(tag.start <= change.start < tag.end for tag in repaired.changes)
+
+    kept_changes = [change for change in changes if not is_in_tag(change)]
+    return repaired._replace(changes=sorted([*repaired.changes, *kept_changes]), assumed=assumed)
 
 
 def unclosed_comments(text: str) -> list[tuple[int, int]]:
@@ -128,9 +131,8 @@ class _Repairer:
 
     def __init__(self, text: str) -> None:
         self._text = text.partition("\0")[0]  # TinyXML2 reads no further
-        self._replaced: dict[
-            int, tuple[int, str]
-        ] = {}  # by the offset of a tag: where it ends, what it becomes
+        # by the offset of a tag: where it ends, what it becomes
+        self._replaced: dict[int, tuple[int, str]] = {}
         self._last = -1  # the offset of the tag that was replaced last
         self._inserted: dict[int, str] = {}  # end tags, by the offset before which they are missing
         self._assumed: list[Difference] = []
@@ -335,17 +337,13 @@ class _Repairer:
         """Close the innermost open tag before an offset, in a line of its own if it has one."""
         opened = self._open.pop()
         head = self._text[opened.offset : offset].rstrip()
-        if (
-            opened.offset not in self._replaced
-            and _is_never_filled(opened.name)
-            and head.find(">") == len(head) - 1
-        ):
+        is_alone = opened.offset not in self._replaced and head.find(">") == len(head) - 1
+        if is_alone and _is_never_filled(opened.name):
             self._replace(opened.offset, opened.offset + len(head), f"{head[:-1].rstrip()}/>")
             return
         end, new = self._replaced.get(self._last, (0, " "))
-        if (
-            not new and not _OTHER.sub("", self._text[end:offset]).strip()
-        ):  # a wrong end tag is there
+        if not new and not _OTHER.sub("", self._text[end:offset]).strip():
+            # A wrong end tag is there.
             self._replaced[self._last] = end, f"</{opened.name}>"
             return
         at = len(self._text[:offset].rstrip())

@@ -152,15 +152,13 @@ ELSEWHERE = {
 # Views of the table.
 ATTRIBUTES = {name: frozenset(tag.attributes) for name, tag in TAGS.items()}
 CHILDREN = {name: tag.children for name, tag in TAGS.items() if tag.children}
-REQUIRED = {
-    name: tuple(key for key, one in tag.attributes.items() if one.default is None)
-    for name, tag in TAGS.items()
-}
-OWNERS = {
-    key: [name for name, tag in TAGS.items() if key in tag.attributes]
-    for it in TAGS.values()
-    for key in it.attributes
-}
+REQUIRED: dict[str, tuple[str, ...]] = {}
+OWNERS: dict[str, list[str]] = {}
+for _name, _tag in TAGS.items():
+    _required = [key for key, attribute in _tag.attributes.items() if attribute.default is None]
+    REQUIRED[_name] = tuple(_required)
+    for _key in _tag.attributes:
+        OWNERS.setdefault(_key, []).append(_name)
 # The parts of the numbers in an attribute of this name; texts have none.
 PARTS = {key: one.parts for tag in TAGS.values() for key, one in tag.attributes.items()}
 
