@@ -13,7 +13,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.text import Text
 
-from grader.app.commands.grade_submission import (
+from grader.app.grading import (
     GradeRequest,
     check_saves,
     grade_submission,
