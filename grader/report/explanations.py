@@ -93,16 +93,11 @@ def checks_text() -> str:
     return "\n".join(listed)
 
 
-def _kind_of(code: str) -> Kind | None:
-    """Return the kind of problem with a code; None if there is none."""
-    return next((kind for kind in EVERY_KIND if kind.code == code), None)
-
-
 def explanation(name: str, rubric: Rubric) -> str:
     """Return the explanation of a code, a criterion or a check. Raises InputError for another
     name.
     """
-    kind = _kind_of(name.upper())
+    kind = next((kind for kind in EVERY_KIND if kind.code == name.upper()), None)
     if kind is not None:
         texts = [
             f"{kind.code} ({kind.severity}): {kind.title}",
