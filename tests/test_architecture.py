@@ -55,7 +55,7 @@ ROOMS = {
         "pages",
         "explanations formats",
         "writing invocation",
-        "open_browser",
+        "open_browser repository",
     ),
     "classroom": (
         "tables",
@@ -70,7 +70,7 @@ ROOMS = {
         "commands",
         "review",
     ),
-    "app": ("bundle", "commands", "cli api"),
+    "app": ("bundle", "hints_and_fix", "grading", "commands", "cli api"),
 }
 # The packages, or rooms of them, that may import a library: each has one concern.
 LIBRARIES = {

@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
-from grader.app.commands.hints_and_fix import add_hints
+from grader.app.hints_and_fix import add_hints
 from grader.lab.grading.grade import grade as grade_submission
 from grader.lab.grading.report import Report
 from grader.lab.rubric.rubric import Rubric, load_rubric

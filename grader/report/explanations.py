@@ -11,7 +11,7 @@ from typing import Any
 from grader.base.errors import InputError
 from grader.base.names import did_you_mean
 from grader.base.problems import Kind
-from grader.base.text import enumerated, format_points, printable
+from grader.base.text import counted, enumerated, format_points, printable
 from grader.files.reading import shipped_folder
 from grader.lab.checks.check import Check
 from grader.lab.checks.registry import check_names, find_check, unused_checks
@@ -35,6 +35,17 @@ EFFECTS = {
     "loads": "ROS 2 loads the file.",
     "other": "",
 }
+
+
+def rubric_size(rubric: Rubric) -> str:
+    """Return the size of a rubric: 56 criteria, 100 points."""
+    criteria = counted(len(rubric.criteria), "criterion", "criteria")
+    return f"{criteria}, {worth(rubric.criteria).text}"
+
+
+def rubric_summary(rubric: Rubric) -> str:
+    """Return a rubric's title and size: Lab 6 (56 criteria, 100 points)."""
+    return f"{rubric.title} ({rubric_size(rubric)})"
 
 
 def rubric_overview(rubric: Rubric) -> str:
@@ -82,16 +93,11 @@ def checks_text() -> str:
     return "\n".join(listed)
 
 
-def _kind_of(code: str) -> Kind | None:
-    """Return the kind of problem with a code; None if there is none."""
-    return next((kind for kind in EVERY_KIND if kind.code == code), None)
-
-
 def explanation(name: str, rubric: Rubric) -> str:
     """Return the explanation of a code, a criterion or a check. Raises InputError for another
     name.
     """
-    kind = _kind_of(name.upper())
+    kind = next((kind for kind in EVERY_KIND if kind.code == name.upper()), None)
     if kind is not None:
         texts = [
             f"{kind.code} ({kind.severity}): {kind.title}",

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-import grader.app.commands.hints_and_fix
 import grader.app.commands.inspect_urdf
+import grader.app.hints_and_fix
 import grader.lab.grading.subjects
 import grader.lab.hints.hinting
 import grader.lab.submission.opening
@@ -75,7 +75,7 @@ def test_a_search_for_hints_costs_no_report(
     def stop(*_: object, **__: object) -> None:
         raise fault
 
-    monkeypatch.setattr(grader.app.commands.hints_and_fix, "hinted", stop)
+    monkeypatch.setattr(grader.app.hints_and_fix, "hinted", stop)
     wrong = tmp_path / "my_robot.urdf"
     wrong.write_bytes(URDF.read_bytes().replace(b"0.15 0 0.225", b"0.15 0 0.3"))
     done = run(("grade", wrong))

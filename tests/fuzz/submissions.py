@@ -6,7 +6,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from unittest.mock import patch
 
-from grader.app.commands.hints_and_fix import add_hints, files_to_fix, write_fix
+from grader.app.hints_and_fix import add_hints, files_to_fix, write_fix
 from grader.base.source import Base, Edit
 from grader.base.text import printable
 from grader.files.tree import make_tree

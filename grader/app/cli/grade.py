@@ -8,7 +8,8 @@ import typer
 
 from grader.app.cli.options import AnswersOption, ArgOption, MaxSizeOption, PartOption, RubricOption
 from grader.app.cli.streams import TERMINAL, screen, warn, write_stderr
-from grader.app.commands.grade_submission import GradeRequest, GradeRun, grade_and_save
+from grader.app.commands.grade_submission import grade_and_save
+from grader.app.grading import GradeRequest, GradeRun
 from grader.base.errors import GraderError
 from grader.files.reading import URDF_LIMIT
 from grader.lab.rubric.hint_levels import HintLevel

@@ -10,7 +10,7 @@ import typer
 from grader.app.cli.options import AnswersOption, FormatOption, RubricOption
 from grader.app.cli.streams import TERMINAL, warn
 from grader.app.commands import rubrics
-from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
+from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC, load_named
 from grader.report.formats import OutputFormat
 from grader.report.writing import write_stdout
 
@@ -62,7 +62,7 @@ def show_rubric(
     """
     from grader.report.explanations import rubric_overview
 
-    return rubric_overview(rubrics.load(name, answers))
+    return rubric_overview(load_named(name, answers))
 
 
 @rubric.command("checks")

@@ -1,95 +1,11 @@
-"""Grade one submission and save the reports that `--save` names."""
+"""Grade one submission and save the reports that `--save` names, and the files of `--fix`."""
 
-import os
-import re
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
-from decimal import Decimal
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
 
-from grader.app.commands.rubrics import load
-from grader.base.errors import GraderError, InputError
-from grader.base.source import Base
-from grader.base.text import enumerated, printable, shell_quoted
-from grader.files.limits import ROBOT_ENDINGS
-from grader.lab.rubric.hint_levels import HintLevel
+from grader.app.grading import GradeRequest, GradeRun, check_saves, grade_submission, save_reports
 from grader.lab.rubric.rubric_files import files_of
-from grader.report.formats import Format, inputs_of, render
-from grader.report.invocation import ExitCode, Saves, exit_code, read_arguments, read_threshold
-from grader.report.writing import (
-    CHECKOUTS,
-    Warn,
-    missing_folder,
-    refuse_inputs,
-    refuse_symlinks,
-    save_all,
-)
-
-if TYPE_CHECKING:
-    from grader.lab.grading.report import Report
-    from grader.lab.hints.hinting import Fix
-    from grader.lab.rubric.rubric import Rubric
-
-_SOURCES = (
-    *ROBOT_ENDINGS,
-    ".toml",
-    ".py",
-    ".yaml",
-    ".yml",
-    ".rviz",
-    ".cfg",
-)  # files that no report may replace
-_MAX_NAMED = 8  # criteria in a message
-_MAX_UP = 3  # folders between a package and what is graded in it
-_SHA256 = r"[0-9a-fA-F]{64}"
-
-
-class GradeRequest(NamedTuple):
-    """The options of `grader grade`: a submission to grade, its rubric, and the reports to make."""
-
-    path: str  # of the submission; - for a URDF on standard input
-    rubric: str  # an id or a file
-    expect_rubric: str | None  # the hash that the rubric must have
-    part: (
-        Sequence[str] | None
-    )  # the ids of the parts to grade; default: all that the submission can meet
-    output_format: Format  # of standard output
-    saves: Saves  # the files to write, with their formats
-    fail_under: str | None  # the score that must be reached, in points or percent
-    max_size: int  # of a URDF, in bytes
-    arg: Sequence[str] | None  # NAME=VALUE, of xacro
-    answers: Path | None  # the model answers
-    verbose: bool  # whether the terminal shows everything
-    hints: HintLevel | None  # the most that hints tell; None for what the rubric allows
-    fix: Path | None  # where to write the files with all proven edits
-
-    @property
-    def threshold(self) -> tuple[Decimal, bool] | None:
-        """The threshold of `--fail-under`, if there is one. Raises GraderError."""
-        if self.fail_under is not None:
-            return read_threshold(self.fail_under)
-        return None
-
-
-class GradeRun(NamedTuple):
-    """A submission that was graded."""
-
-    report: "Report"
-    base: Base  # the place of the submission in a repository
-    exit_code: ExitCode
-    fix: "Fix | None" = None  # the edits of all hints
-    besides: tuple[Path, ...] = ()  # the files that were read besides a single one
-
-    @property
-    def reason(self) -> str:
-        """Why the exit code is 1 although nothing failed; empty otherwise."""
-        names = enumerated(
-            [result.criterion.id for result in self.report.pending_automatic], _MAX_NAMED
-        )
-        if self.exit_code != ExitCode.FAILED or not names or self.report.has_failures:
-            return ""
-        return printable(f"exit code 1: cannot be determined, and needs manual grading: {names}")
+from grader.report.writing import Warn
 
 
 def grade_and_save(request: GradeRequest, warn: Warn, show: Callable[[GradeRun], None]) -> GradeRun:
@@ -99,165 +15,14 @@ def grade_and_save(request: GradeRequest, warn: Warn, show: Callable[[GradeRun],
     run = grade_submission(request, warn)
     files: Mapping[Path, bytes] = {}
     if request.fix is not None and run.fix is not None:
-        from grader.app.commands.hints_and_fix import files_to_fix  # late: few ask for it
+        from grader.app.hints_and_fix import files_to_fix  # late: few ask for it
 
         others = [*files_of(request.rubric, request.answers), *(file for _, file in request.saves)]
         files = files_to_fix(request.fix, request.path, run.report, run.fix, run.besides, others)
     show(run)
     save_reports(request, run)
     if request.fix is not None and run.fix is not None:
-        from grader.app.commands.hints_and_fix import write_fix
+        from grader.app.hints_and_fix import write_fix
 
         warn(write_fix(request.fix, request.path, run.report, run.fix, files))
     return run
-
-
-def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
-    """Grade a submission. Raises GraderError."""
-    threshold = request.threshold  # before grading, to refuse a wrong one at once
-    for kind in (request.output_format, *(kind for kind, _ in request.saves)):
-        inputs_of(kind)  # as well
-    from grader.lab.grading.grade import grade
-    from grader.lab.submission.opening import open_submission
-    from grader.lab.submission.submission import Opening
-
-    rubric = requested_rubric(request)
-    reports = frozenset(
-        os.path.realpath(file) for _, file in request.saves if file.suffix.lower() not in _SOURCES
-    )
-    opening = Opening(request.max_size, read_arguments(request.arg or ()), reports=reports)
-    submission = open_submission(request.path, rubric.lab, opening, with_neighbours=True)
-    if submission.several:
-        warn(submission.several)
-    if (
-        submission.package is None
-        and not submission.is_single
-        and (around := _package_around(request.path))
-    ):
-        warn(f"{around}/package.xml exists: this is inside a package; run `grader grade {around}`")
-    report = grade(rubric, submission, tuple(request.part or ()))
-    for result in report.results:
-        if result.traceback:
-            warn(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
-    fix = None
-    if report.has_failures or request.fix is not None or request.hints is not None:
-        from grader.app.commands.hints_and_fix import (
-            add_hints,  # late: many submissions lose nothing
-        )
-
-        report, fix = add_hints(
-            report, submission, request.hints, warn, is_fixed=request.fix is not None
-        )
-    folder = folder_of(request.path, submission.path) if submission.is_single else None
-    besides = tuple(folder / path for path in submission.besides) if folder is not None else ()
-    return GradeRun(
-        report, base_of(request.path, folder), exit_code(report, threshold), fix, besides
-    )
-
-
-def check_saves(saves: Saves, rubric: Sequence[Path], *paths: str) -> None:
-    """Raise InputError if a report has no folder, would overwrite an input, or leads through a
-    symlink of a submission.
-
-    Inputs are the files of the rubric and the submissions that are files.
-    """
-    # os.path.isdir is False for a name that is too long, for which Path.is_dir raises before Python
-    # 3.14.
-    inputs = [*rubric, *(Path(path) for path in paths if not os.path.isdir(path))]  # noqa: PTH112
-    for _, file in saves:
-        refuse_symlinks(file, paths)
-        refuse_inputs("--save", file, inputs)
-        if not os.path.isdir(file.parent):  # noqa: PTH112
-            raise missing_folder(file)
-
-
-def save_reports(request: GradeRequest, run: GradeRun) -> None:
-    """Write the reports that `--save` names. Raises InputError: then none has changed."""
-    graded = Path(request.path, run.report.submission.path or "")
-    for _, file in request.saves:
-        is_source = file.suffix.lower() in _SOURCES
-        refuse_inputs("--save", file, (Path(request.path) if is_source else graded, *run.besides))
-    texts = {
-        file: render(run.report, kind, run.base, verbose=request.verbose)
-        for kind, file in request.saves
-    }
-    save_all(
-        {file: text.encode("utf-8", "backslashreplace") for file, text in texts.items()},
-        (request.path,),
-    )
-
-
-def _package_around(path: str) -> str:
-    """Return the way from a folder up to the package that it is in; empty if it is in none."""
-    folder = Path(path).absolute()
-    ways = (
-        os.path.normpath(f"{path}/{'../' * depth}")
-        for depth in range(1, min(_MAX_UP, len(folder.parents)) + 1)
-    )
-    return next((shell_quoted(way) for way in ways if Path(way, "package.xml").is_file()), "")
-
-
-def requested_rubric(request: GradeRequest) -> "Rubric":
-    """Return the rubric. Raises GraderError if it is not the expected one or lacks a part that is
-    named.
-    """
-    expected = request.expect_rubric
-    if expected is not None and not re.fullmatch(_SHA256, expected):
-        raise GraderError(
-            "--expect-rubric takes the 64 digits that `grader rubric show` prints as "
-            f"sha256, not {expected!r}"
-        )
-    rubric = load(request.rubric, request.answers)
-    if expected is not None and expected.lower() != rubric.sha256:
-        raise InputError(
-            f"the rubric {rubric.id} is not the expected one: its sha256 is "
-            f"{rubric.sha256}, not {expected.lower()}"
-        )
-    for name in request.part or ():
-        rubric.part(name)
-    return rubric
-
-
-def folder_of(path: str, inside: str | None) -> Path:
-    """Return the folder that the paths of a single URDF start in, given the path in it."""
-    return Path(path).parent.resolve().joinpath(*[".."] * (inside or "").count("/")).resolve()
-
-
-def base_of(path: str, single: Path | None) -> Base:
-    """Return where a submission is in its repository; `single` is the folder in which paths of a
-    single URDF start.
-    """
-    if path == "-":
-        return Base(is_outside=True)
-    named = Path(path)
-    is_folder = named.is_dir()
-    # A file keeps the name that was typed, even if that is a symlink; a folder is resolved.
-    place = named.resolve() if is_folder else named.parent.resolve() / named.name
-    root = _repository(place)
-    if root is None:
-        return Base(is_outside=True)
-    if is_folder or single is not None:
-        start = place if single is None else single
-        if not start.is_relative_to(root):
-            return Base(is_outside=True)
-        folder = start.relative_to(root).as_posix()
-        return Base("" if folder == "." else f"{folder}/")
-    return Base(archive=place.relative_to(root).as_posix())
-
-
-def _repository(place: Path) -> Path | None:
-    """Return the root of a path's repository: the CI checkout, else the folder with .git, else the
-    current folder.
-    """
-    around = [place, *place.parents]
-    for name in CHECKOUTS:
-        checkout = Path(os.environ.get(name) or os.sep).resolve()
-        if checkout in around[:-1]:  # the last is the root of the file system
-            return checkout
-    for folder in around:
-        if (folder / ".git").exists():
-            return folder
-    with suppress(OSError):  # the current folder may have been deleted
-        here = Path.cwd()
-        return here if here in around else None
-    return None

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import isfinite, nan
 
-from grader.app.commands.grade_submission import base_of, folder_of
 from grader.base.errors import GraderError, InputError, MissingElement, NotDecided
 from grader.base.problems import Problem, in_order
 from grader.base.text import printable_path
@@ -15,6 +14,7 @@ from grader.lab.submission.opening import open_submission
 from grader.lab.submission.submission import Lab, Opening, Submission
 from grader.report.inspection import Inspection, main_root
 from grader.report.invocation import read_arguments
+from grader.report.repository import base_of, folder_of
 from grader.report.writing import Warn
 from grader.ros.package.robot_file import Absent, Read, Unreadable
 from grader.ros.urdf.kinematics import Configuration

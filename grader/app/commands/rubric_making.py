@@ -9,7 +9,6 @@ from functools import partial
 from itertools import chain
 from pathlib import Path
 
-from grader.app.commands.rubrics import load, rubric_summary
 from grader.base.errors import GraderError, InputError
 from grader.base.text import enumerated, printable, printable_path, shell_quoted
 from grader.classroom.run.preloading import PRELOAD
@@ -21,8 +20,10 @@ from grader.lab.authoring.rubric_test import MutantOutcome, Trial, mutant_outcom
 from grader.lab.authoring.samples import read_samples
 from grader.lab.checks.loading import urdf_loads
 from grader.lab.rubric.rubric import Rubric
+from grader.lab.rubric.rubric_files import load_named
 from grader.lab.submission.opening import STANDARD_INPUT, open_submission
 from grader.lab.submission.submission import Lab, Submission
+from grader.report.explanations import rubric_summary
 from grader.report.invocation import ExitCode, read_threshold
 from grader.report.writers.rubric_test_result import (
     render_rubric_test,
@@ -180,7 +181,7 @@ def test_rubric(
     Raises GraderError for a broken rubric or one without a reference.
     """
     least = read_threshold(fail_under)[0] if fail_under is not None else 0
-    rubric = load(name)
+    rubric = load_named(name)
     samples = read_samples(folder) if folder is not None else None
     with (
         terminal.show_class(f"Testing {rubric.id}") as show,

@@ -1,4 +1,4 @@
-"""Load, list, copy, check and bundle rubrics."""
+"""List, copy, check and bundle rubrics."""
 
 import os
 import re
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.base.errors import GraderError, RubricError
 from grader.base.text import counted, format_points, printable, printable_path, shell_quoted
-from grader.lab.rubric.rubric_files import files_of
+from grader.lab.rubric.rubric_files import files_of, load_named
 from grader.report.invocation import ExitCode
 from grader.report.writing import Warn, make_folder, save_bytes
 
@@ -15,38 +15,13 @@ if TYPE_CHECKING:
     from grader.lab.rubric.rubric import Rubric
 
 
-def load(name: str, answers: Path | None = None) -> "Rubric":
-    """Return a rubric, with model answers if their file is named. Raises RubricError or
-    InputError.
-    """
-    if answers is None:
-        from grader.lab.rubric.rubric import load_rubric
-
-        return load_rubric(name)
-    from grader.lab.rubric.model_answers import load_with_answers
-
-    return load_with_answers(name, answers)
-
-
 def list_rubrics() -> str:
     """Return a line for each rubric that comes with the grader."""
     from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
+    from grader.report.explanations import rubric_summary
 
     return "".join(
         f"{rubric.id}  {rubric_summary(rubric)}\n" for rubric in map(load_rubric, shipped_rubrics())
-    )
-
-
-def rubric_summary(rubric: "Rubric") -> str:
-    """Return a rubric's title and size: Lab 6 (56 criteria, 100 points)."""
-    return f"{rubric.title} ({_size(rubric)})"
-
-
-def _size(rubric: "Rubric") -> str:
-    from grader.lab.rubric.criterion import worth
-
-    return (
-        f"{counted(len(rubric.criteria), 'criterion', 'criteria')}, {worth(rubric.criteria).text}"
     )
 
 
@@ -98,13 +73,14 @@ def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
     """
     from grader.lab.authoring.rubric_check import likely_mistakes, reference_failures
     from grader.lab.rubric.model_answers import load_with_answers, missing_answers
+    from grader.report.explanations import rubric_size
 
     rubric = load_with_answers(name)
     if missing_answers(rubric) and not rubric.is_shipped:
         warn(missing_answers(rubric))
     for message in likely_mistakes(rubric):
         warn(printable(f"warning: {message}"))
-    found = f"{rubric.id}: {_size(rubric)}, no mistakes found"
+    found = f"{rubric.id}: {rubric_size(rubric)}, no mistakes found"
     if rubric.solution is None:
         return f"{found}\n", ExitCode.PASSED
     failures = reference_failures(rubric)
@@ -122,12 +98,13 @@ def bundle(platform: str, output: Path, name: str) -> str:
     GraderError.
     """
     from grader.app.bundle.gradescope import autograder_zip
+    from grader.report.explanations import rubric_summary
 
     if output.suffix.lower() != ".zip":
         raise GraderError(
             f"{platform} takes a zip: give a name that ends in .zip, not {str(output)!r}"
         )
-    rubric = load(name)
+    rubric = load_named(name)
     save_bytes(output, autograder_zip(rubric))
     lines = f"wrote {output}: {rubric_summary(rubric)}", f"next: {_next_step(rubric)}"
     return "".join(f"{printable(line)}\n" for line in lines)

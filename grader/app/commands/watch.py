@@ -13,7 +13,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.text import Text
 
-from grader.app.commands.grade_submission import (
+from grader.app.grading import (
     GradeRequest,
     check_saves,
     grade_submission,
@@ -102,12 +102,9 @@ def _show(report: Report, last: Report | None, terminal: Terminal, *, verbose: b
     text = render(report, Format.TERMINAL, screen=screen, verbose=verbose)
     if last is not None:
         lines = [Text(line, "bold") for line in comparison_lines(last, report)]
-        text = _drawn([_rule(screen.width)], screen) + text + _drawn([Text(), *lines], screen)
+        rule = f"-- {time.strftime('%H:%M:%S')} ".ljust(screen.width, "-")
+        text = _drawn([Text(rule, "dim")], screen) + text + _drawn([Text(), *lines], screen)
     terminal.print(text)
-
-
-def _rule(width: int) -> Text:
-    return Text(f"-- {time.strftime('%H:%M:%S')} ".ljust(width, "-"), "dim")
 
 
 def _drawn(rows: list[Text], screen: Screen) -> str:
@@ -126,15 +123,17 @@ def comparison_lines(before: Report, after: Report) -> list[str]:
     """Return the change of the score, then the criteria that changed, those that pass now first."""
     old = {result.criterion.id: result for result in before.results}
     kinds = dict(alike(after.results, lambda result: _change(old.get(result.criterion.id), result)))
-    lines = [f"{format_points(before.score)} -> {_score(after)}{_gain(after.score - before.score)}"]
+    score = f"{format_points(after.score)} of {format_points(after.max_score)} points"
+    gain = _gain(after.score - before.score)
+    lines = [f"{format_points(before.score)} -> {score}{gain}"]
     for change in (*_CHANGES.values(), "changed"):
-        known = [(one, old.get(one.criterion.id)) for one in kinds.get(change, ())]
-        named = [
-            printable(new.criterion.id) + _gain(new.points - (was.points if was else 0))
-            for new, was in known
-        ]
-        if named:
-            lines.append(f"{change}: {enumerated(named, _MAX_NAMED)}")
+        names = []
+        for new in kinds.get(change, ()):
+            was = old.get(new.criterion.id)
+            gain = _gain(new.points - (was.points if was else 0))
+            names.append(printable(new.criterion.id) + gain)
+        if names:
+            lines.append(f"{change}: {enumerated(names, _MAX_NAMED)}")
     return lines
 
 
@@ -146,10 +145,6 @@ def _change(old: Result | None, new: Result) -> str:
         new.outcome.status != "passed" and old.outcome.message != new.outcome.message
     )
     return "changed" if is_other else ""
-
-
-def _score(report: Report) -> str:
-    return f"{format_points(report.score)} of {format_points(report.max_score)} points"
 
 
 def _gain(points: Decimal) -> str:

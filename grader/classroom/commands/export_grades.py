@@ -145,9 +145,7 @@ def _class_grade(
     """Return a grade as it is published; points that need manual grading count as zero with
     --pending-as-zero.
     """
-    is_zero = (
-        request.pending_as_zero and grade.pending and grade.why_open.endswith("manual grading")
-    )
+    is_zero = request.pending_as_zero and grade.obstacle is Reason.PENDING
     total = grade.total if is_zero else grade.published
     comment = _comment(book, grade, total) if has_comment and total is not None else ""
     return PublishedGrade(grade.student, total, grade.is_excused, grade.why_open, comment)

@@ -25,7 +25,8 @@ from grader.base.text import (
     printable_path,
     shell_quoted,
 )
-from grader.classroom.gradebook.gradebook import Gradebook, grade_table
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades_file import write_grades
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.intake.submissions import Intake, read_class
 from grader.classroom.lms.forms import FORMS
@@ -47,7 +48,7 @@ from grader.classroom.roster.roster import Roster, read_roster
 from grader.classroom.run.batch_run import Batch
 from grader.classroom.run.batch_worker import ClassContext, reference_hashes
 from grader.classroom.run.preloading import PRELOAD
-from grader.classroom.tables import SIZE_LIMIT, write_table
+from grader.classroom.tables import SIZE_LIMIT
 from grader.files.reading import read_capped, sha256_of
 from grader.lab.rubric.rubric import Rubric, load_rubric
 from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC, files_of
@@ -447,25 +448,6 @@ def _executor(request: ClassRequest, inputs: _ClassInputs) -> Iterator[tuple[Exe
 
     with Cluster(request.cluster, request.timeout, inputs.roots, PRELOAD) as remote:
         yield remote, remote.workers
-
-
-def write_grades(book: Gradebook, grades: Iterable[StudentGrade] | None = None) -> None:
-    """Write the grades of a class, by default the current ones, into its gradebook. Raises
-    InputError.
-    """
-    table = write_table(*grade_table(book, book if grades is None else grades))
-    save(book.folder / names.GRADES, table, book.settings.roots(book.folder), _PRIVATE)
-
-
-def write_grades_with(marks: int, book: Gradebook) -> None:
-    """Write the grades after some marks were saved. Raises InputError, which says that they are."""
-    try:
-        write_grades(book)
-    except InputError as error:
-        saved = "the mark is saved" if marks == 1 else f"{marks} marks are saved"
-        raise InputError(
-            f"{saved}, {names.GRADES} is not: {error}; the next command writes it"
-        ) from None
 
 
 def _check_same_class(folder: Path, results: Results, intake: Intake) -> None:

@@ -18,8 +18,8 @@ from grader.base.text import (
     printable,
     printable_path,
 )
-from grader.classroom.commands.grade_class import write_grades_with
 from grader.classroom.gradebook.gradebook import Gradebook, points_of
+from grader.classroom.gradebook.grades_file import write_grades_with
 from grader.classroom.gradebook.review_items import review_items
 from grader.classroom.gradebook.student_grade import Reason, StudentGrade
 from grader.classroom.marks import gradebook_folder as names

@@ -25,8 +25,8 @@ from typing import Any, NamedTuple
 from grader import __version__
 from grader.base.errors import GraderError, InputError
 from grader.base.text import counted, printable, printable_path
-from grader.classroom.commands.grade_class import write_grades
 from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades_file import write_grades
 from grader.classroom.gradebook.review_items import STATES, ReviewFilter
 from grader.classroom.marks.marks import is_open_in_libreoffice
 from grader.classroom.review import review_pages as pages

@@ -20,8 +20,8 @@ from grader.base.text import (
     printable_path,
     shell_quoted,
 )
-from grader.classroom.commands.grade_class import write_grades_with
 from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades_file import write_grades_with
 from grader.classroom.gradebook.review_items import (
     UNMARKED,
     Place,

@@ -1,9 +1,13 @@
-"""The default rubric, and the files that a rubric is read from."""
+"""The default rubric, a rubric by its name, and the files that it is read from."""
 
 from contextlib import suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from grader.base.errors import GraderError
+
+if TYPE_CHECKING:
+    from grader.lab.rubric.rubric import Rubric
 
 DEFAULT_RUBRIC = "lab6"  # of the command line
 
@@ -30,3 +34,16 @@ def files_of(name: str, answers: Path | None = None) -> list[Path]:
                 place / rubric.urdf if place.resolve() in file.resolve().parents else place
             )
     return found
+
+
+def load_named(name: str, answers: Path | None = None) -> "Rubric":
+    """Return a rubric, with model answers if their file is named. Raises RubricError or
+    InputError.
+    """
+    if answers is None:
+        from grader.lab.rubric.rubric import load_rubric
+
+        return load_rubric(name)
+    from grader.lab.rubric.model_answers import load_with_answers
+
+    return load_with_answers(name, answers)

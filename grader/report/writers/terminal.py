@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.base.source import Location, Source
-from grader.base.text import counted, enumerated, printable
+from grader.base.text import counted, enumerated, format_points, printable
 from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.criterion import worth
 from grader.report import content
@@ -361,7 +361,9 @@ def _show_end(report: Report, page: Page) -> None:
             page.line(line)
     counting = report.counting
     is_full = counting is not None and counting + report.open_points >= report.max_score
-    score = content.score_text(report).replace(" / ", "/").removesuffix(" points")
+    score = content.counting_text(report)
+    if counting is not None:
+        score += f"/{format_points(report.max_score)}"
     parts = (
         (score, "bold green" if is_full else "bold"),
         "  ",

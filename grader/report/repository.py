@@ -1,0 +1,53 @@
+"""The place of a submission in a repository, by which reports name its files."""
+
+import os
+from contextlib import suppress
+from pathlib import Path
+
+from grader.base.source import Base
+from grader.report.writing import CHECKOUTS
+
+
+def folder_of(path: str, inside: str | None) -> Path:
+    """Return the folder that the paths of a single URDF start in, given the path in it."""
+    return Path(path).parent.resolve().joinpath(*[".."] * (inside or "").count("/")).resolve()
+
+
+def base_of(path: str, single: Path | None) -> Base:
+    """Return where a submission is in its repository; `single` is the folder in which paths of a
+    single URDF start.
+    """
+    if path == "-":
+        return Base(is_outside=True)
+    named = Path(path)
+    is_folder = named.is_dir()
+    # A file keeps the name that was typed, even if that is a symlink; a folder is resolved.
+    place = named.resolve() if is_folder else named.parent.resolve() / named.name
+    root = _repository(place)
+    if root is None:
+        return Base(is_outside=True)
+    if is_folder or single is not None:
+        start = place if single is None else single
+        if not start.is_relative_to(root):
+            return Base(is_outside=True)
+        folder = start.relative_to(root).as_posix()
+        return Base("" if folder == "." else f"{folder}/")
+    return Base(archive=place.relative_to(root).as_posix())
+
+
+def _repository(place: Path) -> Path | None:
+    """Return the root of a path's repository: the CI checkout, else the folder with .git, else the
+    current folder.
+    """
+    around = [place, *place.parents]
+    for name in CHECKOUTS:
+        checkout = Path(os.environ.get(name) or os.sep).resolve()
+        if checkout in around[:-1]:  # the last is the root of the file system
+            return checkout
+    for folder in around:
+        if (folder / ".git").exists():
+            return folder
+    with suppress(OSError):  # the current folder may have been deleted
+        here = Path.cwd()
+        return here if here in around else None
+    return None
