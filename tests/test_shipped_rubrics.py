@@ -63,7 +63,7 @@ def test_the_code_knows_no_lab() -> None:
         for text in constants(ast.parse(path.read_text(encoding="utf-8")))
         if text in made_up
     ]
-    assert found == [("grader.app.commands.rubrics", DEFAULT_RUBRIC)]
+    assert found == [("grader.lab.rubric.rubric_files", DEFAULT_RUBRIC)]
 
 
 # An example with a mistake for each family of names; what its robot may be is that of the other labs.
