@@ -207,20 +207,16 @@ def _body_facts(link: Link) -> Facts:
     if not any(not is_empty(visual.geometry) for visual in link.visuals):
         yield from shapes
     elif shapes:
+        # A link that shows something else collides as the reference does.
+        checks = ("shows_box", "shows_cylinder", "shows_sphere", "centre_at")
+        what_is_shown = tuple(f"{link.name} {check}" for check in checks)
         known = [
-            CarriedFact(_shown(link.name), it.check, it.arguments)
+            CarriedFact(what_is_shown, it.check, it.arguments)
             for it in shapes
             if only and it.check == "collides_as"
         ]
         match = _link_fact(link.name, "collision_matches_visual")
         yield match._replace(otherwise=shapes if only else (), carried=tuple(known))
-
-
-def _shown(link: str) -> tuple[str, ...]:
-    """Return the words of the facts about what a link shows."""
-    return tuple(
-        f"{link} {check}" for check in ("shows_box", "shows_cylinder", "shows_sphere", "centre_at")
-    )
 
 
 def _collision(link: str, collision: Collision, only: Mapping[str, bool]) -> Fact:

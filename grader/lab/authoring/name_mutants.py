@@ -53,7 +53,7 @@ def name_changes(
                 "dependency removed", f"{label} {found[1]} {found[2]}", *found.span(), ""
             )
     elif name.endswith(_YAML):
-        yield from _of_yaml(source, label)
+        yield from _yaml_changes(source, label)
     for fact, edit in names:
         if edit.path == source.path:
             start = source.offset(edit.line, edit.column)
@@ -61,15 +61,15 @@ def name_changes(
             yield MutantEdit(family, f"{label} {edit.old}", start, start + len(edit.old), edit.new)
 
 
-def _of_yaml(source: Source, label: str) -> Iterator[MutantEdit]:
+def _yaml_changes(source: Source, label: str) -> Iterator[MutantEdit]:
     try:
         root = read_yaml(source.text.encode("utf-8", "surrogateescape"), source.path)
     except YamlFault:
         return
-    yield from _of_node(source, f"{label} ", root, set())
+    yield from _node_changes(source, f"{label} ", root, set())
 
 
-def _of_node(
+def _node_changes(
     source: Source, label: str, node: YamlNode, seen: set[YamlNode]
 ) -> Iterator[MutantEdit]:
     """Yield that each value is another one, and each key of a table misspelt; of an anchor once."""
@@ -77,9 +77,9 @@ def _of_node(
         return
     seen.add(node)
     if node.text is not None:
-        yield from _of_scalar(source, label.removesuffix("."), node)
+        yield from _scalar_changes(source, label.removesuffix("."), node)
     for number, item in enumerate(node.items, 1):
-        yield from _of_node(source, f"{label}{number}.", item, seen)
+        yield from _node_changes(source, f"{label}{number}.", item, seen)
     for key, inner in node.value.items() if isinstance(node.value, dict) else ():
         at = node.key_location(key)
         start = source.offset(at.line, at.column)
@@ -87,10 +87,10 @@ def _of_node(
             yield MutantEdit(
                 "name misspelt", f"{label}{key}", start, start + len(key), misspelt(key)
             )
-        yield from _of_node(source, f"{label}{key}.", inner, seen)
+        yield from _node_changes(source, f"{label}{key}.", inner, seen)
 
 
-def _of_scalar(source: Source, label: str, node: YamlNode) -> Iterator[MutantEdit]:
+def _scalar_changes(source: Source, label: str, node: YamlNode) -> Iterator[MutantEdit]:
     """Yield the change of a text: a truth value is reversed, a number is ten times as large, a word
     is misspelt.
     """

@@ -80,13 +80,15 @@ def _packages(submission: Submission) -> Iterator[tuple[Package, str]]:
         yield package, "" if package is submission.package else f"{package.name} "
 
 
-def words_of_launches(submission: Submission) -> Iterator[str]:
-    """Yield the words of what the launch files start and find."""
+def words_of_launches(
+    submission: Submission, wanted: Collection[str] | None = None
+) -> Iterator[str]:
+    """Yield the words of what the launch files start and find, or of those of the wanted names."""
     for package, prefix in _packages(submission):
-        names = [posixpath.basename(path) for path in package.launch_files]
-        for name in names:
-            for check in ("node_runs", "launch_finds_files"):
-                yield f"{prefix}{name} {check}"
+        for name in map(posixpath.basename, package.launch_files):
+            if wanted is None or name in wanted:
+                for check in ("node_runs", "launch_finds_files"):
+                    yield f"{prefix}{name} {check}"
 
 
 def _builds(submission: Submission) -> tuple[str, ...]:
@@ -268,10 +270,8 @@ def _launch_facts(
     name, launch = posixpath.basename(path), package.launch(path)
     yield _package_fact("launch_found", name, name=name)
     included = {posixpath.basename(it.path) for it in launch.passed} - {name}
-    causes = [*_builds(submission), *_STOPPING]
-    # The words of a fact about a launch file are its name and the check, the last two.
-    causes += [it for it in words_of_launches(submission) if it.split(" ")[-2] in included]
-    found = CarriedFact(tuple(causes), "launch_found", {"name": name})
+    causes = (*_builds(submission), *_STOPPING, *words_of_launches(submission, included))
+    found = CarriedFact(causes, "launch_found", {"name": name})
     after = found._replace(causes=(*found.causes, f"{prefix}{name} node_runs"))
     nodes = _nodes_that_start(launch)
     if nodes:

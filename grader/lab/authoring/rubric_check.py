@@ -138,7 +138,7 @@ def likely_mistakes(rubric: Rubric) -> Sequence[str]:
         )
     everywhere = [number for criterion in rubric.criteria for number in _numbers_given(criterion)]
     for criterion in rubric.criteria:
-        for key, message in _of_criterion(rubric, criterion, everywhere):
+        for key, message in _warnings_about(rubric, criterion, everywhere):
             found.append((("criterion", criterion.position, key), message))
     return _lines(rubric, found)
 
@@ -155,7 +155,7 @@ def _is_changed_copy(rubric: Rubric) -> bool:
     return rubric.criteria != shipped and 2 * len(own & copied) > len(own)
 
 
-def _of_criterion(
+def _warnings_about(
     rubric: Rubric, criterion: Criterion, everywhere: list[float]
 ) -> Iterator[tuple[str, str]]:
     """Yield warnings about a criterion, each with the key that it is about."""

@@ -213,37 +213,29 @@ def message(
     """Return the hint in a sentence, which need not name the URDF. `earlier` are criteria whose
     hints come first.
     """
-    if found.words:
-        text = _words_of_missing(found, level)
-    elif found.alternative is not None:
-        texts = []
-        for proposal in (found.proposal, found.alternative):
-            alone = found._replace(proposal=proposal, alternative=None)
-            texts.append(message(alone, level, submission, ()).removesuffix("."))
-        text, other = texts
-        if text != other:
-            either = f"{text}, or {other[0].lower()}{other[1:]}"
-            text = f"{either}: both work, so look which one is meant"
-    elif level == "edit":
-        text = _changes(found.edits, submission)
-    elif level == "cause":
-        text = f"check {_places(found.edits, submission)}: {found.proposal.cause}"
-    else:
-        text = f"check {_texts_to_check(found.edits, submission)}"
+    text = _clause(found, level, submission)
     if earlier:
         edits = "edits" if len(earlier) > 1 else "edit"
         return f"After the {edits} for {enumerated(earlier, _MAX_NAMED)}, {text}."
     return f"{text[0].upper()}{text[1:]}."
 
 
-def _words_of_missing(found: FoundHint, level: HintLevel) -> str:
-    """Return the words for what is missing and has no edit."""
-    match level:
-        case "edit":
-            return found.words
-        case "cause":
-            return found.proposal.cause
-    return "a part is missing"
+def _clause(found: FoundHint, level: HintLevel, submission: Submission) -> str:
+    if found.words:
+        words = {"edit": found.words, "cause": found.proposal.cause}
+        return words.get(level, "a part is missing")
+    if found.alternative is not None:
+        first = _clause(found._replace(alternative=None), level, submission)
+        other_found = found._replace(proposal=found.alternative, alternative=None)
+        second = _clause(other_found, level, submission)
+        if first == second:
+            return first
+        return f"{first}, or {second}: both work, so look which one is meant"
+    if level == "edit":
+        return _changes(found.edits, submission)
+    if level == "cause":
+        return f"check {_places(found.edits, submission)}: {found.proposal.cause}"
+    return f"check {_texts_to_check(found.edits, submission)}"
 
 
 def _changes(edits: Sequence[Edit], submission: Submission) -> str:

@@ -64,16 +64,14 @@ class PythonFile:
     @cached_property
     def literals(self) -> list[_Literal]:
         """The texts in its strings."""
-        found = (
-            (it.start("string"), it["string"]) for it in _STRING.finditer(self.text) if it["string"]
-        )
-        quoted = ((start, text, _QUOTES.match(text)) for start, text in found)
-        spans = [
-            (at + it.end(), at + len(text) - len(it[1]))
-            for at, text, it in quoted
-            if it is not None
-        ]
-        return [_Literal(self.text[start:end], start, end) for start, end in spans]
+        literals = []
+        for match in _STRING.finditer(self.text):
+            quotes = _QUOTES.match(match["string"] or "")  # none in a comment or a word
+            if quotes is not None:
+                start = match.start("string") + quotes.end()
+                end = match.end("string") - len(quotes[1])
+                literals.append(_Literal(self.text[start:end], start, end))
+        return literals
 
     def offset(self, line: int, byte: int) -> int:
         """Return the offset of a place that Python gives: it counts the bytes of a line from 0."""
@@ -183,15 +181,15 @@ class PythonFile:
         """Return the edit that imports those of these names that have a usual meaning and are not
         bound.
         """
-        wanted = [
-            name for name in dict.fromkeys(names) if name in USUAL_NAMES and name not in self.bound
-        ]
+        missing = [name for name in dict.fromkeys(names) if name not in self.bound]
+        lines = [self._import(name) for name in missing if name in USUAL_NAMES]
+        if not lines:
+            return []
         body = self.parsed.tree.body if isinstance(self.parsed, Code) else []
-        start = next((self.span(node)[0] for node in (*self.imports, *body)), len(self.text))
-        text = "".join(sorted(map(self._import, wanted), key=lambda line: line.startswith("from")))
-        if wanted:
-            return [self.source.edit(start, start, text)]
-        return []
+        first = next(iter((*self.imports, *body)), None)
+        start = self.span(first)[0] if first is not None else len(self.text)
+        lines.sort(key=lambda line: line.startswith("from"))
+        return [self.source.edit(start, start, "".join(lines))]
 
     def _import(self, name: str) -> str:
         module, _, own = USUAL_NAMES[name].rpartition(".")
@@ -229,10 +227,16 @@ def with_xacro(source: Source) -> Iterator[Edits]:
         return
     file = PythonFile(source)
     for call in [*file.calls("read"), *file.calls("read_text")]:
-        owner = file.meant(call.func.value) if isinstance(call.func, ast.Attribute) else call
-        owner = file.values.get(owner.id, owner) if isinstance(owner, ast.Name) else owner
-        is_open = isinstance(owner, ast.Call) and called(owner) == "open" and owner.args
-        if is_open or called(call) == "read_text":
-            path = owner.args[0] if isinstance(owner, ast.Call) and is_open else owner
-            new = f"xacro.process_file({file.segment(path)}).toxml()"
-            yield (*file.with_imports(["xacro"]), file.replaced(call, new))
+        owner: ast.expr = call
+        if isinstance(call.func, ast.Attribute):
+            owner = file.meant(call.func.value)
+        if isinstance(owner, ast.Name):
+            owner = file.values.get(owner.id, owner)
+        if isinstance(owner, ast.Call) and called(owner) == "open" and owner.args:
+            path = owner.args[0]
+        elif called(call) == "read_text":
+            path = owner
+        else:
+            continue
+        new = f"xacro.process_file({file.segment(path)}).toxml()"
+        yield (*file.with_imports(["xacro"]), file.replaced(call, new))

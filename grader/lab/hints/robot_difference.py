@@ -115,16 +115,16 @@ class RobotDifference:
         around = element if element.getparent() is self.draft.root else element.getparent()
         return Piece(cause, link or self.draft.link_of(element), sets, edits, rank, around)
 
-    def of_sets(self, sets: Sequence[Set], rank: int = REFERENCE) -> Piece:
+    def piece_of_sets(self, sets: Sequence[Set], rank: int = REFERENCE) -> Piece:
         """Return the piece that sets values of one element, named by what is wrong with them."""
         first = sets[0]
         return self.piece(first.owner, _cause(sets), sets=tuple(sets), rank=rank, tag=first.tag)
 
     def each(self, sets: Sequence[Set]) -> Iterator[Piece]:
         """Yield the pieces that set each value alone, and all together."""
-        yield from (self.of_sets([one]) for one in sets)
+        yield from (self.piece_of_sets([one]) for one in sets)
         if len(sets) > 1:
-            yield self.of_sets(sets)
+            yield self.piece_of_sets(sets)
 
     def moved(self, element: Element, parent: Element) -> Piece:
         """Return the piece that moves an element into another one."""
@@ -163,7 +163,7 @@ class RobotDifference:
         if like is None or colour is None:
             return
         if (used.get("name") or "") not in own:
-            yield self.of_sets([Set(used, "color", "rgba", colour.get("rgba") or "")])
+            yield self.piece_of_sets([Set(used, "color", "rgba", colour.get("rgba") or "")])
             return
         own_name = self._names["material"].get(name, "")
         if self.draft.material(name) is None and self.draft.material(own_name) is None:
@@ -258,18 +258,16 @@ class RobotDifference:
         """Remove what the reference does not have; an origin or axis gets its default."""
         element, tag = node.of, node.tag
         around = element.getparent()
+        # another one has the same name, or another joint the same child
+        is_twice = any(self._uses[key] > 1 for key in _identities(element))
         if tag in ("origin", "axis"):
             default = "1 0 0" if tag == "axis" else "0 0 0"
             yield from self.each([Set(element, "", name, default) for name in node.values])
-        elif around is self.draft.root and not self._is_twice(element):
+        elif around is self.draft.root and not is_twice:
             return
         elif around is not None and around.tag != "geometry":  # there the shape is replaced
             cause = f"an extra {tag}" if tag in ("link", "joint") else f"an extra <{tag}>: {{}}"
             yield self.piece(element, cause, self.draft.remove(element), rank=STRUCTURE)
-
-    def _is_twice(self, element: Element) -> bool:
-        """Return whether another element has the same name, or another joint the same child."""
-        return any(self._uses[key] > 1 for key in _identities(element))
 
     @cached_property
     def _uses(self) -> Counter[tuple[str, str, str]]:

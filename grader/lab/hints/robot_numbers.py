@@ -53,7 +53,9 @@ def mistake_in(parts: Sequence[str], unit: str, old: Values, new: Values) -> str
         return "the numbers of {}"
     off = [index for index in range(len(old)) if not _is_same(old[index], new[index])]
     if len(off) < 4:
-        wrong = f"{enumerated([_with_article(parts[index]) for index in off])} of {{}}"
+        names = [parts[index] for index in off]
+        in_words = [name if len(name) == 1 else f"the {name}" for name in names]
+        wrong = f"{enumerated(in_words)} of {{}}"
     else:
         wrong = "the numbers of {}"
     for mistake in _MISTAKES:
@@ -66,12 +68,6 @@ def mistake_in(parts: Sequence[str], unit: str, old: Values, new: Values) -> str
         if _is_same(old[first], new[second]) and _is_same(old[second], new[first]):
             return f"{wrong} are exchanged"
     return wrong
-
-
-def _with_article(part: str) -> str:
-    if len(part) == 1:
-        return part
-    return f"the {part}"
 
 
 def plausible(unit: str, old: Values) -> Iterator[Values]:

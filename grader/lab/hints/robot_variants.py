@@ -113,7 +113,7 @@ def _mirror_numbers(
         tried = {normal(tag, name, element.get(name)) for element in known}
         for mirrored in map(format_numbers, _mirrored(values)):
             if normal(tag, name, mirrored) not in tried:
-                yield difference.of_sets([Set(known[0], "", name, mirrored)], SIBLING)
+                yield difference.piece_of_sets([Set(known[0], "", name, mirrored)], SIBLING)
 
 
 def _mirrored(values: Values) -> Iterator[Values]:
@@ -159,7 +159,7 @@ def _exchange_of_two(difference: RobotDifference, element: Element) -> Iterator[
             Set(element, "", first, element.get(second) or ""),
             Set(element, "", second, element.get(first) or ""),
         ]
-        yield difference.of_sets(sets, OWN)
+        yield difference.piece_of_sets(sets, OWN)
 
 
 def _meant_numbers(difference: RobotDifference, element: Element, name: str) -> Iterator[Piece]:
@@ -174,7 +174,9 @@ def _meant_numbers(difference: RobotDifference, element: Element, name: str) -> 
     if not definitions:
         for values in plausible(unit, written):
             if min(values) > least:
-                yield difference.of_sets([Set(element, "", name, format_numbers(values))], OWN)
+                yield difference.piece_of_sets(
+                    [Set(element, "", name, format_numbers(values))], OWN
+                )
     coordinates = written if element.tag == "origin" else ()
     cause = f"a number from which the {name} of {{}} is computed"
     for definition in definitions:
@@ -316,7 +318,7 @@ def _group(difference: RobotDifference, link: str, sets: list[Set], what: str) -
     if len(changed) < 2:
         return
     if len(changed) == len(sets) <= _MAX_NAMED:
-        what = " and ".join(difference.of_sets([change]).cause for change in changed.values())
+        what = " and ".join(difference.piece_of_sets([change]).cause for change in changed.values())
     yield Piece(what, link, tuple(dict.fromkeys(sets)), (), STRUCTURE)
 
 

@@ -179,26 +179,28 @@ class _Rewriter:
         changed = [use for use in uses if use.old != use.new]
         if text is None or not changed:
             return []
-        found: list[_TextChange] = []
-        has_definition = False
+        parts = []
         if "$" in text.text:
             parts = [(use, *part) for use in changed for part in _parts(text, use)]
-        else:
-            parts = []
+        changes: dict[tuple[Source, int, str], _TextChange] = {}
+        has_definition, is_one = False, True
         for use, part, old, new in parts:
-            changes = self._definitions(part, use.scope, old, new)
-            if not changes and self._is_loaded(part):
+            definitions = self._definitions(part, use.scope, old, new)
+            if not definitions and self._is_loaded(part):
                 return []
-            has_definition |= bool(changes)
-            found += changes or [_TextChange(part, new)]
-        by_place = {change.written[:3]: change for change in found}
-        is_one = all(by_place[change.written[:3]].new == change.new for change in found)
+            has_definition |= bool(definitions)
+            for change in definitions or [_TextChange(part, new)]:
+                written = change.written
+                where = written.source, written.start, written.text
+                # Two uses may want different values of one definition.
+                is_one &= changes.setdefault(where, change).new == change.new
         ways = [*self._literal(text, changed), *self._in_calls(text, changed)]
         computed = self._computed(parts)
         # Where it is used, it would change for other calls of a macro, too.
         ways = [*computed, *ways] if len(changed) < len(uses) else [*ways, *computed]
-        edits = _make_edits(by_place.values()) if has_definition and is_one else None
-        return [*dict.fromkeys([edits, *ways] if edits else ways)]
+        if has_definition and is_one:
+            ways = _edits_alone(changes.values()) + ways
+        return [*dict.fromkeys(ways)]
 
     def _computed(self, parts: Iterable[tuple[_Use, _Written, str, str]]) -> list[Edits]:
         """Return the edits of what parts of a text are computed from: of one definition for each

@@ -141,8 +141,9 @@ def _syntax_mistake(error: str, text: str) -> str:
     lines = text.split("\n")
     said, line, column, _ = re.split(_PLACE, error)
     row, at = (int(line), int(column)) if line else (len(lines), len(lines[-1]) + 1)
-    opened = text.rfind(_CLOSING[said]) if said in _CLOSING else -1
-    if opened >= 0:  # else the place is the end of the file
+    # Else the place stays; a file that is not UTF-8 text may have the character of no text.
+    opened = text.rfind(_CLOSING.get(said, _HERE))
+    if opened >= 0:
         row, at = text.count("\n", 0, opened) + 1, opened - text.rfind("\n", 0, opened)
         said = "a text in quotes begins here and does not end"
     for start, words in _SAID.items():

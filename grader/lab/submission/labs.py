@@ -132,7 +132,7 @@ class LabFolders:
         """Return where a file is. Of the folders around it the nearest that names a lab decides."""
         if not self._own:
             return Belonging.NO_LAB
-        return self._of_folder(path.rpartition("/")[0])
+        return self._belonging_of_folder(path.rpartition("/")[0])
 
     @cached_property
     def _labs_by_folder(self) -> Mapping[str, Sequence[str]]:
@@ -170,13 +170,15 @@ class LabFolders:
         )
         return next(reversed(list(named)), "")
 
-    def _of_folder(self, folder: str) -> Belonging:
+    def _belonging_of_folder(self, folder: str) -> Belonging:
         if not folder:
             return Belonging.NO_LAB
         if folder not in self._known:
             own = self._own_belonging(folder)
             self._known[folder] = (
-                own if own is not Belonging.NO_LAB else self._of_folder(folder.rpartition("/")[0])
+                own
+                if own is not Belonging.NO_LAB
+                else self._belonging_of_folder(folder.rpartition("/")[0])
             )
         return self._known[folder]
 
