@@ -103,7 +103,7 @@ def batch(
       Resubmissions, a rubric fix, an interruption: rerun the same command.
 
       Late submissions: [late] in the rubric, --due, grader mark STUDENT deadline, columns due and
-      extension.
+    extension.
 
       Unmatched submissions: add the row that the message prints to the roster, and rerun.
 

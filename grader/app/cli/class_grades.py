@@ -79,7 +79,7 @@ def export(
     Recipes:
 
       Publish in Canvas: --into and --only, then import the file. "Upload Submissions" takes the zip
-      of --feedback.
+    of --feedback.
 
       Publish in Moodle: --into, then "Upload grading worksheet".
 
