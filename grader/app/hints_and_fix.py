@@ -74,21 +74,30 @@ def files_to_fix(
     reads or writes.
     """
     files = {path: data for path, data in fix.files.items() if data is not None}
-    own, is_folder = report.submission.path, _is_folder(target, report)
-    if is_folder and (
-        target.is_file() or (target.suffix.lower() in _FILES and not target.exists())
-    ):
-        raise InputError(
-            f"--fix: {printable_path(target)} names a file: of a folder or an archive name a folder"
-        )
-    if not is_folder and (len(files) > 1 or (files and besides and own not in files)):
-        names, only = ", ".join(map(printable, files)), f"only {own}" if own in files else own
-        raise InputError(f"--fix: the edits change {names}, not {only}: name a folder that exists")
-    written = {(target / path if is_folder else target): data for path, data in files.items()}
+    if _is_folder(target, report):
+        is_named_like_file = target.suffix.lower() in _FILES and not target.exists()
+        if is_named_like_file or target.is_file():
+            raise InputError(
+                f"--fix: {printable_path(target)} names a file: of a folder or an archive name a "
+                "folder"
+            )
+        written = {target / path: data for path, data in files.items()}
+    else:
+        _refuse_several(files, report.submission.path, has_others=bool(besides))
+        written = {}
+        for data in files.values():  # of one file at most
+            written[target] = data
     for file in written:
         refuse_symlinks(file, (graded,))
         refuse_inputs("--fix", file, (Path(graded), *besides, *others))
     return written
+
+
+def _refuse_several(files: Mapping[str, bytes], urdf: str | None, *, has_others: bool) -> None:
+    """Raise InputError if edits change more than the graded file, which alone fits into a file."""
+    if len(files) > 1 or (files and has_others and urdf not in files):
+        names, only = ", ".join(map(printable, files)), f"only {urdf}" if urdf in files else urdf
+        raise InputError(f"--fix: the edits change {names}, not {only}: name a folder that exists")
 
 
 def _is_folder(target: Path, report: Report) -> bool:

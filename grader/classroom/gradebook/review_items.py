@@ -155,7 +155,8 @@ def review_items(
             if name in rows and (name in answers or mark is not None):
                 counting_mark = mark or comments.get((stored.student, name))
                 member = ReviewStudent(student, stored, counting_mark, number)
-                groups[name, answers.get(name, stored.digest)].append(member)
+                place = name, answers.get(name, stored.digest)
+                groups[place].append(member)
     items = [
         ReviewItem(rows[name], answer, tuple(members)) for (name, answer), members in groups.items()
     ]

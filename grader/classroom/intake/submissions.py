@@ -176,17 +176,16 @@ def _without_gradebooks(folder: ClassFolder) -> ClassFolder:
 def _layout_of(folder: ClassFolder) -> str:
     """Return the layout that the names prove, else `teams`, which may be plain folders."""
     for layout, share in (("moodle", 1), ("canvas", 3)):
-        fitting = {name for name in folder.names if _is_written_by(layout, name)}
+        fitting = set()
+        for name in folder.names:
+            if any(entry.is_written_by(layout) for entry in readings_of(name, layout)):
+                fitting.add(name)
         others = sum(name not in fitting for name in folder.entries)
         if fitting and len(fitting) >= share * others:
             return layout
     if "submitted" in folder.children.folders and folder.inside("submitted").children.folders:
         return "nbgrader"
     return "teams"
-
-
-def _is_written_by(layout: str, name: str) -> bool:
-    return any(entry.is_written_by(layout) for entry in readings_of(name, layout))
 
 
 def _inner_class(folder: ClassFolder) -> ClassFolder:

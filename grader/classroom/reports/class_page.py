@@ -65,6 +65,20 @@ def render_class_page(
             groups[name] = group
             members = [numbers[key] for key in group.keys]
             shown[name] = [printable(group.label), group.word, members]
+    values = {
+        **_figures(figures),
+        "version": __version__,
+        "ignored": book.marks.ignored,
+        "people": {row.key: row for row in rows},
+        "rows": rows,
+        "columns": _columns(rows, figures),
+        "groups": groups,
+    }
+    return render_page("class.html", values, {"groups": shown}, _ASSETS)
+
+
+def _figures(figures: ClassStatistics) -> dict[str, Any]:
+    """Return what the page shows of the statistics."""
     bars, cut = _bars(figures)
     attention = [
         (str(reason), students[:_MAX_ATTENTION], len(students))
@@ -73,8 +87,7 @@ def render_class_page(
     mistakes = [
         (mistake.criterion, mistake.message, len(mistake.students)) for mistake in figures.mistakes
     ]
-    values = {
-        "version": __version__,
+    return {
         "title": figures.rubric.title,
         "rubric": figures.rubric,
         "lines": list(words.head_lines(figures)),
@@ -87,13 +100,7 @@ def render_class_page(
         "equal": figures.equal,
         "equal_note": words.EQUAL_NOTE,
         "attention": attention,
-        "ignored": book.marks.ignored,
-        "people": {row.key: row for row in rows},
-        "rows": rows,
-        "columns": _columns(rows, figures),
-        "groups": groups,
     }
-    return render_page("class.html", values, {"groups": shown}, _ASSETS)
 
 
 def _bars(figures: ClassStatistics) -> tuple[list[tuple[str, str, int, int, bool]], str]:

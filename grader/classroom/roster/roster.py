@@ -154,7 +154,8 @@ def read_roster(data: bytes, shown: str) -> Roster:
                 row["canvas"] = row["id"]
         mistakes += ((line, why) for why in _normalise(row))
         student = students[line] = _student(row)
-        if student.is_late and student.days_late is None and _has_unclear_status(row):
+        has_no_status = not row["late"] and _days_of(row["status"]) is None
+        if student.is_late and student.days_late is None and has_no_status:
             notes.append(
                 f"line {line} of {shown}: {row['status']!r} does not say clearly how late the "
                 "submission is, and counts as late: add a column `late` with `no` or a number of "
@@ -202,10 +203,6 @@ def _is_no_student_in_canvas(row: Mapping[str, str]) -> bool:
     """Return whether a row of Canvas has its test student, or the points possible."""
     has_id = row["id"] or row["sis"] or row["login"]
     return row["name"].casefold() in _TEST_STUDENT or not has_id
-
-
-def _has_unclear_status(row: Mapping[str, str]) -> bool:
-    return not row["late"] and _days_of(row["status"]) is None
 
 
 def _normalise(row: dict[str, str]) -> Iterator[str]:

@@ -82,7 +82,10 @@ def find_evidence(
     that were not read or have pictures without headings, and everything of a pre-lab.
     """
     wanted = [read_label(name) for name in names]
-    labelled = [file for file in files if _has_label(file, wanted)]
+    labelled = []
+    for file in files:
+        if any(matches(label, file.label) for label in wanted):
+            labelled.append(file)
     certain = [file for file in labelled if not _PRELAB.search(file.file.path)]
     if certain:
         return FoundEvidence(as_evidence(certain))
@@ -104,10 +107,6 @@ def find_evidence(
     ]
     unlisted = _unlisted_documents(documents, perhaps)
     return FoundEvidence((), (*as_evidence(perhaps), *below, *unlisted))
-
-
-def _has_label(file: LabelledFile, wanted: Sequence[Label]) -> bool:
-    return any(matches(label, file.label) for label in wanted)
 
 
 def _unlisted_documents(

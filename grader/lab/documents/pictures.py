@@ -76,7 +76,9 @@ def _image_type(data: bytes) -> _ImageType | None:
 def read_picture(file: File) -> EmbeddedPicture | NotShown:
     """Return the picture in a file, or why it is not shown."""
     if file.size > MAX_BYTES:
-        return NotShown(file.path, _too_large(file.size))
+        limit = f"{MAX_BYTES >> 20} MiB, the limit for a picture"
+        reason = f"it is larger than {limit} ({file.size / 1e6:.0f} MB): open it yourself"
+        return NotShown(file.path, reason)
     try:
         data = file.read(MAX_BYTES)
     except InputError as error:
@@ -102,10 +104,3 @@ def pictures_in_word(file: File) -> Iterator[EmbeddedPicture | NotShown]:
     for one in sorted(media, key=lambda one: (len(one.name), one.name)):
         shown = read_picture(one)
         yield shown._replace(where=f"{one.name} in {file.path}")
-
-
-def _too_large(size: int) -> str:
-    return (
-        f"it is larger than {MAX_BYTES >> 20} MiB, the limit for a picture ({size / 1e6:.0f} "
-        "MB): open it yourself"
-    )

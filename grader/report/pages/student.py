@@ -56,6 +56,9 @@ def render_html(report: Report) -> str:
         role: [line.text for line in lines]
         for role, lines in alike(content.head(report), lambda line: line.role)
     }
+    maximum = ""
+    if report.counting is not None:
+        maximum = format_points(report.max_score)
     what = report.student or content.graded_line(report)
     values = {
         "version": report.version,
@@ -63,7 +66,7 @@ def render_html(report: Report) -> str:
         "report": report,
         "content": content,
         "head": head,
-        "maximum": format_points(report.max_score) if report.counting is not None else "",
+        "maximum": maximum,
         "symbols": SYMBOLS,
         "status_words": STATUS_WORDS,
         "status_of": status_of,
