@@ -233,7 +233,10 @@ def _are_distinct(word: str, known: str) -> bool:
         and {word[-1], known[-1]} <= _AXES_AND_SIDES
     ):
         return True
-    ends = [
-        (one for one in _DISTINCT if it.startswith(one) or it.endswith(one)) for it in (word, known)
-    ]
-    return any(one != other for one, other in product(*map(list, ends)))
+    pairs = product(_distinct_parts(word), _distinct_parts(known))
+    return any(part != other for part, other in pairs)
+
+
+def _distinct_parts(word: str) -> list[str]:
+    """Return the sides, axes and measures that a word begins or ends with."""
+    return [part for part in _DISTINCT if word.startswith(part) or word.endswith(part)]

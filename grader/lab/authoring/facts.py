@@ -337,5 +337,8 @@ def _words_of_joints(joints: Iterable[Joint], *checks: str) -> tuple[str, ...]:
 def _moving_tips(robot: Configuration) -> list[str]:
     """Return the links that hold no other link, and that a joint moves."""
     inner = {joint.parent for joint in robot.parent_joints.values()}
-    tips = [name for name in robot.main_tree if name not in inner]
-    return [tip for tip in tips if {joint.type for joint in robot.chain(tip)} - {"fixed"}]
+    tips = []
+    for name in robot.main_tree:
+        if name not in inner and any(joint.type != "fixed" for joint in robot.chain(name)):
+            tips.append(name)
+    return tips

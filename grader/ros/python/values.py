@@ -122,6 +122,10 @@ class Call:
         self.is_object = False  # whether it makes an object without operators and a text of its own
         self.method_calls: list[Call] = []  # the recorded ones, of its own result
 
+    def __repr__(self) -> str:
+        """Return the same text in every run, where Python shows an address."""
+        return f"<{self.name} object>"
+
     @property
     def short(self) -> str:
         """The name without its module."""
