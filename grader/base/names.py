@@ -118,6 +118,23 @@ def _are_siblings(sides: list[str], others: list[str]) -> bool:
     return False
 
 
+def is_misspelling(name: str, known: str) -> bool:
+    """Return whether a name is similar to another, and so is each of its words: not robot_arm and
+    robot_base.
+    """
+    if closest(name, [known]) is None:
+        return False
+    words, others = name.split("_"), known.split("_")
+    if len(words) != len(others):
+        return True
+    for word, other in zip(words, others, strict=True):
+        differing = abs(len(word) - len(other))
+        differing += sum(one != two for one, two in zip(word, other, strict=False))
+        if differing > 1 and closest(word, [other]) is None:
+            return False
+    return True
+
+
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """Return `; did you mean 'x'?` for the end of a message, or nothing if no known name is
     close.

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from grader.base.errors import InputError, MissingElement, NotDecided, RubricError
-from grader.base.names import closest
+from grader.base.names import closest, is_misspelling
 from grader.base.source import Location
 from grader.base.text import enumerated
 from grader.files.reading import URDF_LIMIT
@@ -572,28 +572,12 @@ def _fault_of_owner(package: Package, owner: str, rest: str, what: str) -> str:
             f"the launch file looks for the {what} at {path}: a slash is missing after "
             f"{package.name!r}"
         )
-    if _is_misspelt(owner, package.name):
+    if is_misspelling(owner, package.name):
         return (
             f"the launch file looks in a package {owner!r}, but the graded package is named "
             f"{package.name!r}"
         )
     return ""
-
-
-def _is_misspelt(name: str, known: str) -> bool:
-    """Return whether a name is similar to another, unless one word of it is another: robot_arm,
-    robot_base.
-    """
-    own, others = name.split("_"), known.split("_")
-    pairs = zip(own, others, strict=True) if len(own) == len(others) else ()
-    return closest(name, [known]) is not None and all(_is_slip(one, two) for one, two in pairs)
-
-
-def _is_slip(word: str, known: str) -> bool:
-    differing = sum(one != two for one, two in zip(word, known, strict=False)) + abs(
-        len(word) - len(known)
-    )
-    return differing < 2 or closest(word, [known]) is not None
 
 
 def _place_in_package(owner: Package, target: str, file: "NamedFile") -> _FilePlace:

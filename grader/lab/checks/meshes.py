@@ -36,7 +36,7 @@ from grader.lab.checks.visuals import file_name, shape_name, visual_pose, visual
 from grader.lab.submission.submission import Submission
 from grader.ros.build.package_problems import MESH_PATH
 from grader.ros.build.places import is_of_one_machine
-from grader.ros.package.installed_files import Lookup, look_up
+from grader.ros.package.installed_files import Lookup, look_up, similar_file
 from grader.ros.package.package import Package
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.kinematics import Configuration
@@ -373,7 +373,7 @@ def _fault_in_package(package: Package, target: str, submission: Submission) -> 
             f"{name} may be in an archive that could not be opened",
             "an archive could not be opened",
         )
-    similar = closest(name, map(posixpath.basename, package.tree.files))
+    similar = similar_file(package, name)
     return (
         "is not in the package "
         f"{package.name!r}{f'; there is {quoted(similar)}' if similar else ''}"

@@ -85,10 +85,15 @@ def is_surely_absent(package: Package, target: str) -> bool:
 
     What a program writes is in a folder of its own, and like no other, or a folder itself.
     """
-    names = map(posixpath.basename, package.tree.files)
     folder, _, name = target.rpartition("/")
-    folders = {posixpath.dirname(it) for it in package.installed}
-    return closest(name, names) is not None or (folder in folders and "." in name)
+    folders = {posixpath.dirname(path) for path in package.installed}
+    is_like_another = similar_file(package, name) is not None
+    return is_like_another or (folder in folders and "." in name)
+
+
+def similar_file(package: Package, name: str) -> str | None:
+    """Return the name of the file of a package that may be meant by another name."""
+    return closest(name, map(posixpath.basename, package.tree.files))
 
 
 def are_installs_known(package: Package) -> bool:

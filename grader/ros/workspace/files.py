@@ -18,6 +18,7 @@ from grader.ros.package.installed_files import (
     is_surely_absent,
     look_up,
     share_parts,
+    similar_file,
 )
 from grader.ros.package.package import Package
 from grader.ros.workspace.names import Compared, Correction, Fact, Mismatch, Undecided, corrections
@@ -160,7 +161,7 @@ def _not_there(owner: Package, target: str, at: Location, *, is_output: bool) ->
         either = _install_corrections(setup, source.path, start)
         called_at = setup.location(setup.called_at)
         return Mismatch("files", message, at, called_at, corrections=either)
-    meant = closest(name, map(posixpath.basename, owner.tree.files))
+    meant = similar_file(owner, name)
     guess = f"; did you mean {meant!r}?" if meant else ""
     message = f"{missing}: the package has no file {name!r}{guess}"
     is_sure = is_surely_absent(owner, target) and not is_output
