@@ -109,4 +109,4 @@ def _reference(named: NamedFile) -> str:
     line = f"{named.location.line}: "
     if named.path is not None and not named.reason:
         return line + named.path.removeprefix(f"{PREFIX}/share/")
-    return f"{line}{'wrong' if named.sure else 'unknown'}: {named.reason}"
+    return f"{line}{'wrong' if named.is_certain else 'unknown'}: {named.reason}"

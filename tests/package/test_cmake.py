@@ -162,13 +162,13 @@ def test_what_cmake_cannot_read(text: str, message: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "is_sure"), [("if(A)", True), ("if(A)\n" * 90 + "endif()\n" * 90, False)]
+    ("text", "is_certain"), [("if(A)", True), ("if(A)\n" * 90 + "endif()\n" * 90, False)]
 )
-def test_programs_of_a_file_that_is_not_read(text: str, is_sure: bool) -> None:
+def test_programs_of_a_file_that_is_not_read(text: str, is_certain: bool) -> None:
     """They are not known; blocks that only this reader does not follow stop no build."""
     found = read(text)
     assert found.fault is not None
-    assert (found.fault.sure, found.has_program("node", "bot")) == (is_sure, None)
+    assert (found.fault.is_certain, found.has_program("node", "bot")) == (is_certain, None)
 
 
 def test_a_package_without_its_end() -> None:

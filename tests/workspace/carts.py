@@ -54,4 +54,4 @@ def agreement_of(texts: Mapping[str, str]) -> Agreement:
 
 def sure(found: Agreement) -> list[Mismatch]:
     """Return what certainly fails at run time."""
-    return [it for it in found.mismatches if it.is_sure]
+    return [it for it in found.mismatches if it.is_certain]

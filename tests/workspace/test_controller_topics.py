@@ -57,7 +57,7 @@ def test_another_type_is_wrong_where_it_is_published() -> None:
     """Before Jazzy, a parameter lets the controller take unstamped velocities."""
     [found] = topic_problems("Twist")
     assert found.location.path == "cart_nodes/cart_nodes/alarm.py"
-    assert found.is_sure
+    assert found.is_certain
     assert found.message == (
         "the topic /cmd_vel is published with geometry_msgs.msg.Twist, but the controller subscribes to it with"
         f" {_STAMPED} ({_AT})"
@@ -84,7 +84,7 @@ def test_a_controller_that_is_not_spawned_subscribes_to_nothing() -> None:
 def test_a_publisher_that_nothing_subscribes_to() -> None:
     """Without the remapping, the controller waits on its own topic; other nodes may subscribe, so it is a warning."""
     [found] = topic_problems("TwistStamped", old="/other")
-    assert (found.message, found.is_sure) == (
+    assert (found.message, found.is_certain) == (
         f"nothing subscribes to /cmd_vel; did you mean /wheel_controller/cmd_vel ({_AT})?",
         False,
     )

@@ -1140,7 +1140,7 @@ def test_a_robot_that_is_not_used_is_no_sure_problem() -> None:
         "cart_description/urdf/old.xacro": f"{old}</geometry></visual></link></robot>",
     }
     found = agreement_of(texts)
-    assert [(it.family, it.is_sure) for it in found.mismatches] == [("files", False)]
+    assert [(it.family, it.is_certain) for it in found.mismatches] == [("files", False)]
 
 
 def test_a_launch_file_that_is_not_installed_finds_what_is_beside_it() -> None:
@@ -1224,4 +1224,4 @@ def test_a_folder_that_is_not_installed_is_called_a_folder(
         ("cart_bringup/CMakeLists.txt", old, new), ("navigation.yaml", "controller_plugins", tree)
     )
     known = [it for it in agreement_of(texts).mismatches if it.message.startswith(_NO_WORLDS)]
-    assert [(it.message.removeprefix(f"{_NO_WORLDS} "), it.is_sure) for it in known] == found
+    assert [(it.message.removeprefix(f"{_NO_WORLDS} "), it.is_certain) for it in known] == found

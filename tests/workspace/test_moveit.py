@@ -52,7 +52,7 @@ _FILES = {
 
 
 def found_in(
-    changed: dict[str, str], urdf: str = "config/arm.urdf.xacro", *, is_sure: bool = True
+    changed: dict[str, str], urdf: str = "config/arm.urdf.xacro", *, is_certain: bool = True
 ) -> list[str]:
     """Return the messages of what certainly is wrong in the package with changed files, or of what may be."""
     paths = [path for path in sorted(_ARM.rglob("*")) if path.is_file()]
@@ -65,7 +65,7 @@ def found_in(
     return [
         it.message
         for it in found.mismatches
-        if it.is_sure == is_sure and it.family != "dependencies"
+        if it.is_certain == is_certain and it.family != "dependencies"
     ]
 
 
@@ -158,7 +158,7 @@ def test_neighbours_whose_collisions_are_not_disabled_may_be_wrong_if_others_are
             f'<disable_collisions link1="{two}" link2="{one}"/>' for one, two in disabled
         )
         srdf = {"config/arm.srdf": _SRDF.replace("</robot>", f"{rows}</robot>")}
-        return found_in({"config/arm.urdf.xacro": robot, **srdf}, is_sure=False)
+        return found_in({"config/arm.urdf.xacro": robot, **srdf}, is_certain=False)
 
     assert found(pairs) == found(pairs[:1]) == found([]) == []
     assert found(pairs[:2]) == [

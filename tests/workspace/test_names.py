@@ -52,7 +52,7 @@ def test_a_name_like_no_other_is_wrong_where_everything_was_read() -> None:
 def test_an_open_kind_makes_a_near_name_a_warning_and_says_nothing_of_others() -> None:
     """Where names may be defined elsewhere, only one slip is a mismatch, and it is not sure."""
     found = agreement([_WHEEL, Open("joint"), _use("left_weel_joint"), _use("elbow")])
-    assert [it.is_sure for it in found.mismatches] == [False]
+    assert [it.is_certain for it in found.mismatches] == [False]
     assert found.undecided == {}
 
 
@@ -74,7 +74,7 @@ def test_only_a_similar_name_makes_an_optional_use_wrong() -> None:
     [found] = agreement(
         [_WHEEL, _use("elbow", optional=True), _use("left_weel_joint", optional=True)]
     ).mismatches
-    assert (found.is_sure, found.related) == (True, _THERE)
+    assert (found.is_certain, found.related) == (True, _THERE)
 
 
 def test_names_of_one_owner_do_not_define_those_of_another() -> None:

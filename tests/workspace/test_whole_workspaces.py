@@ -52,7 +52,7 @@ def workspace(*packages: Mapping[str, str]) -> Submission:
 def errors_in(*packages: Mapping[str, str]) -> list[str]:
     """Return the messages of what certainly does not agree, without undeclared dependencies."""
     found = read_agreement(workspace(*packages).workspace).mismatches
-    return [it.message for it in found if it.is_sure and it.family != "dependencies"]
+    return [it.message for it in found if it.is_certain and it.family != "dependencies"]
 
 
 def test_a_launch_file_of_any_package_runs_xacro() -> None:

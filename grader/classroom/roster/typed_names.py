@@ -42,12 +42,8 @@ def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
     if len(fitting) == 1:
         return fitting[0]
     if fitting:
-        labels = []
-        for student in fitting:
-            label = repr(student.key)
-            if student.name:
-                label += f" ({printable(student.name)})"
-            labels.append(label)
+        names = [f" ({printable(student.name)})" if student.name else "" for student in fitting]
+        labels = [f"{student.key!r}{own}" for student, own in zip(fitting, names, strict=True)]
         raise InputError(
             f"{name!r} is ambiguous: it may be {enumerated(labels, _MAX_LISTED, 'or')}; use "
             "one of these ids"

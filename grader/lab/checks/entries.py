@@ -14,9 +14,15 @@ from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.checks.toml_types import Constraint, Content, NonNegative, Scalar
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import Package
-from grader.ros.package.trees import PathStep as Step
-from grader.ros.package.trees import Search, is_path, read_tree, steps_of, xml_entry
-from grader.ros.package.trees import TreeEntry as Entry
+from grader.ros.package.trees import (
+    PathStep,
+    Search,
+    TreeEntry,
+    is_path,
+    read_tree,
+    steps_of,
+    xml_entry,
+)
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import selected_name
 from grader.ros.urdf.reader import Reading
@@ -120,7 +126,7 @@ ABOUT = {
 class _Wanted(NamedTuple):
     """What a rubric looks for."""
 
-    steps: list[Step]
+    steps: list[PathStep]
     value: Content | None = None
     one_of: list[Scalar] | None = None
     has: list[Scalar] | None = None
@@ -128,11 +134,11 @@ class _Wanted(NamedTuple):
     tolerance: float = _TOLERANCE
 
     @property
-    def first(self) -> Step:
+    def first(self) -> PathStep:
         """The first step of the path; an empty one for the root."""
         if self.steps:
             return self.steps[0]
-        return Step("")
+        return PathStep("")
 
     @property
     def is_valued(self) -> bool:
@@ -146,7 +152,7 @@ class _Wanted(NamedTuple):
         """
         return next((key for key in _IDENTIFYING if isinstance(self.values.get(key), str)), "")
 
-    def found_in(self, tree: Entry) -> bool:
+    def found_in(self, tree: TreeEntry) -> bool:
         """Return whether a tree has the entry with its values."""
         search = Search()
         entries = search.find(tree, self.steps)
@@ -154,7 +160,7 @@ class _Wanted(NamedTuple):
             return False
         return not all(self.wrong(search, entry) for entry in entries)
 
-    def has_own(self, entries: Sequence[Entry]) -> bool:
+    def has_own(self, entries: Sequence[TreeEntry]) -> bool:
         """Return whether the entries at the path have the value themselves, or several of them
         the values.
         """
@@ -164,10 +170,10 @@ class _Wanted(NamedTuple):
             return False
         return self.has is None or self._are_among(_items_of(entries), self.has)
 
-    def _is_any_of(self, entries: Sequence[Entry], values: Sequence[Scalar]) -> bool:
+    def _is_any_of(self, entries: Sequence[TreeEntry], values: Sequence[Scalar]) -> bool:
         return any(self.equals(entry, value) for entry in entries for value in values)
 
-    def wrong(self, search: Search, entry: Entry) -> list[str]:
+    def wrong(self, search: Search, entry: TreeEntry) -> list[str]:
         """Return the keys of the values that an entry does not contain."""
         return [
             key
@@ -175,12 +181,12 @@ class _Wanted(NamedTuple):
             if not self._have(_inside(search, entry, key), value)
         ]
 
-    def nearest(self, search: Search, entries: Sequence[Entry]) -> Entry:
+    def nearest(self, search: Search, entries: Sequence[TreeEntry]) -> TreeEntry:
         """Return the entry with the identifying attribute and the most of the other values."""
         wrong = {entry: self.wrong(search, entry) for entry in entries}
         return min(entries, key=lambda entry: (self.identity in wrong[entry], len(wrong[entry])))
 
-    def equals(self, entry: Entry, expected: Scalar) -> bool:
+    def equals(self, entry: TreeEntry, expected: Scalar) -> bool:
         """Return whether a text is an expected value; in YAML, one in quotes is no number and no
         boolean.
         """
@@ -197,7 +203,7 @@ class _Wanted(NamedTuple):
         numbers = numbers_in(entry.text) or ()
         return len(numbers) == 1 and abs(numbers[0] - expected) <= self.tolerance + _SLACK
 
-    def _have(self, entries: Sequence[Entry], expected: Content) -> bool:
+    def _have(self, entries: Sequence[TreeEntry], expected: Content) -> bool:
         """Return whether an entry is a value; for a list, whether one is the list, or several
         have its items.
         """
@@ -209,7 +215,7 @@ class _Wanted(NamedTuple):
                 return True
         return self._are_among(entries, expected)
 
-    def _are_among(self, entries: Sequence[Entry], expected: Sequence[Scalar]) -> bool:
+    def _are_among(self, entries: Sequence[TreeEntry], expected: Sequence[Scalar]) -> bool:
         """Return whether each expected value is that of a different entry, in any order."""
 
         def fitting(value: Scalar) -> list[int]:
@@ -218,19 +224,19 @@ class _Wanted(NamedTuple):
         return len(most_pairs([fitting(value) for value in expected])) == len(expected)
 
 
-def _inside(search: Search, entry: Entry, key: str) -> list[Entry]:
+def _inside(search: Search, entry: TreeEntry, key: str) -> list[TreeEntry]:
     return search.find(entry, steps_of(key, is_xml=entry.is_xml))
 
 
-def _items_of(entries: Sequence[Entry]) -> list[Entry]:
+def _items_of(entries: Sequence[TreeEntry]) -> list[TreeEntry]:
     """Return entries, with the items of a list in its place."""
-    items: list[Entry] = []
+    items: list[TreeEntry] = []
     for entry in entries:
         items += entry.children if entry.is_list else [entry]
     return items
 
 
-def _judge(tree: Entry, wanted: _Wanted, where: str) -> Outcome:
+def _judge(tree: TreeEntry, wanted: _Wanted, where: str) -> Outcome:
     search = Search()
     entries = search.find(tree, wanted.steps)
     if not entries:
@@ -255,7 +261,7 @@ def _judge(tree: Entry, wanted: _Wanted, where: str) -> Outcome:
     return failed(f"{shown}: {'; '.join(first_lines(faults, MAX_NAMED))}", at.place)
 
 
-def _no_entry(tree: Entry, search: Search, wanted: _Wanted, where: str) -> Outcome:
+def _no_entry(tree: TreeEntry, search: Search, wanted: _Wanted, where: str) -> Outcome:
     """Return the failure of a path that leads to nothing: at its first step that has no entry,
     or none that fits.
     """
@@ -264,7 +270,7 @@ def _no_entry(tree: Entry, search: Search, wanted: _Wanted, where: str) -> Outco
     above, step = search.find(tree, steps[:depth])[0], steps[depth]
     shown = _shown(steps[: depth + 1], tree)
     if step.conditions:
-        named = search.find(tree, [*steps[:depth], Step(step.name)])
+        named = search.find(tree, [*steps[:depth], PathStep(step.name)])
         if named:
             return _none_fits(search, named, step, shown)
     if depth or where != _IN_ROBOT:
@@ -280,14 +286,14 @@ def _no_entry(tree: Entry, search: Search, wanted: _Wanted, where: str) -> Outco
     return failed(message, detail=meant)._replace(absent=() if meant else (shown,))
 
 
-def _nested(entry: Entry) -> Iterator[tuple[Entry, Entry]]:
+def _nested(entry: TreeEntry) -> Iterator[tuple[TreeEntry, TreeEntry]]:
     """Yield everything in an entry, each after what it is in."""
     for child in entry.children:
         yield entry, child
         yield from _nested(child)
 
 
-def _none_fits(search: Search, named: Sequence[Entry], step: Step, shown: str) -> Outcome:
+def _none_fits(search: Search, named: Sequence[TreeEntry], step: PathStep, shown: str) -> Outcome:
     """Return the failure of entries of which none has the values of the conditions."""
     rows = _items_of(named) or list(named)
     known: dict[str, None] = {}  # the entries, as they would be named
@@ -295,20 +301,20 @@ def _none_fits(search: Search, named: Sequence[Entry], step: Step, shown: str) -
     for row in rows:
         given = []
         for key, others in texts.items():
-            entries = _inside(search, row, key)
-            if entries:
-                text = readable(entries[0].text or "")
+            text = next((readable(entry.text or "") for entry in _inside(search, row, key)), None)
+            if text is not None:
                 given.append((key, text))
-                if text:
-                    others.append(text)
-        known[_shown([Step(step.name, tuple(given))], rows[0])] = None
+                others.append(text)
+        known[_shown([PathStep(step.name, tuple(given))], rows[0])] = None
     detail = f"; the file has {enumerated(known, MAX_NAMED)}"
     for key, value in step.conditions:
-        detail += did_you_mean(value, texts[key])
+        detail += did_you_mean(value, filter(None, texts[key]))
     return failed(f"there is no {shown}", rows[0].place, detail=detail)
 
 
-def _no_identity(tree: Entry, search: Search, entries: Sequence[Entry], wanted: _Wanted) -> Outcome:
+def _no_identity(
+    tree: TreeEntry, search: Search, entries: Sequence[TreeEntry], wanted: _Wanted
+) -> Outcome:
     """Return the failure of elements of which none has the identifying attribute."""
     names: list[str] = []
     for entry in entries:
@@ -319,7 +325,7 @@ def _no_identity(tree: Entry, search: Search, entries: Sequence[Entry], wanted: 
     return failed(message, search.find(tree, wanted.steps[:1])[0].place, detail=detail)
 
 
-def _shown(steps: Sequence[Step], tree: Entry) -> str:
+def _shown(steps: Sequence[PathStep], tree: TreeEntry) -> str:
     """Return a path in words: <sensor> in <gazebo reference="lidar">; 'limits.max'."""
     if not tree.is_xml:
         texts = [step.name + _conditions_text(step.conditions) for step in steps]
@@ -334,7 +340,7 @@ def _shown(steps: Sequence[Step], tree: Entry) -> str:
     return shown
 
 
-def _tag(step: Step) -> str:
+def _tag(step: PathStep) -> str:
     attributes = ""
     others = []
     for key, value in step.conditions:
@@ -349,7 +355,7 @@ def _conditions_text(conditions: Iterable[tuple[str, str]]) -> str:
     return "".join(f"[{key}={value}]" for key, value in conditions)
 
 
-def _fault_text(key: str, entries: Sequence[Entry], expected: Content) -> str:
+def _fault_text(key: str, entries: Sequence[TreeEntry], expected: Content) -> str:
     """Return what is wrong with the texts at a path: 'update_rate' is 10; it should be 30."""
     values = expected if isinstance(expected, list) else [expected]
     should = f"it should be {enumerated([*map(_value_text, values)])}"
@@ -358,12 +364,12 @@ def _fault_text(key: str, entries: Sequence[Entry], expected: Content) -> str:
     return f"{key!r} is missing; {should}"
 
 
-def _texts(entries: Sequence[Entry]) -> str:
+def _texts(entries: Sequence[TreeEntry]) -> str:
     """Return the texts of entries, or of the items of lists."""
     return enumerated([*map(_entry_text, _items_of(entries))], MAX_NAMED) or "empty"
 
 
-def _entry_text(entry: Entry) -> str:
+def _entry_text(entry: TreeEntry) -> str:
     if entry.text is None:
         return "a table"
     if entry.is_quoted:
@@ -392,7 +398,7 @@ def _value_text(value: Scalar) -> str:
 # ----------------------------------------------------------------------
 
 
-def _robot_entry(reading: Reading, root: Element) -> Entry:
+def _robot_entry(reading: Reading, root: Element) -> TreeEntry:
     """Return the entry of a robot, whose elements are those of a reading or of a copy."""
 
     def locate(element: Element, attribute: str | None) -> LazyLocation:
@@ -402,7 +408,7 @@ def _robot_entry(reading: Reading, root: Element) -> Entry:
     return xml_entry(root, locate)
 
 
-def _with_names(step: Step, robot: Configuration) -> Step:
+def _with_names(step: PathStep, robot: Configuration) -> PathStep:
     """Return a step whose conditions have names, not selectors."""
     conditions = []
     for key, value in step.conditions:
@@ -428,7 +434,7 @@ def _kept(robot: Configuration, root: Element) -> Element:
     return copy
 
 
-def _dropped_part(tree: Entry, wanted: _Wanted) -> MissingElement:
+def _dropped_part(tree: TreeEntry, wanted: _Wanted) -> MissingElement:
     """Return the error for a part of a link that ROS 2 drops."""
     links = Search().find(tree, wanted.steps[:1])
     below = wanted._replace(steps=wanted.steps[1:])
@@ -442,7 +448,7 @@ def _dropped_part(tree: Entry, wanted: _Wanted) -> MissingElement:
     return MissingElement(part, name or "", message=message, location=link.place)
 
 
-def _check_known(reading: Reading, tree: Entry, wanted: _Wanted) -> None:
+def _check_known(reading: Reading, tree: TreeEntry, wanted: _Wanted) -> None:
     """Raise NotDecided if xacro leaves open whether the element is there, or what it contains."""
     assert tree.element is not None  # it is that of <robot>
     elements = [tree.element]
@@ -458,7 +464,7 @@ def _check_known(reading: Reading, tree: Entry, wanted: _Wanted) -> None:
                     raise NotDecided(reason)
 
 
-def _may_fit(entry: Entry, step: Step, reading: Reading) -> bool:
+def _may_fit(entry: TreeEntry, step: PathStep, reading: Reading) -> bool:
     """Return whether an element, of which not all may be known, can have the attributes of a
     step.
     """
@@ -470,4 +476,4 @@ def _may_fit(entry: Entry, step: Step, reading: Reading) -> bool:
         if unresolved.content is not None:
             known = {child.name for child in entry.children}
             conditions = [pair for pair in conditions if pair[0] in known]
-    return Search().fits(entry, Step(step.name, tuple(conditions)))
+    return Search().fits(entry, PathStep(step.name, tuple(conditions)))

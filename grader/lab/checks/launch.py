@@ -146,7 +146,7 @@ def node_runs(
         return _fail_missing(found, missing, nodes or ())
     wanted = Wanted(_names_in(found, not_ or ()), remap, arguments, includes, publishes, subscribes)
     faults = find_faults(submission, found, choices, wanted) if any(wanted) else []
-    if wrong := next((it for it in faults if it.is_sure), None):
+    if wrong := next((it for it in faults if it.is_certain), None):
         return failed(wrong.message, wrong.at, detail=wrong.detail)
     if fault := _faulty_program(package, found, choices):
         raise fault
@@ -449,7 +449,7 @@ def _missing_file(package: Package, place: _FilePlace) -> MissingElement:
 def _place_of(package: Package, file: "NamedFile", *, built: bool) -> _FilePlace:
     """Return whether a launch file finds a file that it names."""
     if file.path is None or file.reason:
-        return _FilePlace(file, "wrong" if file.sure else "unknown", file.reason)
+        return _FilePlace(file, "wrong" if file.is_certain else "unknown", file.reason)
     if OBJECT in file.path:
         name = file.path.rpartition(OBJECT)[0].rpartition("<")[2]
         reason = (

@@ -128,9 +128,7 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
     outcome = pending(
         message, problem=f"{_NOT_FOUND}, but there are documents" if has_documents else _NOT_FOUND
     )
-    if has_documents:
-        return outcome
-    return outcome._replace(expected=picture_named(names))
+    return outcome if has_documents else outcome._replace(expected=picture_named(names))
 
 
 def picture_named(names: Sequence[str]) -> str:

@@ -99,9 +99,13 @@ def travel_of(
     slope = degrees(asin(min(1.0, abs(dot(axis, up)))))
     if slope <= _MAX_SLOPE + SLACK:
         return travel, ""
-    if slope >= 90.0 - _NEARLY:
-        return None, "it turns about a vertical axis"
-    return None, f"its axis is {in_degrees(slope)} off level"
+    is_vertical = slope >= 90.0 - _NEARLY
+    tilt = (
+        "it turns about a vertical axis"
+        if is_vertical
+        else f"its axis is {in_degrees(slope)} off level"
+    )
+    return None, tilt
 
 
 def axis_along(

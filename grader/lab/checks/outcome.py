@@ -234,10 +234,8 @@ def other_unit(actual: Sequence[float], expected: Sequence[float]) -> str:
     pairs = [
         (a, b) for a, b in zip(actual, expected, strict=True) if abs(a) > SLACK or abs(b) > SLACK
     ]
-    if not pairs:
-        return ""
     for factor, unit in _UNITS:
-        if all(abs(a - b * factor) < abs(b) for a, b in pairs):
+        if pairs and all(abs(a - b * factor) < abs(b) for a, b in pairs):
             return f"a URDF is in metres, not in {unit}"
     return ""
 

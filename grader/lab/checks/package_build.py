@@ -212,7 +212,7 @@ def _readable_setup(package: Package) -> "Installation":
         raise MissingElement(
             SETUP, package.folder, message=message, absent=package.missing_build_file
         )
-    if setup.fault is not None and setup.fault.sure:
+    if setup.fault is not None and setup.fault.is_certain:
         raise MissingElement(
             SETUP, package.folder, message=setup.fault_text, location=setup.fault.location
         )
@@ -328,10 +328,7 @@ def _kind_of_file(path: str, package: Package) -> _FileKind | None:
         if path.lower().endswith(endings):
             return kind
     folder = posixpath.dirname(path)
-    if folder:
-        beside = [path for path in package.tree.files if posixpath.dirname(path) == folder]
-    else:
-        beside = []
+    beside = [path for path in package.tree.files if folder and posixpath.dirname(path) == folder]
     endings = (*_ENDINGS["urdf"], *_ENDINGS["rviz"])
     kinds = {
         _kind_of_file(path, package)

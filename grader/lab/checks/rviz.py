@@ -43,7 +43,7 @@ def rviz_found(package: Package, *, name: str, launch: str = "") -> Outcome:
     ):
         return passed(f"the RViz file is {path}")
     if opened is not None and (
-        opened.syntax or opened.unknown or not all(file.sure for file in opened.named("rviz"))
+        opened.syntax or opened.unknown or not all(file.is_certain for file in opened.named("rviz"))
     ):
         message = f"cannot determine statically whether the launch file opens {path}"
         raise NotDecided(message, "cannot determine statically which files the launch file names")
@@ -276,9 +276,8 @@ class _Names(NamedTuple):
     def described(self) -> set[str] | None:
         """The topics that the robot is on; None where one is known only at run time."""
         topics = {node.topic("robot_description") for node in self.publishers}
-        if None in topics:
-            return None
-        return {topic for topic in topics if topic is not None}
+        known = {topic for topic in topics if topic is not None}
+        return known if known == topics else None
 
     def shown(self, topic: str) -> set[str | None]:
         """Return the topics that RViz reads for the one in its file."""

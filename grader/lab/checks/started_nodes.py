@@ -39,14 +39,14 @@ class Wanted(NamedTuple):
 
 
 class Fault(NamedTuple):
-    """What is not as a rubric asks; or, if it is not `is_sure`, what may not be so, after
+    """What is not as a rubric asks; or, if it is not `is_certain`, what may not be so, after
     "whether".
     """
 
     message: str
     at: Location | None = None
     detail: str = ""
-    is_sure: bool = True
+    is_certain: bool = True
 
 
 def find_faults(
@@ -89,37 +89,28 @@ def _started_although(launch: "Launch", names: Iterable[str]) -> Iterator[Fault]
         if certain is not None:
             yield Fault(f"the launch file starts {name}; it should not", certain.location)
         elif nodes or launch.unknown:
-            yield Fault(f"{name} is started", is_sure=False)
+            yield Fault(f"{name} is started", is_certain=False)
 
 
 def _ill_started(launch: "Launch", names: Sequence[str], wanted: Wanted) -> Fault | None:
     """Return what is wrong with a node, if it is started, and none of its name has the remappings
     and arguments.
     """
-    faults = []
-    is_sure = not launch.unknown
-    for node in launch.nodes:
-        if node.name not in names:
-            continue
-        fault = _fault_of(node, wanted)
-        if fault is not None:
-            faults.append(fault)
-            is_sure &= fault.is_sure
-        elif node.when:
-            return None
-        else:
-            is_sure = False  # whether it is started is not known
-    if is_sure and faults:
-        return faults[0]
-    if not any(node.name in names for node in launch.nodes):
+    findings = [(node, _fault_of(node, wanted)) for node in launch.nodes if node.name in names]
+    if not findings or any(fault is None and node.when for node, fault in findings):
         return None
-    return Fault(f"{' or '.join(names)} has these remappings and arguments", is_sure=False)
+    faults = [fault for _, fault in findings if fault is not None]
+    # Whether a node without a fault is started is not known.
+    is_complete = len(faults) == len(findings) and not launch.unknown
+    if is_complete and all(fault.is_certain for fault in faults):
+        return faults[0]
+    return Fault(f"{' or '.join(names)} has these remappings and arguments", is_certain=False)
 
 
 def _fault_of(node: "StartedNode", wanted: Wanted) -> Fault | None:
     """Return what is wrong with the remappings and arguments of a node."""
     if node.arguments is None:  # what launch files of other packages give their nodes is not listed
-        return Fault("", is_sure=False)
+        return Fault("", is_certain=False)
     for name, to in (wanted.remap or {}).items():
         actual, expected = node.topic(name), node.full_name(to)
         if actual != expected:
@@ -127,14 +118,16 @@ def _fault_of(node: "StartedNode", wanted: Wanted) -> Fault | None:
                 f"{node.executable} has the name {actual} for {quoted(name)}; it should be "
                 f"{expected}"
             )
-            return Fault(message, node.location, is_sure=actual is not None and "~" not in actual)
+            return Fault(
+                message, node.location, is_certain=actual is not None and "~" not in actual
+            )
     words = [word for given in node.arguments for word in _words_of(given)]
     for phrase in _phrases(wanted.arguments or ()):
         if not any(_is_phrase(words[at:], phrase) for at in range(len(words))):
             message = f"{node.executable} does not get the arguments {quoted(' '.join(phrase))}"
             shown = (word.removeprefix(f"{PREFIX}/share/") for word in words if word is not None)
             detail = f"; it gets {' '.join(shown) or 'none'}"
-            return Fault(message, node.location, detail, is_sure=None not in words)
+            return Fault(message, node.location, detail, is_certain=None not in words)
     return None
 
 
@@ -177,7 +170,7 @@ def _not_included(launch: "Launch", end: str) -> Fault | None:
     # Which files are included by one that is not submitted does not count.
     places = {passed.location for passed in launch.passed}
     if included or any(unknown.location not in places for unknown in launch.unknown):
-        return Fault(f"{end} is included", is_sure=False)
+        return Fault(f"{end} is included", is_certain=False)
     message = f"the launch file does not include {end}"
     if not launch.passed:
         return Fault(message, detail="; it includes none")
@@ -211,11 +204,10 @@ class _NodeTopics:
                 self._add(node, python_node.endpoints)
 
     def _add(self, node: "StartedNode", endpoints: "Iterable[Endpoint]") -> None:
-        for endpoint in endpoints:
-            if endpoint.kind in _VERBS:
-                topic = node.topic(endpoint.name) if endpoint.name is not None else None
-                self._is_open = self._is_open or topic is None or "~" in topic
-                self._topics.append(_NodeTopic(topic or "", endpoint, node))
+        for endpoint in [endpoint for endpoint in endpoints if endpoint.kind in _VERBS]:
+            topic = node.topic(endpoint.name) if endpoint.name is not None else None
+            self._is_open = self._is_open or topic is None or "~" in topic
+            self._topics.append(_NodeTopic(topic or "", endpoint, node))
 
     def fault_of(self, kind: str, name: str, message_type: str) -> Fault | None:
         """Return that no node publishes a topic, or subscribes to it, with a type."""
@@ -223,16 +215,16 @@ class _NodeTopics:
         python_type = re.sub("[/:]+", ".", message_type)
         of_kind = [topic for topic in self._topics if topic.endpoint.kind == kind]
         same = [topic for topic in of_kind if topic.name == full_name]
-        is_sure = not self._is_open
+        is_certain = not self._is_open
         for topic in same:
             actual = topic.endpoint.type
             if topic.node.when and (actual == python_type or not python_type):
                 return None
             if actual is None or actual == python_type:
-                is_sure = False
-        if not is_sure:
+                is_certain = False
+        if not is_certain:
             typed = f" with {message_type}" if message_type else ""
-            return Fault(f"a node {verb} {full_name}{typed}", is_sure=False)
+            return Fault(f"a node {verb} {full_name}{typed}", is_certain=False)
         if same:
             endpoint = same[0].endpoint
             shown = (endpoint.type or "").replace(".", "/")

@@ -105,7 +105,7 @@ def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]
     """
     wrong: list[tuple[str, str]] = []
     absent: dict[str, str] = {}
-    is_sure = True  # that no joint is meant to be a missing one
+    is_certain = True  # that no joint is meant to be a missing one
     at = None
     for name, link in joints.items():
         joint = robot.parent_joints.get(link)
@@ -115,7 +115,7 @@ def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]
         if joint is None:
             thing = f"joint of {link}" if robot.robot.has_link(link) else link
             absent[thing] = f"no joint {name!r} connects {link!r}"
-            is_sure &= thing == link or robot.are_joints_in_place
+            is_certain &= thing == link or robot.are_joints_in_place
         else:
             wrong.append(
                 (f"the joint of {link!r} should be named {name!r}", f", not {joint.name!r}")
@@ -126,7 +126,7 @@ def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]
         return failed(message, at)._replace(mistake="; ".join(mistake for mistake, _ in wrong))
     if absent:
         outcome = failed("; ".join(absent.values()))
-        return outcome._replace(absent=tuple(absent) if is_sure else ())
+        return outcome._replace(absent=tuple(absent) if is_certain else ())
     return passed(f"the joints are named {enumerated([repr(name) for name in joints])}")
 
 

@@ -106,9 +106,7 @@ def content_of(result: Result, report: Report) -> str:
     if not (_is_question(result) and isinstance(found, str) and is_certain) or _loose_files(report):
         return ""
     is_whole = not any(sign in found for sign in (_PICTURE, "![", "]("))
-    if is_whole:
-        return "\n".join(filter(None, map(str.rstrip, found.splitlines())))
-    return ""
+    return "\n".join(filter(None, map(str.rstrip, found.splitlines()))) if is_whole else ""
 
 
 def loose_lines(result: Result, submission: Submission, *, is_anonymous: bool = False) -> list[str]:

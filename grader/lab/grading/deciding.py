@@ -149,12 +149,11 @@ class _Grading:
             or criterion.check.subject != "robot"
         ):
             return outcome
-        found = next(iter(robot.links), None)
-        if isinstance(link, str) and robot.has_link(link):
-            found = robot.link(link)
-        if found is not None:
-            return outcome._replace(location=location_of(found.known.location))
-        return outcome
+        named = (
+            [robot.link(link)] if isinstance(link, str) and robot.has_link(link) else robot.links
+        )
+        locations = [location_of(examined.known.location) for examined in named[:1]]
+        return outcome._replace(location=next(iter(locations), None))
 
     def _explain(self, outcome: Outcome, *thing: str, looks_at: Collection[str] = ()) -> Outcome:
         from grader.lab.grading.explanation import explain  # late: many submissions lose nothing

@@ -62,19 +62,6 @@ class Subjects:
                 self._known["robot"] = self.robot
             self._known["urdf"] = submission.urdf.as_it_stands or reading
 
-    def _read_robot(self, read: Read) -> None:
-        urdf = read.reading
-        self.source = urdf.source
-        # What is read as it was meant is no problem of the robot that is examined.
-        self.problems = tuple(
-            it for it in urdf.problems if not (urdf.is_meant and it.kind.effect == "rejects")
-        )
-        examined = urdf
-        if urdf.robot is not None:
-            self.robot = Configuration(urdf.robot, is_guarded=bool(urdf.unresolved))
-            examined = urdf._replace(robot=self.robot.robot)
-        self._known["urdf"] = read.as_it_stands or examined
-
     def _with_transforms(
         self, robot: Configuration, owner: Submission | ReferenceSolution
     ) -> Configuration:

@@ -139,7 +139,7 @@ class Installation:
         """Why it is not known what the file does, as part of a sentence; empty if it is, or if it
         certainly fails.
         """
-        if self.fault is None or self.fault.sure:
+        if self.fault is None or self.fault.is_certain:
             return ""
         return f"{self.file} cannot be read ({self.fault.message})"
 

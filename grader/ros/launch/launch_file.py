@@ -189,7 +189,7 @@ def _read_python(
     code = parse(data, path)
     if isinstance(code, SyntaxFault):
         syntax = LaunchFault(f"Python cannot read the file: {code.message}", code.location)
-        if code.sure:
+        if code.is_certain:
             return Launch(code.source, syntax)
         return Launch(code.source, unknown=(syntax,), doubts=(syntax,))
     findings = Findings(lambda position: location_in(code.source, position))

@@ -218,7 +218,7 @@ class NamedFile:
     path: str | None
     location: Location
     reason: str = ""  # why the path is unknown, or what is wrong with it
-    sure: bool = True  # False where it is unknown
+    is_certain: bool = True  # False where it is unknown
     by: str = ""  # the program that reads it, if there is one: xacro, cat, open or decode
     arguments: tuple[tuple[str, str | None], ...] = ()  # that xacro gets
     stops_at_stderr: bool = False  # whether launch stops if xacro writes a warning
@@ -359,7 +359,7 @@ class Findings:
         location = self.locate(_position(value, call))
         match path:
             case Unknown(reason=reason):
-                self.references.append(NamedFile(purpose, None, location, reason, sure=False))
+                self.references.append(NamedFile(purpose, None, location, reason, is_certain=False))
             case Contents():
                 found = NamedFile(
                     purpose, path.path, location, "", by=path.by, arguments=path.arguments

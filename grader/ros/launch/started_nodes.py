@@ -336,7 +336,7 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
                 f"{name} is read without xacro; if it uses xacro, write Command(['xacro ', ...])"
             )
             findings.references.append(
-                NamedFile("urdf", path, findings.locate(call.at), message, sure=False, by=by)
+                NamedFile("urdf", path, findings.locate(call.at), message, is_certain=False, by=by)
             )
         case str() if "<robot" in found or not found.strip():
             reason = "a robot that the launch file contains is not evaluated"

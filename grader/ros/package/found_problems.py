@@ -43,8 +43,10 @@ def _sort(problems: Iterable[Problem]) -> list[Problem]:
 
 def _setup_problems(package: Package, setup: Installation) -> Iterator[Problem]:
     if fault := setup.fault:
-        kind = kinds.SETUP_SYNTAX if fault.sure else kinds.SETUP_UNKNOWN
-        text = setup.fault_text if fault.sure else f"{setup.file} is not read: {fault.message}"
+        kind = kinds.SETUP_SYNTAX if fault.is_certain else kinds.SETUP_UNKNOWN
+        text = (
+            setup.fault_text if fault.is_certain else f"{setup.file} is not read: {fault.message}"
+        )
         yield Problem(kind, text, fault.location)
         return
     for error in setup.faults:

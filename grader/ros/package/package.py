@@ -196,7 +196,7 @@ class Package:
             data = file.read(PYTHON_LIMIT)
         except InputError as error:
             source = Source(path, "")
-            fault = SyntaxFault(source, str(error), Location(path, 1, 1), sure=False)
+            fault = SyntaxFault(source, str(error), Location(path, 1, 1), is_certain=False)
             return Installation(source, fault)
         if self.is_cmake:
             from grader.ros.build.cmake.cmake_lists import read_cmake

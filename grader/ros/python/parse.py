@@ -67,7 +67,7 @@ class SyntaxFault:
     source: Source
     message: str
     location: Location
-    sure: bool = True
+    is_certain: bool = True
 
 
 def location_in(source: Source, position: Position) -> Location:
@@ -106,7 +106,10 @@ def _parse(data: bytes, path: str) -> Code | SyntaxFault:
         if lookup(encoding).name in _SLOW_ENCODINGS:
             location = Location(path, 1, 1)
             return SyntaxFault(
-                Source(path, ""), f"the encoding {encoding} is not supported", location, sure=False
+                Source(path, ""),
+                f"the encoding {encoding} is not supported",
+                location,
+                is_certain=False,
             )
         text = data.decode(encoding)
     except (SyntaxError, ValueError, LookupError) as error:
@@ -133,7 +136,9 @@ def _parse(data: bytes, path: str) -> Code | SyntaxFault:
             return Code(source, tree)
     except SyntaxError as error:
         location = Location(path, max(error.lineno or 1, 1), max(error.offset or 1, 1))
-        return SyntaxFault(source, error.msg, location, sure=not _is_of_newer_python(error, text))
+        return SyntaxFault(
+            source, error.msg, location, is_certain=not _is_of_newer_python(error, text)
+        )
     except (ValueError, OverflowError):
         return SyntaxFault(source, _TOO_DEEP, Location(path, 1, 1))
 

@@ -108,9 +108,7 @@ class Problems:
 
     def element(self, joint: Joint) -> Element:
         """Return the element that a joint was read from."""
-        if joint.location is not None:
-            return self._elements[joint.location.tag]
-        return self.root
+        return self.root if joint.location is None else self._elements[joint.location.tag]
 
     def add(
         self,

@@ -206,9 +206,9 @@ def _check_roots(
     is_child_open = any("child" in joint.unresolved for joint in robot.joints)
     if is_child_open or sum(name not in explained for name in roots) < 2:
         return
-    main = roots[0]
-    if len(roots) <= _MAX_ROOTS:
-        main = max(roots, key=lambda name: len(_reachable([name], edges)))
+    # Of very many roots the first is as good: searching the tree below each takes long.
+    candidates = roots if len(roots) <= _MAX_ROOTS else roots[:1]
+    main = max(candidates, key=lambda name: len(_reachable([name], edges)))
     others = [name for name in roots if name != main and name not in explained]
     named = enumerated([*map(quoted, others)], _MAX_ROOTS)
     verb, them = ("is", "it") if len(others) == 1 else ("are", "them")

@@ -104,9 +104,8 @@ def _computed(piece: str) -> str | None:
         value = evaluate(piece, {"pi": pi}.__getitem__, Budget(_MAX_WORK))
     except (EvaluationFails, Undetermined, OutOfBudget, KeyError):
         return None
-    if isinstance(value, int | float) and isfinite(value):
-        return f"{value:.12g}"
-    return None
+    is_number = isinstance(value, int | float) and isfinite(value)
+    return f"{value:.12g}" if is_number else None
 
 
 def rgba(text: str) -> tuple[float, float, float, float] | None:

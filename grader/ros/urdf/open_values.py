@@ -59,9 +59,8 @@ def _view_of_link(link: Link) -> Link:
 
 
 def _view_of_visual(visual: Visual) -> Visual:
-    if visual.material is not None:
-        return replace(visual, material=_view_of_material(visual.material))
-    return visual
+    material = visual.material
+    return visual if material is None else replace(visual, material=_view_of_material(material))
 
 
 def _view_of_material(material: Material) -> Material:

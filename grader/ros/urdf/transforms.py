@@ -203,6 +203,4 @@ def degrees_between(a: Vector, b: Vector) -> float:
     zero vector.
     """
     sine, cosine = hypot(*cross(a, b)), dot(a, b)
-    if sine or cosine:
-        return degrees(atan2(sine, cosine))
-    return nan
+    return degrees(atan2(sine, cosine)) if sine or cosine else nan

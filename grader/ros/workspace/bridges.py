@@ -246,9 +246,9 @@ def _not_there(row: _BridgeRow, unused: list[GazeboTopic], *, is_known: bool) ->
         message = (
             f"{what} {quoted(row.gz)} in Gazebo; did you mean {quoted(meant)} ({place_text(at)})?"
         )
-        is_sure = row.is_used and is_known and len(fitting) == 1
+        is_certain = row.is_used and is_known and len(fitting) == 1
         either = corrections(row.gz, row.location, meant, at)
-        yield Mismatch("topics", message, row.location, at, is_sure, either)
+        yield Mismatch("topics", message, row.location, at, is_certain, either)
 
 
 def _clocks(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Mismatch]:

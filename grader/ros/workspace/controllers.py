@@ -142,10 +142,10 @@ def _type_facts(workspace: Workspace, controller: Controller) -> Iterator[Fact]:
     if is_known or similar is not None:
         guess = f"; did you mean {similar!r}?" if similar is not None else ""
         message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
-        is_sure = is_known or near(written, same_class) is not None
+        is_certain = is_known or near(written, same_class) is not None
         at = controller.location
         either = corrections(written, at, similar)
-        yield Mismatch("controllers", message, at, is_sure=is_sure, corrections=either)
+        yield Mismatch("controllers", message, at, is_certain=is_certain, corrections=either)
 
 
 def _section_facts(

@@ -47,9 +47,9 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
                 f"here{guess}"
             )
             # rosdep installs what packages need that are declared.
-            is_sure = name not in brought
+            is_certain = name not in brought
             either = corrections(name, at, meant, start if meant not in used else None)
-            yield Mismatch("dependencies", message, at, start, is_sure, either)
+            yield Mismatch("dependencies", message, at, start, is_certain, either)
 
 
 def _declared(package: Package) -> set[str]:

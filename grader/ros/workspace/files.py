@@ -43,7 +43,7 @@ def file_facts(workspace: Workspace) -> Iterator[Fact]:
         seen.add((named.path, named.location))
         for fact in _fault_of(workspace, named):
             if isinstance(fact, Mismatch) and not named.is_read:
-                yield fact._replace(is_sure=False)
+                yield fact._replace(is_certain=False)
             else:
                 yield fact
     yield from _map_images(workspace)
@@ -164,8 +164,8 @@ def _not_there(owner: Package, target: str, at: Location, *, is_output: bool) ->
     meant = similar_file(owner, name)
     guess = f"; did you mean {meant!r}?" if meant else ""
     message = f"{missing}: the package has no file {name!r}{guess}"
-    is_sure = is_surely_absent(owner, target) and not is_output
-    return Mismatch("files", message, at, None, is_sure, corrections(name, at, meant))
+    is_certain = is_surely_absent(owner, target) and not is_output
+    return Mismatch("files", message, at, None, is_certain, corrections(name, at, meant))
 
 
 def _no_folder(owner: Package, inside: str, missing: str, at: Location) -> Iterator[Mismatch]:
@@ -177,7 +177,7 @@ def _no_folder(owner: Package, inside: str, missing: str, at: Location) -> Itera
     for target, source in owner.installed.items():
         if source.startswith(f"{inside}/"):
             message = f"{missing}: it installs {source} as {target}"
-            yield Mismatch("files", message, at, is_sure=not may_be_made)
+            yield Mismatch("files", message, at, is_certain=not may_be_made)
             return
     if not may_be_made:
         yield Mismatch("files", f"{missing}: it installs no file of the folder {inside}", at)

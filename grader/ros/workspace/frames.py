@@ -113,7 +113,7 @@ def _static_transforms(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
         if own != parent:
             at = _place(children[child].location)
             message = f"the frame {child!r} has two parents: {own!r} in the robot, {parent!r} here"
-            yield Mismatch("frames", message, node.location, at, is_sure=node.when is True)
+            yield Mismatch("frames", message, node.location, at, is_certain=node.when is True)
 
 
 def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:

@@ -40,7 +40,7 @@ def name_problems(agreement: Agreement) -> tuple[Problem, ...]:
     """Return what does not agree as problems, in the order of files and lines."""
     problems = []
     for wrong in agreement.mismatches:
-        kind = _KINDS[wrong.family] if wrong.is_sure else _SIMILAR
+        kind = _KINDS[wrong.family] if wrong.is_certain else _SIMILAR
         problems.append(Problem(kind, wrong.message, wrong.location, wrong.family))
     for at in agreement.unused:
         message = "no other file of the workspace names this file"

@@ -98,7 +98,7 @@ class Mismatch(NamedTuple):
     message: str
     location: Location
     related: Location | None = None  # of what was meant
-    is_sure: bool = True
+    is_certain: bool = True
     corrections: tuple[
         Correction, ...
     ] = ()  # with each of which it agrees: first of the use, then of the definition
@@ -132,7 +132,7 @@ class Agreement(NamedTuple):
 
     def holds(self, family: Family) -> bool:
         """Return whether something of a family is there, and all of it certainly agrees."""
-        is_wrong = any(it.family == family and it.is_sure for it in self.mismatches)
+        is_wrong = any(it.family == family and it.is_certain for it in self.mismatches)
         return family in self.families and family not in self.undecided and not is_wrong
 
 
@@ -177,7 +177,7 @@ def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mism
     if is_open and meant is None:
         return None
     meant = meant or closest(use.name, known, is_clear=True)
-    is_sure = not is_open and (meant is not None or not use.optional)
+    is_certain = not is_open and (meant is not None or not use.optional)
     if use.optional and meant is None:
         return None
     if meant is not None:
@@ -187,7 +187,7 @@ def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mism
     message = f"{use.said}: there is no {use.kind} {quoted(use.name)}{guess}"
     related = known[meant] if meant is not None else None
     either = corrections(use.name, use.location, meant, related)
-    return Mismatch(FAMILY_OF[use.kind], message, use.location, related, is_sure, either)
+    return Mismatch(FAMILY_OF[use.kind], message, use.location, related, is_certain, either)
 
 
 def corrections(

@@ -59,9 +59,9 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     files_of_bridges = bridge_files(workspace)
     for path, tree in workspace.yaml_files.items():
         if isinstance(tree, YamlFault) and path not in files_of_bridges:
-            is_sure = path in workspace.parameter_files
+            is_certain = path in workspace.parameter_files
             yield Mismatch(
-                "parameters", f"this is not YAML: {tree}", tree.location, is_sure=is_sure
+                "parameters", f"this is not YAML: {tree}", tree.location, is_certain=is_certain
             )
     for path, nodes in workspace.parameter_files.items():
         yield Compared("parameters")
@@ -275,7 +275,7 @@ def _types_given(node: PythonNode, values: Mapping[str, ParameterValue]) -> Iter
                 values[name],
                 parameter.default,
                 parameter.location,
-                is_sure=not node.doubts,
+                is_certain=not node.doubts,
             )
 
 
@@ -288,7 +288,7 @@ def _without_time(workspace: Workspace) -> Iterator[Mismatch]:
 
 
 def _other_type(
-    name: str, given: ParameterValue, default: Any, at: Location | None, *, is_sure: bool = True
+    name: str, given: ParameterValue, default: Any, at: Location | None, *, is_certain: bool = True
 ) -> Iterator[Mismatch]:
     """Yield that a parameter file gives a parameter a value of another type than the node
     declares.
@@ -302,7 +302,7 @@ def _other_type(
             f"the parameter {name!r} is given {actual}; its node declares {declared}{there}, "
             "and stops"
         )
-        yield Mismatch("parameters", message, given.location, at, is_sure)
+        yield Mismatch("parameters", message, given.location, at, is_certain)
 
 
 def _type_of(value: Any) -> str:
@@ -412,6 +412,8 @@ def _plugin_names(tree: YamlNode) -> Iterator[Fact]:
         meant = names.get(_SEPARATORS.sub("::", text))
         if meant is not None and meant != text:
             message = f"{value.said}: there is no plugin {text!r}; did you mean {meant!r}?"
-            is_sure = is_for_jazzy or not text.startswith(older)
+            is_certain = is_for_jazzy or not text.startswith(older)
             at = value.node.location
-            yield Mismatch("parameters", message, at, None, is_sure, corrections(text, at, meant))
+            yield Mismatch(
+                "parameters", message, at, None, is_certain, corrections(text, at, meant)
+            )

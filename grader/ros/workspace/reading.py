@@ -54,7 +54,7 @@ def wrong_names(
     """Return what certainly does not agree in some packages of a workspace."""
     wrong = []
     for mismatch in read_agreement(workspace).mismatches:
-        is_wrong = mismatch.family == family and mismatch.is_sure
+        is_wrong = mismatch.family == family and mismatch.is_certain
         if is_wrong and any(package.holds(mismatch.location.path) for package in packages):
             wrong.append(mismatch)
     return wrong

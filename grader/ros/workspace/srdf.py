@@ -91,4 +91,4 @@ def _neighbours(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
             "does not name them"
         )
         # Wrong only if their shapes touch in some position, which is not computed.
-        yield Mismatch("frames", message, file.location(file.root), is_sure=False)
+        yield Mismatch("frames", message, file.location(file.root), is_certain=False)

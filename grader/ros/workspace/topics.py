@@ -74,9 +74,9 @@ def topic_facts(workspace: Workspace) -> Iterator[Fact]:
             if publisher.topic != subscription.topic:
                 continue
             are_started = subscription.is_started and publisher.is_started
-            is_sure = are_started and subscription.launch == publisher.launch
+            is_certain = are_started and subscription.launch == publisher.launch
             for mismatch in _differences(subscription, publisher):
-                yield mismatch._replace(is_sure=is_sure)
+                yield mismatch._replace(is_certain=is_certain)
     yield from _bridged_types(workspace, opened)
     yield from _unconnected(workspace, opened)
     yield from _unheard(workspace, opened)
@@ -146,8 +146,8 @@ def _bridged_types(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator
                     f"the topic {each.topic} has {kind} here, but is {done} by the "
                     f"bridge with {row.ros_type} ({place_text(row.location)})"
                 )
-                is_sure = row.is_used and each.is_started
-                yield Mismatch("topics", message, at, row.location, is_sure)
+                is_certain = row.is_used and each.is_started
+                yield Mismatch("topics", message, at, row.location, is_certain)
 
 
 def _remappings(workspace: Workspace, node: StartedNode) -> Iterator[Fact]:
@@ -225,14 +225,14 @@ def _unheard(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator[Misma
         fitting = [publisher for publisher in fitting if publisher.endpoint.type == kind]
         for publisher in fitting:
             are_started = publisher.is_started and waiting.is_started
-            is_sure = are_started and _is_known(workspace, publisher.launch)
+            is_certain = are_started and _is_known(workspace, publisher.launch)
             is_same = publisher.topic.rpartition("/")[2] == waiting.topic.rpartition("/")[2]
-            if is_same or (is_sure and len(fitting) == 1):
+            if is_same or (is_certain and len(fitting) == 1):
                 message = (
                     f"nothing subscribes to {publisher.topic}; did you mean {waiting.topic} "
                     f"({place_text(place)})?"
                 )
-                yield Mismatch("topics", message, publisher.endpoint.location, place, is_sure)
+                yield Mismatch("topics", message, publisher.endpoint.location, place, is_certain)
 
 
 def _is_known(workspace: Workspace, launch: int) -> bool:

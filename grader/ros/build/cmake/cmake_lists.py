@@ -41,7 +41,7 @@ def read_cmake(
         commands = parse_cmake(source)
     except CMakeFault as fault:
         return Installation(
-            source, SyntaxFault(source, str(fault), location_in(source, fault.at), fault.sure)
+            source, SyntaxFault(source, str(fault), location_in(source, fault.at), fault.is_certain)
         )
     listing = PackageListing(tree, budget)
     build = Build(listing, Values(listing.budget), name)

@@ -30,9 +30,9 @@ class CMakeFault(Exception):
     parse.
     """
 
-    def __init__(self, message: str, at: Position, *, sure: bool = True) -> None:
+    def __init__(self, message: str, at: Position, *, is_certain: bool = True) -> None:
         super().__init__(message)
-        self.at, self.sure = at, sure
+        self.at, self.is_certain = at, is_certain
 
 
 class Argument(NamedTuple):
@@ -88,7 +88,7 @@ def _opened(commands: list[Command], start: int, depth: int) -> tuple[Command, i
     """
     first, end = commands[start], _ENDS[commands[start].name]
     if depth > _MAX_DEPTH:
-        raise CMakeFault("the blocks are too deeply nested to read", first.at, sure=False)
+        raise CMakeFault("the blocks are too deeply nested to read", first.at, is_certain=False)
     body, index = _block(commands, start + 1, end, depth + 1)
     others: list[Command] = []
     while index < len(commands):
