@@ -18,6 +18,7 @@ from typing import Any
 from grader import __version__
 from grader.base.errors import GraderError, InputError
 from grader.base.text import (
+    MAX_NAMED,
     counted,
     enumerated,
     first_lines,
@@ -60,7 +61,7 @@ from grader.report.writing import Terminal, Warn, refuse_symlinks, save, save_by
 from grader.workers.pool import Processes, processors
 from grader.workers.queue import Progress
 
-_MAX_LINES, _MAX_NAMED = 10, 5
+_MAX_LINES = 10
 _LEAST_SECONDS = 15.0  # in which hints are searched, and a few reports written
 _PRIVATE = 0o600
 _FORMAT = 2  # of results: those of another one are graded again
@@ -459,6 +460,6 @@ def _check_same_class(folder: Path, results: Results, intake: Intake) -> None:
         raise InputError(
             f"{printable_path(folder)} is the gradebook of another class, or a section is missing: "
             f"{counted(len(missing), 'student')} of {len(recorded)} have no submission now "
-            f"({printable(enumerated(missing, _MAX_NAMED))}); name the paths of all "
+            f"({printable(enumerated(missing, MAX_NAMED))}); name the paths of all "
             "sections, or another --gradebook"
         )

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from grader.base.errors import InputError
 from grader.base.text import (
+    MAX_NAMED,
     counted,
     counted_points,
     cut,
@@ -43,7 +44,6 @@ from grader.report.criteria import alike
 from grader.report.writing import save
 
 CONFIRMED = "!"  # ends what the page sends to replace marks that it was asked about
-_MAX_NAMED = 5
 _GONE = "this answer has changed, or its students have final marks: go to the next item"
 _READ = (names.RESULTS, CLASS_FILE, names.ROSTER, f"{names.RUBRIC}/**/*.toml", f"{names.MARKS}/*")
 _SHEET_COLUMNS = ("criterion", "answer", "points", "maximum", "comment", "text", "students")
@@ -212,7 +212,7 @@ class ReviewSession:
         if wanted.criterion:
             criterion_of(self.book.rubric, wanted.criterion)
         if wanted.section and plain(wanted.section) not in sections:
-            known = enumerated([*map(repr, sorted(sections.values()))], _MAX_NAMED) or "none"
+            known = enumerated([*map(repr, sorted(sections.values()))], MAX_NAMED) or "none"
             raise InputError(
                 f"no student has the section {wanted.section!r} in the roster; it has {known}"
             )
@@ -281,7 +281,7 @@ class ReviewSession:
                 f"rows of this review are no longer in {shown}, which another program has replaced"
             )
             raise InputError(
-                f"Not saved: {why}: {enumerated(rows, _MAX_NAMED)}. Save again to go on "
+                f"Not saved: {why}: {enumerated(rows, MAX_NAMED)}. Save again to go on "
                 "without them."
             )
 

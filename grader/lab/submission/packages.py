@@ -4,7 +4,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
 
-from grader.base.text import enumerated, quoted
+from grader.base.text import (
+    MAX_NAMED,
+    enumerated,
+    quoted,
+)
 from grader.ros.package.finding import (
     IN_NAMED_FOLDER,
     NAMED,
@@ -15,7 +19,6 @@ from grader.ros.package.finding import (
 )
 from grader.ros.package.package import NO_PACKAGE, Package
 
-_MAX_NAMED = 5  # packages in a message
 DEEPER = "it matches equally well, but is deeper in the folders"
 LATER = "it matches equally well, but comes later in alphabetical order"
 BACKUP = "it is named like a backup"
@@ -70,7 +73,7 @@ def why_none(
         f"{quoted(package.name)} in {package.folder or 'the submission'}"
         for package in packages or elsewhere
     ]
-    there = f"; there {'are' if len(names) > 1 else 'is'} {enumerated(names, _MAX_NAMED)}"
+    there = f"; there {'are' if len(names) > 1 else 'is'} {enumerated(names, MAX_NAMED)}"
     if packages:
         for package in packages:
             if package.manifest is not None and package.manifest.refusals:

@@ -8,7 +8,11 @@ from typing import NamedTuple
 
 from grader.base.errors import InputError, NotDecided
 from grader.base.names import folded
-from grader.base.text import enumerated, was_not_committed
+from grader.base.text import (
+    MAX_NAMED,
+    enumerated,
+    was_not_committed,
+)
 from grader.files.limits import PACKAGE_FILES
 from grader.files.tree import Tree
 from grader.lab.submission.labs import Belonging, LabFolders
@@ -39,7 +43,6 @@ from grader.ros.package.robots import RobotFile, find_robots, parts_of
 from grader.ros.python.budget import READING, Budget
 
 _MAX_ELSEWHERE = 40
-_MAX_NAMED = 5  # robots in a note
 _MAX_GENERATED = 20
 _MAX_READ = 4 * 1024 * 1024  # bytes of all candidates
 _COST_OF_FILE = 64 * 1024  # bytes that take as long to read as the smallest file
@@ -127,7 +130,7 @@ def select(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     several = ""
     fitting = selection.choice.fitting
     if fitting:
-        which = f"{urdf} was graded, not {enumerated(fitting, _MAX_NAMED)}"
+        which = f"{urdf} was graded, not {enumerated(fitting, MAX_NAMED)}"
         several = (
             f"{len(fitting) + 1} robots fit this lab: {which}; to grade another one, name its "
             "file or folder"

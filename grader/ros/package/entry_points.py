@@ -8,7 +8,10 @@ from typing import NamedTuple
 
 from grader.base.names import closest
 from grader.base.source import Location
-from grader.base.text import enumerated
+from grader.base.text import (
+    MAX_NAMED,
+    enumerated,
+)
 from grader.ros.package.package import Package
 from grader.ros.python.budget import PYTHON_LIMIT
 from grader.ros.python.constants import binds_unseen
@@ -17,7 +20,6 @@ from grader.ros.python.parse import Code, bound_in, parse
 _ENTRY = re.compile(
     r"\s*([^=\s]+)\s*=\s*(\w+(?:\.\w+)*)\s*(?::\s*(\w+)(?:\.\w+)*\s*)?(?:\[.*)?", re.ASCII
 )
-_MAX_NAMED = 5  # names in a message
 
 
 class _EntryPoint(NamedTuple):
@@ -175,7 +177,7 @@ def _fault(
     if meant is not None:
         message += f"; did you mean {meant!r}?"
     elif known:
-        message += f"; there is {enumerated([repr(it) for it in known[:_MAX_NAMED]])}"
+        message += f"; there is {enumerated([repr(it) for it in known[:MAX_NAMED]])}"
     return EntryFault(message, entry.location, written, meant)
 
 
