@@ -89,7 +89,7 @@ def kinematics_match_reference(
             reference, or that of the robot if it has no link of this name.
     """
     bases = _find_bases(robot, reference, links, relative_to)
-    pairs = [(_link_name(robot, link), _of_reference(reference, link)) for link in links]
+    pairs = [(_link_name(robot, link), _name_in_reference(reference, link)) for link in links]
     joints = _pair_joints(robot, reference, bases, pairs, match)
     if isinstance(joints, Outcome):
         return joints
@@ -104,7 +104,7 @@ def _link_name(robot: Configuration, link: str) -> str:
     return name
 
 
-def _of_reference(reference: Configuration, link: str) -> str:
+def _name_in_reference(reference: Configuration, link: str) -> str:
     """Return the name of a link of the reference. Raises RubricError, because no student can do
     anything about it.
     """
@@ -119,8 +119,8 @@ def _find_bases(
 ) -> tuple[str, str]:
     """Return the links in whose frames the poses of the robot and of the reference are compared."""
     if relative_to:
-        return _link_name(robot, relative_to), _of_reference(reference, relative_to)
-    root = reference.root_of(_of_reference(reference, links[0]))
+        return _link_name(robot, relative_to), _name_in_reference(reference, relative_to)
+    root = reference.root_of(_name_in_reference(reference, links[0]))
     return root if robot.robot.has_link(root) else _link_name(robot, "@root"), root
 
 

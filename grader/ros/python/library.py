@@ -319,7 +319,7 @@ def standard_functions(working_folder: str) -> py.FunctionTable:
     }
 
 
-def _of_path(value: py.Value) -> py.Value:
+def _require_path(value: py.Value) -> py.Value:
     if not isinstance(value, str | PurePosixPath):
         raise py.EvaluationFails(
             f"a path is a string, and this is of the type {type(value).__name__}"
@@ -337,7 +337,7 @@ def _join(first: py.Value, *parts: py.Value) -> str:
 
 
 def _path(*parts: py.Value) -> PurePosixPath:
-    return PurePosixPath(_bounded(str(PurePosixPath(*map(_of_path, parts)))))
+    return PurePosixPath(_bounded(str(PurePosixPath(*map(_require_path, parts)))))
 
 
 def _bounded(path: str) -> str:

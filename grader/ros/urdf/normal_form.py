@@ -125,8 +125,11 @@ class _Forms(NamedTuple):
         inertial = link.inertial
         mass: tuple[object, ...] = ()
         if inertial:
-            mass = (inertial.mass, inertial.inertia, *self._of_pose(inertial.origin))
-        shapes = _sorted(self._of_shapes(link.visuals)), _sorted(self._of_shapes(link.collisions))
+            mass = (inertial.mass, inertial.inertia, *self._normalise_pose(inertial.origin))
+        shapes = (
+            _sorted(self._normalise_shapes(link.visuals)),
+            _sorted(self._normalise_shapes(link.collisions)),
+        )
         return link.name if link.name in kept else "", *shapes, _rounded(mass)
 
     def of_joint(self, joint: Joint, kept: Collection[str]) -> object:
@@ -142,38 +145,40 @@ class _Forms(NamedTuple):
             joint.child,
             joint.name if joint.name in kept else "",
             kind,
-            self._of_pose(joint.origin) if joint.origin is not None else None,
-            self._of_axis(joint),
+            self._normalise_pose(joint.origin) if joint.origin is not None else None,
+            self._normalise_axis(joint),
             _rounded((limit.lower, limit.upper)) if limit is not None and kind in _LIMITED else (),
             _rounded((limit.effort, limit.velocity)) if limit is not None else (),
             _rounded(moving) if kind != "fixed" else (),
         )
 
-    def _of_shapes(self, shapes: tuple[Visual, ...] | tuple[Collision, ...]) -> Iterator[object]:
+    def _normalise_shapes(
+        self, shapes: tuple[Visual, ...] | tuple[Collision, ...]
+    ) -> Iterator[object]:
         for shape in shapes:
             if not is_empty(shape.geometry):
                 material = shape.material if isinstance(shape, Visual) else None
                 colour = (*material.rgba, material.texture) if material is not None else ()
-                position, rotation = self._of_pose(shape.origin, shape.geometry)
+                position, rotation = self._normalise_pose(shape.origin, shape.geometry)
                 yield position, _rounded(shape.geometry), rotation, colour
 
-    def _of_pose(
+    def _normalise_pose(
         self, origin: Origin, geometry: Geometry | None = None
     ) -> tuple[Any, tuple[float, ...]]:
         """Return a position and a rotation, without what the symmetry of a shape hides: a cylinder
         has a line.
         """
         pose = placed_by(IDENTITY, origin)
-        rotation = self._of_direction(pose.rotation)
+        rotation = self._normalise_direction(pose.rotation)
         match geometry:
             case Cylinder():
-                line = self._of_direction(pose.rotate(AXES[2]))
+                line = self._normalise_direction(pose.rotate(AXES[2]))
                 rotation = max(line, tuple(-value + 0.0 for value in line))  # either way
             case Sphere():
                 rotation = ()
         return _rounded(pose.translation), rotation
 
-    def _of_axis(self, joint: Joint) -> object:
+    def _normalise_axis(self, joint: Joint) -> object:
         """Return the direction of an axis; of one without a direction what the file gives, and
         nothing without use.
         """
@@ -181,10 +186,10 @@ class _Forms(NamedTuple):
             return ()
         axis = unit(joint.axis) if joint.axis is not None else None
         if axis is not None:
-            return self._of_direction(axis)
+            return self._normalise_direction(axis)
         return joint.axis
 
-    def _of_direction(self, values: tuple[float, ...]) -> tuple[float, ...]:
+    def _normalise_direction(self, values: tuple[float, ...]) -> tuple[float, ...]:
         return tuple(round(value, self.decimals) + 0.0 for value in values)
 
 

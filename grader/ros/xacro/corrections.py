@@ -75,7 +75,7 @@ class Corrections:
         if parameters:
             return _correction(parameters, location, is_of_element=True)
         if unknown is not None:
-            found = self._of_unknown(place, attribute, unknown)
+            found = self._correct_unknown(place, attribute, unknown)
             if found is not None:
                 return found
         ways: tuple[Callable[[Refusal], Edits], ...] = (
@@ -122,7 +122,7 @@ class Corrections:
         documents = [self._files.documents[path] for path in paths if path in self._files.documents]
         return [node for root in documents for node in root.elements if node.tag == tag]
 
-    def _of_unknown(
+    def _correct_unknown(
         self, place: ScopePlace, attribute: str | None, unknown: UnknownName
     ) -> XacroCorrection | None:
         location, of_element = place.at(attribute), unknown.kind != "property"
