@@ -120,7 +120,6 @@ CORRECTED = {
         "('share', package_name), glob('urdf",
         "('share', 'myrobot'), glob('urdf",
     ),
-    "a file, not a list": (SETUP, "glob('urdf/*')", "'urdf/my_robot.urdf'"),
     "slash missing": (LAUNCH, URDF_PATH, "share + 'my_robot.urdf'"),
     "path in the home folder": (
         LAUNCH,
