@@ -88,11 +88,10 @@ def main() -> None:
                 is_above = seconds - bare > row.times * SECONDS or megabytes > row.times * MEGABYTES
                 if not is_above:
                     break
-            print(
-                f"{seconds:6.2f} s {megabytes:5} MB  {row.name}{' ABOVE' * is_above * (row.times > 0)}",
-                flush=True,
-            )
-            code |= is_above and row.times > 0
+            is_too_slow = is_above and row.times > 0
+            mark = " ABOVE" if is_too_slow else ""
+            print(f"{seconds:6.2f} s {megabytes:5} MB  {row.name}{mark}", flush=True)
+            code |= is_too_slow
     sys.exit(code)
 
 
