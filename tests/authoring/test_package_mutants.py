@@ -7,7 +7,7 @@ import pytest
 from grader.files.tree import overlaid
 from grader.lab.authoring.mutants import Mutant, package_mutants
 from grader.lab.grading.deciding import decide
-from grader.lab.hints.edits import content
+from grader.lab.submission.edited import content
 from grader.lab.submission.submission import Submission
 from tests.authoring.robots import CHANGES
 from tests.samples import LAB6, reference

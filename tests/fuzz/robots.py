@@ -10,8 +10,8 @@ from lxml import etree
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.source import Source
-from grader.lab.hints.edits import edited
 from grader.lab.hints.xacro_edits import ExpandedEdits
+from grader.lab.submission.edited import edited
 from grader.report.formats import Format, InspectFormat, render_inspection
 from grader.report.inspection import Inspection, main_root
 from grader.report.screen import Screen

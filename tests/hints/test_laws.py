@@ -11,9 +11,9 @@ from grader.base.source import Edit
 from grader.lab.authoring.mutants import mutants
 from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Report
-from grader.lab.hints.edits import content
 from grader.lab.hints.hinting import fixed, hinted
 from grader.lab.rubric.rubric import Rubric
+from grader.lab.submission.edited import content
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
 from tests.hints.students import MISTAKES

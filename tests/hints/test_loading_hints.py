@@ -5,8 +5,9 @@ from random import Random
 
 import pytest
 
-from grader.lab.hints.edits import FoundHint, edited_files
+from grader.lab.hints.edits import FoundHint
 from grader.lab.hints.search import HintSearch
+from grader.lab.submission.edited import edited_files
 from grader.lab.submission.opening import read_submission
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read

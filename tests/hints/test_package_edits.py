@@ -5,8 +5,9 @@ from itertools import product
 import pytest
 
 from grader.lab.grading.grade import grade
-from grader.lab.hints.edits import Proposal, content, edited_files, with_files
+from grader.lab.hints.edits import Proposal
 from grader.lab.hints.package_edits import package_proposals
+from grader.lab.submission.edited import content, edited_files, with_files
 from grader.lab.submission.submission import Submission
 from tests.examples import spread
 from tests.samples import LAB6, SAMPLES, reference

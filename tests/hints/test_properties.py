@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from grader.lab.authoring.mutants import mutants
 from grader.lab.grading.report import Result
-from grader.lab.hints.edits import edited_files
+from grader.lab.submission.edited import edited_files
 from grader.lab.submission.opening import read_submission
 from tests.examples import examples
 from tests.hints.trials import BASES, applied, graded, search_for, with_edits

@@ -9,10 +9,11 @@ from typing import NamedTuple
 from grader.base.source import Edit
 from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Result
-from grader.lab.hints.edits import FoundHint, content, with_files
+from grader.lab.hints.edits import FoundHint
 from grader.lab.hints.robot_draft import Draft
 from grader.lab.hints.search import HintSearch, Trials
 from grader.lab.rubric.rubric import Rubric, load_rubric
+from grader.lab.submission.edited import content, with_files
 from grader.lab.submission.opening import read_submission
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read

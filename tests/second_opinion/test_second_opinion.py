@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.lab.hints.edits import content
+from grader.lab.submission.edited import content
 from grader.ros.package.robot_file import Read
 from tests.examples import spread
 from tests.samples import SAMPLES

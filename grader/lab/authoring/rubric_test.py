@@ -27,10 +27,10 @@ from grader.lab.checks.manual import MANUAL_CHECKS
 from grader.lab.grading.deciding import decide
 from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Report, Result
-from grader.lab.hints.edits import content, with_files, with_urdf
 from grader.lab.hints.search import is_worse
 from grader.lab.rubric.criterion import Criterion
 from grader.lab.rubric.rubric import Rubric, read_rubric
+from grader.lab.submission.edited import content, with_files, with_urdf
 from grader.lab.submission.opening import read_submission
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import MANIFEST

@@ -3,8 +3,7 @@ a submission.
 """
 
 import re
-from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from collections.abc import Mapping
 from decimal import Decimal
 from math import isclose
 from os.path import commonprefix
@@ -12,11 +11,6 @@ from typing import NamedTuple
 
 from grader.base import markup
 from grader.base.source import Certainty, Edit, Edits, Source
-from grader.files.reading import URDF_LIMIT
-from grader.files.tree import overlaid
-from grader.lab.submission.submission import Submission
-from grader.ros.package.robot_file import Read, read_as_ros
-from grader.ros.python.budget import Budget
 
 _SAME = 1e-3  # relative: -1.57 is -pi/2
 _PIECE = re.compile(r"(\s*)(\S+)")
@@ -172,79 +166,3 @@ def _merge_one(old: str, new: str) -> str:
             return old.lstrip("-")
         return f"-{old.lstrip('+')}"
     return new
-
-
-def edited(text: str, path: str, edits: Iterable[Edit]) -> str | None:
-    """Return the text of a file after edits; None if they overlap, or if the text is not what they
-    replace.
-    """
-    source = Source(path, text)
-    pieces: list[str] = []
-    position = 0
-    for start, edit in _offsets(source, edits):
-        if start < position or not text.startswith(edit.old, start):
-            return None
-        pieces += (text[position:start], edit.new)
-        position = start + len(edit.old)
-    return "".join((*pieces, text[position:]))
-
-
-def _offsets(source: Source, edits: Iterable[Edit]) -> list[tuple[int, Edit]]:
-    return sorted(
-        ((source.offset(edit.line, edit.column), edit) for edit in edits), key=lambda pair: pair[0]
-    )
-
-
-_Files = Mapping[
-    str, bytes | None
-]  # the new content of files by path; None for one that is no longer there
-
-
-def edited_files(submission: Submission, edits: Iterable[Edit]) -> _Files | None:
-    """Return the files of a submission that edits change; None where the edits do not fit."""
-    by_path: dict[str, list[Edit]] = {}
-    for edit in edits:
-        by_path.setdefault(edit.path, []).append(edit)
-    files: dict[str, bytes | None] = {}
-    for path, of_file in by_path.items():
-        before = content(submission, path)
-        text = (before or b"").decode("utf-8", "surrogateescape")
-        renamed = next((edit.renamed for edit in of_file if edit.renamed), "")
-        after = edited(text, path, [edit for edit in of_file if not edit.renamed])
-        if after is None:
-            return None
-        if renamed:
-            files[path] = None
-        files[renamed or path] = after.encode("utf-8", "surrogateescape")
-    return files
-
-
-def content(submission: Submission, path: str) -> bytes | None:
-    """Return the bytes of a file of a submission; None where it has none that can be read."""
-    if isinstance(submission.urdf, Read) and path == submission.urdf.path:
-        return submission.urdf.data
-    return submission.whole_tree.read(path, URDF_LIMIT)
-
-
-def with_urdf(submission: Submission, files: _Files) -> Submission:
-    """Return a submission with only the URDF read again: for edits of the URDF and of xacro that it
-    includes.
-    """
-    urdf = submission.urdf
-    assert isinstance(urdf, Read)
-    is_renamed = files.get(urdf.path, b"") is None
-    path = next((new for new, data in files.items() if data is not None and is_renamed), urdf.path)
-    if submission.whole_tree.files:
-        whole_tree = overlaid(submission.whole_tree, files)
-    else:
-        whole_tree = submission.whole_tree
-    surroundings = submission.surroundings(Budget(), whole_tree)
-    read = read_as_ros(files.get(path) or urdf.data, path, surroundings)
-    return replace(submission, urdf=read, whole_tree=whole_tree, budget=surroundings.budget)
-
-
-def with_files(submission: Submission, files: _Files) -> Submission:
-    """Return a submission that is read again from scratch with other files. Raises InputError."""
-    if submission.reopen is None:
-        return with_urdf(submission, files)
-    return submission.reopen(overlaid(submission.whole_tree, files))

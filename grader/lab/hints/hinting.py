@@ -13,11 +13,12 @@ from grader.base.text import counted, enumerated
 from grader.files.limits import ROBOT_ENDINGS
 from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Hint, Report, Result
-from grader.lab.hints.edits import FoundHint, content, edited_files, with_files
+from grader.lab.hints.edits import FoundHint
 from grader.lab.hints.robot_draft import Draft
 from grader.lab.hints.search import HintSearch, Trials, costs_of
 from grader.lab.rubric.hint_levels import HintLevel
 from grader.lab.rubric.rubric import ReferenceSolution
+from grader.lab.submission.edited import content, edited_files, with_files
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
 

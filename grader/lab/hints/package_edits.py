@@ -18,9 +18,10 @@ from grader.base.markup import indentation, indented
 from grader.base.merge_conflicts import find_conflicts
 from grader.base.names import closest
 from grader.base.source import Edit, Edits, Source
-from grader.lab.hints.edits import Proposal, edited
+from grader.lab.hints.edits import Proposal
 from grader.lab.hints.package_task import WHAT, PackageTask, change, file_proposals, package_names
 from grader.lab.hints.python_file import PythonFile, argument, called
+from grader.lab.submission.edited import edited
 from grader.ros.build.places import HOME, PREFIX, WORKING_FOLDER
 from grader.ros.launch.launch_model import Launch, NamedFile
 from grader.ros.package.package import SETUP, Package

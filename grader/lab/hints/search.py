@@ -19,11 +19,12 @@ from grader.files.limits import ROBOT_ENDINGS
 from grader.files.reading import URDF_LIMIT
 from grader.lab.grading.deciding import decide
 from grader.lab.grading.report import Result
-from grader.lab.hints.edits import FoundHint, Proposal, content, edited_files, with_files, with_urdf
+from grader.lab.hints.edits import FoundHint, Proposal
 from grader.lab.hints.generators import STAGES, Situation, Stage, leaves_others, missing_hints
 from grader.lab.hints.robot_difference import REFERENCE, STRUCTURE
 from grader.lab.hints.robot_draft import Draft, end_of
 from grader.lab.rubric.rubric import Rubric
+from grader.lab.submission.edited import content, edited_files, with_files, with_urdf
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
 
