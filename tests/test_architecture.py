@@ -28,7 +28,7 @@ LAYERS = (
     "__main__",
 )
 ROOMS = {
-    "base": ("errors markup merge_conflicts text reuse pairing", "source names", "problems"),
+    "base": ("errors markup merge_conflicts text reuse pairing", "source names", "problems slips"),
     "ros": (
         "known python xml",
         "xacro urdf build",

@@ -11,7 +11,7 @@ from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Result
 from grader.lab.hints.edits import FoundHint
 from grader.lab.hints.robot_draft import Draft
-from grader.lab.hints.search import HintSearch, Trials
+from grader.lab.hints.search import HintSearch, Trials, hints_on_slips, judged_results
 from grader.lab.rubric.rubric import Rubric, load_rubric
 from grader.lab.submission.edited import content, with_files
 from grader.lab.submission.opening import read_submission
@@ -67,10 +67,12 @@ def search_for(
     submission: Submission, results: Mapping[str, Result], rubric: Rubric = LAB6
 ) -> HintSearch:
     """Return the search for a submission with these results."""
+    report = grade(rubric, submission)
     search = HintSearch(
-        Trials(rubric, submission, results),
+        Trials(rubric, submission, judged_results(report)),
         reference_draft(rubric.id),
         lambda _: reference(rubric).package,
+        slips=hints_on_slips(report.meant),
     )
     return search.run() if _lost(results) else search
 

@@ -51,13 +51,15 @@ class About(NamedTuple):
     propose edits. `breaks_under` are the equivalents of a robot under which a criterion with such
     arguments may fail. `picture` is what a failure shows of the reference: the outline of the link
     or its frame; a `wheel` shows how it rolls. `function_for` returns what is called for such
-    arguments, where they decide what is examined.
+    arguments, where they decide what is examined. A check that `is_of_writing` judges the words as
+    they are written, not what a misspelt one surely stands for.
     """
 
     looks_at: tuple[str, ...] = ()
     breaks_under: _BreaksUnder = _breaks_under_none
     picture: Literal["", "outline", "wheel", "frame"] = ""
     function_for: Callable[[Mapping[str, Any]], Callable[..., Outcome]] | None = None
+    is_of_writing: bool = False
 
 
 # The arguments of checks that name links, or list their names.

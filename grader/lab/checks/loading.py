@@ -8,7 +8,7 @@ from grader.ros.urdf.reader import Reading
 from grader.ros.urdf.urdf_problems import RAW_XACRO
 from grader.ros.xml import xml_problems
 
-ABOUT = {"urdf_loads": About(("joint", "link"))}
+ABOUT = {"urdf_loads": About(("joint", "link"), is_of_writing=True)}
 
 _MAX_ASSUMED = 3  # that a message names
 _OF_XML = kinds_in(vars(xml_problems).values())

@@ -24,7 +24,11 @@ if TYPE_CHECKING:
     from grader.ros.xacro.inventory import Definitions, Inventory
 
 ABOUT = {
-    "xacro_uses": About(("xacro:property", "xacro:macro", "xacro:include"), breaks_under=everything)
+    "xacro_uses": About(
+        ("xacro:property", "xacro:macro", "xacro:include"),
+        breaks_under=everything,
+        is_of_writing=True,
+    )
 }
 
 

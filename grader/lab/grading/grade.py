@@ -16,11 +16,13 @@ from grader.lab.checks.manual import MANUAL_CHECKS, evidence_shown
 from grader.lab.checks.meshes import mesh_problems
 from grader.lab.grading.deciding import another_robot, decide
 from grader.lab.grading.report import EvidenceResult, Report, Result, without_gifts
+from grader.lab.grading.slips import decide_as_meant
 from grader.lab.rubric.criterion import Evidence
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.kinematics import Configuration
+from grader.ros.xml.xml_problems import RECOVERED
 
 if TYPE_CHECKING:
     from grader.lab.documents.evidence import EvidenceFile
@@ -57,7 +59,9 @@ def grade(
     chosen, notes = _choose_parts(rubric, submission, parts, is_whole=is_whole)
     another = another_robot(rubric, submission.robot)
     wanted = {criterion.id for criterion in rubric.criteria if criterion.part in chosen}
-    results = without_gifts(decide(rubric, submission, wanted), submission)
+    decided = decide_as_meant(rubric, submission, wanted)
+    meant = decided.meant
+    results = without_gifts(decided.results, submission)
     problems: tuple[Problem, ...] = ()
     if isinstance(submission.urdf, Read):
         problems = in_order(
@@ -70,11 +74,17 @@ def grade(
         from grader.ros.package.found_problems import package_problems
 
         problems += package_problems(submission.package)
+    if meant is not None:
+        assumed = [
+            Problem(RECOVERED, paid.slip.assumption, paid.slip.location) for paid in meant.paid
+        ]
+        problems = in_order((*problems, *assumed))
     evidence, other_pictures = _find_evidence(rubric, submission, chosen if is_whole else ())
     notes.append(_note_on_unread(submission, evidence))
     by_convention: frozenset[str] = frozenset()
     if is_explained:
-        note, by_convention = _explain_by_convention(rubric, submission, results)
+        robot_owner = submission if meant is None else meant.submission
+        note, by_convention = _explain_by_convention(rubric, robot_owner, results)
         notes.append(note)
     if (
         submission.is_costly
@@ -93,6 +103,7 @@ def grade(
         notes=tuple(filter(None, notes)),
         another_robot=another.mistake if another is not None else "",
         by_convention=by_convention,
+        meant=meant,
     )
 
 

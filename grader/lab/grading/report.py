@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader import __version__
 from grader.base.problems import Problem
+from grader.base.slips import Slip
 from grader.base.source import Certainty, Edits, Location
 from grader.base.text import printable
 from grader.lab.checks.manual import MANUAL_CHECKS
@@ -129,6 +130,23 @@ class Result(NamedTuple):
         )
 
 
+class PaidSlip(NamedTuple):
+    """A slip, and the criterion that loses its points for it."""
+
+    slip: Slip
+    payer: str
+
+
+class Meant(NamedTuple):
+    """A submission with the words that are meant, the results on it, and the slips that it
+    corrects.
+    """
+
+    submission: Submission
+    results: tuple[Result, ...]
+    paid: tuple[PaidSlip, ...]
+
+
 class EvidenceResult(NamedTuple):
     """A piece of evidence, the files that were found for it, and those that are perhaps meant."""
 
@@ -180,6 +198,7 @@ class Report(NamedTuple):
     by_convention: frozenset[str] = (
         frozenset()
     )  # the criteria that one decision on all frames costs; no hint is on one
+    meant: Meant | None = None  # what was judged where words are surely others
     hints_complete: bool = True  # whether the search for hints ended before its budget did
     version: str = __version__  # of the grader
     grade: Grade | None = None  # in a class, where a person or the late penalty changes the score

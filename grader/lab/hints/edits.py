@@ -30,8 +30,6 @@ class Proposal(NamedTuple):
     >>> found.edits
     (Edit(path='a.urdf', line=1, column=9, old='rpy="1.57 0 0"', new='rpy="-1.57 0 0"',
     renamed=''),)
-    >>> edited(source.text, source.path, found.edits)
-    '<origin rpy="-1.57 0 0"/>'
     """
 
     edits: Edits

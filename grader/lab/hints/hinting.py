@@ -15,7 +15,7 @@ from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Hint, Report, Result
 from grader.lab.hints.edits import FoundHint
 from grader.lab.hints.robot_draft import Draft
-from grader.lab.hints.search import HintSearch, Trials, costs_of
+from grader.lab.hints.search import HintSearch, Trials, costs_of, hints_on_slips, judged_results
 from grader.lab.rubric.hint_levels import HintLevel
 from grader.lab.rubric.rubric import ReferenceSolution
 from grader.lab.submission.edited import content, edited_files, with_files
@@ -62,23 +62,24 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
         return _HintedReport(report, (), [])
     results = {result.criterion.id: result for result in report.results}
     solution = report.rubric.solution
-    trials = Trials(report.rubric, submission, results)
-    search = HintSearch(
-        trials, _draft(solution), partial(_package, solution), report.by_convention
-    ).run()
+    trials = Trials(report.rubric, submission, judged_results(report))
+    reference = _draft(solution), partial(_package, solution)
+    slips = hints_on_slips(report.meant)
+    search = HintSearch(trials, *reference, report.by_convention, slips).run()
     costs = costs_of(results)
     # Of several hints with which a criterion passes, it shows the first.
     shown: dict[str, FoundHint] = {}
     for found in reversed(search.found):
         shown |= dict.fromkeys(found.gains, found)
-    entries = {found.edits: _entry(found, shown, results, costs) for found in search.found}
+    showing = [found for found in search.found if found.gains]
+    entries = {found.edits: _entry(found, shown, results, costs) for found in showing}
     hints: dict[str, Hint] = {}
     for name, found in {**search.missing, **shown}.items():
         with trials.isolated():
             entry = entries.get(found.edits, name)
             earlier: tuple[str, ...] = ()
             if found.is_late:
-                found_before = search.found[: search.found.index(found)]
+                found_before = showing[: showing.index(found)]
                 earlier = tuple(dict.fromkeys(entries[before.edits] for before in found_before))
             # A hint that is shown at a skipped criterion is not where a reader would look for it.
             named = [it for it in earlier if results[it].outcome.status == "failed"]

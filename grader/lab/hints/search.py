@@ -7,18 +7,20 @@ the `Fix`.
 """
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from decimal import Decimal
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.base.errors import InputError
+from grader.base.slips import Slip
 from grader.base.source import Certainty, Edits
+from grader.base.text import enumerated
 from grader.files.limits import ROBOT_ENDINGS
 from grader.files.reading import URDF_LIMIT
 from grader.lab.grading.deciding import decide
-from grader.lab.grading.report import Result
+from grader.lab.grading.report import Meant, Report, Result
 from grader.lab.hints.edits import FoundHint, Proposal
 from grader.lab.hints.generators import STAGES, Situation, Stage, leaves_others, missing_hints
 from grader.lab.hints.robot_difference import REFERENCE, STRUCTURE
@@ -38,6 +40,7 @@ _MAX_GRADINGS = 170  # of one submission that is as short as most
 _HARMFUL = ("rejects", "drops", "undetermined")
 _RESERVE = 20  # gradings for proofs
 _AROUND = " ,\r\n"  # of a text that is added
+_MAX_REACTIONS = 3
 _MAX_PARTS = 5  # edits of a hint of which each is tried without
 
 
@@ -220,6 +223,31 @@ def gains_of(before: _Results, after: _Results) -> dict[str, Decimal]:
     }
 
 
+def judged_results(report: Report) -> dict[str, Result]:
+    """Return the results that hints begin with: those on the words that are meant."""
+    results = report.results if report.meant is None else report.meant.results
+    return {result.criterion.id: result for result in results}
+
+
+def hints_on_slips(meant: Meant | None) -> list[FoundHint]:
+    """Return the hints that correct slips: each gives its criterion the points, unless that fails
+    all the same.
+    """
+    if meant is None:
+        return []
+    judged = {result.criterion.id: result for result in meant.results}
+    of_payers: dict[str, list[Slip]] = {}
+    for paid in meant.paid:
+        of_payers.setdefault(paid.payer, []).append(paid.slip)
+    hints = []
+    for payer, slips in of_payers.items():
+        edits = tuple(edit for slip in slips for edit in slip.edits)
+        cause = enumerated(list(dict.fromkeys(slip.reaction for slip in slips)), _MAX_REACTIONS)
+        gains = {} if judged[payer].is_lost else {payer: judged[payer].criterion.points}
+        hints.append(FoundHint(Proposal(edits, cause), gains))
+    return hints
+
+
 class _Tried(NamedTuple):
     """A proposal that was graded alone, after the edits so far."""
 
@@ -257,19 +285,24 @@ class HintSearch:
         reference: Draft | None,
         package: "Callable[[str], Package | None]" = lambda _: None,
         told: Collection[str] = (),
+        slips: Sequence[FoundHint] = (),
     ) -> None:
         """`reference` is the robot of the rubric's solution, `package` returns its package of a
         name.
 
-        No edit is searched for the criteria that are `told`.
+        No edit is searched for the criteria that are `told`. The results of the trials are those
+        with the edits of `slips`, which are found already.
         """
         self.trials = trials
         self._situation_of = partial(
             Situation, wanted=trials.rubric.links, reference=reference, package=package
         )
+        self.found: list[FoundHint] = [*slips]
+        self._slips = tuple(slips)
         self._situation = self._situation_of(trials.submission)
+        if slips:
+            self._situation = self._situation_after(self.edits)
         self._criteria = {criterion.id: criterion for criterion in trials.rubric.criteria}
-        self.found: list[FoundHint] = []
         self.missing: dict[
             str, FoundHint
         ] = {}  # by the criterion that shows that a part is missing, or two edits
@@ -316,7 +349,7 @@ class HintSearch:
     def _verify(self) -> None:
         """Take no hint back only if all together hold where the submission is read from scratch."""
         if self.found and not self.trials.graded(self.edits, self.results, whole=True):
-            self.found, self.results = [], self.trials.results
+            self.found, self.results = [*self._slips], self.trials.results
 
     @property
     def _lost(self) -> list[str]:
@@ -433,7 +466,8 @@ class HintSearch:
             edits, together, after = self._needed(edits, together, after)
         gains, is_late = together, False
         if self.found:
-            alone, _ = self._gains((), edits, self.trials.results)
+            corrected = tuple(edit for slip in self._slips for edit in slip.edits)
+            alone, _ = self._gains(corrected, edits, self.trials.results)
             is_late = wanted.isdisjoint(alone)
             gains = together if is_late else alone
         if gains.keys().isdisjoint(wanted):

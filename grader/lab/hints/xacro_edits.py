@@ -25,13 +25,13 @@ from grader.ros.xacro.corrections import (
     Refusal,
     negated,
     respellings,
-    tags_of,
     values_of_other_calls,
 )
 from grader.ros.xacro.expansion import ExpandedSource
 from grader.ros.xacro.scopes import Key, ScopePlace, XacroDefinition, XacroFails, XacroScope
 from grader.ros.xacro.texts import Texts
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
+from grader.ros.xml.edits import tag_edits
 
 _MAX_LENGTH = 2_000  # of a text that is edited in parts
 _MAX_NAMES, _MAX_NODES = 8, 2000
@@ -579,7 +579,7 @@ def _corrections(
     macros = {node.attributes.get("name", "") for node in nodes if node.tag == "xacro:macro"}
     for node in nodes:
         if node.tag in _PREFIXED or node.tag in macros:
-            edits = tuple(tags_of(node.place, node.tag, f"xacro:{node.tag}"))
+            edits = tag_edits(*node.place.written, node.tag, f"xacro:{node.tag}")
             yield Proposal(edits, f"<{node.tag}> without xacro:")
     named = [
         it

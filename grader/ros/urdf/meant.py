@@ -14,8 +14,9 @@ from grader.base.text import quoted
 from grader.ros.urdf.diagnostics import Problems
 from grader.ros.urdf.model import Robot
 from grader.ros.urdf.numbers import readable_numbers
+from grader.ros.urdf.words import meant_attribute, meant_tag, meant_value
 from grader.ros.xml.parsing import Element
-from grader.ros.xml.urdf_format import ATTRIBUTES, JOINT_TYPES, PARTS, REQUIRED, TAGS
+from grader.ros.xml.urdf_format import ATTRIBUTES, JOINT_TYPES, PARTS, REQUIRED
 
 # one undone word can reveal the next: that of a tag, then its attribute, then its value
 _MAX_ROUNDS = 5
@@ -69,7 +70,7 @@ def read_as_meant(
                 _misspelt_format(root),
                 _misspelt_references(root, robot),
                 _repeated_names(root),
-                _readable_vectors(root),
+                _readable_numbers(root),
                 _exchanged_ends(root, robot),
                 _pasted_children(root, robot),
             )
@@ -175,23 +176,35 @@ def _misspelt_ends(
             yield _word_with_value(end, "link", meant, "the link")
 
 
-def _readable_vectors(root: Element) -> Iterator[Word]:
-    """Yield vectors that ROS 2 cannot read although their numbers are clear."""
-    for element in root.iter("origin", "axis", "box", "mesh", "color"):
-        given = {str(name): str(value) for name, value in element.attrib.items()}
-        for name, text in given.items():
-            count = len(PARTS.get(name, ()))
-            if count > 1 and name in ATTRIBUTES[str(element.tag)]:
-                meant = readable_numbers(text, count)
-            else:
-                meant = None
-            if meant is None:
-                continue
-            changed = {**given, name: " ".join(meant[:count])}
-            if len(meant) > count and name == "xyz" and "rpy" not in given:
-                changed["rpy"] = " ".join(meant[count:])
-            sentence = f"{name} is read as {quoted(changed[name])}"
-            yield Word(element, name, str(element.tag), changed, sentence)
+def _readable_numbers(root: Element) -> Iterator[Word]:
+    """Yield numbers of joints that ROS 2 cannot read although they are clear: without them it
+    rejects the file.
+    """
+    for joint in root.iterchildren("joint"):
+        for element in joint:
+            tag = str(element.tag)
+            given = {str(name): str(value) for name, value in element.attrib.items()}
+            for name in given if tag in ATTRIBUTES else ():
+                changed = _with_numbers(tag, name, given)
+                if changed is not None:
+                    sentence = f"{name} is read as {quoted(changed[name])}"
+                    yield Word(element, name, tag, changed, sentence)
+
+
+def _with_numbers(tag: str, name: str, given: dict[str, str]) -> dict[str, str] | None:
+    """Return the attributes of an element, one of them with the numbers that are meant; None where
+    it can be read, or may be several.
+    """
+    count = len(PARTS.get(name, ()))
+    if not count or name not in ATTRIBUTES[tag]:
+        return None
+    pose = readable_numbers(given[name], count) if count > 1 else None
+    if pose is not None and len(pose) > count and name == "xyz" and "rpy" not in given:
+        return {**given, name: " ".join(pose[:count]), "rpy": " ".join(pose[count:])}
+    meant = meant_value(given[name], name)
+    if meant is None:
+        return None
+    return {**given, name: meant}
 
 
 def _exchanged_ends(root: Element, robot: Robot) -> Iterator[Word]:
@@ -280,10 +293,11 @@ def _misspelt_format(root: Element) -> Iterator[Word]:
 
 
 def _misspelt_tags(parent: Element, needed: Collection[str]) -> Iterator[Word]:
+    present = {str(child.tag) for child in parent}
     for child in parent:
         tag = str(child.tag)
-        meant = near(tag, needed) if tag not in TAGS and not tag.startswith("{") else None
-        if meant is not None and len(child.attrib) <= _MAX_ATTRIBUTES:
+        meant = meant_tag(tag, str(parent.tag), present)
+        if meant in needed and len(child.attrib) <= _MAX_ATTRIBUTES:
             yield Word(child, None, meant, dict(child.attrib), f"<{tag}> is read as <{meant}>")  # type: ignore[arg-type]
 
 
@@ -294,8 +308,8 @@ def _misspelt_attributes(element: Element) -> Iterator[Word]:
         return
     given = {str(name): str(value) for name, value in element.attrib.items()}
     for name in given:
-        meant = near(name, absent) if name not in ATTRIBUTES[tag] else None
-        if meant is not None:
+        meant = meant_attribute(name, tag, given)
+        if meant in absent:
             renamed = {meant if key == name else key: value for key, value in given.items()}
             yield Word(
                 element, name, tag, renamed, f"the attribute {name} of <{tag}> is read as {meant}"

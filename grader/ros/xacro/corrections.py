@@ -18,6 +18,7 @@ from grader.ros.xacro.scopes import ScopePlace, UnknownName, XacroFails
 from grader.ros.xacro.texts import TEXT_IN_QUOTES
 from grader.ros.xacro.xacro_files import Files, XmlFails
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
+from grader.ros.xml.edits import tag_edits
 
 _MAX_NODES = 2000
 _OF_WALK = 500  # what looking at all elements of a file is charged
@@ -139,11 +140,15 @@ class Corrections:
             return XacroCorrection(
                 moved[0], sentence, moved[1], is_of_element=True, problem=problem
             )
-        prefixed = [
-            tuple(tags_of(node.place, node.tag, f"xacro:{node.tag}"))
-            for node in self.nodes()
-            if node.tag == unknown.kind and node.attributes.get("name") == unknown.name
-        ]
+        definitions = []
+        included: Edits = ()
+        for node in self.nodes():
+            edits = tag_edits(*node.place.written, node.tag, f"xacro:{node.tag}")
+            if node.tag == unknown.kind and node.attributes.get("name") == unknown.name:
+                definitions.append(edits)
+            elif node.tag == "include" and "filename" in node.attributes:
+                included += edits
+        prefixed = definitions or ([included] if included else [])
         if len(prefixed) == 1:
             return _correction(prefixed[0], location, is_of_element=True)
         edits = self._quoted(place, attribute, unknown)
@@ -437,7 +442,7 @@ def _rename(place: ScopePlace, attribute: str | None, old: str, new: str) -> Edi
     """
     source, start = place.source.element(place.tag)
     if attribute is None:
-        tags = tuple(tags_of(place, f"xacro:{old}", f"xacro:{new}"))
+        tags = tag_edits(*place.written, f"xacro:{old}", f"xacro:{new}")
         if tags:
             return tags
     for found in markup.attributes(source.text, start):
@@ -448,14 +453,3 @@ def _rename(place: ScopePlace, attribute: str | None, old: str, new: str) -> Edi
         if attribute in (None, found.name) and changed != whole:
             return (source.edit(found.start, found.end, changed),)
     return ()
-
-
-def tags_of(place: ScopePlace, old: str, new: str) -> Iterator[Edit]:
-    """Yield the edits of a call's start tag, and of its end tag if it has one."""
-    source, start = place.source.element(place.tag)
-    if source.text[start : markup.name_end(source.text, start)] == f"<{old}":
-        yield source.edit(start, start + len(old) + 1, f"<{new}")
-        end = markup.element_end(source.text, start)
-        closing = re.search(rf"</{re.escape(old)}\s*>\Z", source.text[start:end])
-        if closing is not None:
-            yield source.edit(start + closing.start(), end, f"</{new}>")

@@ -90,12 +90,24 @@ def bind_values(
                 f"the macro {macro.name} has no parameter {name}; it has: "
                 f"{', '.join(known) or 'none'}"
             )
-            meant = near(name, known.keys() - call.attributes.keys())
+            absent = [it for it in macro.parameters if it.name not in call.attributes]
+            meant = near(name, [it.name for it in absent]) or _only_lacking(name, absent)
             raise MacroError(message, UnknownName(name, known, "parameter", meant))
         del left[first[name]]
         texts.check_name(name, macro.body.place, "params")
         texts.bind(inner, name, text, caller, call.place, name)
     return list(left.values())
+
+
+def _only_lacking(name: str, absent: list[_MacroParameter]) -> str | None:
+    """Return the one parameter that a call lacks, if a name differs from it in one letter: z for
+    y.
+    """
+    needed = [it.name for it in absent if it.default is None and not it.is_block]
+    if len(needed) != 1 or len(needed[0]) != len(name):
+        return None
+    differing = sum(one != other for one, other in zip(name, needed[0], strict=True))
+    return needed[0] if differing == 1 else None
 
 
 def bind_blocks(

@@ -29,6 +29,11 @@ class ScopePlace(NamedTuple):
     calls: "tuple[tuple[str, ScopePlace], ...] | None" = None
     scope: "XacroScope | None" = None
 
+    @property
+    def written(self) -> tuple[Source, int]:
+        """The text with the tag, and the offset of the tag in it."""
+        return self.source.element(self.tag)
+
     def at(self, attribute: str | None = None) -> Location:
         """Return the location of the tag, or of an attribute if it has it, with the macro calls."""
         location = self.source.tag(self.tag, attribute)

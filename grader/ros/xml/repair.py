@@ -39,7 +39,7 @@ _ATTRIBUTE = re.compile(
     (?<![\w:.-])([A-Za-z_][\w:.-]*+)\s*+=\s*+(?:
         "([^"]*)"? | '([^']*)'?    # link="base", or link="base at the end of the tag
       | [“”„‘’‚]([^“”„‘’‚]*)[“”„‘’‚]
-      | ([^\s"'“”„‘’‚=]+)           # link=base
+      | ([^\s"'“”„‘’‚=]++(?:\s++[-+.]*+\d[^\s"'“”„‘’‚=]*+)*+)    # link=base, size=1 2 0.5
     )
     """,
     re.VERBOSE,

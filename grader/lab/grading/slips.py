@@ -1,0 +1,207 @@
+"""Grade a submission as its words are meant: one criterion pays for each slip, and the others are
+judged on what the slip surely stands for.
+"""
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple, cast
+
+from grader.base.errors import InputError
+from grader.base.slips import Slip
+from grader.base.text import enumerated
+from grader.lab.checks.loading import urdf_loads
+from grader.lab.checks.outcome import Outcome
+from grader.lab.grading.deciding import decide
+from grader.lab.grading.report import Meant, PaidSlip, Result
+from grader.lab.rubric.rubric import Rubric
+from grader.lab.submission.edited import edited_files, with_files, with_urdf
+from grader.lab.submission.submission import Submission
+from grader.ros.package.robot_file import Read
+
+if TYPE_CHECKING:
+    from grader.ros.xacro.expansion import ExpandedSource
+
+_MAX_SLIPS = 12  # because each is graded without the others
+_MAX_NAMED = 3  # in a message
+
+_Results = Mapping[str, Result]
+
+
+class Decided(NamedTuple):
+    """The results of the criteria, and what they were judged on where a word is not the meant
+    one.
+    """
+
+    results: tuple[Result, ...]
+    meant: Meant | None = None
+
+
+def decide_as_meant(rubric: Rubric, submission: Submission, wanted: Collection[str]) -> Decided:
+    """Return the results of criteria in the rubric's order, each slip paid by one of them.
+
+    A slip in a file that ROS 2 loads counts only if no criterion fails with the meant word that
+    passes with the written one: what ROS 2 ignores without harm is a comment.
+    """
+    written = tuple(decide(rubric, submission, wanted))
+    if not any(result.is_lost or result.is_open for result in written):
+        return Decided(written)
+    slips = slips_of(submission)
+    if not slips or submission.is_costly:
+        return Decided(written)
+    return _Readings(rubric, submission, written).decided(slips[:_MAX_SLIPS])
+
+
+def slips_of(submission: Submission) -> list[Slip]:
+    """Return the slips in the files of a submission that may explain points that are not given."""
+    from grader.ros.urdf.robot_slips import robot_slips  # late: many submissions lose nothing
+
+    slips: list[Slip] = []
+    if isinstance(submission.urdf, Read):
+        reading = submission.urdf.reading
+        if reading.source.is_expanded:
+            from grader.ros.xacro.xacro_slips import xacro_slips
+
+            slips += xacro_slips(cast("ExpandedSource", reading.source))
+        slips += robot_slips(reading)
+    return slips
+
+
+class _Readings:
+    """The results of a submission with some of its slips corrected, each set of them once."""
+
+    def __init__(self, rubric: Rubric, submission: Submission, written: tuple[Result, ...]) -> None:
+        self._rubric, self._submission = rubric, submission
+        self._written = {result.criterion.id: result for result in written}
+        self._known: dict[tuple[Slip, ...], tuple[Submission, _Results]] = {
+            (): (submission, self._written)
+        }
+
+    def decided(self, slips: Sequence[Slip]) -> Decided:
+        """Return the results with those slips corrected that count."""
+        counting = self._readable(slips)
+        payers: dict[Slip, str] = {}
+        while counting and len(payers) < len(counting):
+            payers = {}
+            for slip in counting:
+                payer = self._payer(slip, counting)
+                if payer is None:
+                    counting = [other for other in counting if other is not slip]
+                    break
+                payers[slip] = payer
+        if not counting:
+            return Decided(tuple(self._written.values()))
+        submission, meant = self._read(counting)
+        paid_by: dict[str, list[Slip]] = {}
+        for slip, payer in payers.items():
+            paid_by.setdefault(payer, []).append(slip)
+        results = []
+        for name, result in meant.items():
+            if name in paid_by:
+                results.append(self._paid(name, paid_by[name], counting))
+            elif result.criterion.check.about.is_of_writing:
+                results.append(self._written[name])
+            else:
+                results.append(result)
+        paid = tuple(PaidSlip(slip, payer) for slip, payer in payers.items())
+        return Decided(tuple(results), Meant(submission, tuple(meant.values()), paid))
+
+    def _readable(self, slips: Sequence[Slip]) -> list[Slip]:
+        """Return the slips whose edits fit together."""
+        fitting: list[Slip] = []
+        for slip in slips:
+            edits = [edit for one in (*fitting, slip) for edit in one.edits]
+            if edited_files(self._submission, edits) is not None:
+                fitting.append(slip)
+        return fitting
+
+    def _read(self, slips: Sequence[Slip]) -> tuple[Submission, _Results]:
+        key = tuple(slips)
+        if key not in self._known:
+            submission = _corrected(self._submission, key)
+            results = decide(self._rubric, submission, self._written)
+            self._known[key] = submission, {result.criterion.id: result for result in results}
+        return self._known[key]
+
+    def _payer(self, slip: Slip, slips: Sequence[Slip]) -> str | None:
+        """Return the criterion that pays for a slip beside the others; None if it does not count:
+        it changes nothing, or a criterion fails with the word that is meant.
+        """
+        others = [other for other in slips if other is not slip]
+        before_submission, before = self._read(others)
+        after_submission, after = self._read(slips)
+        changed = []
+        for name, result in before.items():
+            if result.criterion.check.about.is_of_writing and not slip.is_refused:
+                continue
+            meant = after[name]
+            is_unpassed = meant.outcome.status != "passed" and not meant.carried
+            if result.outcome.status == "passed" and is_unpassed and not slip.is_refused:
+                return None
+            if (result.is_lost or result.is_open) and _is_changed(result, meant):
+                changed.append(result)
+        if _parts_of(before_submission) != _parts_of(after_submission):
+            for name, result in before.items():
+                if result.criterion.check.function is urdf_loads:
+                    return name
+        failed = [result for result in changed if result.outcome.status == "failed"]
+        return next((result.criterion.id for result in failed or changed), None)
+
+    def _paid(self, name: str, paid: Sequence[Slip], slips: Sequence[Slip]) -> Result:
+        """Return the failure of a criterion that pays for slips."""
+        others = [other for other in slips if other not in paid]
+        _, before = self._read(others)
+        _, after = self._read(slips)
+        outcome = before[name].outcome
+        reactions = enumerated(list(dict.fromkeys(slip.reaction for slip in paid)), _MAX_NAMED)
+        assumed = enumerated(
+            [f"{slip.assumption} (line {slip.location.line})" for slip in paid], _MAX_NAMED
+        )
+        mistake = outcome.mistake
+        if outcome.status == "failed":
+            message = outcome.message if outcome.problem else f"{reactions}: {outcome.message}"
+            mistake = mistake or outcome.message
+        else:
+            message = reactions
+        message += f". The rest is graded with this correction: {assumed}"
+        meant = after[name]
+        if meant.is_lost and meant.outcome.status == "failed":
+            message += f". Even so, {meant.outcome.message}"
+        location = paid[0].location
+        changed = Outcome(
+            "failed",
+            message,
+            outcome.measured,
+            outcome.expected,
+            outcome.tolerance,
+            outcome.unit,
+            location,
+            mistake=mistake or paid[0].reaction,
+            problem=outcome.problem or paid[0].reaction,
+        )
+        return Result(before[name].criterion, changed)
+
+
+def _corrected(submission: Submission, slips: Iterable[Slip]) -> Submission:
+    """Return a submission with the words that are meant."""
+    files = edited_files(submission, [edit for slip in slips for edit in slip.edits])
+    assert files is not None
+    urdf = submission.urdf
+    if isinstance(urdf, Read) and all(path.endswith((".urdf", ".xacro")) for path in files):
+        return with_urdf(submission, files)
+    try:
+        return with_files(submission, files)
+    except InputError:
+        return submission
+
+
+def _is_changed(before: Result, after: Result) -> bool:
+    """Return whether a criterion has another outcome, wherever it is."""
+    return (before.points, before.outcome[:6]) != (after.points, after.outcome[:6])
+
+
+def _parts_of(submission: Submission) -> tuple[frozenset[str], frozenset[str]]:
+    """Return the names of the links and joints of the robot."""
+    robot = submission.robot
+    if robot is None:
+        return frozenset(), frozenset()
+    links = frozenset(link.name for link in robot.links)
+    return links, frozenset(joint.name for joint in robot.joints)

@@ -1,0 +1,189 @@
+"""The slips of a URDF that ROS 2 loads all the same: it ignores a word, or drops the element."""
+
+import re
+from collections.abc import Iterator
+
+from grader.base import markup
+from grader.base.names import near
+from grader.base.problems import Problem
+from grader.base.slips import Slip
+from grader.base.source import Edits, Source
+from grader.base.text import cut, quoted
+from grader.ros.urdf import urdf_problems
+from grader.ros.urdf.reader import Reading
+from grader.ros.urdf.words import meant_attribute, meant_tag, meant_value
+from grader.ros.xml.edits import tag_edits
+from grader.ros.xml.parsing import Element
+from grader.ros.xml.urdf_format import ATTRIBUTES, CHILDREN
+
+_MAX_SLIPS = 20
+_MAX_ATTRIBUTES = 50  # of one element, because lxml searches each name from the first
+_MAX_SHOWN = 60  # characters of a value
+# The problems of which a slip may be the cause.
+_CAUSED = frozenset(
+    {
+        urdf_problems.MISSPELT,
+        urdf_problems.BAD_VISUAL,
+        urdf_problems.BAD_COLLISION,
+        urdf_problems.BAD_INERTIAL,
+        urdf_problems.BAD_COLOUR,
+        urdf_problems.COLOURLESS_MATERIAL,
+        urdf_problems.UNDEFINED_MATERIAL,
+    }
+)
+
+
+def robot_slips(reading: Reading) -> list[Slip]:
+    """Return the slips of a URDF in the order of its elements, each place once; nothing of one that
+    ROS 2 rejects for what cannot be read.
+    """
+    if not any(map(_may_be_slip, reading.problems)) or reading.elements is None:
+        return []
+    if reading.verdict == "rejected" and not reading.is_meant:
+        return []
+    slips: dict[Edits, Slip] = {}
+    for slip in _Slips(reading).found():
+        slips.setdefault(slip.edits, slip)
+        if len(slips) == _MAX_SLIPS:
+            break
+    return [*slips.values()]
+
+
+def _may_be_slip(problem: Problem) -> bool:
+    return problem.kind in _CAUSED
+
+
+class _Slips:
+    """The search for the slips of one URDF."""
+
+    def __init__(self, reading: Reading) -> None:
+        assert reading.elements is not None
+        self._root = reading.elements
+        self._source = reading.source
+        self._unresolved = reading.unresolved
+        self._undone = {word.element for word in reading.undone}
+        self._indices = {element: index for index, element in enumerate(self._root.iter())}
+
+    def found(self) -> Iterator[Slip]:
+        """Yield the slips in document order: those of an element, then those inside of it."""
+        waiting: list[tuple[Element, str]] = [(self._root, "robot")]
+        materials = self._material_slips()
+        while waiting:
+            element, tag = waiting.pop()
+            if element not in self._undone and element not in self._unresolved:
+                yield from self._attribute_slips(element, tag)
+            if element in materials:
+                yield materials[element]
+            inside: list[tuple[Element, str]] = []
+            present = {str(child.tag) for child in element}
+            for child in element:
+                written = str(child.tag)
+                meant = None
+                if child not in self._undone and child not in self._unresolved:
+                    meant = meant_tag(written, tag, present)
+                if meant is not None:
+                    present.add(meant)
+                    yield from self._tag_slip(child, written, meant, tag)
+                if meant is not None or written in CHILDREN.get(tag, ()):
+                    inside.append((child, meant or written))
+            waiting += reversed(inside)
+
+    def _place(self, element: Element) -> tuple[Source, int]:
+        """Return the text that an element was written in, and the offset of its start tag."""
+        return self._source.element(self._indices[element])
+
+    def _slip(
+        self,
+        element: Element,
+        edits: Edits,
+        reaction: str,
+        assumption: str,
+        attribute: str | None = None,
+    ) -> Slip:
+        location = self._source.tag(self._indices[element], attribute)
+        return Slip(edits, reaction, assumption, location._replace(calls=()))
+
+    def _tag_slip(self, element: Element, written: str, meant: str, parent: str) -> Iterator[Slip]:
+        source, start = self._place(element)
+        edits = tag_edits(source, start, written, meant)
+        if edits:
+            reaction = f"ROS 2 ignores <{written}> in <{parent}>"
+            yield self._slip(element, edits, reaction, f"<{written}> is read as <{meant}>")
+
+    def _attribute_slips(self, element: Element, tag: str) -> Iterator[Slip]:
+        if tag not in ATTRIBUTES or len(element.attrib) > _MAX_ATTRIBUTES:
+            return
+        values = {str(name): str(value) for name, value in element.attrib.items()}
+        for name, value in values.items():
+            meant = meant_attribute(name, tag, values) or name
+            meant_numbers = meant_value(value, meant) if meant in ATTRIBUTES[tag] else None
+            if meant != name or meant_numbers is not None:
+                yield from self._attribute_slip(element, tag, name, meant, meant_numbers)
+
+    def _attribute_slip(
+        self, element: Element, tag: str, name: str, meant: str, numbers: str | None
+    ) -> Iterator[Slip]:
+        """Yield the slip in the name of an attribute, in its value, or in both."""
+        source, start = self._place(element)
+        found = markup.attribute(source.text, start, name)
+        if found is None:
+            return
+        written = source.text[slice(*found.value)]
+        value = written if numbers is None else numbers
+        if numbers is not None and written != element.get(name):  # xacro makes the value of texts
+            value = _without_separators(written)
+        before = source.text[found.start + len(name) : found.value_start]
+        after = source.text[found.value_end : found.end]
+        edit = source.edit(found.start, found.end, f"{meant}{before}{value}{after}")
+        if edit.old == edit.new or "\n" in edit.old:
+            return
+        reaction = f"ROS 2 cannot read {name}={quoted(cut(written, _MAX_SHOWN))} of <{tag}>"
+        assumption = f"{meant} is read as {quoted(cut(value, _MAX_SHOWN))}"
+        if meant != name:
+            reaction = f"ROS 2 ignores the attribute {name} of <{tag}>"
+            is_read = value == written
+            read = meant if is_read else f"{meant}={quoted(cut(value, _MAX_SHOWN))}"
+            assumption = f"the attribute {name} of <{tag}> is read as {read}"
+        yield self._slip(element, (edit,), reaction, assumption, name)
+
+    def _material_slips(self) -> dict[Element, Slip]:
+        """Return the slip of each material whose name is misspelt: where it is used, or where
+        nothing uses it as it is defined.
+        """
+        definitions = {}
+        uses: dict[str, list[Element]] = {}
+        for element in self._root.iter("material"):
+            name = element.get("name") or ""
+            if len(element):
+                definitions[name] = element
+            elif element.getparent() is not self._root:
+                uses.setdefault(name, []).append(element)
+        slips: dict[Element, Slip] = {}
+        for name, elements in uses.items():
+            if not name or name in definitions:
+                continue
+            meant = near(name, definitions)
+            if meant is None:
+                continue
+            is_definition = meant not in uses and len(elements) > 1
+            misspelt = [definitions[meant]] if is_definition else elements
+            written, right = (meant, name) if is_definition else (name, meant)
+            for element in misspelt:
+                source, start = self._place(element)
+                found = markup.attribute(source.text, start, "name")
+                if found is not None and source.text[slice(*found.value)] == written:
+                    text = source.text[found.start : found.end].replace(written, right)
+                    edit = source.edit(found.start, found.end, text)
+                    reaction = f"there is no material {quoted(name)}"
+                    assumption = f"the material {quoted(written)} is read as {quoted(right)}"
+                    slips[element] = self._slip(element, (edit,), reaction, assumption, "name")
+        return slips
+
+
+def _without_separators(text: str) -> str:
+    """Return a value of xacro without the separators that are outside of its expressions."""
+    pieces = []
+    for piece in re.split(r"(\$\{[^}]*\})", text):
+        is_expression = piece.startswith("${")
+        pieces.append(piece if is_expression else re.sub("[,;]", " ", piece))
+    return "".join(pieces)

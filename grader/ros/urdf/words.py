@@ -1,0 +1,87 @@
+"""The words of a URDF that surely are meant where others are written: tags, attributes, numbers."""
+
+import re
+from collections.abc import Iterable, Mapping
+
+from grader.base.names import closest, near
+from grader.ros.urdf.numbers import NumberError, number, numbers, readable_numbers
+from grader.ros.xml.urdf_format import ATTRIBUTES, CHILDREN, OWNERS, PARTS, TAGS, numbers_in
+
+_MAX_LENGTH = 64  # characters of a value
+_SEPARATORS = re.compile(r"\s*[,;]\s*")
+_DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")
+_BRACKETS = re.compile(r"\s*[(\[{](.*)[)\]}]\s*")
+_LETTERS = str.maketrans("OoIl", "0011")
+_DIGIT_AND_LETTER = re.compile(r"(?=.*\d)[-+.\dOoIl]+(?:e[-+]?\d+)?")
+
+
+def meant_tag(tag: str, parent: str, present: set[str]) -> str | None:
+    """Return the child of `parent` that a tag surely stands for, which is not `present` yet; None
+    for a tag that is right, or that is of another tool.
+    """
+    if tag in TAGS or tag.startswith("{"):
+        return None
+    children = CHILDREN.get(parent, ())
+    if parent == "robot":  # it has many of each
+        return _surely_meant(tag, children)
+    if parent == "geometry" and not present.isdisjoint(children):  # it has one shape
+        return None
+    return _surely_meant(tag, [name for name in children if name not in present])
+
+
+def meant_attribute(name: str, tag: str, values: Mapping[str, str]) -> str | None:
+    """Return the attribute of `tag` that a name surely stands for, which is not among its `values`
+    yet.
+    """
+    if name in ATTRIBUTES[tag] or name.startswith("{"):
+        return None
+    absent = [other for other in TAGS[tag].attributes if other not in values]
+    alias = TAGS[tag].aliases.get(name)
+    if alias is not None:
+        return alias if alias in absent else None
+    if name in OWNERS:
+        # Another vector's name: the element has one attribute for a vector, as <axis> has xyz.
+        count = len(PARTS[name])
+        vectors = [other for other in TAGS[tag].attributes if len(PARTS[other]) == count]
+        is_of_vector = count > 1 and len(numbers_in(values[name])) == count
+        return vectors[0] if is_of_vector and vectors == absent else None
+    return _surely_meant(name, absent)
+
+
+def meant_value(text: str, attribute: str) -> str | None:
+    """Return the numbers that a value surely stands for; None for one that ROS 2 reads, or that
+    may be several.
+    """
+    count = len(PARTS.get(attribute, ()))
+    if not count or len(text) > _MAX_LENGTH or _is_read(text, count):
+        return None
+    bracketed = _BRACKETS.fullmatch(text)
+    inner = (bracketed[1] if bracketed is not None else text).strip()
+    words = [
+        word.translate(_LETTERS) if _DIGIT_AND_LETTER.fullmatch(word) else word
+        for word in re.split(r"([\s,;]+)", inner)
+    ]
+    plain = "".join(words)
+    decimal = _DECIMAL_COMMA.sub(".", plain)
+    ways = {plain, _SEPARATORS.sub(" ", plain).strip(), _SEPARATORS.sub(" ", decimal).strip()}
+    found = {way for way in ways if _is_read(way, count)}
+    if len(found) == 1:
+        return found.pop()
+    readable = readable_numbers(text, count) if not found else None
+    return " ".join(readable) if readable is not None and len(readable) == count else None
+
+
+def _is_read(text: str, count: int) -> bool:
+    try:
+        if count == 1:
+            number(text)
+            return True
+        return len(numbers(text)) == count
+    except NumberError:
+        return False
+
+
+def _surely_meant(name: str, known: Iterable[str]) -> str | None:
+    """Return the one of a few known words that another word surely stands for."""
+    known = [*known]
+    return near(name, known) or closest(name, known, is_clear=True)
