@@ -102,6 +102,11 @@ def capitalised(text: str) -> str:
     return text
 
 
+def sentence_end(text: str) -> str:
+    """Return a text with the point that ends a sentence, unless a question ends it."""
+    return text if text.endswith(("?", ".")) else f"{text}."
+
+
 def enumerated(
     items: Collection[str], most: int | None = None, word: str = "and", separator: str = ", "
 ) -> str:

@@ -1,7 +1,7 @@
 """The check of whether ROS 2 loads the URDF."""
 
 from grader.base.problems import Problem, kinds_in
-from grader.base.text import counted, enumerated
+from grader.base.text import counted, enumerated, sentence_end
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, passed, pending
 from grader.ros.urdf.reader import Reading
@@ -43,7 +43,7 @@ def urdf_loads(urdf: Reading) -> Outcome:
     message = f"{first.message}{others}"
     if assumed := _list_assumed(urdf):
         what = "The rest is graded with this correction" if urdf.is_meant else "Assumed"
-        message += f"{'' if message.endswith('?') else '.'} {what}: {assumed}"
+        message = f"{sentence_end(message)} {what}: {assumed}"
     outcome = failed(message, first.location, problem=first.message)
     return outcome._replace(mistake=f"{first.code}: {first.kind.title}")
 

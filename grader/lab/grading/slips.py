@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 
 from grader.base.errors import InputError
 from grader.base.slips import Slip
-from grader.base.text import enumerated
+from grader.base.text import enumerated, sentence_end
 from grader.lab.checks.loading import urdf_loads
-from grader.lab.checks.outcome import Outcome
 from grader.lab.grading.deciding import decide
 from grader.lab.grading.report import Meant, PaidSlip, Result
 from grader.lab.rubric.rubric import Rubric
@@ -62,6 +61,10 @@ def slips_of(submission: Submission) -> list[Slip]:
 
             slips += xacro_slips(cast("ExpandedSource", reading.source))
         slips += robot_slips(reading)
+    if submission.package is not None:
+        from grader.ros.package.package_slips import package_slips
+
+        slips += package_slips(submission.package)
     return slips
 
 
@@ -97,7 +100,7 @@ class _Readings:
         for name, result in meant.items():
             if name in paid_by:
                 results.append(self._paid(name, paid_by[name], counting))
-            elif result.criterion.check.about.is_of_writing:
+            elif result.criterion.check.about.is_of_writing and not self._written[name].is_open:
                 results.append(self._written[name])
             else:
                 results.append(result)
@@ -151,31 +154,27 @@ class _Readings:
         _, before = self._read(others)
         _, after = self._read(slips)
         outcome = before[name].outcome
-        reactions = enumerated(list(dict.fromkeys(slip.reaction for slip in paid)), _MAX_NAMED)
+        message = enumerated(list(dict.fromkeys(slip.reaction for slip in paid)), _MAX_NAMED)
+        mistake = outcome.mistake
+        if outcome.status == "failed":
+            mistake = mistake or outcome.message
+            is_explained = outcome.problem or any(slip.is_refused for slip in paid)
+            message = outcome.message if is_explained else f"{message}: {outcome.message}"
         assumed = enumerated(
             [f"{slip.assumption} (line {slip.location.line})" for slip in paid], _MAX_NAMED
         )
-        mistake = outcome.mistake
-        if outcome.status == "failed":
-            message = outcome.message if outcome.problem else f"{reactions}: {outcome.message}"
-            mistake = mistake or outcome.message
-        else:
-            message = reactions
-        message += f". The rest is graded with this correction: {assumed}"
+        message = f"{sentence_end(message)} The rest is graded with this correction: {assumed}"
         meant = after[name]
         if meant.is_lost and meant.outcome.status == "failed":
             message += f". Even so, {meant.outcome.message}"
-        location = paid[0].location
-        changed = Outcome(
-            "failed",
-            message,
-            outcome.measured,
-            outcome.expected,
-            outcome.tolerance,
-            outcome.unit,
-            location,
+        is_refused = outcome.status == "failed" and paid[0].is_refused
+        changed = outcome._replace(
+            status="failed",
+            message=message,
+            location=outcome.location if is_refused else paid[0].location,
             mistake=mistake or paid[0].reaction,
-            problem=outcome.problem or paid[0].reaction,
+            problem=outcome.problem if is_refused else outcome.problem or paid[0].reaction,
+            absent=(),
         )
         return Result(before[name].criterion, changed)
 

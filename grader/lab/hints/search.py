@@ -243,7 +243,8 @@ def hints_on_slips(meant: Meant | None) -> list[FoundHint]:
     for payer, slips in of_payers.items():
         edits = tuple(edit for slip in slips for edit in slip.edits)
         cause = enumerated(list(dict.fromkeys(slip.reaction for slip in slips)), _MAX_REACTIONS)
-        gains = {} if judged[payer].is_lost else {payer: judged[payer].criterion.points}
+        is_passed = judged[payer].outcome.status == "passed"
+        gains = {payer: judged[payer].criterion.points} if is_passed else {}
         hints.append(FoundHint(Proposal(edits, cause), gains))
     return hints
 

@@ -41,7 +41,9 @@ class Position(NamedTuple):
 START = Position(1, 1)
 
 
-def position_of(node: ast.expr | ast.stmt | ast.excepthandler) -> Position:
+def position_of(
+    node: ast.expr | ast.stmt | ast.excepthandler | ast.alias | ast.keyword,
+) -> Position:
     """Return the position of a node."""
     return Position(node.lineno, node.col_offset + 1)
 

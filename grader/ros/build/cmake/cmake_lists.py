@@ -17,7 +17,7 @@ from grader.ros.build.cmake.cmake_values import (
     split_list,
 )
 from grader.ros.build.cmake.conditions import Condition
-from grader.ros.build.cmake.language import CMakeFault, Command, parse_cmake
+from grader.ros.build.cmake.language import BLOCK_WORDS, CMakeFault, Command, parse_cmake
 from grader.ros.build.file_search import PackageListing
 from grader.ros.build.installation import Installation
 from grader.ros.known.known import cmake_table, cmake_words
@@ -278,3 +278,8 @@ _COMMANDS: dict[str, Callable[[_Evaluation, Command], None]] = {
     "find_package": _Evaluation.find_package,
     "file": _Evaluation.file_,
 }
+
+
+def known_commands() -> frozenset[str]:
+    """Return the names of the commands that are known of CMake and ament_cmake."""
+    return frozenset({*_COMMANDS, *BUILD_COMMANDS, *cmake_words("harmless"), *BLOCK_WORDS})

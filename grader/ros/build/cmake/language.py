@@ -23,6 +23,7 @@ _ENDS = {
     "macro": "endmacro",
     "block": "endblock",
 }
+BLOCK_WORDS = frozenset({*_ENDS, *_ENDS.values(), "elseif", "else"})
 
 
 class CMakeFault(Exception):

@@ -1,0 +1,123 @@
+"""The slips for which a YAML file cannot be read: a tab, a blank after a colon, a bracket or a
+quote.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+
+from grader.base.slips import Slip
+from grader.base.source import Edit, Location
+from grader.base.text import cut, quoted
+from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
+from grader.ros.config.yaml_values import PARAMETERS, is_misspelt_key
+
+_MAX_SLIPS = 5  # in one file
+_MAX_LENGTH = 1_000  # characters of a line
+_MAX_SHOWN = 60
+_MAX_DEPTH = 5  # of the keys of nodes
+_NO_BLANK = re.compile(r"(\s*(?:- )?[A-Za-z_][\w /.-]*):(?=[^\s:/])")
+_CLOSING = {"[": "]", "{": "}"}
+
+
+def yaml_slips(data: bytes, path: str) -> list[Slip]:
+    """Return what YAML refuses in a file, each with the change of one line after which it can be
+    read on; nothing where a line may mean several things.
+    """
+    text = data.decode("utf-8", "surrogateescape")
+    lines = [line.removesuffix("\r") for line in text.split("\n")]
+    slips: list[Slip] = []
+    fault = _fault(lines, path)
+    while isinstance(fault, YamlFault) and len(slips) < _MAX_SLIPS:
+        found = _meant(fault, lines, path)
+        if found is None:
+            return []
+        index, new = found
+        slips.append(_slip(fault, index, lines[index], new, path))
+        lines[index] = new
+        fault = _fault(lines, path)
+    if isinstance(fault, YamlFault):
+        return []
+    return [*slips, *_misspelt_keys(fault)]
+
+
+def _misspelt_keys(node: YamlNode, depth: int = 0) -> Iterator[Slip]:
+    """Yield the keys that surely stand for ros__parameters, which rcl refuses."""
+    for key, inner in node.pairs if depth < _MAX_DEPTH else ():
+        if is_misspelt_key(key, inner):
+            location = node.key_location(key)
+            edit = Edit(location.path, location.line, location.column, key, PARAMETERS)
+            reaction = f"rcl does not know the key {quoted(key)}"
+            assumption = f"{key} is read as {PARAMETERS}"
+            yield Slip((edit,), reaction, assumption, location, is_refused=True)
+        else:
+            yield from _misspelt_keys(inner, depth + 1)
+
+
+def _slip(fault: YamlFault, index: int, written: str, new: str, path: str) -> Slip:
+    shown = [quoted(cut(" ".join(text.split()), _MAX_SHOWN)) for text in (written, new)]
+    assumption = f"{shown[0]} is read as {shown[1]}"
+    if shown[0] == shown[1]:
+        assumption = "the tab before it is read as blanks"
+    edit = Edit(path, index + 1, 1, written, new)
+    location = Location(path, index + 1, 1)
+    return Slip((edit,), f"the file is no YAML: {fault}", assumption, location, is_refused=True)
+
+
+def _fault(lines: Sequence[str], path: str) -> YamlFault | YamlNode:
+    try:
+        return read_yaml("\n".join(lines).encode("utf-8", "surrogateescape"), path)
+    except YamlFault as fault:
+        return fault
+
+
+def _meant(fault: YamlFault, lines: list[str], path: str) -> tuple[int, str] | None:
+    """Return the line, and what it is read as, after which the file can be read, or read on."""
+    further: tuple[int, str] | None = None
+    complete: dict[object, tuple[int, str]] = {}  # by what the file is then
+    at = fault.location.line - 1
+    for index in range(max(at - 2, 0), min(at + 1, len(lines))):
+        for new in _changes(lines, index):
+            after = [*lines]
+            after[index] = new
+            found = _fault(after, path)
+            if isinstance(found, YamlNode):
+                complete.setdefault(_plain(found), (index, new))
+            elif found.location.line > fault.location.line:
+                further = further or (index, new)
+    if complete:
+        return next(iter(complete.values())) if len(complete) == 1 else None
+    return further
+
+
+def _plain(node: YamlNode) -> object:
+    """Return what a node holds, to compare it."""
+    if isinstance(node.value, str):
+        return node.value
+    if isinstance(node.value, list):
+        return tuple(_plain(item) for item in node.value)
+    return tuple((key, _plain(inner)) for key, inner in node.value.items())
+
+
+def _changes(lines: Sequence[str], index: int) -> Iterator[str]:
+    """Yield a line as it may be meant."""
+    line = lines[index]
+    if len(line) > _MAX_LENGTH or not line.strip():
+        return
+    content = line.lstrip()
+    indentation = line[: len(line) - len(content)]
+    if "\t" in indentation:
+        others = [*reversed(lines[:index]), *lines[index + 1 :]]
+        texts = [other for other in others if other.strip() and not other.startswith("\t")]
+        for other in texts[:2]:
+            yield other[: len(other) - len(other.lstrip())] + content
+    spaced = _NO_BLANK.sub(r"\1: ", line, count=1)
+    if spaced != line:
+        yield spaced
+    code, _, comment = line.partition(" #")
+    rest = f" #{comment}" if comment else ""
+    for opening, closing in _CLOSING.items():
+        if code.count(opening) > code.count(closing):
+            yield f"{code.rstrip()}{closing}{rest}"
+    for quote in "'\"":
+        if code.count(quote) % 2:
+            yield f"{code.rstrip()}{quote}{rest}"

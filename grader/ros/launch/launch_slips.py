@@ -1,0 +1,140 @@
+"""The slips in the names of a Python launch file: what it imports, calls and defines."""
+
+import ast
+import builtins
+from collections.abc import Iterator, Mapping
+
+from grader.base.names import closest, near
+from grader.base.slips import Slip
+from grader.ros.launch.api import class_named, exports
+from grader.ros.python.parse import Code, location_in, position_of
+
+_FUNCTION = "generate_launch_description"
+_GLOBAL = frozenset({*dir(builtins), "__file__", "__name__", "__doc__"})
+
+
+def launch_slips(code: Code) -> list[Slip]:
+    """Return the slips in names for which Python stops before it launches anything."""
+    return [*_LaunchNames(code).found()]
+
+
+def name_slips(code: Code) -> list[Slip]:
+    """Return the names that a Python file uses and does not define, each near one that it
+    defines.
+    """
+    return [*_LaunchNames(code).undefined()]
+
+
+class _LaunchNames:
+    """The names of one file."""
+
+    def __init__(self, code: Code) -> None:
+        self._code = code
+        self._nodes = [*ast.walk(code.tree)]
+        self._bound: set[str] = set()
+        self._classes: dict[str, str] = {}  # the full names of imported classes
+        self._renamed: dict[str, str] = {}  # what an import is read as
+        for node in self._nodes:
+            self._bind(node)
+
+    def _bind(self, node: ast.AST) -> None:
+        match node:
+            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
+                self._bound.add(name)
+            case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
+                self._bound.add(name)
+            case ast.ExceptHandler(name=str(name)):
+                self._bound.add(name)
+            case ast.ImportFrom(module=str(module), names=names):
+                for alias in names:
+                    name = alias.asname or alias.name
+                    self._bound.add(name)
+                    self._classes[name] = f"{module}.{alias.name}"
+            case ast.Import(names=names):
+                self._bound.update((alias.asname or alias.name).split(".")[0] for alias in names)
+
+    def found(self) -> Iterator[Slip]:
+        """Yield the slips in the order of the file, those of imports first."""
+        for node in self._nodes:
+            if isinstance(node, ast.ImportFrom):
+                known = exports().get(node.module or "")
+                if known is not None:
+                    yield from self._of_import(node, known)
+        yield from self._of_function()
+        yield from self.undefined()
+        for node in self._nodes:
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+                yield from self._of_arguments(node, node.func.id)
+
+    def _of_import(self, node: ast.ImportFrom, known: Mapping[str, str]) -> Iterator[Slip]:
+        for alias in node.names:
+            if alias.name in known or alias.name == "*":
+                continue
+            meant = _surely(alias.name, known)
+            if meant is None:
+                continue
+            if alias.asname is None:
+                self._renamed[alias.name] = meant
+                self._bound.discard(alias.name)
+                self._bound.add(meant)
+                self._classes[meant] = f"{node.module}.{meant}"
+            yield self._slip(alias, alias.name, meant, f"{node.module} has no {alias.name}")
+
+    def _of_function(self) -> Iterator[Slip]:
+        functions = [node for node in self._code.tree.body if isinstance(node, ast.FunctionDef)]
+        if any(node.name == _FUNCTION for node in functions):
+            return
+        for node in functions:
+            if near(node.name, [_FUNCTION]) is not None:
+                reaction = f"the launch file defines no {_FUNCTION}()"
+                yield self._slip(node, node.name, _FUNCTION, reaction)
+
+    def undefined(self) -> Iterator[Slip]:
+        """Yield the names that are used and not defined."""
+        if "*" in self._bound:
+            return
+        for node in self._nodes:
+            if not isinstance(node, ast.Name) or not isinstance(node.ctx, ast.Load):
+                continue
+            name = node.id
+            if name in self._bound or name in _GLOBAL:
+                continue
+            meant = self._renamed.get(name) or _surely(name, self._bound)
+            if meant is not None:
+                yield self._slip(node, name, meant, f"the name {name} is not defined")
+
+    def _of_arguments(self, call: ast.Call, function: str) -> Iterator[Slip]:
+        known = class_named(self._full_name(function))
+        if known is None:
+            return
+        given = {keyword.arg for keyword in call.keywords}
+        for keyword in call.keywords:
+            name = keyword.arg
+            if name is None or name in known.parameters:
+                continue
+            meant = _surely(name, known.parameters.keys() - given)
+            if meant is not None:
+                yield self._slip(keyword, name, meant, f"{function}() has no argument {name}")
+
+    def _full_name(self, function: str) -> str:
+        """Return the full name of an imported class, where it is defined."""
+        module, _, name = self._classes.get(function, "").rpartition(".")
+        return exports().get(module, {}).get(name, "")
+
+    def _slip(
+        self,
+        node: ast.alias | ast.expr | ast.keyword | ast.FunctionDef,
+        written: str,
+        meant: str,
+        reaction: str,
+    ) -> Slip:
+        source = self._code.source
+        at = location_in(source, position_of(node))
+        start = source.text.find(written, source.offset(at.line, at.column))
+        edit = source.edit(start, start + len(written), meant)
+        location = source.at(start)
+        return Slip((edit,), reaction, f"{written} is read as {meant}", location, is_refused=True)
+
+
+def _surely(name: str, known: "Mapping[str, object] | set[str]") -> str | None:
+    return near(name, known) or closest(name, known, is_clear=True)

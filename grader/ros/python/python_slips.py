@@ -1,0 +1,257 @@
+"""The slips for which Python cannot read a file: a comma, a colon, a bracket or a quote that is
+missing, a keyword that is misspelt.
+"""
+
+import ast
+import re
+from collections.abc import Callable, Iterator, Sequence
+from itertools import islice
+from keyword import kwlist
+from typing import NamedTuple
+
+from grader.base.names import closest, near
+from grader.base.slips import Slip
+from grader.base.source import Edit, Location
+from grader.base.text import cut, quoted
+from grader.ros.python.parse import Code, SyntaxFault, parse
+
+_MAX_SLIPS = 5  # in one file
+_MAX_LINES = 40  # over which a bracket is searched
+_MAX_LENGTH = 1_000  # characters of a line
+_MAX_TRIED = 50  # changes of one kind
+_MAX_SHOWN = 60
+_MAX_MOVED = 2  # columns of an indentation
+_CLOSING = {"(": ")", "[": "]", "{": "}"}
+_QUOTES = str.maketrans("“”„‘’‚´\N{NO-BREAK SPACE}", "\"\"\"'''' ")
+_TOKEN = re.compile(r"""[rRbBfFuU]*(?:"[^"\n]*"|'[^'\n]*')|\w+|[^\w\s]""")
+_OPENED = re.compile(r"'([(\[{])'(?: was never closed| on line (\d+)|$)")
+_TRAILING = re.compile(r"[\s,)\]}:]*$")
+_COMMENT = re.compile(r"""((?:[^#'"]|"[^"]*"|'[^']*')*?)(\s*(?:\#.*)?)$""")
+
+
+class _Change(NamedTuple):
+    """A line as it may be meant."""
+
+    line: int  # from 0
+    text: str
+
+
+def python_slips(data: bytes, path: str) -> list[Slip]:
+    """Return what Python refuses in a file, in the order in which it meets it, each with the change
+    of one line after which it reads on; nothing where a line may mean several things.
+    """
+    slips: list[Slip] = []
+    found = parse(data, path)
+    if not isinstance(found, SyntaxFault) or not found.is_certain:
+        return []
+    lines = found.source.text.split("\n")
+    while isinstance(found, SyntaxFault) and len(slips) < _MAX_SLIPS:
+        change = _meant(found, lines, path)
+        if change is None:
+            return []
+        slips.append(_slip(found, lines[change.line], change, path))
+        lines[change.line] = change.text
+        found = _parsed(lines, path)
+    if isinstance(found, SyntaxFault) or len({slip.location.line for slip in slips}) < len(slips):
+        return []
+    return slips
+
+
+def _slip(fault: SyntaxFault, written: str, change: _Change, path: str) -> Slip:
+    """Return the slip of a line."""
+    line = change.line + 1
+    assumption = (
+        f"{quoted(cut(written.strip(), _MAX_SHOWN))} is read as "
+        f"{quoted(cut(change.text.strip(), _MAX_SHOWN))}"
+    )
+    start = 0
+    while start < min(len(written), len(change.text)) and written[start] == change.text[start]:
+        start += 1
+    edit = Edit(path, line, 1, written, change.text)
+    reaction = f"Python cannot read the file: {fault.message}"
+    return Slip((edit,), reaction, assumption, Location(path, line, start + 1), is_refused=True)
+
+
+def _parsed(lines: Sequence[str], path: str) -> Code | SyntaxFault:
+    return parse("\n".join(lines).encode("utf-8", "surrogateescape"), path)
+
+
+def _meant(fault: SyntaxFault, lines: list[str], path: str) -> _Change | None:
+    """Return the change of a line after which Python reads the file, or at least reads on; None if
+    different ones do.
+    """
+    for way in _WAYS:
+        read: dict[str, _Change] = {}  # by what the file is then
+        for change in islice(way(fault, lines), _MAX_TRIED):
+            after = [*lines]
+            after[change.line] = change.text
+            found = _parsed(after, path)
+            if isinstance(found, Code):
+                read.setdefault(ast.dump(found.tree), change)
+            elif found.location.line > fault.location.line and found.message != fault.message:
+                read.setdefault("", change)
+        complete = [change for tree, change in read.items() if tree]
+        if len(complete) == 1:
+            return complete[0]
+        if complete:
+            return None
+        if read:
+            return read[""]
+    return None
+
+
+def _code_and_rest(line: str) -> tuple[str, str]:
+    """Return a line up to its comment, and the rest."""
+    found = _COMMENT.match(line)
+    if found is None or len(line) > _MAX_LENGTH:
+        return line, ""
+    return found[1], found[2]
+
+
+def _with_plain_quotes(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
+    index = fault.location.line - 1
+    plain = lines[index].translate(_QUOTES)
+    if plain != lines[index]:
+        yield _Change(index, plain)
+
+
+def _with_keyword(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
+    """Yield the line with a word as the keyword that it is near: improt, form, retrun."""
+    index = fault.location.line - 1
+    line = lines[index]
+    if len(line) > _MAX_LENGTH:
+        return
+    for found in re.finditer(r"(?<![\w.'\"])[A-Za-z]{2,}(?![\w.'\"])", line):
+        word = found[0]
+        meant = None
+        if word not in kwlist:
+            meant = near(word, kwlist) or closest(word, kwlist, is_clear=True)
+        if meant is not None:
+            yield _Change(index, line[: found.start()] + meant + line[found.end() :])
+
+
+def _with_quote(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
+    """Yield the line with the quote that ends its text, before what follows a text, or with the one
+    that begins it.
+    """
+    index, column = fault.location.line - 1, fault.location.column - 1
+    line = lines[index]
+    quote = line[column : column + 1]
+    if quote not in ("'", '"') or not fault.message.startswith("unterminated string"):
+        return
+    end = _TRAILING.search(line)
+    if end is not None and end.start() > column:
+        yield _Change(index, line[: end.start()] + quote + line[end.start() :])
+    word = re.search(r"[\w./*-]+$", line[:column][-_MAX_LENGTH:])
+    if word is not None:
+        start = column - len(word[0])
+        yield _Change(index, line[:start] + quote + line[start:])
+
+
+def _with_colon(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
+    index = fault.location.line - 1
+    code, rest = _code_and_rest(lines[index])
+    if re.match(r"\s*(?:def|class|if|elif|else|for|while|with|try|except|finally)\b", code):
+        if code.endswith((";", ",")):
+            code = code[:-1]
+        yield _Change(index, f"{code}:{rest}")
+
+
+def _with_comma(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
+    """Yield a comma at the end of the line or of the one before, or between two of its words; also
+    for a semicolon or a point.
+    """
+    index = fault.location.line - 1
+    for at in (index, index - 1):
+        if at < 0:
+            continue
+        code, rest = _code_and_rest(lines[at])
+        if code.strip() and not code.endswith((",", "(", "[", "{", ":")):
+            yield _Change(at, f"{code.rstrip(';.')},{rest}")
+    if fault.message.endswith("forgot a comma?"):
+        # The first of two expressions begins here, and may end in a later line.
+        for at, later in enumerate(lines[index + 1 : index + _MAX_LINES], index + 1):
+            code, rest = _code_and_rest(later)
+            if code.endswith((")", "]", "}")):
+                yield _Change(at, f"{code},{rest}")
+    line = lines[index]
+    if len(line) <= _MAX_LENGTH:
+        for found in _TOKEN.finditer(line, max(fault.location.column - 1, 0)):
+            after = line[found.end() :]
+            if after[:1] == " ":
+                yield _Change(index, f"{line[: found.end()]},{after}")
+
+
+def _with_bracket_in_line(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
+    """Yield the line without a bracket that is too much, with the one that another one needs before
+    it, or with one of its own doubled.
+    """
+    index, column = fault.location.line - 1, fault.location.column - 1
+    line = lines[index]
+    if fault.message.startswith("unmatched"):
+        yield _Change(index, line[:column] + line[column + 1 :])
+    mismatched = re.search(r"does not match opening parenthesis '([(\[{])'", fault.message)
+    if mismatched is not None:
+        yield _Change(index, line[:column] + _CLOSING[mismatched[1]] + line[column:])
+    for found in re.finditer(r"[)\]}]", line[:_MAX_LENGTH]):
+        yield _Change(index, line[: found.end()] + found[0] + line[found.end() :])
+
+
+def _with_bracket_at_end(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
+    """Yield a line with a bracket at its end: from the line where one is opened."""
+    index = fault.location.line - 1
+    first, last = max(index - 1, 0), index + 1
+    brackets = ")]}"
+    opened = _OPENED.search(fault.message)
+    if opened is not None:
+        brackets = _CLOSING[opened[1]]
+        first = int(opened[2]) - 1 if opened[2] else index
+        last = index + 1 if opened[2] else index + _MAX_LINES
+    for at in range(first, min(last, len(lines))):
+        code, rest = _code_and_rest(lines[at])
+        for bracket in brackets if code.strip() else ():
+            comma = "," if code.endswith(",") else ""
+            yield _Change(at, f"{code.removesuffix(',')}{bracket}{comma}{rest}")
+
+
+def _with_indentation(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
+    """Yield the line with the indentation of the lines before that is nearest to its own."""
+    index = fault.location.line - 1
+    if not fault.message.startswith(("unexpected indent", "unindent does not match")):
+        return
+    own = _indentation(lines[index])
+    others = {_indentation(line) for line in lines[:index] if line.strip()} | {""}
+    by_distance: dict[int, list[str]] = {}
+    for other in others:
+        by_distance.setdefault(abs(len(other) - len(own)), []).append(other)
+    nearest = by_distance[min(by_distance)]
+    if len(nearest) == 1 and min(by_distance) <= _MAX_MOVED:
+        yield _Change(index, nearest[0] + lines[index].lstrip())
+
+
+def _indentation(line: str) -> str:
+    return line[: len(line) - len(line.lstrip())]
+
+
+def _with_pair(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
+    """Yield a colon for the = of a dictionary, or for the one that lacks."""
+    index = fault.location.line - 1
+    line = lines[index]
+    if len(line) > _MAX_LENGTH:
+        return
+    for found in re.finditer(r"""(?:(['"])\s*=\s*|(?<=\{)(['"]\w+['"])\s+(?=\w))""", line):
+        key = found[1] or found[2]
+        yield _Change(index, f"{line[: found.start()]}{key}: {line[found.end() :]}")
+
+
+_WAYS: tuple[Callable[[SyntaxFault, list[str]], Iterator[_Change]], ...] = (
+    _with_plain_quotes,
+    _with_quote,
+    _with_colon,
+    _with_pair,
+    _with_comma,
+    _with_keyword,
+    _with_bracket_at_end,
+    _with_bracket_in_line,
+    _with_indentation,
+)
