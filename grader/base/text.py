@@ -12,6 +12,7 @@ from pathlib import Path
 _LINE_COMMAND = re.compile(r"^(\s*):(?=:)", re.MULTILINE)
 _TAG_COMMAND = re.compile(r"##(vso)?\[", re.IGNORECASE)
 _MAX_NAME = 60  # characters of a name that are shown
+_MAX_FILE_NAME = 100  # characters of a path that are shown, its last ones
 MAX_NAMED = 5  # names that a message lists, where nothing asks for more or fewer
 
 
@@ -70,6 +71,11 @@ def shell_quoted(path: Path | str) -> str:
     from shlex import quote  # late: most messages suggest no command
 
     return quote(printable_path(path))
+
+
+def quoted_end(path: str) -> str:
+    """Return a path between quotes; only the end of one that is very long."""
+    return repr(path if len(path) <= _MAX_FILE_NAME else f"...{path[3 - _MAX_FILE_NAME :]}")
 
 
 def quoted(name: str) -> str:

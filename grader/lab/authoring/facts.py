@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import enumerated
-from grader.lab.checks.meshes import mesh_file
 from grader.lab.checks.outcome import point
 from grader.lab.checks.visuals import MAX_SHAPES
 from grader.lab.submission.submission import Submission
+from grader.ros.package.mesh_files import mesh_file
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Collision, Cylinder, Joint, Limit, Link, Mesh, Sphere, Visual
 from grader.ros.urdf.reader import Reading

@@ -5,7 +5,7 @@ from math import hypot, inf
 
 from grader.base.errors import MissingElement, NotDecided, RubricError
 from grader.base.pairing import most_pairs
-from grader.base.text import counted
+from grader.base.text import counted, quoted_end
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -18,7 +18,7 @@ from grader.lab.checks.outcome import (
     point,
 )
 from grader.lab.checks.toml_types import NonNegative, RadiusAndLength, Size
-from grader.lab.checks.visuals import MAX_SHAPES, file_name, visuals
+from grader.lab.checks.visuals import MAX_SHAPES, visuals
 from grader.ros.urdf.kinematics import Configuration, placed_by
 from grader.ros.urdf.model import Box, Collision, Cylinder, Geometry, Mesh, Origin, Sphere, Visual
 from grader.ros.urdf.shapes import Shape, ShapeDifference, is_empty, mismatch, turn_between
@@ -203,7 +203,7 @@ def _judge_unmatched(
             if mesh.filename not in files:
                 cause = "mesh files are not opened"
                 message = (
-                    f"whether the collision mesh {file_name(mesh.filename)} of {link!r} has the "
+                    f"whether the collision mesh {quoted_end(mesh.filename)} of {link!r} has the "
                     f"shape that is shown cannot be determined: {cause}"
                 )
                 raise NotDecided(message, cause)
@@ -256,4 +256,4 @@ def _shape_text(geometry: Geometry) -> str:
             return f"a sphere of radius {point((radius,))} m"
         case mesh:
             scaled = "" if mesh.scale == Mesh("").scale else f" scaled by {point(mesh.scale)}"
-            return f"the mesh {file_name(mesh.filename)}{scaled}"
+            return f"the mesh {quoted_end(mesh.filename)}{scaled}"

@@ -13,7 +13,6 @@ from grader.ros.urdf.model import Box, Cylinder, Geometry, Joint, Mesh, Sphere, 
 from grader.ros.urdf.shapes import extent, is_empty, volume
 from grader.ros.urdf.transforms import Transform, Vector, unit
 
-_MAX_FILE_NAME = 100  # characters that a message shows
 MAX_SHAPES = 50  # of one link that are compared with each other
 VISIBLE = 0.01  # the smallest alpha of a colour that shows
 ShapeName = Literal["any", "box", "cylinder", "sphere"]
@@ -87,11 +86,6 @@ def span(
 def shape_name(geometry: Geometry) -> str:
     """Return the name of a shape: a box, a cylinder, a sphere, a mesh."""
     return f"a {type(geometry).__name__.lower()}"
-
-
-def file_name(name: str) -> str:
-    """Return the file name of a mesh between quotes; only the end of one that is very long."""
-    return repr(name if len(name) <= _MAX_FILE_NAME else f"...{name[3 - _MAX_FILE_NAME :]}")
 
 
 def origin_place(robot: Configuration, link: str) -> LazyLocation | None:

@@ -13,12 +13,12 @@ from grader.base.errors import InputError
 from grader.base.problems import Problem, in_order
 from grader.base.text import counted_points, enumerated
 from grader.lab.checks.manual import MANUAL_CHECKS, evidence_shown
-from grader.lab.checks.meshes import mesh_problems
 from grader.lab.grading.deciding import another_robot, decide
 from grader.lab.grading.report import EvidenceResult, Report, Result, without_gifts
 from grader.lab.rubric.criterion import Evidence
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.submission import Submission
+from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.kinematics import Configuration
 
@@ -60,9 +60,8 @@ def grade(
     results = without_gifts(decide(rubric, submission, wanted), submission)
     problems: tuple[Problem, ...] = ()
     if isinstance(submission.urdf, Read):
-        problems = in_order(
-            (*submission.urdf.problems, *mesh_problems(submission, submission.urdf))
-        )
+        meshes = mesh_problems(submission.urdf, submission.packages, submission.tree)
+        problems = in_order((*submission.urdf.problems, *meshes))
     if submission.package is not None and any(
         rubric.part(part).needs == "package" for part in chosen
     ):
