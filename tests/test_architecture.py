@@ -28,7 +28,11 @@ LAYERS = (
     "__main__",
 )
 ROOMS = {
-    "base": ("errors markup merge_conflicts text reuse pairing", "source names", "problems"),
+    "base": (
+        "errors markup merge_conflicts text reuse pairing transforms",
+        "source names",
+        "problems",
+    ),
     "ros": (
         "known python xml",
         "xacro urdf build",
@@ -83,7 +87,7 @@ LIBRARIES = {
     "ast": {"ros.python", "ros.build", "ros.launch", "ros.package", "lab.hints", "lab.authoring"},
     "docx": {"lab.documents"},
     "pypdf": {"lab.documents"},
-    "numpy": {"report", "ros.urdf"},
+    "numpy": {"report", "ros.urdf", "base.transforms"},
     "tomllib": {
         "lab.rubric",
         "app.bundle",

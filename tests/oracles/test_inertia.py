@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from grader.base.transforms import Transform, Vector, rotation_from_rpy
 from grader.ros.urdf.mass_properties import Tensor, uniform_solid
 from grader.ros.urdf.model import Box, Cylinder, Sphere
 from grader.ros.urdf.shapes import Shape, volume
-from grader.ros.urdf.transforms import Transform, Vector, rotation_from_rpy
 from tests.oracles.example_robots import MISSING
 
 pytestmark = pytest.mark.exhaustive

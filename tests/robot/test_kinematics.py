@@ -12,11 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.base.errors import MissingElement
-from grader.ros.urdf.joint_reader import MOVING_TYPES
-from grader.ros.urdf.kinematics import SINGLE, Configuration
-from grader.ros.urdf.model import Joint, Link, Mimic, Origin, Robot
-from grader.ros.urdf.reader import read_urdf
-from grader.ros.urdf.transforms import (
+from grader.base.transforms import (
     IDENTITY,
     Transform,
     Vector,
@@ -24,6 +20,10 @@ from grader.ros.urdf.transforms import (
     rotation_from_rpy,
     unit,
 )
+from grader.ros.urdf.joint_reader import MOVING_TYPES
+from grader.ros.urdf.kinematics import SINGLE, Configuration
+from grader.ros.urdf.model import Joint, Link, Mimic, Origin, Robot
+from grader.ros.urdf.reader import read_urdf
 from tests.examples import examples
 from tests.work import limited_work
 

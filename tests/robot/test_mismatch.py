@@ -6,15 +6,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.ros.urdf.model import Box, Cylinder, Sphere
-from grader.ros.urdf.shapes import Shape, mismatch, turn_between
-from grader.ros.urdf.transforms import (
+from grader.base.transforms import (
     IDENTITY,
     Transform,
     Vector,
     rotation_about,
     rotation_from_rpy,
 )
+from grader.ros.urdf.model import Box, Cylinder, Sphere
+from grader.ros.urdf.shapes import Shape, mismatch, turn_between
 
 TOLERANCE = 0.002
 BRICK, ROD, BALL = Box((0.6, 0.4, 0.2)), Cylinder(0.1, 0.5), Sphere(0.1)

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grader.base.transforms import IDENTITY, Transform, Vector, dot, rotation_from_rpy, unit
 from grader.ros.urdf.model import Box, Cylinder, Geometry, Mesh, Sphere
 from grader.ros.urdf.shapes import (
     Shape,
@@ -19,7 +20,6 @@ from grader.ros.urdf.shapes import (
     support,
     volume,
 )
-from grader.ros.urdf.transforms import IDENTITY, Transform, Vector, dot, rotation_from_rpy, unit
 
 _sizes = st.floats(-3, 1).map(lambda power: 10.0**power) | st.sampled_from((0.0, -0.3, 1.0))
 shapes = (

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import enumerated
+from grader.base.transforms import rotation_from_rpy
 from grader.lab.checks.outcome import point
 from grader.lab.checks.visuals import MAX_SHAPES
 from grader.lab.submission.submission import Submission
@@ -20,7 +21,6 @@ from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Collision, Cylinder, Joint, Limit, Link, Mesh, Sphere, Visual
 from grader.ros.urdf.reader import Reading
 from grader.ros.urdf.shapes import is_empty
-from grader.ros.urdf.transforms import rotation_from_rpy
 from grader.ros.workspace.reading import read_agreement
 from grader.ros.xml.elements import words_of_foreign
 from grader.ros.xml.parsing import Element

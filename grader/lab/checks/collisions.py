@@ -6,6 +6,7 @@ from math import hypot, inf
 from grader.base.errors import MissingElement, NotDecided, RubricError
 from grader.base.pairing import most_pairs
 from grader.base.text import counted, quoted_end
+from grader.base.transforms import IDENTITY, Vector, minus
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -22,7 +23,6 @@ from grader.lab.checks.visuals import MAX_SHAPES, visuals
 from grader.ros.urdf.kinematics import Configuration, placed_by
 from grader.ros.urdf.model import Box, Collision, Cylinder, Geometry, Mesh, Origin, Sphere, Visual
 from grader.ros.urdf.shapes import Shape, ShapeDifference, is_empty, mismatch, turn_between
-from grader.ros.urdf.transforms import IDENTITY, Vector, minus
 
 ABOUT = {
     "collision_matches_visual": About(("collision",)),

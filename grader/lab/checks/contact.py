@@ -4,6 +4,7 @@ from itertools import product
 from operator import itemgetter
 
 from grader.base.errors import NotDecided
+from grader.base.transforms import X_AXIS, Z_AXIS, Transform, Vector
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -21,7 +22,6 @@ from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Geometry, Mesh
 from grader.ros.urdf.overlap import penetration
 from grader.ros.urdf.shapes import UnknownShape, extent
-from grader.ros.urdf.transforms import X_AXIS, Z_AXIS, Transform, Vector
 
 ABOUT = dict.fromkeys(("stands_on", "clear_of"), About(picture="outline"))
 

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from grader.base.errors import MissingElement
 from grader.base.source import LazyLocation
 from grader.base.text import enumerated
+from grader.base.transforms import IDENTITY_ROTATION, Z_AXIS
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -28,7 +29,6 @@ from grader.lab.checks.visuals import (
 )
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.shapes import UnknownShape, extent, turn_between
-from grader.ros.urdf.transforms import IDENTITY_ROTATION, Z_AXIS
 
 ABOUT = {
     "bottom_at_height": About(("visual/origin",), picture="outline"),

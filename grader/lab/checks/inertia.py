@@ -7,6 +7,7 @@ from itertools import combinations, combinations_with_replacement
 from math import hypot, isfinite, nan
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.transforms import IDENTITY, Transform, minus
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, in_millimetres, judged, place, point, within
 from grader.lab.checks.toml_types import NonNegative
@@ -23,7 +24,6 @@ from grader.ros.urdf.mass_properties import (
 from grader.ros.urdf.model import INERTIA, Inertial, Mesh
 from grader.ros.urdf.overlap import penetration
 from grader.ros.urdf.shapes import Shape, UnknownShape, bounding_radius
-from grader.ros.urdf.transforms import IDENTITY, Transform, minus
 
 ABOUT = {
     "mass_is": About(("mass", "inertial")),

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.source import LazyLocation
 from grader.base.text import quoted, quoted_end
+from grader.base.transforms import Vector, rotation_from_rpy
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -28,7 +29,6 @@ from grader.ros.package.robot_file import Read
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Mesh, Visual
 from grader.ros.urdf.shapes import turn_between
-from grader.ros.urdf.transforms import Vector, rotation_from_rpy
 
 ABOUT = {"shows_mesh": About(("mesh", "visual"), picture="outline")}
 

@@ -5,6 +5,7 @@ from math import asin, degrees, hypot
 from typing import Literal
 
 from grader.base.errors import MissingElement
+from grader.base.transforms import Z_AXIS, Vector, cross, degrees_between, dot, minus, unit
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -20,7 +21,6 @@ from grader.lab.checks.visuals import axis_place, main_visual, visual_pose, visu
 from grader.ros.urdf.kinematics import Configuration, last_moving
 from grader.ros.urdf.model import Cylinder, Joint
 from grader.ros.urdf.shapes import extent, farthest, volume
-from grader.ros.urdf.transforms import Z_AXIS, Vector, cross, degrees_between, dot, minus, unit
 
 ABOUT = {
     "rolls_forward": About(picture="wheel"),

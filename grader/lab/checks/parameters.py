@@ -9,6 +9,7 @@ from typing import Any, Literal
 from grader.base.errors import MissingElement, NotDecided, RubricError
 from grader.base.names import did_you_mean
 from grader.base.text import enumerated, quoted
+from grader.base.transforms import Vector
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.checks.toml_types import Content, NonNegative, Scalar
 from grader.lab.checks.visuals import main_visual, visual_pose
@@ -19,7 +20,6 @@ from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Cylinder, Joint, Sphere
-from grader.ros.urdf.transforms import Vector
 
 _Measure = Literal["radius", "length", "distance", "lower", "upper", "velocity", "effort"]
 _EXACT = 1e-6

@@ -3,6 +3,7 @@
 from math import acos, degrees
 
 from grader.base.source import LazyLocation
+from grader.base.transforms import Z_AXIS, Vector, dot, minus, rotation_from_rpy, unit
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -19,7 +20,6 @@ from grader.lab.checks.visuals import ShapeName, main_visual, origin_place, visu
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Mesh, Visual
 from grader.ros.urdf.shapes import UnknownShape, turn_between
-from grader.ros.urdf.transforms import Z_AXIS, Vector, dot, minus, rotation_from_rpy, unit
 
 ABOUT = {
     "frame_at": About(("joint/origin",), picture="frame"),

@@ -10,6 +10,7 @@ from weakref import WeakKeyDictionary
 from grader.base.errors import MissingElement, NotDecided, RubricError
 from grader.base.names import did_you_mean
 from grader.base.text import counted, enumerated, quoted
+from grader.base.transforms import Transform
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -25,7 +26,6 @@ from grader.lab.checks.toml_types import Constraint, NonNegative
 from grader.ros.urdf.kinematics import SINGLE, Configuration
 from grader.ros.urdf.link_tree import selected_name
 from grader.ros.urdf.model import Joint, Robot
-from grader.ros.urdf.transforms import Transform
 
 
 def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:

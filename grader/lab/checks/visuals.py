@@ -7,11 +7,11 @@ from typing import Literal
 
 from grader.base.errors import MissingElement
 from grader.base.source import LazyLocation
+from grader.base.transforms import Transform, Vector, unit
 from grader.lab.checks.outcome import place, within
 from grader.ros.urdf.kinematics import Configuration, placed_by
 from grader.ros.urdf.model import Box, Cylinder, Geometry, Joint, Mesh, Sphere, Visual
 from grader.ros.urdf.shapes import extent, is_empty, volume
-from grader.ros.urdf.transforms import Transform, Vector, unit
 
 MAX_SHAPES = 50  # of one link that are compared with each other
 VISIBLE = 0.01  # the smallest alpha of a colour that shows

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from grader.base.errors import InputError, MissingElement, NotDecided
 from grader.base.text import counted, enumerated, quoted
+from grader.base.transforms import Z_AXIS, Transform, Vector
 from grader.lab.checks.motion import travel_of, turning_joint
 from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.criterion import Criterion
@@ -21,7 +22,6 @@ from grader.ros.urdf.kinematics import Configuration, placed_by
 from grader.ros.urdf.link_tree import selected_or_name, texts_in
 from grader.ros.urdf.model import Box, Cylinder, Link, Mesh, Sphere, Visual
 from grader.ros.urdf.shapes import Shape, UnknownShape, is_empty
-from grader.ros.urdf.transforms import Z_AXIS, Transform, Vector
 
 _Rgba = tuple[float, float, float, float]
 

@@ -11,10 +11,7 @@ from math import dist, hypot
 from typing import NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
-from grader.ros.urdf.kinematics import Configuration, placed_by
-from grader.ros.urdf.model import Joint, Link, Origin, Robot
-from grader.ros.urdf.shapes import turn_between
-from grader.ros.urdf.transforms import (
+from grader.base.transforms import (
     IDENTITY,
     IDENTITY_ROTATION,
     Rotation,
@@ -22,6 +19,9 @@ from grader.ros.urdf.transforms import (
     Vector,
     minus,
 )
+from grader.ros.urdf.kinematics import Configuration, placed_by
+from grader.ros.urdf.model import Joint, Link, Origin, Robot
+from grader.ros.urdf.shapes import turn_between
 
 _NEAR = 0.005  # metres
 _MIN_POINTS = 4

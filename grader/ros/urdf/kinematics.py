@@ -11,10 +11,7 @@ from typing import NamedTuple, overload
 
 from grader.base.errors import MissingElement
 from grader.base.text import quoted
-from grader.ros.urdf.joint_reader import MOVING_TYPES
-from grader.ros.urdf.link_tree import parent_joints
-from grader.ros.urdf.model import Joint, Link, Origin, Robot
-from grader.ros.urdf.transforms import (
+from grader.base.transforms import (
     IDENTITY,
     Transform,
     Vector,
@@ -22,6 +19,9 @@ from grader.ros.urdf.transforms import (
     rotation_from_rpy,
     unit,
 )
+from grader.ros.urdf.joint_reader import MOVING_TYPES
+from grader.ros.urdf.link_tree import parent_joints
+from grader.ros.urdf.model import Joint, Link, Origin, Robot
 
 SINGLE = ("revolute", "continuous", "prismatic")  # the types of joints that a position moves
 

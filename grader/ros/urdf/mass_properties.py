@@ -10,9 +10,9 @@ from collections.abc import Iterable
 from math import isfinite, nan
 from typing import NamedTuple
 
+from grader.base.transforms import Rotation, Transform, Vector, dot, minus
 from grader.ros.urdf.model import Box, Collision, Geometry, Mesh, Origin, Sphere, Visual
 from grader.ros.urdf.shapes import Shape, is_empty, volume
-from grader.ros.urdf.transforms import Rotation, Transform, Vector, dot, minus
 
 Tensor = tuple[
     float, float, float, float, float, float

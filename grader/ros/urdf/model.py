@@ -13,7 +13,7 @@ from grader.base.errors import MissingElement, NotDecided
 from grader.base.names import did_you_mean
 from grader.base.source import LazyLocation
 from grader.base.text import quoted
-from grader.ros.urdf.transforms import Vector
+from grader.base.transforms import Vector
 
 INERTIA = (
     "ixx",

@@ -13,6 +13,7 @@ from dataclasses import fields, is_dataclass
 from hashlib import sha256
 from typing import Any, NamedTuple
 
+from grader.base.transforms import AXES, IDENTITY, unit
 from grader.ros.urdf.kinematics import placed_by
 from grader.ros.urdf.model import (
     Collision,
@@ -28,7 +29,6 @@ from grader.ros.urdf.model import (
 )
 from grader.ros.urdf.reader import Reading
 from grader.ros.urdf.shapes import is_empty
-from grader.ros.urdf.transforms import AXES, IDENTITY, unit
 from grader.ros.xml.parsing import Element
 
 _MODEL = ("link", "joint", "material")

@@ -12,8 +12,8 @@ from math import acos, asin, degrees, hypot, inf, nan, pi
 from typing import NamedTuple
 
 from grader.base.text import quoted
+from grader.base.transforms import AXES, Rotation, Transform, Vector, dot, minus, unit
 from grader.ros.urdf.model import Box, Cylinder, Geometry, Mesh, Sphere
-from grader.ros.urdf.transforms import AXES, Rotation, Transform, Vector, dot, minus, unit
 
 Shape = Box | Cylinder | Sphere
 
