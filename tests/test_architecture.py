@@ -31,7 +31,7 @@ ROOMS = {
     "base": (
         "errors markup merge_conflicts text reuse pairing transforms",
         "source names",
-        "problems",
+        "problems element_edits",
     ),
     "ros": (
         "known python xml",

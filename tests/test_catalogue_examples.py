@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from grader.base.problems import Problem
 from grader.lab.checks.manual import MANUAL_CHECKS
 from grader.lab.checks.registry import own_checks
 from grader.lab.grading.grade import grade
@@ -156,7 +157,7 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(code: str, tmp_pa
     for side in ("wrong", "right"):
         files, lines = files_of(code, side)
         submission = opened(tmp_path / side, files)
-        found = []
+        found: list[Problem] = []
         if isinstance(submission.urdf, Read):
             found += submission.urdf.problems
             found += mesh_problems(submission.urdf, submission.packages, submission.tree)

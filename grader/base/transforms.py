@@ -6,7 +6,7 @@ At 4 x 4 a product of Python floats costs no more than a numpy call, and saves t
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import atan2, cos, degrees, hypot, inf, nan, sin
+from math import acos, atan2, cos, degrees, hypot, inf, nan, sin
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -167,6 +167,14 @@ def rotation_about(axis: Vector, angle: float) -> Rotation:
         t * y * z + s * x,
         t * z * z + c,
     )
+
+
+def turn_between(one: Rotation, other: Rotation) -> float:
+    """Return the angle in degrees of the rotation from one to the other."""
+    trace = sum(
+        a * b for a, b in zip(one, other, strict=True)
+    )  # of that rotation: 1 + 2 cos(angle)
+    return degrees(acos(max(-1.0, min(1.0, (trace - 1.0) / 2.0))))
 
 
 def unit(vector: Vector) -> Vector | None:

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
+from grader.base.element_edits import edited
 from grader.base.errors import InputError
 from grader.base.source import Edit
 from grader.files.tree import Tree, overlaid
-from grader.lab.hints.edits import edited
 from grader.lab.hints.search import HintSearch, Trials
 from grader.lab.submission.opening import read_submission
 from grader.lab.submission.submission import Submission

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from grader.base.transforms import IDENTITY, Transform, Vector, dot, minus, rotation_from_rpy
 from grader.ros.urdf.model import Box, Cylinder, Mesh, Sphere
 from grader.ros.urdf.overlap import least_overlap, penetration
-from grader.ros.urdf.shapes import Shape, UnknownShape, extent
+from grader.ros.urdf.shapes import PlacedShape, Shape, UnknownShape
 from tests.examples import examples
 
 slow = settings(deadline=None)  # the first depth of two tilted cylinders imports numpy
@@ -71,7 +71,7 @@ def distance_along(
     a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, direction: Vector
 ) -> float:
     """Return how far b starts beyond the end of a along a direction; negative if they overlap."""
-    return extent(b, T_w_b, direction)[0] - extent(a, T_w_a, direction)[1]
+    return PlacedShape(b, T_w_b).extent(direction)[0] - PlacedShape(a, T_w_a).extent(direction)[1]
 
 
 @pytest.mark.parametrize(
@@ -371,7 +371,7 @@ def test_coal_agrees(oracle: Oracle, first: type[Shape], second: type[Shape]) ->
             *(
                 high - low
                 for shape in (a, b)
-                for low, high in [extent(shape, IDENTITY, DIRECTIONS[0])]
+                for low, high in [PlacedShape(shape, IDENTITY).extent(DIRECTIONS[0])]
             )
         )
         pair = (a, random_pose(rng, 0.1), b, random_pose(rng, size))

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.source import LazyLocation
 from grader.base.text import quoted, quoted_end
-from grader.base.transforms import Vector, rotation_from_rpy
+from grader.base.transforms import Vector, rotation_from_rpy, turn_between
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -22,13 +22,12 @@ from grader.lab.checks.outcome import (
     place,
 )
 from grader.lab.checks.toml_types import NonNegative
-from grader.lab.checks.visuals import shape_name, visual_pose, visuals
+from grader.lab.checks.visuals import placed, shape_name, visuals
 from grader.lab.submission.submission import Submission
 from grader.ros.package.mesh_files import MeshFile, mesh_file
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Mesh, Visual
-from grader.ros.urdf.shapes import turn_between
 
 ABOUT = {"shows_mesh": About(("mesh", "visual"), picture="outline")}
 
@@ -191,13 +190,13 @@ def _pose_differences(
         )
     if wanted.xyz is None and wanted.rpy is None:
         return
-    pose = visual_pose(robot, it.link, it.visual, wanted.frame)
+    pose = placed(robot, it.link, it.visual, wanted.frame).pose
     origin = it.visual.origin.location
     if wanted.xyz is not None:
         what = f"the mesh of {it.link!r}"
-        placed = measured_point(what, pose.translation, wanted.xyz, wanted.tolerance, wanted.frame)
-        if placed.status == "failed":
-            yield placed.message, place(origin, "xyz") or place(it.visual.location)
+        outcome = measured_point(what, pose.translation, wanted.xyz, wanted.tolerance, wanted.frame)
+        if outcome.status == "failed":
+            yield outcome.message, place(origin, "xyz") or place(it.visual.location)
     if wanted.rpy is not None:
         angle = turn_between(pose.rotation, rotation_from_rpy(wanted.rpy))
         if not angle <= _ANGLE + SLACK:

@@ -12,7 +12,7 @@ from grader.base.text import enumerated, quoted
 from grader.base.transforms import Vector
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.checks.toml_types import Content, NonNegative, Scalar
-from grader.lab.checks.visuals import main_visual, visual_pose
+from grader.lab.checks.visuals import main_visual, placed
 from grader.lab.submission.submission import Submission
 from grader.ros.launch.launch_model import ParameterValue
 from grader.ros.launch.node_parameters import value_in_file
@@ -230,7 +230,7 @@ def _place(robot: Configuration, link: str, relative_to: str) -> Vector:
     if joint is not None and joint.type == "continuous" and robot.robot.link(link).visuals:
         visual = main_visual(robot, link)
         if isinstance(visual.geometry, Cylinder | Sphere):
-            return visual_pose(robot, link, visual, relative_to).translation
+            return placed(robot, link, visual, relative_to).pose.translation
     return robot.pose(link, relative_to=relative_to).translation
 
 

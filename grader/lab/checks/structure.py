@@ -16,7 +16,6 @@ from grader.lab.checks.visuals import visible
 from grader.ros.urdf.joint_reader import MOVING_TYPES
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Joint
-from grader.ros.urdf.shapes import is_empty
 from grader.ros.xml.urdf_format import JOINT_TYPES, JointType
 
 
@@ -239,7 +238,7 @@ def _joint_above_root(
 def _is_of_frame(robot: Configuration, joint: Joint, links: Collection[str]) -> bool:
     if joint.type != "fixed" or joint.parent in links or visible(robot, joint.parent):
         return False
-    return all(is_empty(collision.geometry) for collision in robot.link(joint.parent).collisions)
+    return all(collision.geometry.is_empty for collision in robot.link(joint.parent).collisions)
 
 
 def _driven_or_blocked(joint: Joint, link: str) -> Outcome | None:

@@ -14,11 +14,12 @@ from itertools import islice, product
 from keyword import kwlist
 from typing import Any
 
+from grader.base.element_edits import edited
 from grader.base.markup import indentation, indented
 from grader.base.merge_conflicts import find_conflicts
 from grader.base.names import closest
 from grader.base.source import Edit, Edits, Source
-from grader.lab.hints.edits import Proposal, edited
+from grader.lab.hints.edits import Proposal
 from grader.lab.hints.package_task import WHAT, PackageTask, change, file_proposals, package_names
 from grader.lab.hints.python_file import PythonFile, argument, called
 from grader.ros.build.places import HOME, PREFIX, WORKING_FOLDER

@@ -6,9 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, cast
 
 from grader.base import markup
-from grader.base.source import Edit, Edits, Source
-from grader.lab.hints.edits import (
-    Proposal,
+from grader.base.element_edits import (
     element_text,
     merged,
     with_attribute,
@@ -16,6 +14,8 @@ from grader.lab.hints.edits import (
     with_element,
     without_element,
 )
+from grader.base.source import Edit, Edits, Source
+from grader.lab.hints.edits import Proposal
 from grader.lab.hints.robot_numbers import values_of
 from grader.ros.urdf.link_tree import parent_joints
 from grader.ros.urdf.model import Joint, Robot
@@ -24,8 +24,8 @@ from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import PARTS
 
 if TYPE_CHECKING:
-    from grader.lab.hints.xacro_edits import ExpandedEdits, NumberDefinition
     from grader.ros.xacro.expansion import ExpandedSource
+    from grader.ros.xacro.rewriting import ExpandedEdits, NumberDefinition
 
 
 _ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
@@ -175,7 +175,7 @@ class Draft:
         """
         if not self.source.is_expanded:
             return None
-        from grader.lab.hints.xacro_edits import ExpandedEdits  # late: most robots are not xacro
+        from grader.ros.xacro.rewriting import ExpandedEdits  # late: most robots are not xacro
 
         return ExpandedEdits(cast("ExpandedSource", self.source))
 
@@ -187,7 +187,7 @@ class Draft:
     def corrections(self, names: Sequence[str]) -> list[Proposal]:
         """Return edits that may correct what xacro refuses; `names` are those that may be meant."""
         if self._expanded is not None:
-            return self._expanded.corrections(names)
+            return [Proposal(*it) for it in self._expanded.corrections(names)]
         return []
 
     def numbers(self, element: Element, attribute: str) -> "list[NumberDefinition]":

@@ -18,10 +18,10 @@ from grader.lab.checks.motion import travel_of, turning_joint
 from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.criterion import Criterion
 from grader.lab.rubric.rubric import Rubric
-from grader.ros.urdf.kinematics import Configuration, placed_by
+from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import selected_or_name, texts_in
 from grader.ros.urdf.model import Box, Cylinder, Link, Mesh, Sphere, Visual
-from grader.ros.urdf.shapes import Shape, UnknownShape, is_empty
+from grader.ros.urdf.shapes import Shape, UnknownShape
 
 _Rgba = tuple[float, float, float, float]
 
@@ -152,8 +152,8 @@ def _body(link: str, visual: Visual, pose: Transform) -> Body | str:
             sizes, drawn = (radius, length, 0.0), Cylinder(abs(radius), abs(length))
         case Sphere(radius=radius):
             sizes, drawn = (radius, 0.0, 0.0), Sphere(abs(radius))
-    place = placed_by(Transform(), visual.origin)
-    if is_empty(visual.geometry) or not _is_drawable(sizes) or not _is_drawable(place.translation):
+    place = visual.origin.placed_in()
+    if visual.geometry.is_empty or not _is_drawable(sizes) or not _is_drawable(place.translation):
         return _UNKNOWN
     rgba = visual.material.rgba if visual.material is not None else _WITHOUT_MATERIAL
     red, green, blue, alpha = map(_channel, rgba)

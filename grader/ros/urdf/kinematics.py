@@ -16,12 +16,11 @@ from grader.base.transforms import (
     Transform,
     Vector,
     rotation_about,
-    rotation_from_rpy,
     unit,
 )
 from grader.ros.urdf.joint_reader import MOVING_TYPES
 from grader.ros.urdf.link_tree import parent_joints
-from grader.ros.urdf.model import Joint, Link, Origin, Robot
+from grader.ros.urdf.model import Joint, Link, Robot
 
 SINGLE = ("revolute", "continuous", "prismatic")  # the types of joints that a position moves
 
@@ -85,7 +84,7 @@ class _Frames:
         for joint in reversed(joints.values()):
             motion, pose = _motion_of(joint, self.position(joint)), None
             if joint.origin is not None and motion is not None:
-                pose = placed_by(frame.pose, joint.origin)
+                pose = joint.origin.placed_in(frame.pose)
                 pose = pose if motion is IDENTITY else pose @ motion
             if pose is not None and isfinite(sum(pose.translation)):
                 frame = _Frame(frame.root, frame.group, pose, frame.depth)
@@ -164,13 +163,6 @@ def _mimic_leaders(joint: Joint, robot: Robot) -> Iterable[Joint]:
         joint = robot.joint(name)
         chain[joint.name] = joint
     return chain.values()
-
-
-def placed_by(T_frame_parent: Transform, origin: Origin) -> Transform:
-    """Return T_frame_child: the frame that an origin places in its parent."""
-    if origin.rpy == (0.0, 0.0, 0.0):
-        return Transform(T_frame_parent.rotation, T_frame_parent.apply(origin.xyz))
-    return T_frame_parent @ Transform(rotation_from_rpy(origin.rpy), origin.xyz)
 
 
 def _motion_of(joint: Joint, position: float) -> Transform | None:

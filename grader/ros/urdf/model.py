@@ -7,13 +7,14 @@ file gives but that cannot be read; a value that the file does not give has ROS 
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from math import pi
 from typing import NamedTuple, NoReturn
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.names import did_you_mean
 from grader.base.source import LazyLocation
 from grader.base.text import quoted
-from grader.base.transforms import Vector
+from grader.base.transforms import IDENTITY, Transform, Vector, rotation_from_rpy
 
 INERTIA = (
     "ixx",
@@ -35,6 +36,14 @@ class Origin:
     rpy: Vector = (0.0, 0.0, 0.0)
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
+    def placed_in(self, T_frame_parent: Transform = IDENTITY) -> Transform:
+        """Return T_frame_child, of the frame that it places in its parent; by default, in the
+        parent's own frame.
+        """
+        if self.rpy == (0.0, 0.0, 0.0):
+            return Transform(T_frame_parent.rotation, T_frame_parent.apply(self.xyz))
+        return T_frame_parent @ Transform(rotation_from_rpy(self.rpy), self.xyz)
+
 
 _SAME_FRAME = Origin()
 
@@ -46,6 +55,17 @@ class Box:
     size: Vector
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
+    @property
+    def volume(self) -> float:
+        """The volume in cubic metres."""
+        a, b, c = self.size
+        return abs(a * b * c)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether it is invisible: with one zero edge it is a plate, which RViz shows."""
+        return self.size.count(0.0) >= 2
+
 
 @dataclass(frozen=True, slots=True)
 class Cylinder:
@@ -55,6 +75,16 @@ class Cylinder:
     length: float
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
+    @property
+    def volume(self) -> float:
+        """The volume in cubic metres."""
+        return pi * self.radius * self.radius * abs(self.length)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether it is invisible: with a length of zero it is a disc, which RViz shows."""
+        return self.radius == 0.0
+
 
 @dataclass(frozen=True, slots=True)
 class Sphere:
@@ -62,6 +92,16 @@ class Sphere:
 
     radius: float
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def volume(self) -> float:
+        """The volume in cubic metres."""
+        return 4.0 / 3.0 * pi * self.radius * self.radius * abs(self.radius)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether it is invisible."""
+        return self.radius == 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +111,11 @@ class Mesh:
     filename: str
     scale: Vector = (1.0, 1.0, 1.0)
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether it is invisible, because it is scaled by zero along all three axes."""
+        return not any(self.scale)
 
 
 Geometry = Box | Cylinder | Sphere | Mesh
