@@ -4,6 +4,7 @@ functions exist.
 
 import ast
 import re
+from collections.abc import Collection
 from typing import NamedTuple
 
 from grader.base.names import closest
@@ -12,6 +13,7 @@ from grader.base.text import (
     MAX_NAMED,
     enumerated,
 )
+from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.package import Package
 from grader.ros.python.budget import PYTHON_LIMIT
 from grader.ros.python.constants import binds_unseen
@@ -71,6 +73,17 @@ def _locate_name(package: Package, name: str) -> Location:
     if written:
         return setup.source.at(written.start())
     return setup.location(setup.called_at)
+
+
+def certain_fault(package: Package, nodes: Collection[StartedNode]) -> EntryFault | None:
+    """Return the first fault of nodes none of whose programs starts; None where one may start."""
+    faults = []
+    for node in nodes:
+        owner = package.find(node.package)
+        faults.append(entry_fault(owner, node.executable) if owner is not None else None)
+    if None in faults:
+        return None
+    return next(iter(faults), None)
 
 
 def entry_fault(package: Package, name: str) -> EntryFault | None:

@@ -20,7 +20,7 @@ from grader.ros.package.installed_files import Lookup, look_up, similar_file
 from grader.ros.package.mesh_content import content_fault
 from grader.ros.package.package import Package
 from grader.ros.package.robot_file import Read
-from grader.ros.urdf.model import Mesh
+from grader.ros.urdf.model import Mesh, Robot
 
 _SCHEME = re.compile(
     r"([A-Za-z][A-Za-z0-9+.-]+):(//)?(.*)", re.DOTALL
@@ -140,16 +140,27 @@ def mesh_problems(urdf: Read, packages: Sequence[Package], tree: Tree) -> Iterat
     A file of a package that was not submitted may be installed, and so may a file:// path outside
     of home folders.
     """
-    links = urdf.loaded.robot.links if urdf.loaded.robot is not None else ()
-    shapes = [(link, visual.geometry) for link in links for visual in link.visuals]
-    shapes += [(link, collision.geometry) for link in links for collision in link.collisions]
-    found = {shape.filename: (link, shape) for link, shape in shapes if isinstance(shape, Mesh)}
+    found: dict[str, tuple[str, Mesh]] = {}
+    for link, mesh in _meshes(urdf.loaded.robot) if urdf.loaded.robot is not None else ():
+        found[mesh.filename] = (link, mesh)
     for name, (link, mesh) in islice(found.items(), _MAX_WARNED):
         file = mesh_file(name, is_expanded=urdf.is_expanded)
         fault = _sure_fault(file, packages, tree)
         if fault and mesh.location is not None and "$" not in name:
             at = LazyLocation(mesh.location.source, mesh.location.tag, "filename")
-            yield Problem(MESH_PATH, file.problem_text(link.name, fault), at.resolve())
+            yield Problem(MESH_PATH, file.problem_text(link, fault), at.resolve())
+
+
+def _meshes(robot: Robot) -> Iterator[tuple[str, Mesh]]:
+    """Yield the meshes that links show, then those that they collide with, with their links."""
+    for link in robot.links:
+        for visual in link.visuals:
+            if isinstance(visual.geometry, Mesh):
+                yield link.name, visual.geometry
+    for link in robot.links:
+        for collision in link.collisions:
+            if isinstance(collision.geometry, Mesh):
+                yield link.name, collision.geometry
 
 
 def _sure_fault(file: MeshFile, packages: Sequence[Package], tree: Tree) -> str:

@@ -9,7 +9,7 @@ from functools import partial
 from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple, cast
 
-from grader.base.errors import InputError, NotDecided
+from grader.base.errors import InputError, MissingElement, NotDecided
 from grader.base.names import closest
 from grader.base.problems import Problem, causes, in_order
 from grader.base.source import Source
@@ -138,6 +138,22 @@ class Surroundings(NamedTuple):
         if any(launch.unknown or launch.syntax for launch in launches):
             return "default" if references else "unknown"
         return "none" if references and not self.arguments else "default"
+
+    def expanded(self, data: bytes, path: str) -> "ExpandedSource":
+        """Return a file as xacro; raise NotDecided or MissingElement where it cannot be expanded at
+        all.
+        """
+        from grader.ros.xacro.expansion import ExpandedSource, expand  # late: most are no xacro
+
+        expansion = expand(data, path, self, self.arguments)
+        if isinstance(expansion.source, ExpandedSource):
+            return expansion.source
+        for found in expansion.undetermined:
+            raise NotDecided(found.reason)
+        first = expansion.problems[0]
+        raise MissingElement(
+            "xacro", path, message=first.message, location=first.location, problem=first.message
+        )
 
     def _launched_packages(self, path: str) -> list[Package]:
         if self.graded is None:

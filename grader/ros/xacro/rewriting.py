@@ -465,8 +465,8 @@ def _conditions(source: Source, known: Sequence[str]) -> list[Edits]:
     return found
 
 
-class XacroCorrection(NamedTuple):
-    """Edits that may correct what xacro refuses, and the mistake that they undo."""
+class _XacroMistake(NamedTuple):
+    """Edits that may undo a mistake, and what it is."""
 
     edits: Edits
     mistake: str
@@ -532,7 +532,7 @@ class ExpandedEdits:
             found.setdefault((node.place.source.path, node.place.tag), []).append(index)
         return found
 
-    def corrections(self, names: Sequence[str]) -> list[XacroCorrection]:
+    def corrections(self, names: Sequence[str]) -> list[_XacroMistake]:
         """Return edits that may correct undeclared and undefined names, calls of macros, and
         conditions.
 
@@ -540,14 +540,14 @@ class ExpandedEdits:
         """
         written = Source(self._source.path, self._source.text)
         if self._source.corrected:
-            found = [XacroCorrection(self._source.corrected, "what xacro refuses")]
+            found = [_XacroMistake(self._source.corrected, "what xacro refuses")]
         else:
             found = []
         found += _corrections(written, self._source.documents, self._source.refused)
         given = sorted({word for name in names for word in name.split("_")})
         for document in self._source.documents.values():
             edited = _conditions(document.place.source, given)
-            found += [XacroCorrection(edits, "a text in a condition") for edits in edited]
+            found += [_XacroMistake(edits, "a text in a condition") for edits in edited]
         return list({correction.edits: correction for correction in reversed(found)}.values())[::-1]
 
     def calls(self, edit: Edit) -> dict[str, list[Location]]:
@@ -571,7 +571,7 @@ class ExpandedEdits:
 
 def _corrections(
     document: Source, files: Mapping[str, XacroNode], refusals: Sequence[Refusal]
-) -> Iterator[XacroCorrection]:
+) -> Iterator[_XacroMistake]:
     """Yield the edits that may correct what xacro refuses in a document with the files that it
     includes.
     """
@@ -580,13 +580,13 @@ def _corrections(
         _, start = document.element(0)
         end = markup.name_end(text, start)
         edit = document.edit(start, end, text[start:end] + _NAMESPACE)
-        yield XacroCorrection((edit,), "the prefix xacro, which is not declared")
+        yield _XacroMistake((edit,), "the prefix xacro, which is not declared")
     nodes = [node for file in files.values() for node in islice(walk(file), 1, _MAX_NODES)]
     macros = {node.attributes.get("name", "") for node in nodes if node.tag == "xacro:macro"}
     for node in nodes:
         if node.tag in _PREFIXED or node.tag in macros:
             edits = tuple(tags_of(node.place, node.tag, f"xacro:{node.tag}"))
-            yield XacroCorrection(edits, f"<{node.tag}> without xacro:")
+            yield _XacroMistake(edits, f"<{node.tag}> without xacro:")
     named = [
         it
         for it in refusals
@@ -596,8 +596,8 @@ def _corrections(
         assert isinstance(error, XacroFails)
         if error.unknown is not None:
             for edits in respellings(place, attribute, error.unknown):
-                yield XacroCorrection(edits, "a name that xacro does not know")
+                yield _XacroMistake(edits, "a name that xacro does not know")
         for edits, values in (
             values_of_other_calls(place, nodes, error.lacking) if error.lacking else ()
         ):
-            yield XacroCorrection(edits, f"this call gives no value for {' and '.join(values)}")
+            yield _XacroMistake(edits, f"this call gives no value for {' and '.join(values)}")
