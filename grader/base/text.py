@@ -2,10 +2,11 @@
 
 import os
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from decimal import Decimal
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 # The runner of GitHub Actions treats a line as a command if it begins with `::`, after white space
 # as well, or contains `##[`; the agent of Azure Pipelines, if it contains `##vso[`.
@@ -172,3 +173,15 @@ def size_text(size: int) -> str:
 def was_not_committed(path: str) -> str:
     """Return the end of a message on a missing file that a build has copied to a path."""
     return f"; a build contains {path}: was the source not committed?"
+
+
+def texts_in(value: Any) -> Iterator[str]:
+    """Yield a text, or the texts in a list or in the values of a table."""
+    match value:
+        case str():
+            yield value
+        case list() | tuple():
+            for item in value:
+                yield from texts_in(item)
+        case Mapping():
+            yield from texts_in(list(value.values()))

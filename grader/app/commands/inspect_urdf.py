@@ -3,7 +3,6 @@ around it.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 from math import isfinite, nan
 
 from grader.base.errors import GraderError, InputError, MissingElement, NotDecided
@@ -15,10 +14,9 @@ from grader.report.invocation import read_arguments
 from grader.report.repository import base_of, folder_of
 from grader.report.writing import Warn
 from grader.ros.package.mesh_files import mesh_problems
-from grader.ros.package.robot_file import Absent, Read, Unreadable
+from grader.ros.package.robot_file import Absent, Unreadable
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import Reading
-from grader.ros.urdf.urdf_problems import NO_LINKS, ROBOT_WITHOUT_NAME
 from grader.ros.workspace.opened import OpenedWorkspace
 
 _MAX_NAMED = 20
@@ -34,7 +32,7 @@ def inspect(
 ) -> Inspection:
     """Return the inspection of the URDF and the packages at a path. Raises GraderError."""
     given = read_arguments(arguments)
-    opened = _without_part(open_workspace(path, max_size, given))
+    opened = open_workspace(path, max_size, given).without_part()
     base = base_of(path, folder_of(path, opened.path) if opened.is_single else None)
     match urdf := opened.urdf:
         case Unreadable(reason=reason):
@@ -71,27 +69,6 @@ def inspect(
     return Inspection(
         urdf.path, reading, robot, relative_to, _name_problems(opened), opened.source, base
     )
-
-
-def _without_part(opened: OpenedWorkspace) -> OpenedWorkspace:
-    """Return packages as such without a robot, where the best candidate is xacro without links that
-    nothing loads.
-    """
-    urdf = opened.urdf
-    if (
-        opened.is_single
-        or not opened.packages
-        or not isinstance(urdf, Read)
-        or not urdf.is_expanded
-    ):
-        return opened
-    errors = {problem.kind for problem in urdf.problems if problem.severity == "error"}
-    name = urdf.path.rpartition("/")[2]
-    is_part = NO_LINKS in errors and errors <= {NO_LINKS, ROBOT_WITHOUT_NAME}
-    is_loaded = any(package.robot_references(name) for package in opened.packages)
-    if is_part and not is_loaded:
-        return replace(opened, urdf=Absent())
-    return opened
 
 
 def _name_problems(opened: OpenedWorkspace) -> tuple[Problem, ...]:

@@ -15,9 +15,9 @@ from typing import NamedTuple
 
 from grader.base.markup import Attribute, attributes, element_end, head_end, name_end
 from grader.base.source import Source
-from grader.lab.hints.python_file import PythonFile, argument
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.ros.package.package import MANIFEST, SETUP, Package
+from grader.ros.python.python_file import PythonFile, argument
 from grader.ros.xml.parsing import Element, XmlFault, XmlFile, read_document
 from grader.ros.xml.urdf_format import JOINT_TYPES, PARTS
 

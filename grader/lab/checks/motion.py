@@ -18,7 +18,7 @@ from grader.lab.checks.outcome import (
 )
 from grader.lab.checks.toml_types import Direction, NonNegative
 from grader.lab.checks.visuals import axis_place, main_visual, placed, visuals
-from grader.ros.urdf.kinematics import Configuration, last_moving
+from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Cylinder, Joint
 
 ABOUT = {
@@ -197,7 +197,7 @@ def turning_joint(robot: Configuration, link: str, base: str) -> Joint:
     nothing turns.
     """
     message = f"no joint between {base!r} and {link!r} turns; one should be continuous or revolute"
-    return last_moving(robot.between(base, link), link, ("continuous", "revolute"), message)
+    return robot.joint_between(base, link, ("continuous", "revolute"), message)
 
 
 def _as_turning(robot: Configuration, link: str) -> Configuration:

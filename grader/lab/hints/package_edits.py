@@ -21,12 +21,12 @@ from grader.base.names import closest
 from grader.base.source import Edit, Edits, Source
 from grader.lab.hints.edits import Proposal
 from grader.lab.hints.package_task import WHAT, PackageTask, change, file_proposals, package_names
-from grader.lab.hints.python_file import PythonFile, argument, called
 from grader.ros.build.places import HOME, PREFIX, WORKING_FOLDER
 from grader.ros.launch.launch_model import Launch, NamedFile
 from grader.ros.package.package import SETUP, Package
 from grader.ros.python.library import USUAL_NAMES
 from grader.ros.python.parse import Code, SyntaxFault, parse
+from grader.ros.python.python_file import PythonFile, argument, called
 
 _WORD = re.compile(r"[^\W\d]\w*")
 _MAX_WORDS, _MAX_SUSPECTS = 8, 60

@@ -17,8 +17,8 @@ from grader.base.element_edits import (
 from grader.base.source import Edit, Edits, Source
 from grader.lab.hints.edits import Proposal
 from grader.lab.hints.robot_numbers import values_of
-from grader.ros.urdf.link_tree import parent_joints
-from grader.ros.urdf.model import Joint, Robot
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Robot
 from grader.ros.urdf.reader import Reading
 from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import PARTS
@@ -63,7 +63,7 @@ class Draft:
         self.is_broken = False  # whether tags in the text are broken
         self._elements = list(root.iter())
         self._tags = {element: tag for tag, element in enumerate(self._elements)}
-        self._parents: dict[str, Joint] = parent_joints(robot)
+        self._parents = Configuration(robot).known_parents
 
     @classmethod
     def of(cls, reading: Reading) -> "Draft | None":

@@ -34,8 +34,6 @@ from grader.ros.package.robot_file import (
     OtherCandidate,
     Read,
     Surroundings,
-    is_another_robot,
-    known_links,
     launch_folders,
     read_as_ros,
 )
@@ -530,8 +528,8 @@ def _count_links(read: Read, surroundings: Surroundings, name: str, lab: Lab) ->
         return _ReadCandidate(surroundings, read=read)
     if robot is None:
         return _ReadCandidate(surroundings, bool(lab.links), 0, not name, read)
-    is_another = is_another_robot(robot, lab.links)
-    counted = len(robot.links) if is_another or not lab.links else known_links(robot, lab.links)
+    is_another = robot.is_another(lab.links)
+    counted = len(robot.links) if is_another or not lab.links else robot.known_links(lab.links)
     is_fragment = not robot.name or (
         read.is_expanded and not robot.links and not robot.incomplete
     )  # macros only

@@ -9,7 +9,7 @@ from functools import cached_property
 from math import isfinite, nan
 from typing import NamedTuple, overload
 
-from grader.base.errors import MissingElement
+from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import quoted
 from grader.base.transforms import (
     IDENTITY,
@@ -19,10 +19,8 @@ from grader.base.transforms import (
     unit,
 )
 from grader.ros.urdf.joint_reader import MOVING_TYPES
-from grader.ros.urdf.link_tree import parent_joints
+from grader.ros.urdf.link_tree import parent_joints, selected_name
 from grader.ros.urdf.model import Joint, Link, Robot
-
-SINGLE = ("revolute", "continuous", "prismatic")  # the types of joints that a position moves
 
 
 class _Frame(NamedTuple):
@@ -197,7 +195,7 @@ def _motion_along(joint: Joint, direction: Vector, position: float) -> Transform
 
 def _check_position(joint: Joint, position: float) -> None:
     """Raise ValueError for a position that a joint of this type cannot have."""
-    if joint.type not in SINGLE:
+    if not joint.has_position:
         raise ValueError(
             f"joint {quoted(joint.name)} is {joint.type or 'without type'}: it cannot move"
         )
@@ -422,7 +420,7 @@ class Configuration:
         types = {joint.type for joint in path} - {"fixed"}
         if not types:
             self.known.check_complete()
-        joint = last_moving(
+        joint = _last_moving(
             path, link, types, f"no joint above {quoted(link)} moves; one should turn or slide"
         )
         if joint.type in MOVING_TYPES:
@@ -432,6 +430,27 @@ class Configuration:
         raise MissingElement(
             "moving joint", link, message=message, location=at and at._replace(attribute="type")
         )
+
+    def joint_between(self, one: str, other: str, types: Collection[str], message: str) -> Joint:
+        """Return the last joint with one of the types on the path from one link to another; raises
+        MissingElement where there is none.
+        """
+        return _last_moving(self.between(one, other), other, types, message)
+
+    def selected_name(self, name: str) -> str:
+        """Return the name that a selector means, and any other text as it is. Raises
+        MissingElement, NotDecided.
+        """
+        return selected_name(self.known, self.known_parents, name)
+
+    def selected_or_name(self, name: str) -> str:
+        """Return the link that a selector means; a name, or a selector that means no single link,
+        as it is.
+        """
+        try:
+            return selected_name(self.robot, self.parent_joints, name)
+        except (MissingElement, NotDecided):
+            return name
 
     def moved(self, joint: str | Joint, position: float) -> "Configuration":
         """Return the same robot with one joint elsewhere; raises ValueError for a position that it
@@ -488,7 +507,7 @@ class _MovedConfiguration(Configuration):
         return self.shared_views
 
 
-def last_moving(path: tuple[Joint, ...], link: str, types: Collection[str], message: str) -> Joint:
+def _last_moving(path: tuple[Joint, ...], link: str, types: Collection[str], message: str) -> Joint:
     """Return the last joint with one of the types on the path to a link; raises MissingElement
     where there is none.
     """

@@ -5,13 +5,14 @@ Lengths are metres, angles radians about fixed axes x, y, z (REP 103). `None` is
 file gives but that cannot be read; a value that the file does not give has ROS 2's default.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
+from itertools import islice
 from math import pi
 from typing import NamedTuple, NoReturn
 
 from grader.base.errors import MissingElement, NotDecided
-from grader.base.names import did_you_mean
+from grader.base.names import closest, did_you_mean
 from grader.base.source import LazyLocation
 from grader.base.text import quoted
 from grader.base.transforms import IDENTITY, Transform, Vector, rotation_from_rpy
@@ -24,6 +25,9 @@ INERTIA = (
     "iyz",
     "izz",
 )  # the components, in the order of Inertial.inertia
+
+
+_MAX_COMPARED = 50  # links whose names are compared
 
 
 @dataclass(frozen=True, slots=True)
@@ -297,6 +301,11 @@ class Joint:
     unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)
 
     @property
+    def has_position(self) -> bool:
+        """Whether a position moves it."""
+        return self.type in ("revolute", "continuous", "prismatic")
+
+    @property
     def known(self) -> "Joint":
         """The joint as it is known, for code that decides itself what is open."""
         return self
@@ -354,6 +363,28 @@ class Robot:
     def has_link(self, name: str) -> bool:
         """Return whether there is a link of this name."""
         return name in self._links
+
+    def known_links(self, wanted: Collection[str]) -> int:
+        """Return how many of the wanted links it has, also under a similar name."""
+        names = {link.name for link in self.links}
+        missing = set(wanted) - names
+        others = islice(sorted(names.difference(wanted)), _MAX_COMPARED)
+        similar = {closest(name, missing) for name in others} - {None} if missing else ()
+        return len(wanted) - len(missing) + len(similar)
+
+    def is_another(self, wanted: Collection[str]) -> bool:
+        """Return whether it is completely known and has fewer than half of the wanted links."""
+        if self.incomplete or 2 * sum(map(self.has_link, wanted)) >= len(wanted):
+            return False  # without comparing names, which takes long
+        return 2 * self.known_links(wanted) < len(wanted)
+
+    def is_foreign(self, wanted: Collection[str]) -> bool:
+        """Return whether it is another robot, and not only unfinished: most of its links are not
+        wanted.
+        """
+        if not self.is_another(wanted):
+            return False
+        return 2 * sum(link.name not in wanted for link in self.links) > len(self.links)
 
     def check_complete(self) -> None:
         """Raise NotDecided if there may be more links and joints than are known."""

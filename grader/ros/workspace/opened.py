@@ -1,7 +1,7 @@
 """Opened files: their packages, and their robot."""
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -10,6 +10,7 @@ from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.robot_file import Absent, OtherCandidate, Read, Urdf
+from grader.ros.urdf.urdf_problems import NO_LINKS, ROBOT_WITHOUT_NAME
 
 if TYPE_CHECKING:
     from grader.ros.workspace.workspace import Workspace
@@ -56,6 +57,23 @@ class OpenedWorkspace:
         """The files that the URDF is expanded from, itself among them."""
         source = self.urdf.reading.source if isinstance(self.urdf, Read) else None
         return getattr(source, "documents", ())
+
+    def without_part(self) -> "OpenedWorkspace":
+        """Return packages as such without a robot, where the best candidate is xacro without links
+        that nothing loads.
+        """
+        urdf = self.urdf
+        if self.is_single or not self.packages:
+            return self
+        if not isinstance(urdf, Read) or not urdf.is_expanded:
+            return self
+        errors = {problem.kind for problem in urdf.problems if problem.severity == "error"}
+        name = urdf.path.rpartition("/")[2]
+        is_part = NO_LINKS in errors and errors <= {NO_LINKS, ROBOT_WITHOUT_NAME}
+        is_loaded = any(package.robot_references(name) for package in self.packages)
+        if is_part and not is_loaded:
+            return replace(self, urdf=Absent())
+        return self
 
     def source(self, path: str) -> Source | None:
         """Return the text of one of its files, for quoting; None if it cannot be read."""
