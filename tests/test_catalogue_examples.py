@@ -16,11 +16,12 @@ from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import open_submission
 from grader.lab.submission.submission import Lab, Submission
-from grader.report.explanations import EVERY_KIND, example_blocks, explanation
+from grader.report.explanations import example_blocks, explanation
 from grader.ros.package.found_problems import package_problems
 from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Read
 from grader.ros.workspace.name_problems import name_problems
+from grader.ros.workspace.problem_kinds import EVERY_KIND
 from grader.ros.workspace.reading import read_agreement
 from tests.checks.submissions import png
 from tests.command_line import ROOT

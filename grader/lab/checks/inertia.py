@@ -12,7 +12,6 @@ from grader.lab.checks.visuals import MAX_SHAPES
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.mass_properties import (
     Solid,
-    SolidDifference,
     principal_moments,
     with_volume,
 )
@@ -76,7 +75,7 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
         return impossible
     what, solid = _solid_of(robot, link)
     try:
-        difference = SolidDifference.of(inertial, solid)
+        difference = solid.difference(inertial)
     except ValueError:
         message = (
             f"the inertia of {link!r} cannot be compared: the volume of its {what} is too large"

@@ -16,7 +16,6 @@ from grader.lab.checks.toml_types import Count
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.reader import find_xacro
-from grader.ros.urdf.urdf_problems import RAW_XACRO
 
 if TYPE_CHECKING:
     from grader.ros.xacro.expansion import ExpandedSource
@@ -163,7 +162,7 @@ def _judge_expansion(submission: Submission) -> Outcome:
     """Return whether xacro is expanded before ROS 2 reads the robot."""
     urdf = submission.urdf
     assert isinstance(urdf, Read)
-    raw = next((problem for problem in urdf.loaded.problems if problem.kind is RAW_XACRO), None)
+    raw = urdf.loaded.raw_xacro
     if raw is not None:
         return failed(raw.message, raw.location, problem=raw.message)
     return passed(f"{urdf.path} is written in xacro, and is expanded before ROS 2 reads it")

@@ -80,9 +80,9 @@ def open_submission(
             tree = tree.only(lambda inside: os.path.realpath(place / inside) not in opening.reports)
         return submission_of(tree, identity, lab, opening, shown=shown)
     if place.suffix.lower() in _NO_URDFS:
-        from grader.ros.package.robots import START, is_robot  # late: most URDFs are called .urdf
+        from grader.ros.package.robots import is_robot  # late: most URDFs are called .urdf
 
-        if not is_robot(read_start(place, START)):
+        if not is_robot(partial(read_start, place)):
             raise InputError(f"{shown} is not a URDF: {_EXPECTED}")
     data = read_capped(place, opening.max_size)
     identity = printable_path(place.stem)

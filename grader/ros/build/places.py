@@ -22,10 +22,12 @@ ENDINGS = (
 )
 
 
-def is_in_launch_folder(path: str) -> bool:
-    """Return whether a file is a launch file because it is in a folder named launch, whatever its
-    own name.
+def is_launch_file(path: str) -> bool:
+    """Return whether a file is a launch file: by its name, or because it is in a folder named
+    launch.
     """
+    if path.endswith(ENDINGS):
+        return True
     folder, _, name = path.rpartition("/")
     if folder.rpartition("/")[2] != "launch" or name == "__init__.py":
         return False

@@ -281,7 +281,7 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
             has_xacro=True,
         )
     reading = read_urdf(data, path)
-    if not any(problem.kind is RAW_XACRO for problem in reading.problems):
+    if reading.raw_xacro is None:
         return Read(path, data, reading, has_xacro=True)
     expanded = _expand_xacro(data, path, surroundings, [])
     if expanded.robot is None:

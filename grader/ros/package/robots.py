@@ -3,7 +3,7 @@ parsed.
 """
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 from grader.base.errors import InputError
@@ -141,8 +141,11 @@ def find_robots(
     return tuple(sorted(found))
 
 
-def is_robot(data: bytes) -> bool:
-    """Return whether a text is a robot: its first element is <robot>."""
+def is_robot(read: Callable[[int], bytes]) -> bool:
+    """Return whether a file is a robot: its first element is <robot>. `read` reads its first
+    bytes.
+    """
+    data = read(START)
     return _ROBOT.match(data, _end_of_prolog(data)) is not None
 
 

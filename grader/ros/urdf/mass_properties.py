@@ -67,13 +67,31 @@ class Solid(NamedTuple):
             for (one, radius), (other, reach) in combinations_with_replacement(balls, 2)
         )
 
+    def difference(self, inertial: Inertial) -> "_SolidDifference":
+        """Return how an <inertial> differs from it. Raises ValueError where its volume cannot be
+        computed.
+        """
+        T_link_inertial = inertial.origin.placed_in()
+        given = MassProperties(
+            inertial.mass,
+            T_link_inertial.translation,
+            turned(inertial.inertia, T_link_inertial.rotation),
+        )
+        expected = uniform_solid(self.shapes, inertial.mass)
+        largest = principal_moments(expected.inertia)[2]
+        percent = nan
+        if largest > 0.0:
+            percent = 100.0 * largest_difference(given.inertia, expected.inertia) / largest
+        distance = hypot(*minus(given.centre, expected.centre))
+        return _SolidDifference(inertial, given, expected, percent, distance)
+
     def overlaps(self, allowed: float) -> bool:
         """Return whether two of its shapes overlap by more than `allowed` metres."""
         pairs = combinations(self.shapes, 2)
         return any(penetration(*one, *other, allowed) > 0.0 for one, other in pairs)
 
 
-class SolidDifference(NamedTuple):
+class _SolidDifference(NamedTuple):
     """How an <inertial> differs from a uniform solid of its mass: the inertia about any axis, in
     percent of the largest principal moment of the solid, and the centres of mass in metres.
 
@@ -85,23 +103,6 @@ class SolidDifference(NamedTuple):
     solid: MassProperties
     percent: float
     distance: float
-
-    @classmethod
-    def of(cls, inertial: Inertial, solid: Solid) -> "SolidDifference":
-        """Return the difference. Raises ValueError for shapes whose volume cannot be computed."""
-        T_link_inertial = inertial.origin.placed_in()
-        given = MassProperties(
-            inertial.mass,
-            T_link_inertial.translation,
-            turned(inertial.inertia, T_link_inertial.rotation),
-        )
-        expected = uniform_solid(solid.shapes, inertial.mass)
-        largest = principal_moments(expected.inertia)[2]
-        percent = nan
-        if largest > 0.0:
-            percent = 100.0 * largest_difference(given.inertia, expected.inertia) / largest
-        distance = hypot(*minus(given.centre, expected.centre))
-        return cls(inertial, given, expected, percent, distance)
 
     def components(self, tolerance: float) -> list[tuple[str, float, float]]:
         """Return the names of the numbers of the <inertia> that are off, and what they are and

@@ -82,6 +82,11 @@ class Reading(NamedTuple):
     undone: "tuple[Word, ...]" = ()
 
     @property
+    def raw_xacro(self) -> Problem | None:
+        """The problem of xacro that is loaded without xacro; None where it has none."""
+        return next((it for it in self.problems if it.kind is urdf_problems.RAW_XACRO), None)
+
+    @property
     def elements(self) -> Element | None:
         """The element that the robot was read from, also where the text is not XML."""
         if self.root is not None:
