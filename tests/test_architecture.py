@@ -113,11 +113,11 @@ LIMITS = {
     "comprehensions that hold another": 6,
     "conditional expressions that hold another": 0,
     "simple statements with several comprehensions": 15,
-    "packed functions over 300 nodes": 5,
+    "packed functions over 300 nodes": 4,
     "packed functions over 200 nodes": 23,
     "small private functions that are used once": 23,
     "code that reads a message": 5,
-    "names of ros that other packages import": 228,
+    "names of ros that other packages import": 150,
 }
 
 

@@ -45,8 +45,6 @@ class Transform:
             return NotImplemented
         a, b, c, d, e, f, g, h, i = self.rotation
         j, k, l, m, n, o, p, q, r = other.rotation  # noqa: E741  rows, letter by letter
-        x, y, z = other.translation
-        u, v, w = self.translation
         return Transform(
             (
                 a * j + b * m + c * p,
@@ -59,15 +57,15 @@ class Transform:
                 g * k + h * n + i * q,
                 g * l + h * o + i * r,
             ),
-            (a * x + b * y + c * z + u, d * x + e * y + f * z + v, g * x + h * y + i * z + w),
+            self.apply(other.translation),
         )
 
     def apply(self, point: Iterable[float]) -> Vector:
         """Return a point given in b, as any three numbers, in frame a."""
-        a, b, c, d, e, f, g, h, i = self.rotation
-        x, y, z = point if isinstance(point, tuple) else map(float, point)  # also those of an array
+        first, second, third = point if isinstance(point, tuple) else map(float, point)
+        x, y, z = self.rotate((first, second, third))
         u, v, w = self.translation
-        return (a * x + b * y + c * z + u, d * x + e * y + f * z + v, g * x + h * y + i * z + w)
+        return (x + u, y + v, z + w)
 
     def rotate(self, direction: Vector) -> Vector:
         """Return a direction given in b in frame a: no translation."""

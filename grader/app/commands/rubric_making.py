@@ -94,7 +94,7 @@ def _solution(submission: Submission, reference: str, warn: Warn) -> Solution | 
                 advice = f"see `grader inspect {shell_quoted(reference)}`"
                 raise InputError(f"{shown} is no reference solution: {reason} ({advice})")
             for found in (it for it in submission.urdf.problems if it.kind.effect == "drops"):
-                warn(f"{found.location.path}:{found.location.line}: {found.code}: {found.message}")
+                warn(f"{found.location.file_and_line}: {found.code}: {found.message}")
     others = [file.path for file in submission.other_candidates if not file.path.endswith(MANIFEST)]
     if others:
         warn(

@@ -15,7 +15,6 @@ from grader.lab.checks.toml_types import Content, NonNegative, Scalar
 from grader.lab.checks.visuals import main_visual, placed
 from grader.lab.submission.submission import Submission
 from grader.ros.launch.launch_model import ParameterValue
-from grader.ros.launch.node_parameters import value_in_file
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
@@ -110,13 +109,7 @@ def _written_otherwise(
     """Return what parameter files have for a parameter, of whatever node, if none of them has a
     certain value.
     """
-    from grader.ros.config.yaml_values import sections_in
-
-    sections = (
-        section for _, tree in submission.workspace.trees for _, section in sections_in(tree)
-    )
-    nodes = (section.get(*parameter.split(".")) for section in sections)
-    written = [value_in_file(node) for node in nodes if node is not None]
+    written = submission.workspace.written_values(parameter)
     known = [it for it in written if not isinstance(it.value, Unknown)]
     has_it = value is None or any(_equal(it.value, value, tolerance) for it in known)
     return None if has_it else next(iter(known), None)
@@ -135,7 +128,7 @@ def value_of(submission: Submission, node: str, parameter: str) -> ParameterValu
         next((found.unknown for found in given if found.unknown), "") or workspace.unknown_nodes
     )
     if values and not unknown:
-        places = enumerated([f"{it.location.path}:{it.location.line}" for it in values])
+        places = enumerated([it.location.file_and_line for it in values])
         raise NotDecided(
             f"{node} gets different values of {parameter}: {places}",
             "a parameter has several values",

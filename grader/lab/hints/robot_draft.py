@@ -367,8 +367,7 @@ class Draft:
             if not broken.endswith("/>"):
                 new = f"{new[:-2]}>"
             return (source.edit(start, start + len(broken), new),)
-        added = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
-        return (source.edit(start, end, f"{source.text[start:end]}{added}"),)
+        return (source.edit(start, end, f"{source.text[start:end]}{_attributes_text(values)}"),)
 
     def _broken_tag(self, text: str, start: int) -> str:
         if not self.is_broken:
@@ -404,8 +403,11 @@ def _attribute_text(source: Source, start: int, name: str) -> str | None:
 
 def _empty_element(tag: str, values: Mapping[str, str]) -> str:
     """Return the text of an element without content."""
-    attributes = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
-    return f"<{tag}{attributes}/>"
+    return f"<{tag}{_attributes_text(values)}/>"
+
+
+def _attributes_text(values: Mapping[str, str]) -> str:
+    return "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
 
 
 def escaped(value: str) -> str:

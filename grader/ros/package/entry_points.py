@@ -33,7 +33,7 @@ class _EntryPoint(NamedTuple):
     location: Location
 
 
-class EntryFault(NamedTuple):
+class _EntryFault(NamedTuple):
     """Why a program certainly does not start, where setup.py names it, and the word in it that
     may mean another one.
     """
@@ -75,7 +75,7 @@ def _locate_name(package: Package, name: str) -> Location:
     return setup.location(setup.called_at)
 
 
-def certain_fault(package: Package, nodes: Collection[StartedNode]) -> EntryFault | None:
+def certain_fault(package: Package, nodes: Collection[StartedNode]) -> _EntryFault | None:
     """Return the first fault of nodes none of whose programs starts; None where one may start."""
     faults = []
     for node in nodes:
@@ -86,7 +86,7 @@ def certain_fault(package: Package, nodes: Collection[StartedNode]) -> EntryFaul
     return next(iter(faults), None)
 
 
-def entry_fault(package: Package, name: str) -> EntryFault | None:
+def entry_fault(package: Package, name: str) -> _EntryFault | None:
     """Return why a program certainly does not start; None where that is not known.
 
     Its module or the function in it is not there. Modules of other packages are not known, nor is
@@ -165,7 +165,7 @@ def _lacks_module(package: Package, module: str) -> bool:
     return True
 
 
-def _missing_module(package: Package, entry: _EntryPoint) -> EntryFault:
+def _missing_module(package: Package, entry: _EntryPoint) -> _EntryFault:
     folder = entry.module.rpartition(".")[0].replace(".", "/")
     others = [
         path.removeprefix(f"{folder}/").removesuffix(".py")
@@ -182,7 +182,7 @@ def _missing_module(package: Package, entry: _EntryPoint) -> EntryFault:
 
 def _fault(
     entry: _EntryPoint, message: str, written: str, known: list[str], own: str = ""
-) -> EntryFault:
+) -> _EntryFault:
     """Return the fault of an entry point, with the name that may be meant, else the names that
     there are.
     """
@@ -191,7 +191,7 @@ def _fault(
         message += f"; did you mean {meant!r}?"
     elif known:
         message += f"; there is {enumerated([repr(it) for it in known[:MAX_NAMED]])}"
-    return EntryFault(message, entry.location, written, meant)
+    return _EntryFault(message, entry.location, written, meant)
 
 
 def _certain_names(code: Code) -> frozenset[str] | None:

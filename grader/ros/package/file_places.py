@@ -16,8 +16,9 @@ from grader.ros.build.places import (
     WORKING_FOLDER,
     is_of_one_machine,
     one_machine_only,
+    share_parts,
 )
-from grader.ros.package.installed_files import Lookup, look_up, share_parts
+from grader.ros.package.installed_files import Lookup, look_up
 from grader.ros.package.package import Package
 from grader.ros.python.values import OBJECT
 

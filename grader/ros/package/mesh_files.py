@@ -13,7 +13,7 @@ from grader.base.names import closest
 from grader.base.problems import Problem
 from grader.base.source import LazyLocation
 from grader.base.text import quoted, quoted_end
-from grader.files.tree import File, Tree
+from grader.files.tree import Tree
 from grader.ros.build.package_problems import MESH_PATH
 from grader.ros.build.places import is_of_one_machine
 from grader.ros.package.installed_files import Lookup, look_up, similar_file
@@ -90,18 +90,13 @@ class MeshFile(NamedTuple):
         """Return what is wrong with the content of its file in a submitted package; empty if
         nothing is, or there is no such file. Raises NotDecided.
         """
-        file = self._file_in(packages)
-        if file is None:
-            return ""
-        return content_fault(file, self.path)
-
-    def _file_in(self, packages: Sequence[Package]) -> File | None:
         package = packages[0].find(self.package) if packages else None
         if package is None:
-            return None
+            return ""
         path = posixpath.normpath(self.path)
         found = look_up(package, f"share/{self.package}/{path}")
-        return package.tree.files.get(found.path if found.state == "installed" else path)
+        file = package.tree.files.get(found.path if found.state == "installed" else path)
+        return content_fault(file, self.path) if file is not None else ""
 
 
 def mesh_file(filename: str, *, is_expanded: bool = False) -> MeshFile:
@@ -140,9 +135,8 @@ def mesh_problems(urdf: Read, packages: Sequence[Package], tree: Tree) -> Iterat
     A file of a package that was not submitted may be installed, and so may a file:// path outside
     of home folders.
     """
-    found: dict[str, tuple[str, Mesh]] = {}
-    for link, mesh in _meshes(urdf.loaded.robot) if urdf.loaded.robot is not None else ():
-        found[mesh.filename] = (link, mesh)
+    robot = urdf.loaded.robot
+    found = _meshes(robot) if robot is not None else {}
     for name, (link, mesh) in islice(found.items(), _MAX_WARNED):
         file = mesh_file(name, is_expanded=urdf.is_expanded)
         fault = _sure_fault(file, packages, tree)
@@ -151,16 +145,11 @@ def mesh_problems(urdf: Read, packages: Sequence[Package], tree: Tree) -> Iterat
             yield Problem(MESH_PATH, file.problem_text(link, fault), at.resolve())
 
 
-def _meshes(robot: Robot) -> Iterator[tuple[str, Mesh]]:
-    """Yield the meshes that links show, then those that they collide with, with their links."""
-    for link in robot.links:
-        for visual in link.visuals:
-            if isinstance(visual.geometry, Mesh):
-                yield link.name, visual.geometry
-    for link in robot.links:
-        for collision in link.collisions:
-            if isinstance(collision.geometry, Mesh):
-                yield link.name, collision.geometry
+def _meshes(robot: Robot) -> dict[str, tuple[str, Mesh]]:
+    """Return the meshes of a robot by the names of their files, each with a link that has it."""
+    shapes = [(link.name, it.geometry) for link in robot.links for it in link.visuals]
+    shapes += [(link.name, it.geometry) for link in robot.links for it in link.collisions]
+    return {mesh.filename: (link, mesh) for link, mesh in shapes if isinstance(mesh, Mesh)}
 
 
 def _sure_fault(file: MeshFile, packages: Sequence[Package], tree: Tree) -> str:

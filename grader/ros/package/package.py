@@ -20,6 +20,7 @@ from grader.ros.build.places import (
     is_launch_file,
     is_launch_named,
     launch_stem,
+    share_parts,
 )
 from grader.ros.launch.launch_cache import LaunchCache
 from grader.ros.python.budget import PYTHON_LIMIT, Budget
@@ -409,6 +410,17 @@ class Package:
             key=lambda path: (path.rpartition("/")[2] != name, path.count("/"), path),
             default=None,
         )
+
+    def owner_of_opened(self, launch: "Launch") -> "Package":
+        """Return the package of the submission whose RViz file a launch file opens; without one,
+        the package itself.
+        """
+        paths = [it.path for it in launch.named("rviz") if it.path is not None]
+        owners = [self, *(self.find(share_parts(path)[0]) for path in paths)]
+        for owner in owners:
+            if owner is not None and owner.rviz_opened(launch) is not None:
+                return owner
+        return self
 
     def rviz_opened(self, launch: "Launch") -> str | None:
         """Return the RViz file that a launch file opens, also by a wrong folder: that is another

@@ -10,7 +10,7 @@ from grader.base.errors import InputError
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import File, Tree
 
-START = 4096  # bytes that are read of a file
+_START = 4096  # bytes that are read of a file
 _LONG_START = 64 * 1024  # bytes that are read if these are comments only
 _MAX_READ = 2000  # files
 _MAX_ROBOTS = 400  # found by their content alone
@@ -145,7 +145,7 @@ def is_robot(read: Callable[[int], bytes]) -> bool:
     """Return whether a file is a robot: its first element is <robot>. `read` reads its first
     bytes.
     """
-    data = read(START)
+    data = read(_START)
     return _ROBOT.match(data, _end_of_prolog(data)) is not None
 
 
@@ -168,7 +168,7 @@ def _robot_start(file: File) -> bytes | None:
     """
     if not file.size:
         return None
-    for count in (START, _LONG_START):
+    for count in (_START, _LONG_START):
         try:
             data = file.read(count, first=True)
         except InputError:
