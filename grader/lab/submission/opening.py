@@ -98,6 +98,23 @@ def open_workspace(path: str, max_size: int, arguments: Mapping[str, str]) -> Op
     return open_submission(path, _NO_LAB, Opening(max_size, arguments), with_neighbours=True)
 
 
+def open_with_packages(path: str) -> Submission:
+    """Return a submission in which all of its packages are graded, the one with the URDF first.
+    Raises InputError.
+    """
+    from grader.ros.package.finding import is_backup, package_around  # late: many have no package
+
+    submission = open_submission(path, _NO_LAB)
+    main = package_around(submission.packages, submission.path) or submission.package
+    packages = [
+        it.name for it in submission.packages if it is not main and not is_backup(it.folder)
+    ]
+    if main is None or not packages:
+        return submission
+    urdf = (submission.path or _NO_LAB.urdf).removeprefix(main.path(""))
+    return open_submission(path, Lab(urdf, packages=tuple(dict.fromkeys([main.name, *packages]))))
+
+
 def _read_with_neighbours(place: Path, data: bytes, identity: str, opening: Opening) -> Submission:
     """Return the submission that is one file of xacro, and what it reads from the package around
     it.
