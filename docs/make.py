@@ -33,13 +33,13 @@ from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import open_submission
 from grader.report.explanations import (
     EFFECTS,
-    EVERY_KIND,
     default_text,
     example_blocks,
     explanation_of,
 )
 from grader.report.json_data import to_json
 from grader.report.writers.terminal import render_terminal
+from grader.ros.workspace.problem_kinds import EVERY_KIND
 
 KEYS = {
     "The rubric": RUBRIC,

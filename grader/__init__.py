@@ -21,7 +21,7 @@ _MODULES = {
     "Robot": "ros.urdf.model",
     "Rubric": "lab.rubric.rubric",
     "RubricError": "base.errors",
-    "Transform": "ros.urdf.transforms",
+    "Transform": "base.transforms",
     "grade": "app.api",
     "load_rubric": "lab.rubric.rubric",
     "read_urdf": "ros.urdf.reader",

@@ -1,11 +1,11 @@
 from grader.app.api import grade
 from grader.base.errors import GraderError, MissingElement, RubricError
+from grader.base.transforms import Transform
 from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.rubric import Rubric, load_rubric
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Joint, Link, Robot
 from grader.ros.urdf.reader import Reading, read_urdf
-from grader.ros.urdf.transforms import Transform
 
 __all__ = [
     "Configuration",

@@ -4,6 +4,7 @@ docs/python.md describes them. All other modules may change with any release.
 """
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.transforms import Transform, Vector
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     Outcome,
@@ -20,7 +21,6 @@ from grader.lab.submission.submission import Submission
 from grader.ros.package.package import Package
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import Reading
-from grader.ros.urdf.transforms import Transform, Vector
 
 __all__ = [
     "About",

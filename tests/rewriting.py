@@ -12,6 +12,7 @@ from random import Random
 from hypothesis import strategies as st
 from lxml import etree
 
+from grader.base.transforms import IDENTITY
 from grader.lab.authoring.trees import (
     add_joint,
     attribute_numbers,
@@ -26,7 +27,6 @@ from grader.lab.authoring.trees import (
     set_pose,
 )
 from grader.lab.authoring.trees import split_joint as split
-from grader.ros.urdf.transforms import IDENTITY
 from grader.ros.xml.parsing import Element
 from tests.writing_style import Style
 

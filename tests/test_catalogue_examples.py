@@ -9,17 +9,19 @@ from typing import Any
 
 import pytest
 
+from grader.base.problems import Problem
 from grader.lab.checks.manual import MANUAL_CHECKS
-from grader.lab.checks.meshes import mesh_problems
 from grader.lab.checks.registry import own_checks
 from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import open_submission
 from grader.lab.submission.submission import Lab, Submission
-from grader.report.explanations import EVERY_KIND, example_blocks, explanation
+from grader.report.explanations import example_blocks, explanation
 from grader.ros.package.found_problems import package_problems
+from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Read
 from grader.ros.workspace.name_problems import name_problems
+from grader.ros.workspace.problem_kinds import EVERY_KIND
 from grader.ros.workspace.reading import read_agreement
 from tests.checks.submissions import png
 from tests.command_line import ROOT
@@ -156,10 +158,10 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(code: str, tmp_pa
     for side in ("wrong", "right"):
         files, lines = files_of(code, side)
         submission = opened(tmp_path / side, files)
-        found = list(submission.urdf.problems) if isinstance(submission.urdf, Read) else []
-        found += (
-            mesh_problems(submission, submission.urdf) if isinstance(submission.urdf, Read) else []
-        )
+        found: list[Problem] = []
+        if isinstance(submission.urdf, Read):
+            found += submission.urdf.problems
+            found += mesh_problems(submission.urdf, submission.packages, submission.tree)
         found += package_problems(submission.package) if submission.package else []
         if code.startswith("REF"):
             names = name_problems(read_agreement(submission.workspace))

@@ -1,1 +1,3 @@
-"""What all other packages use: places in a file, names, printable text, errors, problems."""
+"""What all other packages use: places in a file, names, printable text, errors, problems,
+rigid motions.
+"""

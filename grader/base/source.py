@@ -23,6 +23,11 @@ class Location(NamedTuple):
     column: int
     calls: "tuple[tuple[str, Location], ...]" = ()
 
+    @property
+    def file_and_line(self) -> str:
+        """The path with the number of the line."""
+        return f"{self.path}:{self.line}"
+
 
 class Edit(NamedTuple):
     """A change of the text of one file: `old`, which stands at a place, becomes `new`, and nothing

@@ -2,16 +2,18 @@
 
 import os
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from decimal import Decimal
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 # The runner of GitHub Actions treats a line as a command if it begins with `::`, after white space
 # as well, or contains `##[`; the agent of Azure Pipelines, if it contains `##vso[`.
 _LINE_COMMAND = re.compile(r"^(\s*):(?=:)", re.MULTILINE)
 _TAG_COMMAND = re.compile(r"##(vso)?\[", re.IGNORECASE)
 _MAX_NAME = 60  # characters of a name that are shown
+_MAX_FILE_NAME = 100  # characters of a path that are shown, its last ones
 MAX_NAMED = 5  # names that a message lists, where nothing asks for more or fewer
 
 
@@ -70,6 +72,11 @@ def shell_quoted(path: Path | str) -> str:
     from shlex import quote  # late: most messages suggest no command
 
     return quote(printable_path(path))
+
+
+def quoted_end(path: str) -> str:
+    """Return a path between quotes; only the end of one that is very long."""
+    return repr(path if len(path) <= _MAX_FILE_NAME else f"...{path[3 - _MAX_FILE_NAME :]}")
 
 
 def quoted(name: str) -> str:
@@ -171,3 +178,15 @@ def size_text(size: int) -> str:
 def was_not_committed(path: str) -> str:
     """Return the end of a message on a missing file that a build has copied to a path."""
     return f"; a build contains {path}: was the source not committed?"
+
+
+def texts_in(value: Any) -> Iterator[str]:
+    """Yield a text, or the texts in a list or in the values of a table."""
+    match value:
+        case str():
+            yield value
+        case list() | tuple():
+            for item in value:
+                yield from texts_in(item)
+        case Mapping():
+            yield from texts_in(list(value.values()))

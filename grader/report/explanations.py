@@ -19,15 +19,11 @@ from grader.lab.rubric.criterion import Criterion, worth
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.rubric.toml_file import assignment, read_toml, toml_literal
 from grader.report.criteria import model_lines, sentence
-from grader.ros.build.package_problems import PACKAGE_CATALOGUE
-from grader.ros.urdf.urdf_problems import CATALOGUE
-from grader.ros.workspace.name_problems import NAME_CATALOGUE
-from grader.ros.xacro.xacro_problems import XACRO_CATALOGUE
+from grader.ros.workspace.problem_kinds import EVERY_KIND
 
 _WIDTH = 80
 _MAX_SIMILAR = 6  # criteria that are named
 _CHECKS = "checks"
-EVERY_KIND = (*CATALOGUE, *XACRO_CATALOGUE, *PACKAGE_CATALOGUE, *NAME_CATALOGUE)
 EFFECTS = {
     "rejects": "ROS 2 rejects the file.",
     "undetermined": "The criteria that depend on it need manual grading.",

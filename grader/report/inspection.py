@@ -11,12 +11,12 @@ from grader.base.errors import MissingElement, NotDecided
 from grader.base.problems import Problem
 from grader.base.source import Base, Source
 from grader.base.text import counted, printable
+from grader.base.transforms import Transform
 from grader.report.content import UNDECIDED, VERDICTS
 from grader.report.criteria import alike
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Joint
 from grader.ros.urdf.reader import Reading
-from grader.ros.urdf.transforms import Transform
 
 MAX_LISTED = 500  # links, or problems on a page
 _MAX_INDENT = 60

@@ -13,7 +13,7 @@ from grader.lab.checks.check import EQUIVALENTS
 from grader.lab.checks.registry import find_check
 from grader.lab.submission.opening import read_submission
 from grader.ros.package.robot_file import Read
-from grader.ros.urdf.kinematics import Configuration, placed_by
+from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Robot
 from tests.authoring.robots import ARM, BOX, FRAME, TOP, rubric_in
 
@@ -63,12 +63,12 @@ def _seen(robot: Robot) -> Iterator[tuple[str, tuple[float, ...]]]:
             for geometry, origin in shapes + [
                 (shape.geometry, shape.origin) for shape in link.collisions
             ]:
-                yield f"{positions} {geometry}", _numbers(placed_by(pose, origin).matrix)
+                yield f"{positions} {geometry}", _numbers(origin.placed_in(pose).matrix)
             if link.inertial is not None:
                 mass = link.inertial
                 yield (
                     f"{positions} {mass.mass} {mass.inertia}",
-                    _numbers(placed_by(pose, mass.origin).matrix),
+                    _numbers(mass.origin.placed_in(pose).matrix),
                 )
 
 

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.transforms import Transform, Vector, rotation_about, rotation_from_rpy
 from grader.lab.checks.appearance import shows_box, shows_grey
 from grader.lab.checks.collisions import collision_matches_visual
 from grader.lab.checks.contact import clear_of
@@ -25,7 +26,6 @@ from grader.ros.urdf.mass_properties import turned as turned_inertia
 from grader.ros.urdf.mass_properties import uniform_solid
 from grader.ros.urdf.model import Box, Cylinder, Sphere
 from grader.ros.urdf.shapes import Shape
-from grader.ros.urdf.transforms import Transform, Vector, rotation_about, rotation_from_rpy
 from grader.ros.xml.urdf_format import JOINT_TYPES
 from tests.checks.cases import IN_XACRO
 from tests.checks.outcomes import Arguments, ask, fails, graded, passes

@@ -7,7 +7,7 @@ import pytest
 
 from grader.base.errors import InputError, NotDecided
 from grader.files.tree import File
-from grader.lab.checks.mesh_content import content_fault
+from grader.ros.package.mesh_content import content_fault
 
 BINARY = b"\0" * 80 + struct.pack("<I", 1) + b"\0" * 50
 

@@ -8,10 +8,9 @@ from zlib import crc32
 
 from lxml import etree
 
+from grader.base.element_edits import edited
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.source import Source
-from grader.lab.hints.xacro_edits import ExpandedEdits
-from grader.lab.submission.edited import edited
 from grader.report.formats import Format, InspectFormat, render_inspection
 from grader.report.inspection import Inspection, main_root
 from grader.report.screen import Screen
@@ -21,6 +20,7 @@ from grader.ros.python.values import EvaluationFails, Undetermined
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import Reading, read_urdf
 from grader.ros.xacro.functions import GLOBALS, namespace, read_yaml_values
+from grader.ros.xacro.rewriting import ExpandedEdits
 from grader.ros.xml.repair import repair
 from grader.ros.xml.tinyxml2 import scan
 from tests.fuzz.harness import check_location, check_message, decoded, files_of

@@ -1,12 +1,12 @@
 """What a robot shows and how it moves, whatever its frames, to compare two robots."""
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.transforms import Vector, unit
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
-from grader.ros.urdf.kinematics import Configuration, placed_by
+from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Cylinder, Sphere, Visual
-from grader.ros.urdf.shapes import half_width, is_empty
-from grader.ros.urdf.transforms import Vector, unit
+from grader.ros.urdf.shapes import half_width
 
 _AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _SAME = 4e-3  # metres, components of directions and channels of colours: what the lab's tolerances leave open
@@ -28,10 +28,10 @@ def behaviour(submission: Submission) -> Behaviour:
         except (MissingElement, NotDecided):
             continue
         for index, visual in enumerate(
-            shown for shown in link.visuals if not is_empty(shown.geometry)
+            shown for shown in link.visuals if not shown.geometry.is_empty
         ):
             shape = visual.geometry
-            placed = placed_by(pose, visual.origin)
+            placed = visual.origin.placed_in(pose)
             if isinstance(shape, Box | Cylinder | Sphere):
                 extent = tuple(half_width(shape, placed.unrotate(axis)) for axis in _AXES)
                 found[f"{link.name} {index}"] = (*placed.translation, *extent, *_colour(visual))

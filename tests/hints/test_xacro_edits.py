@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
+from grader.base.element_edits import edited
 from grader.base.source import Edit
-from grader.lab.hints.xacro_edits import ExpandedEdits
-from grader.lab.submission.edited import edited
+from grader.ros.xacro.rewriting import ExpandedEdits
 from tests.examples import examples
 from tests.xacro import grammar
 from tests.xacro.comparing import expand

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import pytest
 
+from grader.base.element_edits import edited
 from grader.base.errors import InputError
 from grader.base.source import Edit
 from grader.files.tree import Tree, overlaid
 from grader.lab.hints.search import HintSearch, Trials
-from grader.lab.submission.edited import edited
 from grader.lab.submission.opening import read_submission
 from grader.lab.submission.submission import Submission
 from tests.hints.trials import graded, search_for

@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from grader.ros.urdf.kinematics import SINGLE, Configuration
+from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Robot
 from grader.ros.urdf.reader import read_urdf
 from tests.oracles.example_robots import MISSING
+
+SINGLE = ("revolute", "continuous", "prismatic")  # the types of joints that a position moves
 
 pin: Any = pytest.importorskip("pinocchio", reason=MISSING)
 

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from grader.base.transforms import Transform, Vector, rotation_from_rpy
 from grader.ros.urdf.mass_properties import Tensor, uniform_solid
 from grader.ros.urdf.model import Box, Cylinder, Sphere
-from grader.ros.urdf.shapes import Shape, volume
-from grader.ros.urdf.transforms import Transform, Vector, rotation_from_rpy
+from grader.ros.urdf.shapes import Shape
 from tests.oracles.example_robots import MISSING
 
 pytestmark = pytest.mark.exhaustive
@@ -39,10 +39,10 @@ def random_shapes(random: Random) -> list[tuple[Shape, Transform]]:
 
 def by_pinocchio(shapes: Sequence[tuple[Shape, Transform]], mass: float) -> tuple[Any, Any]:
     """Return the centre of mass and the inertia matrix that pinocchio computes."""
-    total = sum(volume(shape) for shape, _ in shapes)
+    total = sum(shape.volume for shape, _ in shapes)
     body = pin.Inertia.Zero()
     for shape, pose in shapes:
-        part = mass * volume(shape) / total
+        part = mass * shape.volume / total
         match shape:
             case Box(size=size):
                 own = pin.Inertia.FromBox(part, *size)

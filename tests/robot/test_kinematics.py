@@ -12,11 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.base.errors import MissingElement
-from grader.ros.urdf.joint_reader import MOVING_TYPES
-from grader.ros.urdf.kinematics import SINGLE, Configuration
-from grader.ros.urdf.model import Joint, Link, Mimic, Origin, Robot
-from grader.ros.urdf.reader import read_urdf
-from grader.ros.urdf.transforms import (
+from grader.base.transforms import (
     IDENTITY,
     Transform,
     Vector,
@@ -24,6 +20,10 @@ from grader.ros.urdf.transforms import (
     rotation_from_rpy,
     unit,
 )
+from grader.ros.urdf.joint_reader import MOVING_TYPES
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Joint, Link, Mimic, Origin, Robot
+from grader.ros.urdf.reader import read_urdf
 from tests.examples import examples
 from tests.work import limited_work
 
@@ -217,7 +217,7 @@ def trees(draw: st.DrawFn) -> Robot:
 @given(tree=trees(), draw=st.data())
 def test_poses_are_products_along_the_tree(tree: Robot, draw: st.DataObject) -> None:
     """A child's pose is its parent's times the joint's origin times the joint's motion, in any order of the queries."""
-    positions = {joint.name: draw.draw(angles) for joint in tree.joints if joint.type in SINGLE}
+    positions = {joint.name: draw.draw(angles) for joint in tree.joints if joint.has_position}
     configuration = Configuration(tree, positions)
     assert configuration.roots == ("l0",)
     assert configuration.pose("l0") == IDENTITY

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grader.base.transforms import IDENTITY, Transform, Vector, rotation_from_rpy
 from grader.ros.urdf.mass_properties import (
     MassProperties,
     Tensor,
@@ -20,7 +21,6 @@ from grader.ros.urdf.mass_properties import (
 )
 from grader.ros.urdf.model import Box, Cylinder, Sphere
 from grader.ros.urdf.shapes import Shape
-from grader.ros.urdf.transforms import IDENTITY, Transform, Vector, rotation_from_rpy
 
 _edge = st.floats(0.01, 3.0)
 _number = st.floats(-2.0, 2.0)

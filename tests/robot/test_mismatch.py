@@ -6,15 +6,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.ros.urdf.model import Box, Cylinder, Sphere
-from grader.ros.urdf.shapes import Shape, mismatch, turn_between
-from grader.ros.urdf.transforms import (
+from grader.base.transforms import (
     IDENTITY,
     Transform,
     Vector,
     rotation_about,
     rotation_from_rpy,
+    turn_between,
 )
+from grader.ros.urdf.model import Box, Cylinder, Sphere
+from grader.ros.urdf.shapes import PlacedShape, Shape
 
 TOLERANCE = 0.002
 BRICK, ROD, BALL = Box((0.6, 0.4, 0.2)), Cylinder(0.1, 0.5), Sphere(0.1)
@@ -31,8 +32,8 @@ def test_the_frame_does_not_matter(
 ) -> None:
     """Seen from another frame, two shapes differ as much."""
     here, there = (
-        mismatch(shape, one, shape, other, TOLERANCE),
-        mismatch(shape, frame @ one, shape, frame @ other, TOLERANCE),
+        PlacedShape(shape, one).mismatch(PlacedShape(shape, other), TOLERANCE),
+        PlacedShape(shape, frame @ one).mismatch(PlacedShape(shape, frame @ other), TOLERANCE),
     )
     assert here is not None
     assert there is not None
@@ -44,7 +45,9 @@ def test_the_frame_does_not_matter(
 @given(shapes, poses)
 def test_a_half_turn_is_a_symmetry(shape: Shape, pose: Transform) -> None:
     """Every shape is the same after half a turn about x."""
-    found = mismatch(shape, pose, shape, pose @ Transform(HALF_TURN), TOLERANCE)
+    found = PlacedShape(shape, pose).mismatch(
+        PlacedShape(shape, pose @ Transform(HALF_TURN)), TOLERANCE
+    )
     assert found is not None
     assert found.largest == pytest.approx(0.0, abs=1e-9)
 
@@ -54,7 +57,9 @@ def test_a_shift_is_the_distance_of_the_centres(
     shape: Shape, pose: Transform, shift: Vector
 ) -> None:
     """A shift counts in full, whatever its direction."""
-    found = mismatch(shape, pose, shape, Transform(translation=shift) @ pose, TOLERANCE)
+    found = PlacedShape(shape, pose).mismatch(
+        PlacedShape(shape, Transform(translation=shift) @ pose), TOLERANCE
+    )
     assert found is not None
     assert found.largest == pytest.approx(sum(value * value for value in shift) ** 0.5, abs=1e-9)
 
@@ -64,7 +69,7 @@ def test_a_turn_moves_the_farthest_point(angle: float) -> None:
     """A cylinder that leans moves the points on its rims, a box that turns about its edge moves its corners."""
     leaning = Transform(rotation_about((1.0, 0.0, 0.0), angle))
     for shape, radius in ((ROD, (0.1**2 + 0.25**2) ** 0.5), (BRICK, (0.2**2 + 0.1**2) ** 0.5)):
-        found = mismatch(shape, IDENTITY, shape, leaning, TOLERANCE)
+        found = PlacedShape(shape, IDENTITY).mismatch(PlacedShape(shape, leaning), TOLERANCE)
         assert found is not None
         assert found.turn == pytest.approx(2.0 * radius * sin(angle / 2.0), abs=1e-9)
 
@@ -72,7 +77,7 @@ def test_a_turn_moves_the_farthest_point(angle: float) -> None:
 @pytest.mark.parametrize(("one", "other"), [(BRICK, ROD), (ROD, BALL), (BALL, BRICK)])
 def test_kinds_are_not_compared(one: Shape, other: Shape) -> None:
     """A box is no cylinder, whatever their sizes."""
-    assert mismatch(one, IDENTITY, other, IDENTITY, TOLERANCE) is None
+    assert PlacedShape(one, IDENTITY).mismatch(PlacedShape(other, IDENTITY), TOLERANCE) is None
 
 
 @given(_vector, st.floats(0.0, 180.0))

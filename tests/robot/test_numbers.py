@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from grader.lab.hints.robot_numbers import format_number as written_number
+from grader.base.element_edits import format_number as written_number
 from grader.ros.urdf.numbers import NumberError, is_version_one, number, numbers, rgba, vector
 from tests.examples import examples
 from tests.work import limited_work

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from grader.base.transforms import IDENTITY, Transform, Vector, dot, minus, rotation_from_rpy
 from grader.ros.urdf.model import Box, Cylinder, Mesh, Sphere
 from grader.ros.urdf.overlap import least_overlap, penetration
-from grader.ros.urdf.shapes import Shape, UnknownShape, extent
-from grader.ros.urdf.transforms import IDENTITY, Transform, Vector, dot, minus, rotation_from_rpy
+from grader.ros.urdf.shapes import PlacedShape, Shape, UnknownShape
 from tests.examples import examples
 
 slow = settings(deadline=None)  # the first depth of two tilted cylinders imports numpy
@@ -71,7 +71,7 @@ def distance_along(
     a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, direction: Vector
 ) -> float:
     """Return how far b starts beyond the end of a along a direction; negative if they overlap."""
-    return extent(b, T_w_b, direction)[0] - extent(a, T_w_a, direction)[1]
+    return PlacedShape(b, T_w_b).extent(direction)[0] - PlacedShape(a, T_w_a).extent(direction)[1]
 
 
 @pytest.mark.parametrize(
@@ -259,7 +259,7 @@ def test_wheels_and_chassis_do_not_load_numpy() -> None:
 import sys
 from grader.ros.urdf.model import Box, Cylinder
 from grader.ros.urdf.overlap import penetration
-from grader.ros.urdf.transforms import IDENTITY, Transform, rotation_from_rpy
+from grader.base.transforms import IDENTITY, Transform, rotation_from_rpy
 sideways = rotation_from_rpy((1.5708, 0.0, 0.0))
 for y in (0.5, 0.225, 0.2025, 0.0):
     penetration(Box((0.6, 0.4, 0.2)), IDENTITY, Cylinder(0.1, 0.05), Transform(sideways, (0.2, y, 0.0)))
@@ -371,7 +371,7 @@ def test_coal_agrees(oracle: Oracle, first: type[Shape], second: type[Shape]) ->
             *(
                 high - low
                 for shape in (a, b)
-                for low, high in [extent(shape, IDENTITY, DIRECTIONS[0])]
+                for low, high in [PlacedShape(shape, IDENTITY).extent(DIRECTIONS[0])]
             )
         )
         pair = (a, random_pose(rng, 0.1), b, random_pose(rng, size))

@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.base.errors import MissingElement, NotDecided
-from grader.ros.urdf.link_tree import parent_joints, selected_name, selected_or_name
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.link_tree import parent_joints, selected_name
 from grader.ros.urdf.model import Joint, Link, Mimic, Robot
 
 # base -fixed- mount -m1- upper -fixed- flange -m2- hand -fixed- tool, and a camera on the base
@@ -74,7 +75,7 @@ def test_a_moving_joint_that_is_not_there_is_missing(name: str) -> None:
     assert str(caught.value) == f"there is no {name}: the longest chain has 2 moving joints"
     found = robot(*ARM)
     assert (
-        selected_or_name(found, parent_joints(found), name) == name
+        Configuration(found).selected_or_name(name) == name
     )  # of which no hint can be about a link
 
 

@@ -8,18 +8,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grader.base.transforms import IDENTITY, Transform, Vector, dot, rotation_from_rpy, unit
 from grader.ros.urdf.model import Box, Cylinder, Geometry, Mesh, Sphere
 from grader.ros.urdf.shapes import (
+    PlacedShape,
     Shape,
     UnknownShape,
-    extent,
-    farthest,
     half_width,
-    is_empty,
     support,
-    volume,
 )
-from grader.ros.urdf.transforms import IDENTITY, Transform, Vector, dot, rotation_from_rpy, unit
 
 _sizes = st.floats(-3, 1).map(lambda power: 10.0**power) | st.sampled_from((0.0, -0.3, 1.0))
 shapes = (
@@ -127,7 +124,9 @@ def test_several_support_points_give_their_centre(
 
 def test_the_lowest_point_of_a_lying_cylinder_is_the_middle_of_its_contact_line() -> None:
     """A wheel touches the ground below its centre."""
-    assert farthest(Cylinder(0.1, 0.05), LYING, (0.0, 0.0, -1.0)) == pytest.approx((1.0, 2.0, 2.9))
+    assert PlacedShape(Cylinder(0.1, 0.05), LYING).farthest((0.0, 0.0, -1.0)) == pytest.approx(
+        (1.0, 2.0, 2.9)
+    )
 
 
 @given(shape=shapes, pose=poses, direction=directions, shift=vectors)
@@ -137,9 +136,11 @@ def test_extents_move_with_the_shape(
     """Moving a shape moves both ends of its extent by its motion along the direction."""
     (a, b, c), (x, y, z) = shift, pose.translation
     moved = Transform(pose.rotation, (x + a, y + b, z + c))
-    low, high = extent(shape, pose, direction)
+    low, high = PlacedShape(shape, pose).extent(direction)
     along = dot(shift, direction)
-    assert extent(shape, moved, direction) == pytest.approx((low + along, high + along), abs=1e-12)
+    assert PlacedShape(shape, moved).extent(direction) == pytest.approx(
+        (low + along, high + along), abs=1e-12
+    )
 
 
 @given(shape=shapes, pose=poses, direction=directions)
@@ -147,11 +148,13 @@ def test_extents_agree_with_support_points(
     shape: Shape, pose: Transform, direction: Vector
 ) -> None:
     """The high end is at the support point, and the low end is the high end of the opposite direction."""
-    low, high = extent(shape, pose, direction)
+    low, high = PlacedShape(shape, pose).extent(direction)
     x, y, z = direction
-    assert (-high, -low) == pytest.approx(extent(shape, pose, (-x, -y, -z)), abs=1e-12)
-    assert dot(farthest(shape, pose, direction), direction) == pytest.approx(high, abs=1e-7)
-    centred_low, centred_high = extent(shape, IDENTITY, direction)
+    assert (-high, -low) == pytest.approx(PlacedShape(shape, pose).extent((-x, -y, -z)), abs=1e-12)
+    assert dot(PlacedShape(shape, pose).farthest(direction), direction) == pytest.approx(
+        high, abs=1e-7
+    )
+    centred_low, centred_high = PlacedShape(shape, IDENTITY).extent(direction)
     assert centred_high == pytest.approx(-centred_low)
 
 
@@ -174,7 +177,7 @@ def test_a_cylinder_tilted_by_a_nanoradian() -> None:
 )
 def test_volumes(shape: Shape, expected: float) -> None:
     """Volumes equal the textbook formulas; a negative size counts like a positive one."""
-    assert volume(shape) == pytest.approx(expected)
+    assert shape.volume == pytest.approx(expected)
 
 
 @pytest.mark.parametrize(
@@ -195,7 +198,7 @@ def test_volumes(shape: Shape, expected: float) -> None:
 )
 def test_shapes_without_area_are_empty(geometry: Geometry, expected: bool) -> None:
     """Plates and discs are visible; lines and points are not."""
-    assert is_empty(geometry) is expected
+    assert geometry.is_empty is expected
 
 
 @pytest.mark.parametrize(
@@ -203,9 +206,8 @@ def test_shapes_without_area_are_empty(geometry: Geometry, expected: bool) -> No
     [
         lambda: support(MESH, (1.0, 0.0, 0.0)),
         lambda: half_width(MESH, (1.0, 0.0, 0.0)),
-        lambda: extent(MESH, IDENTITY, (1.0, 0.0, 0.0)),
-        lambda: farthest(MESH, IDENTITY, (1.0, 0.0, 0.0)),
-        lambda: volume(MESH),
+        lambda: PlacedShape(MESH, IDENTITY).extent((1.0, 0.0, 0.0)),
+        lambda: PlacedShape(MESH, IDENTITY).farthest((1.0, 0.0, 0.0)),
     ],
 )
 def test_the_size_of_a_mesh_is_unknown(ask: Callable[[], Any]) -> None:

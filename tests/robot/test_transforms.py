@@ -8,7 +8,7 @@ import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
-from grader.ros.urdf.transforms import (
+from grader.base.transforms import (
     IDENTITY,
     IDENTITY_ROTATION,
     Rotation,

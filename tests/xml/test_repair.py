@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
+from grader.base.element_edits import edited
 from grader.base.source import Source
-from grader.lab.submission.edited import edited
 from grader.ros.xml.repair import repair
 from grader.ros.xml.tinyxml2 import scan
 from tests.command_line import ROOT, run

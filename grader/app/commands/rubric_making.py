@@ -21,8 +21,8 @@ from grader.lab.authoring.samples import read_samples
 from grader.lab.checks.loading import urdf_loads
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.rubric.rubric_files import load_named
-from grader.lab.submission.opening import STANDARD_INPUT, open_submission
-from grader.lab.submission.submission import Lab, Submission
+from grader.lab.submission.opening import STANDARD_INPUT, open_with_packages
+from grader.lab.submission.submission import Submission
 from grader.report.explanations import rubric_summary
 from grader.report.invocation import ExitCode, read_threshold
 from grader.report.writers.rubric_test_result import (
@@ -31,14 +31,12 @@ from grader.report.writers.rubric_test_result import (
     unexamined_line,
 )
 from grader.report.writing import Terminal, Warn, missing_folder, save_bytes
-from grader.ros.package.finding import is_backup, package_around
 from grader.ros.package.package import MANIFEST
 from grader.ros.package.robot_file import Absent, Read, Unreadable
 from grader.ros.urdf.kinematics import Configuration
 from grader.workers.pool import Processes, processors
 from grader.workers.queue import Progress
 
-_URDF = "robot.urdf"
 _SCHEMA = "rubric.schema.json"  # beside the rubric, as the documentation calls it
 _MAX_NAMED = 4
 _GROUP, _SECONDS = 20, 60.0  # mutants that a worker grades at once, and how long they may take
@@ -51,7 +49,7 @@ def write_rubric(file: Path, reference: str, warn: Warn, *, force: bool) -> str:
     _check_target(file, force=force)
     if reference == STANDARD_INPUT:
         raise GraderError("--from takes a file or folder, which the rubric names as its reference")
-    submission = _open_reference(reference)
+    submission = open_with_packages(reference)
     solution = _solution(submission, reference, warn)
     made = draft(submission, solution, _rubric_head(file, reference, submission), file)
     if len(made.data) > URDF_LIMIT:
@@ -94,7 +92,7 @@ def _solution(submission: Submission, reference: str, warn: Warn) -> Solution | 
                 advice = f"see `grader inspect {shell_quoted(reference)}`"
                 raise InputError(f"{shown} is no reference solution: {reason} ({advice})")
             for found in (it for it in submission.urdf.problems if it.kind.effect == "drops"):
-                warn(f"{found.location.path}:{found.location.line}: {found.code}: {found.message}")
+                warn(f"{found.location.file_and_line}: {found.code}: {found.message}")
     others = [file.path for file in submission.other_candidates if not file.path.endswith(MANIFEST)]
     if others:
         warn(
@@ -102,23 +100,6 @@ def _solution(submission: Submission, reference: str, warn: Warn) -> Solution | 
             f"{enumerated(others, _MAX_NAMED)}"
         )
     return Solution(submission, reading, Configuration(reading.robot))
-
-
-def _open_reference(reference: str) -> Submission:
-    """Return the reference as a submission in which all of its packages are graded, the one with
-    the URDF first.
-    """
-    submission = open_submission(reference, Lab(_URDF))
-    main = package_around(submission.packages, submission.path) or submission.package
-    packages = [
-        it.name for it in submission.packages if it is not main and not is_backup(it.folder)
-    ]
-    if main is None or not packages:
-        return submission
-    urdf = (submission.path or _URDF).removeprefix(main.path(""))
-    return open_submission(
-        reference, Lab(urdf, packages=tuple(dict.fromkeys([main.name, *packages])))
-    )
 
 
 def _rubric_head(file: Path, reference: str, submission: Submission) -> Head:

@@ -24,7 +24,7 @@ from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.labs import LabFolders
 from grader.lab.submission.opening import read_submission, submission_of
 from grader.lab.submission.submission import DEFAULTS, Opening, Submission
-from grader.ros.package.robots import START, is_robot
+from grader.ros.package.robots import is_robot
 
 if TYPE_CHECKING:
     import hashlib
@@ -160,7 +160,7 @@ def _is_document(source: ClassListing, path: str) -> bool:
 def _is_robot(source: ClassListing, path: str) -> bool:
     try:
         with source.raw(path) as file:
-            return is_robot(file.read(START))
+            return is_robot(file.read)
     except ARCHIVE_ERRORS as error:
         shown = printable_path(path.rpartition("/")[2])
         raise InputError(f"cannot read {shown}: {error_text(error, shown)}") from None

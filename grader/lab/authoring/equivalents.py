@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from lxml import etree
 
+from grader.base.transforms import Transform, rotation_from_rpy, unit
 from grader.lab.authoring.trees import (
     XACRO,
     copied,
@@ -25,7 +26,6 @@ from grader.lab.authoring.trees import (
 from grader.lab.checks.check import EQUIVALENTS
 from grader.ros.package.robot_file import Read, Urdf
 from grader.ros.urdf.normal_form import normal_form
-from grader.ros.urdf.transforms import Transform, rotation_from_rpy, unit
 from grader.ros.xml.elements import foreign_elements, words_of_foreign
 from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import PARTS

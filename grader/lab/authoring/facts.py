@@ -12,15 +12,14 @@ from typing import Any, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import enumerated
-from grader.lab.checks.meshes import mesh_file
+from grader.base.transforms import rotation_from_rpy
 from grader.lab.checks.outcome import point
 from grader.lab.checks.visuals import MAX_SHAPES
 from grader.lab.submission.submission import Submission
+from grader.ros.package.mesh_files import mesh_file
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Collision, Cylinder, Joint, Limit, Link, Mesh, Sphere, Visual
 from grader.ros.urdf.reader import Reading
-from grader.ros.urdf.shapes import is_empty
-from grader.ros.urdf.transforms import rotation_from_rpy
 from grader.ros.workspace.reading import read_agreement
 from grader.ros.xml.elements import words_of_foreign
 from grader.ros.xml.parsing import Element
@@ -129,7 +128,7 @@ def _visual_facts(link: Link) -> Facts:
     if len(link.visuals) > MAX_SHAPES:
         yield Omission(f"{link.name} visuals", f"it has more than {MAX_SHAPES}")
         return
-    shown = [visual for visual in link.visuals if not is_empty(visual.geometry)]
+    shown = [visual for visual in link.visuals if not visual.geometry.is_empty]
     kinds = Counter(type(visual.geometry) for visual in shown)
     for visual in shown:
         yield _size(link.name, visual)
@@ -204,7 +203,7 @@ def _body_facts(link: Link) -> Facts:
         return
     only = {"only": True} if len(link.collisions) == 1 else {}
     shapes = [_collision(link.name, collision, only) for collision in link.collisions]
-    if not any(not is_empty(visual.geometry) for visual in link.visuals):
+    if not any(not visual.geometry.is_empty for visual in link.visuals):
         yield from shapes
     elif shapes:
         # A link that shows something else collides as the reference does.

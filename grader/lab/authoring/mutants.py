@@ -15,10 +15,10 @@ from typing import NamedTuple
 
 from grader.base.markup import Attribute, attributes, element_end, head_end, name_end
 from grader.base.source import Source
-from grader.lab.hints.python_file import PythonFile, argument
-from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
+from grader.ros.config.yaml_nodes import YamlNode, yaml_root
 from grader.ros.package.package import MANIFEST, SETUP, Package
-from grader.ros.xml.parsing import Element, XmlFault, XmlFile, read_document
+from grader.ros.python.python_file import PythonFile, argument
+from grader.ros.xml.parsing import Element, root_of
 from grader.ros.xml.urdf_format import JOINT_TYPES, PARTS
 
 _COMMA = re.compile(r"\s*,")
@@ -106,12 +106,7 @@ def _places(text: str) -> Iterator[tuple[Element, str, int]]:
     """Yield each element with its offset, and its place by names, which does not change if lines
     are added.
     """
-    data, source = text.encode("utf-8", "surrogateescape"), Source("", text)
-    try:
-        root: Element | None = XmlFile(data, source).root
-    except XmlFault:
-        document = read_document(data, "")
-        root, source = document.root, document.source
+    root, source = root_of(text)
     if root is None:
         return
     labels: dict[Element, str] = {}
@@ -272,10 +267,7 @@ def _rviz(source: Source, label: str, links: Iterable[str]) -> Iterator[MutantEd
     """Yield changes of the fixed frame, and of each display: disabled, its class or topic
     misspelt.
     """
-    try:
-        root = read_yaml(source.text.encode("utf-8", "surrogateescape"), source.path)
-    except YamlFault:
-        return
+    root = yaml_root(source)
     frame = root.get("Visualization Manager", "Global Options", "Fixed Frame") if root else None
     if frame is not None and frame.text:
         for other in (misspelt(frame.text), *links):

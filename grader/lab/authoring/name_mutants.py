@@ -9,10 +9,10 @@ from grader.base.source import Edit, Source
 from grader.lab.authoring.mutants import MAX_LABEL, MutantEdit, misspelt
 from grader.lab.hints.name_edits import correction_edits
 from grader.lab.submission.submission import Submission
-from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
+from grader.ros.config.yaml_nodes import YamlNode, yaml_root
 from grader.ros.package.package import CMAKE, MANIFEST
-from grader.ros.workspace.names import FAMILY_OF, Correction, Definition, Fact, Family, Use
-from grader.ros.workspace.reading import read_facts
+from grader.ros.workspace.names import Correction, Fact, Family, Use
+from grader.ros.workspace.reading import compared_facts
 
 _YAML = (".yaml", ".yml")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
@@ -28,12 +28,10 @@ def compared_names(
     it there.
     """
     known = frozenset(families)
-    for fact in read_facts(submission.workspace) if known else ():
-        if isinstance(fact, Use | Definition) and FAMILY_OF[fact.kind] in known:
-            for edit in correction_edits(
-                submission, Correction(fact.location, fact.name, misspelt(fact.name))
-            )[:1]:
-                yield fact, edit
+    for fact in compared_facts(submission.workspace, known) if known else ():
+        correction = Correction(fact.location, fact.name, misspelt(fact.name))
+        for edit in correction_edits(submission, correction)[:1]:
+            yield fact, edit
 
 
 def name_changes(
@@ -62,11 +60,9 @@ def name_changes(
 
 
 def _yaml_changes(source: Source, label: str) -> Iterator[MutantEdit]:
-    try:
-        root = read_yaml(source.text.encode("utf-8", "surrogateescape"), source.path)
-    except YamlFault:
-        return
-    yield from _node_changes(source, f"{label} ", root, set())
+    root = yaml_root(source)
+    if root is not None:
+        yield from _node_changes(source, f"{label} ", root, set())
 
 
 def _node_changes(

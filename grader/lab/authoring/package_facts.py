@@ -19,7 +19,7 @@ from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.workspace.names import FAMILIES, Family, Mismatch, place_text
+from grader.ros.workspace.names import FAMILIES, Family, Mismatch
 from grader.ros.workspace.reading import read_agreement, wrong_names
 
 _THE_PACKAGE, _THE_NAMES, _THE_VALUES = "The package", "The names", "The values"  # headings
@@ -216,7 +216,7 @@ def _odd(mismatches: Sequence[Mismatch]) -> Omission | None:
     first = mismatches[0]
     text, noun = _ODD[first.family]
     more = (
-        f"{text.format(counted(len(wrong), noun))}: {place_text(first.location)}: {first.message}"
+        f"{text.format(counted(len(wrong), noun))}: {first.location.file_and_line}: {first.message}"
     )
     return Omission(f"{first.family} names_agree", more)
 

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 
 from lxml import etree
 
-from grader.ros.urdf.transforms import IDENTITY, Transform, Vector, rotation_from_rpy
+from grader.base.transforms import IDENTITY, Transform, Vector, rotation_from_rpy
 from grader.ros.xacro.texts import INSTALLED
 from grader.ros.xml.elements import FOREIGN
 from grader.ros.xml.parsing import Element

@@ -6,6 +6,7 @@ from math import cos, radians
 from typing import TypeVar
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.transforms import IDENTITY_ROTATION, Vector, rotation_from_rpy
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -32,7 +33,6 @@ from grader.lab.checks.visuals import (
 )
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Cylinder, Material, Sphere, Visual
-from grader.ros.urdf.transforms import IDENTITY_ROTATION, Vector, rotation_from_rpy
 
 ABOUT = {
     "shows_box": About(("box", "visual"), picture="outline"),

@@ -1,11 +1,12 @@
 """Checks of the collision shapes of a link."""
 
 from collections.abc import Sequence
-from math import hypot, inf
+from math import inf
 
 from grader.base.errors import MissingElement, NotDecided, RubricError
 from grader.base.pairing import most_pairs
-from grader.base.text import counted
+from grader.base.text import counted, quoted_end
+from grader.base.transforms import Vector
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -18,11 +19,10 @@ from grader.lab.checks.outcome import (
     point,
 )
 from grader.lab.checks.toml_types import NonNegative, RadiusAndLength, Size
-from grader.lab.checks.visuals import MAX_SHAPES, file_name, visuals
-from grader.ros.urdf.kinematics import Configuration, placed_by
+from grader.lab.checks.visuals import MAX_SHAPES, visuals
+from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Collision, Cylinder, Geometry, Mesh, Origin, Sphere, Visual
-from grader.ros.urdf.shapes import Shape, ShapeDifference, is_empty, mismatch, turn_between
-from grader.ros.urdf.transforms import IDENTITY, Vector, minus
+from grader.ros.urdf.shapes import PlacedShape, Shape, ShapeDifference
 
 ABOUT = {
     "collision_matches_visual": About(("collision",)),
@@ -30,7 +30,6 @@ ABOUT = {
 }
 
 _ZERO: Vector = (0.0, 0.0, 0.0)
-_MESH_ANGLE = 1.0  # degrees that a mesh may be turned, because its size is not known
 
 
 def collision_matches_visual(robot: Configuration, *, link: str, tolerance: NonNegative) -> Outcome:
@@ -118,22 +117,13 @@ def collides_as(
     what += f" at {point(xyz)} m" if xyz else ""
     what += f" with rpy = {point(rpy)} (radians)" if any(rpy or ()) else ""
     what += f" in {relative_to!r}" if relative_to else ""
-    T_link_wanted = placed_by(
-        robot.pose(relative_to or link, relative_to=link), Origin(xyz or _ZERO, rpy or _ZERO)
-    )
+    origin = Origin(xyz or _ZERO, rpy or _ZERO)
+    pose = origin.placed_in(robot.pose(relative_to or link, relative_to=link))
+    placed = PlacedShape(wanted, pose)
 
     def off(collision: Collision) -> ShapeDifference | None:
-        if isinstance(collision.geometry, Mesh):
-            return None
-        T_link_shape, is_turned = placed_by(IDENTITY, collision.origin), rpy is not None
-        found = mismatch(
-            wanted,
-            T_link_wanted,
-            collision.geometry,
-            T_link_shape,
-            tolerance + SLACK,
-            turned=is_turned,
-        )
+        other = PlacedShape(collision.geometry, collision.origin.placed_in())
+        found = placed.mismatch(other, tolerance + SLACK, turned=rpy is not None)
         if found is None or xyz is not None:
             return found
         return found._replace(apart=0.0)
@@ -160,7 +150,7 @@ def _solid_collisions(robot: Configuration, link: str, expected: str) -> tuple[C
     none.
     """
     solid = tuple(
-        collision for collision in robot.link(link).collisions if not is_empty(collision.geometry)
+        collision for collision in robot.link(link).collisions if not collision.geometry.is_empty
     )
     if not solid:
         message = f"link {link!r} has no collision shape with a size; it should have {expected}"
@@ -178,15 +168,9 @@ def _mismatch(visual: Visual, collision: Collision, tolerance: float) -> ShapeDi
     """Return how far two shapes differ; None for shapes of different kinds, and for different
     meshes.
     """
-    a, b = visual.geometry, collision.geometry
-    T_link_a, T_link_b = placed_by(IDENTITY, visual.origin), placed_by(IDENTITY, collision.origin)
-    if not isinstance(a, Mesh) and not isinstance(b, Mesh):
-        return mismatch(a, T_link_a, b, T_link_b, tolerance + SLACK)
-    if a != b:
-        return None
-    angle = turn_between(T_link_a.rotation, T_link_b.rotation)
-    apart = hypot(*minus(T_link_a.translation, T_link_b.translation))
-    return ShapeDifference(apart, 0.0, 0.0 if angle <= _MESH_ANGLE else inf, angle)
+    shown = PlacedShape(visual.geometry, visual.origin.placed_in())
+    solid = PlacedShape(collision.geometry, collision.origin.placed_in())
+    return shown.mismatch(solid, tolerance + SLACK)
 
 
 def _judge_unmatched(
@@ -203,7 +187,7 @@ def _judge_unmatched(
             if mesh.filename not in files:
                 cause = "mesh files are not opened"
                 message = (
-                    f"whether the collision mesh {file_name(mesh.filename)} of {link!r} has the "
+                    f"whether the collision mesh {quoted_end(mesh.filename)} of {link!r} has the "
                     f"shape that is shown cannot be determined: {cause}"
                 )
                 raise NotDecided(message, cause)
@@ -256,4 +240,4 @@ def _shape_text(geometry: Geometry) -> str:
             return f"a sphere of radius {point((radius,))} m"
         case mesh:
             scaled = "" if mesh.scale == Mesh("").scale else f" scaled by {point(mesh.scale)}"
-            return f"the mesh {file_name(mesh.filename)}{scaled}"
+            return f"the mesh {quoted_end(mesh.filename)}{scaled}"

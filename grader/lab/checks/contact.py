@@ -4,6 +4,7 @@ from itertools import product
 from operator import itemgetter
 
 from grader.base.errors import NotDecided
+from grader.base.transforms import X_AXIS, Z_AXIS, Vector
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -16,12 +17,11 @@ from grader.lab.checks.outcome import (
     within,
 )
 from grader.lab.checks.toml_types import NonNegative
-from grader.lab.checks.visuals import ShapeName, main_visual, origin_place, visual_pose, visuals
+from grader.lab.checks.visuals import ShapeName, main_visual, origin_place, placed, visuals
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.model import Box, Geometry, Mesh
+from grader.ros.urdf.model import Box, Mesh
 from grader.ros.urdf.overlap import penetration
-from grader.ros.urdf.shapes import UnknownShape, extent
-from grader.ros.urdf.transforms import X_AXIS, Z_AXIS, Transform, Vector
+from grader.ros.urdf.shapes import PlacedShape, UnknownShape
 
 ABOUT = dict.fromkeys(("stands_on", "clear_of"), About(picture="outline"))
 
@@ -44,13 +44,11 @@ def stands_on(
             without one, of all.
     """
     support = main_visual(robot, on, shape)
-    T_on_support = visual_pose(robot, on, support, on)
-    placed = [
-        (visual.geometry, visual_pose(robot, link, visual, on)) for visual in visuals(robot, link)
-    ]
-    bottom = min(extent(geometry, pose, Z_AXIS)[0] for geometry, pose in placed)
-    _, top = extent(support.geometry, T_on_support, Z_AXIS)
-    beyond = _overhang(placed, support.geometry, T_on_support)
+    below = placed(robot, on, support, on)
+    above = [placed(robot, link, visual, on) for visual in visuals(robot, link)]
+    bottom = min(shape.extent(Z_AXIS)[0] for shape in above)
+    _, top = below.extent(Z_AXIS)
+    beyond = _overhang(above, below)
     message = f"{link!r} stands on the top of {on!r}, at z = {point((top,))} m in {on!r}"
     touches = within(bottom, top, tolerance)
     fine = touches and beyond <= tolerance + SLACK
@@ -75,10 +73,8 @@ def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative
         of: The other link.
         tolerance: How deep the visuals may overlap, in metres.
     """
-    own = [(visual, visual_pose(robot, link, visual, of)) for visual in visuals(robot, link)]
-    others = [
-        (visual.geometry, visual_pose(robot, of, visual, of)) for visual in visuals(robot, of)
-    ]
+    own = [(visual, placed(robot, link, visual, of).pose) for visual in visuals(robot, link)]
+    others = [placed(robot, of, visual, of) for visual in visuals(robot, of)]
     if len(own) * len(others) > _MAX_PAIRS:
         raise NotDecided(f"{link!r} and {of!r} show too many shapes to compare", "too many shapes")
     deepest, culprit = 0.0, own[0][0]
@@ -102,20 +98,18 @@ def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative
     return judged(fine, message, round(deepest, 4), 0.0, tolerance, "m", at=at)
 
 
-def _overhang(
-    placed: list[tuple[Geometry, Transform]], support: Geometry, T_on_support: Transform
-) -> float:
+def _overhang(above: list[PlacedShape], below: PlacedShape) -> float:
     """Return how far shapes reach beyond the outline of the one below, seen from above, in
     metres.
     """
     directions = [X_AXIS, _LEFT]
-    if isinstance(support, Box):  # its own edges: it may be turned about the vertical
-        axes = [T_on_support.rotate(axis) for axis in (X_AXIS, _LEFT, Z_AXIS)]
+    if isinstance(below.geometry, Box):  # its own edges: it may be turned about the vertical
+        axes = [below.pose.rotate(axis) for axis in (X_AXIS, _LEFT, Z_AXIS)]
         directions = sorted(axes, key=lambda axis: abs(axis[2]))[:2]
     beyond = 0.0
     for direction in directions:
-        low, high = extent(support, T_on_support, direction)
-        for geometry, pose in placed:
-            lowest, highest = extent(geometry, pose, direction)
+        low, high = below.extent(direction)
+        for shape in above:
+            lowest, highest = shape.extent(direction)
             beyond = max(beyond, low - lowest, highest - high)
     return beyond

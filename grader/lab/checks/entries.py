@@ -24,7 +24,6 @@ from grader.ros.package.trees import (
     xml_entry,
 )
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.link_tree import selected_name
 from grader.ros.urdf.reader import Reading
 from grader.ros.xml.elements import matches_value, name_of, readable, xml_text
 from grader.ros.xml.parsing import Element
@@ -412,7 +411,7 @@ def _with_names(step: PathStep, robot: Configuration) -> PathStep:
     """Return a step whose conditions have names, not selectors."""
     conditions = []
     for key, value in step.conditions:
-        conditions.append((key, selected_name(robot.known, robot.known_parents, value)))
+        conditions.append((key, robot.selected_name(value)))
     return step._replace(conditions=tuple(conditions))
 
 

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from grader.base.errors import MissingElement
 from grader.base.source import LazyLocation
 from grader.base.text import enumerated
+from grader.base.transforms import IDENTITY_ROTATION, Z_AXIS, turn_between
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -22,13 +23,12 @@ from grader.lab.checks.visuals import (
     ShapeName,
     main_visual,
     origin_place,
+    placed,
     shape_name,
     span,
-    visual_pose,
 )
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.shapes import UnknownShape, extent, turn_between
-from grader.ros.urdf.transforms import IDENTITY_ROTATION, Z_AXIS
+from grader.ros.urdf.shapes import UnknownShape
 
 ABOUT = {
     "bottom_at_height": About(("visual/origin",), picture="outline"),
@@ -59,7 +59,7 @@ def bottom_at_height(
     if shape == "any" or shape_name(visual.geometry) != f"a {shape}":
         lowest, _ = span(robot, link, relative_to, Z_AXIS)
     else:
-        lowest, _ = extent(visual.geometry, visual_pose(robot, link, visual, relative_to), Z_AXIS)
+        lowest, _ = placed(robot, link, visual, relative_to).extent(Z_AXIS)
     what = f"the bottom of {link!r} in the frame {relative_to!r} is at z ="
     at = place(visual.origin.location, "xyz") or visual.location
     return measured(what, lowest, height, tolerance, sides=("too high", "too low"), at=at)

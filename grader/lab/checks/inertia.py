@@ -2,28 +2,20 @@
 shapes.
 """
 
-from collections.abc import Sequence
-from itertools import combinations, combinations_with_replacement
-from math import hypot, isfinite, nan
+from math import isfinite
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, in_millimetres, judged, place, point, within
 from grader.lab.checks.toml_types import NonNegative
 from grader.lab.checks.visuals import MAX_SHAPES
-from grader.ros.urdf.kinematics import Configuration, placed_by
+from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.mass_properties import (
-    MassProperties,
-    largest_difference,
+    Solid,
     principal_moments,
-    turned,
-    uniform_solid,
     with_volume,
 )
-from grader.ros.urdf.model import INERTIA, Inertial, Mesh
-from grader.ros.urdf.overlap import penetration
-from grader.ros.urdf.shapes import Shape, UnknownShape, bounding_radius
-from grader.ros.urdf.transforms import IDENTITY, Transform, minus
+from grader.ros.urdf.model import Inertial
 
 ABOUT = {
     "mass_is": About(("mass", "inertial")),
@@ -81,26 +73,15 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
     impossible = _refuse_impossible(link, inertial)
     if impossible is not None:
         return impossible
-    what, shapes = _solid_shapes(robot, link)
-    T_link_inertial = placed_by(IDENTITY, inertial.origin)
-    given = MassProperties(
-        inertial.mass,
-        T_link_inertial.translation,
-        turned(inertial.inertia, T_link_inertial.rotation),
-    )
+    what, solid = _solid_of(robot, link)
     try:
-        solid = uniform_solid(shapes, inertial.mass)
+        difference = solid.difference(inertial)
     except ValueError:
         message = (
             f"the inertia of {link!r} cannot be compared: the volume of its {what} is too large"
         )
         return failed(message, robot.link(link).location)
-    largest = principal_moments(solid.inertia)[2]
-    if largest > 0.0:
-        off = 100.0 * largest_difference(given.inertia, solid.inertia) / largest
-    else:
-        off = nan
-    distance = hypot(*minus(given.centre, solid.centre))
+    off, distance = difference.percent, difference.distance
     at = place(inertial.location, None, "inertia")
     if not isfinite(off + distance):
         return failed(
@@ -109,22 +90,22 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
         )
     wrong = []
     if not within(off, 0.0, tolerance):
-        reason = _components_off(inertial, solid, T_link_inertial, tolerance)
+        reason = ", ".join(
+            f"{name} is {actual:.3g}, not {wanted + 0.0:.3g}"
+            for name, actual, wanted in difference.components(tolerance)
+        )
         solid_text = f"a uniform solid of its {what} with a mass of {inertial.mass:.6g} kg"
         wrong.append(
             f"the inertia of {link!r} is {_round_percentage(off)} % off that of "
             f"{solid_text}: {reason}"
         )
-    if not within(distance, 0.0, max(_CENTRE, _CENTRE_SHARE * _size_bound(shapes))):
+    if not within(distance, 0.0, max(_CENTRE, _CENTRE_SHARE * solid.size)):
         at = at if wrong else place(inertial.origin.location, "xyz") or place(inertial.location)
-        centres = f"at {point(given.centre)} m; it should be at {point(solid.centre)} m"
         wrong.append(
-            f"the centre of mass of {link!r} is {centres} in {link!r} "
-            f"({in_millimetres(distance)} off)"
+            f"the centre of mass of {link!r} is at {point(difference.given.centre)} m; it should "
+            f"be at {point(difference.solid.centre)} m in {link!r} ({in_millimetres(distance)} off)"
         )
-    if wrong and any(
-        penetration(*one, *other, _OVERLAP) > 0.0 for one, other in combinations(shapes, 2)
-    ):
+    if wrong and solid.overlaps(_OVERLAP):
         reason = f"the {what} of a link overlap, so their solid is not known"
         raise NotDecided(f"{'; '.join(wrong)}, but the {what} overlap", reason)
     message = "; ".join(wrong) or (
@@ -162,9 +143,8 @@ def _refuse_impossible(link: str, inertial: Inertial) -> Outcome | None:
     return None
 
 
-def _solid_shapes(robot: Configuration, link: str) -> tuple[str, list[tuple[Shape, Transform]]]:
-    """Return what shapes of a link count, in words, and each that has a volume with its pose in the
-    link.
+def _solid_of(robot: Configuration, link: str) -> tuple[str, Solid]:
+    """Return what shapes of a link count, in words, and those that have a volume.
 
     Raises UnknownShape for a mesh, MissingElement for a link without a shape.
     """
@@ -175,45 +155,10 @@ def _solid_shapes(robot: Configuration, link: str) -> tuple[str, list[tuple[Shap
             raise NotDecided(
                 f"{link!r} has more than {MAX_SHAPES} shapes", "a link has very many shapes"
             )
-        shapes: list[tuple[Shape, Transform]] = []
-        for geometry, origin in placed:
-            if isinstance(geometry, Mesh):
-                raise UnknownShape(geometry)
-            shapes.append((geometry, placed_by(IDENTITY, origin)))
-        if shapes:
-            return word if len(shapes) == 1 else f"{word}s", shapes
+        if placed:
+            return word if len(placed) == 1 else f"{word}s", Solid.of(placed)
     message = f"link {link!r} has no visual or collision shape with a volume"
     raise MissingElement("visual", link, message=message, location=place(found.location))
-
-
-def _components_off(
-    inertial: Inertial, solid: MassProperties, T_link_inertial: Transform, tolerance: float
-) -> str:
-    """Return which numbers of an <inertia> are off, along the axes in which it is given."""
-    expected = turned(solid.inertia, T_link_inertial.inverse().rotation)
-    # Of a symmetric matrix that is more off, one number is.
-    allowed = tolerance / 100.0 * principal_moments(expected)[2] / 3.0
-    pairs = zip(INERTIA, inertial.inertia, expected, strict=True)
-    off = [
-        (name, actual, wanted)
-        for name, actual, wanted in pairs
-        if not abs(actual - wanted) <= allowed
-    ]
-    return ", ".join(
-        f"{name} is {actual:.3g}, not {wanted + 0.0:.3g}" for name, actual, wanted in off
-    )
-
-
-def _size_bound(shapes: Sequence[tuple[Shape, Transform]]) -> float:
-    """Return an upper bound on the distance of two points of shapes, in metres: of a single shape,
-    that distance.
-    """
-    pairs = combinations_with_replacement(
-        [(pose.translation, bounding_radius(shape)) for shape, pose in shapes], 2
-    )
-    return max(
-        hypot(*minus(one, other)) + radius + reach for (one, radius), (other, reach) in pairs
-    )
 
 
 def _round_percentage(percentage: float) -> str:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from grader.base.errors import MissingElement
 from grader.base.names import did_you_mean
 from grader.base.source import LazyLocation
+from grader.base.transforms import Vector, cross, degrees_between, minus, unit
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -29,7 +30,6 @@ from grader.lab.checks.visuals import axis_place
 from grader.ros.urdf.diagnostics import FULL_TURN
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Dynamics, Joint
-from grader.ros.urdf.transforms import Vector, cross, degrees_between, minus, unit
 
 ABOUT = {
     "joint_limits": About(("limit",)),

@@ -5,7 +5,6 @@ from grader.base.text import counted, enumerated, sentence_end
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, passed, pending
 from grader.ros.urdf.reader import Reading
-from grader.ros.urdf.urdf_problems import RAW_XACRO
 from grader.ros.xml import xml_problems
 
 ABOUT = {"urdf_loads": About(("joint", "link"), is_of_writing=True)}
@@ -21,7 +20,7 @@ def urdf_loads(urdf: Reading) -> Outcome:
         for problem in urdf.problems
         if problem.kind.effect == "rejects" or problem.kind.detaches_links
     ]
-    raw = next((problem for problem in urdf.problems if problem.kind is RAW_XACRO), None)
+    raw = urdf.raw_xacro
     if raw is not None and urdf.verdict != "clean":
         return _raw_xacro_failure(urdf, raw)
     if not problems and urdf.verdict != "rejected":

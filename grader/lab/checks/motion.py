@@ -5,6 +5,7 @@ from math import asin, degrees, hypot
 from typing import Literal
 
 from grader.base.errors import MissingElement
+from grader.base.transforms import Z_AXIS, Vector, cross, degrees_between, dot, minus, unit
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -16,11 +17,9 @@ from grader.lab.checks.outcome import (
     point,
 )
 from grader.lab.checks.toml_types import Direction, NonNegative
-from grader.lab.checks.visuals import axis_place, main_visual, visual_pose, visuals
-from grader.ros.urdf.kinematics import Configuration, last_moving
+from grader.lab.checks.visuals import axis_place, main_visual, placed, visuals
+from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Cylinder, Joint
-from grader.ros.urdf.shapes import extent, farthest, volume
-from grader.ros.urdf.transforms import Z_AXIS, Vector, cross, degrees_between, dot, minus, unit
 
 ABOUT = {
     "rolls_forward": About(picture="wheel"),
@@ -84,11 +83,11 @@ def travel_of(
     Raises MissingElement, NotDecided or UnknownShape if it cannot be determined.
     """
     shown = visuals(robot, link)
-    placed = [(visual.geometry, visual_pose(robot, link, visual, base)) for visual in shown]
-    geometry, pose = placed[0]
-    if len(placed) > 1:
-        geometry, pose = min(placed, key=lambda shape: extent(shape[0], shape[1], up)[0])
-    low = farthest(geometry, pose, minus((0.0, 0.0, 0.0), up))
+    shapes = [placed(robot, link, visual, base) for visual in shown]
+    lowest = shapes[0]
+    if len(shapes) > 1:
+        lowest = min(shapes, key=lambda shape: shape.extent(up)[0])
+    low = lowest.farthest(minus((0.0, 0.0, 0.0), up))
     motion = robot.displacement(link, joint, _SMALL_ANGLE, relative_to=base)
     # While the ground holds the lowest point, the base moves the other way.
     x, y, z = _flatten(minus(motion.apply(low), low), up)
@@ -163,18 +162,14 @@ def turns_about_itself(
         any_type: Whether the parent joint is treated as one that turns, whatever its type.
     """
     robot = _as_turning(robot, link) if any_type else robot
-    cylinders = [visual for visual in visuals(robot, link) if isinstance(visual.geometry, Cylinder)]
-    if cylinders:
-        visual = max(cylinders, key=lambda visual: volume(visual.geometry))
-    else:
-        visual = main_visual(robot, link)
+    visual = main_visual(robot, link, "cylinder")
     if not isinstance(visual.geometry, Cylinder):
         message = f"{link!r} shows no cylinder, so it has no axis to turn about"
         raise MissingElement(
             "cylinder", link, message=message, location=place(visual.geometry.location)
         )
     joint = turning_joint(robot, link, base)
-    T_joint_wheel = visual_pose(robot, link, visual, joint.child)
+    T_joint_wheel = placed(robot, link, visual, joint.child).pose
     turning, own = robot.axis(joint), T_joint_wheel.rotate((0.0, 0.0, 1.0))
     tilt = min(degrees_between(turning, own), 180.0 - degrees_between(turning, own))
     away = hypot(*cross(turning, T_joint_wheel.translation))
@@ -202,7 +197,7 @@ def turning_joint(robot: Configuration, link: str, base: str) -> Joint:
     nothing turns.
     """
     message = f"no joint between {base!r} and {link!r} turns; one should be continuous or revolute"
-    return last_moving(robot.between(base, link), link, ("continuous", "revolute"), message)
+    return robot.joint_between(base, link, ("continuous", "revolute"), message)
 
 
 def _as_turning(robot: Configuration, link: str) -> Configuration:

@@ -4,7 +4,7 @@ from grader.base.errors import NotDecided
 from grader.base.text import enumerated, first_lines
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.submission.submission import Submission
-from grader.ros.workspace.names import Family, place_text
+from grader.ros.workspace.names import Family
 
 _MAX_NAMED = 3  # mistakes in a message
 
@@ -33,7 +33,7 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
     if wrong:
         places: dict[str, dict[str, None]] = {}
         for it in wrong:
-            places.setdefault(it.message, {})[place_text(it.location)] = None
+            places.setdefault(it.message, {})[it.location.file_and_line] = None
         (first, (_, *also)), *others = places.items()
         texts = [f"{at}: {message}{_also(more)}" for message, (at, *more) in others]
         message = "; ".join([f"{first}{_also(also)}", *first_lines(texts, _MAX_NAMED - 1)])

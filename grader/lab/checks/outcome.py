@@ -8,7 +8,7 @@ from math import isfinite, isnan
 from typing import Literal, NamedTuple
 
 from grader.base.source import LazyLocation, Location
-from grader.ros.urdf.transforms import Vector
+from grader.base.transforms import Vector
 
 Status = Literal["passed", "failed", "skipped", "pending", "errored"]
 _Measured = bool | float | str | tuple[float, ...] | tuple[str, ...] | Mapping[str, str] | None

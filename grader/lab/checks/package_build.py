@@ -5,7 +5,7 @@ Nothing is run.
 import posixpath
 from collections.abc import Sequence
 from fnmatch import fnmatch
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.names import closest
@@ -14,12 +14,6 @@ from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, judged, passed
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import MANIFEST, RESOURCE_INDEX, SETUP, Package
-
-if TYPE_CHECKING:
-    from grader.ros.build.file_search import EmptyGlob
-    from grader.ros.build.installation import Installation
-    from grader.ros.build.manifest import Manifest
-
 
 _FileKind = Literal["urdf", "launch", "rviz"]
 ABOUT = {
@@ -39,7 +33,7 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
         name: The name that package.xml should give it.
     """
     package = submission.needed_package()
-    manifest = _readable_manifest(package)
+    manifest = package.needed_manifest()
     fine = manifest.name == name
     if manifest.refusals and (fine or manifest.name is None):
         problem, count = manifest.refusals[0], len(manifest.refusals)
@@ -65,7 +59,7 @@ def package_type(package: Package, *, build_type: str) -> Outcome:
     Args:
         build_type: The build type, such as ament_python.
     """
-    manifest = _readable_manifest(package)
+    manifest = package.needed_manifest()
     actual = manifest.build_type
     fine = actual == build_type
     message = f"the build type is {actual!r}" if actual else "<build_type> in package.xml is empty"
@@ -131,31 +125,13 @@ def setup_imports(package: Package) -> Outcome:
     """A build of the package succeeds: Python runs `setup.py`, or CMake `CMakeLists.txt`,
     without an error.
     """
-    setup = _readable_setup(package)
-    return _build_error(package, setup) or passed(f"{setup.file} builds")
+    setup = package.needed_installation()
+    return _build_error(package) or passed(f"{setup.file} builds")
 
 
-def _readable_manifest(package: Package) -> "Manifest":
-    """Return the package's package.xml, also of one that is broken if its build type can be
-    read.
-    """
-    manifest = package.manifest
-    if manifest is not None and manifest.unread:
-        raise NotDecided(manifest.unread, "package.xml cannot be read")
-    if manifest is None:
-        where = f"the folder {package.folder!r}" if package.folder else "the submission"
-        message = f"{where} has a setup.py, but no package.xml, so it is not a ROS 2 package"
-        raise MissingElement(MANIFEST, package.folder, message=message, absent=MANIFEST)
-    if not manifest.build_type and manifest.refusals:
-        problem = manifest.refusals[0]
-        raise MissingElement(
-            MANIFEST, package.folder, message=problem.message, location=problem.location
-        )
-    return manifest
-
-
-def _build_error(package: Package, setup: "Installation") -> Outcome | None:
+def _build_error(package: Package) -> Outcome | None:
     """Return why a build of the package fails; None if it succeeds. Raises NotDecided."""
+    setup = package.needed_installation()
     if package.ignored_by:
         message = f"colcon does not build the package, because there is a file {package.ignored_by}"
         return failed(message, problem=message)
@@ -200,35 +176,14 @@ def _files_of(package: Package, kind: _FileKind, name: str) -> Sequence[str]:
     return [path for path in paths if path not in parts] or paths
 
 
-def _readable_setup(package: Package) -> "Installation":
-    """Return what the package's setup.py or CMakeLists.txt installs.
-
-    Raises MissingElement if there is none, or if it cannot be parsed; NotDecided if it needs manual
-    grading.
-    """
-    setup = package.installation
-    if setup is None:
-        message = f"the package has no {package.missing_build_file}, so a build installs nothing"
-        raise MissingElement(
-            SETUP, package.folder, message=message, absent=package.missing_build_file
-        )
-    if setup.fault is not None and setup.fault.is_certain:
-        raise MissingElement(
-            SETUP, package.folder, message=setup.fault_text, location=setup.fault.location
-        )
-    if setup.unread:
-        raise NotDecided(setup.unread, f"{setup.file} cannot be read")
-    return setup
-
-
 def _require_installed(
     package: Package, files: Sequence[str], kind: _FileKind | None, *, despite_errors: bool
 ) -> Outcome:
-    setup = _readable_setup(package)
-    error = _build_error(package, setup)
+    setup = package.needed_installation()
+    error = _build_error(package)
     if error is not None and not despite_errors:
         return error._replace(message=f"a build fails: {error.message}")
-    if error is not None and _stops_at(package, setup, files, kind):
+    if error is not None and _stops_at(package, files, kind):
         return passed(f"{setup.file} has an entry for {files[0]}")
     copies = [copy for copy in setup.copies if copy.source in files]
     inside = [copy for copy in copies if copy.target.startswith(package.share)]
@@ -260,13 +215,12 @@ def _require_installed(
         message += f"; ROS 2 looks for the package's files below {package.share}"
         mistake = f"a build installs the file outside of {package.share}"
         return failed(message, setup.location(copies[0].at), mistake=mistake)
-    raise _why_not_installed(package, setup, files, kind)
+    raise _why_not_installed(package, files, kind)
 
 
-def _stops_at(
-    package: Package, setup: "Installation", files: Sequence[str], kind: _FileKind | None
-) -> bool:
+def _stops_at(package: Package, files: Sequence[str], kind: _FileKind | None) -> bool:
     """Return whether a build stops at the entry for these files, so that it is there."""
+    setup = package.needed_installation()
     folders = {posixpath.dirname(path) for path in files}
     paths = [stop.path for stop in setup.stops if stop.path]
     if setup.is_cmake and any(
@@ -278,11 +232,12 @@ def _stops_at(
 
 
 def _why_not_installed(
-    package: Package, setup: "Installation", files: Sequence[str], kind: _FileKind | None
+    package: Package, files: Sequence[str], kind: _FileKind | None
 ) -> MissingElement:
     """Return why a build does not install files: no entry, or a pattern without a match."""
+    setup = package.needed_installation()
     what, message = f"installed {kind or files[0]}", f"a build does not install {files[0]}"
-    empty = _pattern_for(setup.empty, files, kind)
+    empty = setup.empty_for(files, kind)
     if empty is None:
         message += f": {'no' if setup.is_cmake else 'no entry of'} {setup.entries} names it"
         return MissingElement(
@@ -297,25 +252,6 @@ def _why_not_installed(
     return MissingElement(
         what, package.folder, message=message, detail=detail, location=at, problem=problem + detail
     )
-
-
-def _pattern_for(
-    empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: _FileKind | None
-) -> "EmptyGlob | None":
-    """Return the pattern without a match that is meant for one of these files, by its folder,
-    ending or kind.
-    """
-    folders = {posixpath.dirname(path) for path in files}
-    endings = tuple({posixpath.splitext(path)[1] for path in files} - {""})
-    for glob in empty:
-        folder = posixpath.dirname(glob.pattern)
-        if (
-            folder in folders
-            or (folder and closest(folder, folders))
-            or (endings and glob.pattern.endswith(endings))
-        ):
-            return glob
-    return next((glob for glob in empty if kind is not None and kind in glob.pattern.lower()), None)
 
 
 def _kind_of_file(path: str, package: Package) -> _FileKind | None:

@@ -9,17 +9,16 @@ from typing import Any, Literal
 from grader.base.errors import MissingElement, NotDecided, RubricError
 from grader.base.names import did_you_mean
 from grader.base.text import enumerated, quoted
+from grader.base.transforms import Vector
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.checks.toml_types import Content, NonNegative, Scalar
-from grader.lab.checks.visuals import main_visual, visual_pose
+from grader.lab.checks.visuals import main_visual, placed
 from grader.lab.submission.submission import Submission
 from grader.ros.launch.launch_model import ParameterValue
-from grader.ros.launch.node_parameters import value_in_file
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Cylinder, Joint, Sphere
-from grader.ros.urdf.transforms import Vector
 
 _Measure = Literal["radius", "length", "distance", "lower", "upper", "velocity", "effort"]
 _EXACT = 1e-6
@@ -110,13 +109,7 @@ def _written_otherwise(
     """Return what parameter files have for a parameter, of whatever node, if none of them has a
     certain value.
     """
-    from grader.ros.config.yaml_values import sections_in
-
-    sections = (
-        section for _, tree in submission.workspace.trees for _, section in sections_in(tree)
-    )
-    nodes = (section.get(*parameter.split(".")) for section in sections)
-    written = [value_in_file(node) for node in nodes if node is not None]
+    written = submission.workspace.written_values(parameter)
     known = [it for it in written if not isinstance(it.value, Unknown)]
     has_it = value is None or any(_equal(it.value, value, tolerance) for it in known)
     return None if has_it else next(iter(known), None)
@@ -135,7 +128,7 @@ def value_of(submission: Submission, node: str, parameter: str) -> ParameterValu
         next((found.unknown for found in given if found.unknown), "") or workspace.unknown_nodes
     )
     if values and not unknown:
-        places = enumerated([f"{it.location.path}:{it.location.line}" for it in values])
+        places = enumerated([it.location.file_and_line for it in values])
         raise NotDecided(
             f"{node} gets different values of {parameter}: {places}",
             "a parameter has several values",
@@ -230,7 +223,7 @@ def _place(robot: Configuration, link: str, relative_to: str) -> Vector:
     if joint is not None and joint.type == "continuous" and robot.robot.link(link).visuals:
         visual = main_visual(robot, link)
         if isinstance(visual.geometry, Cylinder | Sphere):
-            return visual_pose(robot, link, visual, relative_to).translation
+            return placed(robot, link, visual, relative_to).pose.translation
     return robot.pose(link, relative_to=relative_to).translation
 
 

@@ -3,6 +3,7 @@
 from math import acos, degrees
 
 from grader.base.source import LazyLocation
+from grader.base.transforms import Z_AXIS, Vector, dot, minus, rotation_from_rpy, turn_between, unit
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -15,11 +16,10 @@ from grader.lab.checks.outcome import (
     point,
 )
 from grader.lab.checks.toml_types import Direction, NonNegative
-from grader.lab.checks.visuals import ShapeName, main_visual, origin_place, visual_pose
+from grader.lab.checks.visuals import ShapeName, main_visual, origin_place, placed
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Mesh, Visual
-from grader.ros.urdf.shapes import UnknownShape, turn_between
-from grader.ros.urdf.transforms import Z_AXIS, Vector, dot, minus, rotation_from_rpy, unit
+from grader.ros.urdf.shapes import UnknownShape
 
 ABOUT = {
     "frame_at": About(("joint/origin",), picture="frame"),
@@ -54,18 +54,18 @@ def frame_at(
         angle: How far the orientation may be off, in degrees; with 180, it is not checked.
     """
     pose, at = robot.pose(link, relative_to=relative_to), origin_place(robot, link)
-    placed = measured_point(
+    position = measured_point(
         f"the frame {link!r}", pose.translation, xyz, tolerance, relative_to, at=at
     )
     if angle < _ANY_ANGLE:
         return _with_orientation(
-            placed,
+            position,
             turn_between(pose.rotation, rotation_from_rpy(rpy)),
             angle,
             f"rpy = {point(rpy)} (radians)",
             at,
         )
-    return placed
+    return position
 
 
 def centre_at(
@@ -98,20 +98,20 @@ def centre_at(
     visual = main_visual(robot, link, shape)
     if isinstance(visual.geometry, Mesh):
         raise UnknownShape(visual.geometry)
-    pose = visual_pose(robot, link, visual, relative_to)
+    pose = placed(robot, link, visual, relative_to).pose
     actual = pose.translation
     loose = _loose_joint(robot, link, relative_to) if rigid else None
     if loose is not None:
         return loose
     at = _origin_by(robot, link, visual, relative_to, minus(actual, xyz)) or place(visual.location)
-    placed = measured_point(
+    position = measured_point(
         f"the centre of the visual of {link!r}", actual, xyz, tolerance, relative_to, at=at
     )
     if angle >= _ANY_AXIS:
-        return placed
+        return position
     cosine = abs(dot(pose.rotate(Z_AXIS), unit(axis) or axis))
     return _with_orientation(
-        placed, degrees(acos(min(1.0, cosine))), angle, f"the axis {point(axis)}", at
+        position, degrees(acos(min(1.0, cosine))), angle, f"the axis {point(axis)}", at
     )
 
 

@@ -14,13 +14,13 @@ from grader.lab.checks.toml_types import Constraint
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.reader import Reading
-from grader.ros.urdf.urdf_problems import CATALOGUE, UNLISTED
-from grader.ros.xacro.xacro_problems import XACRO_CATALOGUE
+from grader.ros.urdf.urdf_problems import UNLISTED
+from grader.ros.workspace.problem_kinds import ROBOT_KINDS
 
 # Another text for the same robot may have problems of its own.
 ABOUT = {"without_problems": About(breaks_under=everything, is_of_writing=True)}
 
-_CODES = [kind.code for kind in (*CATALOGUE, *XACRO_CATALOGUE)]
+_CODES = [kind.code for kind in ROBOT_KINDS]
 _KNOWN = Constraint(
     (
         "codes of problems of a URDF or of xacro, such as URDF012 (`grader explain CODE` "

@@ -10,6 +10,7 @@ from weakref import WeakKeyDictionary
 from grader.base.errors import MissingElement, NotDecided, RubricError
 from grader.base.names import did_you_mean
 from grader.base.text import counted, enumerated, quoted
+from grader.base.transforms import Transform
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -22,10 +23,8 @@ from grader.lab.checks.outcome import (
     point,
 )
 from grader.lab.checks.toml_types import Constraint, NonNegative
-from grader.ros.urdf.kinematics import SINGLE, Configuration
-from grader.ros.urdf.link_tree import selected_name
+from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Joint, Robot
-from grader.ros.urdf.transforms import Transform
 
 
 def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
@@ -99,7 +98,7 @@ def kinematics_match_reference(
 
 
 def _link_name(robot: Configuration, link: str) -> str:
-    name = selected_name(robot.known, robot.known_parents, link)
+    name = robot.selected_name(link)
     robot.link(name)
     return name
 
@@ -181,7 +180,7 @@ def _wrong_type(joint: Joint, other: Joint) -> Outcome | None:
     if (
         joint.type == other.type
         or {joint.type, other.type} <= {"revolute", "continuous"}
-        or other.type not in SINGLE
+        or not other.has_position
     ):
         return None
     message = f"the joint is {joint.type or 'of no type'}; it should be {other.type}"
@@ -391,6 +390,6 @@ def _joint_range(joint: Joint) -> tuple[float, float]:
     if joint.type == "continuous":
         return -pi, pi
     limit = joint.limit
-    if joint.type not in SINGLE or limit is None or not isfinite(limit.upper - limit.lower):
+    if not joint.has_position or limit is None or not isfinite(limit.upper - limit.lower):
         return 0.0, 0.0
     return limit.lower, limit.upper

@@ -10,7 +10,6 @@ from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, Status, failed, judged, passed
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import Package
-from grader.ros.package.robot_file import Read
 
 if TYPE_CHECKING:
     from grader.ros.config.rviz import Display, RvizFile
@@ -76,11 +75,9 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
         )
     if None in frames and actual.endswith(frame):
         raise NotDecided(_UNKNOWN_PREFIX)
-    robot = submission.urdf.reading.robot if isinstance(submission.urdf, Read) else None
-    if robot is not None:
-        links = [it for link in robot.links for it in _frames_of_link(opened, link.name) if it]
-    else:
-        links = []
+    links: list[str] = []
+    for link in submission.robot.links if submission.robot is not None else ():
+        links += filter(None, _frames_of_link(opened, link.name))
     message, detail = f"the Fixed Frame is {actual!r}", ""
     if actual not in frames:
         message += f"; it should be {expected!r}{_prefix_reason(expected, frame)}"
@@ -341,7 +338,7 @@ def _rviz_path(package: Package, name: str, opened: "Launch | None") -> str:
 
 def _read_rviz(package: Package, name: str, launch: str) -> "RvizFile":
     opened = _read_launch(package, launch)
-    package = _owner_of_opened(package, opened) if opened is not None else package
+    package = package.owner_of_opened(opened) if opened is not None else package
     path = _rviz_path(package, name, opened)
     rviz = package.rviz(path)
     if rviz.unread:
@@ -351,16 +348,3 @@ def _read_rviz(package: Package, name: str, launch: str) -> "RvizFile":
             "RViz file", path, message=rviz.fault.message, location=rviz.fault.location
         )
     return rviz
-
-
-def _owner_of_opened(package: Package, opened: "Launch") -> Package:
-    """Return the package of the submission whose RViz file a launch file opens; without one, the
-    package itself.
-    """
-    from grader.ros.package.installed_files import share_parts  # late: few rubrics ask for it
-
-    others = (
-        package.find(share_parts(it.path)[0]) for it in opened.named("rviz") if it.path is not None
-    )
-    owners = [it for it in (package, *others) if it is not None]
-    return next((it for it in owners if it.rviz_opened(opened) is not None), package)

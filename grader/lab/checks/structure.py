@@ -13,10 +13,8 @@ from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, judged, number_text, passed, place
 from grader.lab.checks.toml_types import Count
 from grader.lab.checks.visuals import visible
-from grader.ros.urdf.joint_reader import MOVING_TYPES
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Joint
-from grader.ros.urdf.shapes import is_empty
 from grader.ros.xml.urdf_format import JOINT_TYPES, JointType
 
 
@@ -68,7 +66,7 @@ def held_by(
         raise MissingElement(
             "moving joint", link, message=message, detail=f" (joint {joint.name!r})", location=at
         )
-    unknown = [joint for joint in moving if joint.type not in MOVING_TYPES]
+    unknown = [joint for joint in moving if joint.type not in JOINT_TYPES]
     if unknown:
         wrong = unknown[0]
         kind = f"the type {wrong.type!r}, which does not exist" if wrong.type else "no type"
@@ -239,7 +237,7 @@ def _joint_above_root(
 def _is_of_frame(robot: Configuration, joint: Joint, links: Collection[str]) -> bool:
     if joint.type != "fixed" or joint.parent in links or visible(robot, joint.parent):
         return False
-    return all(is_empty(collision.geometry) for collision in robot.link(joint.parent).collisions)
+    return all(collision.geometry.is_empty for collision in robot.link(joint.parent).collisions)
 
 
 def _driven_or_blocked(joint: Joint, link: str) -> Outcome | None:

@@ -10,7 +10,7 @@ from math import isfinite
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, NamedTuple, Union, get_args, get_origin
 
-from grader.ros.urdf.transforms import Vector
+from grader.base.transforms import Vector
 
 
 class WrongValue(ValueError):

@@ -7,13 +7,12 @@ from typing import Literal
 
 from grader.base.errors import MissingElement
 from grader.base.source import LazyLocation
+from grader.base.transforms import Vector, unit
 from grader.lab.checks.outcome import place, within
-from grader.ros.urdf.kinematics import Configuration, placed_by
+from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Cylinder, Geometry, Joint, Mesh, Sphere, Visual
-from grader.ros.urdf.shapes import extent, is_empty, volume
-from grader.ros.urdf.transforms import Transform, Vector, unit
+from grader.ros.urdf.shapes import PlacedShape
 
-_MAX_FILE_NAME = 100  # characters that a message shows
 MAX_SHAPES = 50  # of one link that are compared with each other
 VISIBLE = 0.01  # the smallest alpha of a colour that shows
 ShapeName = Literal["any", "box", "cylinder", "sphere"]
@@ -27,7 +26,7 @@ _SHAPES: dict[str, type[Box] | type[Cylinder] | type[Sphere]] = {
 def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
     """Return the visuals of a link that have a size; raise MissingElement if there is none."""
     found = robot.link(link)
-    shown = tuple(visual for visual in found.visuals if not is_empty(visual.geometry))
+    shown = tuple(visual for visual in found.visuals if not visual.geometry.is_empty)
     if not shown:
         message = f"link {link!r} has no visual with a size"
         raise MissingElement("visual", link, message=message, location=place(found.location))
@@ -38,7 +37,7 @@ def visible(robot: Configuration, link: str) -> list[Visual]:
     """Return the visuals of a link that have a size and are not transparent; raise MissingElement
     without the link.
     """
-    shown = (visual for visual in robot.link(link).visuals if not is_empty(visual.geometry))
+    shown = (visual for visual in robot.link(link).visuals if not visual.geometry.is_empty)
     return [
         visual for visual in shown if visual.material is None or visual.material.rgba[3] >= VISIBLE
     ]
@@ -60,13 +59,16 @@ def main_visual(robot: Configuration, link: str, shape: ShapeName = "any") -> Vi
         )
     return max(
         shown,
-        key=lambda visual: inf if isinstance(visual.geometry, Mesh) else volume(visual.geometry),
+        key=lambda visual: inf if isinstance(visual.geometry, Mesh) else visual.geometry.volume,
     )
 
 
-def visual_pose(robot: Configuration, link: str, visual: Visual, relative_to: str) -> Transform:
-    """Return T_relative_visual; raise MissingElement where it is not defined."""
-    return placed_by(robot.pose(link, relative_to=relative_to), visual.origin)
+def placed(robot: Configuration, link: str, visual: Visual, relative_to: str) -> PlacedShape:
+    """Return the shape of a visual in the frame of another link; raise MissingElement where its
+    pose is not defined.
+    """
+    pose = visual.origin.placed_in(robot.pose(link, relative_to=relative_to))
+    return PlacedShape(visual.geometry, pose)
 
 
 def span(
@@ -75,11 +77,8 @@ def span(
     """Return the lowest and highest coordinate of a link's visuals along a unit direction, in
     metres, in a frame.
     """
-    pose = robot.pose(link, relative_to=relative_to)
-    spans = [
-        extent(visual.geometry, placed_by(pose, visual.origin), direction)
-        for visual in visuals(robot, link)
-    ]
+    shapes = [placed(robot, link, visual, relative_to) for visual in visuals(robot, link)]
+    spans = [shape.extent(direction) for shape in shapes]
     lows, highs = zip(*spans, strict=True)
     return min(lows), max(highs)
 
@@ -87,11 +86,6 @@ def span(
 def shape_name(geometry: Geometry) -> str:
     """Return the name of a shape: a box, a cylinder, a sphere, a mesh."""
     return f"a {type(geometry).__name__.lower()}"
-
-
-def file_name(name: str) -> str:
-    """Return the file name of a mesh between quotes; only the end of one that is very long."""
-    return repr(name if len(name) <= _MAX_FILE_NAME else f"...{name[3 - _MAX_FILE_NAME :]}")
 
 
 def origin_place(robot: Configuration, link: str) -> LazyLocation | None:

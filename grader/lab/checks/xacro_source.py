@@ -2,12 +2,12 @@
 it includes.
 """
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.base.errors import InputError, MissingElement, NotDecided
 from grader.base.names import did_you_mean
-from grader.base.source import LazyLocation, Location, Source
+from grader.base.source import LazyLocation, Location
 from grader.base.text import MAX_NAMED, counted, enumerated, quoted
 from grader.files.reading import URDF_LIMIT
 from grader.lab.checks.check import About, everything
@@ -15,13 +15,10 @@ from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.checks.toml_types import Count
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
-from grader.ros.python.budget import OutOfBudget
 from grader.ros.urdf.reader import find_xacro
-from grader.ros.urdf.urdf_problems import RAW_XACRO
 
 if TYPE_CHECKING:
     from grader.ros.xacro.expansion import ExpandedSource
-    from grader.ros.xacro.inventory import Definitions, Inventory
 
 ABOUT = {
     "xacro_uses": About(
@@ -70,16 +67,26 @@ def xacro_uses(
     paths = [*source.documents]
     if not submission.is_single:
         paths = [path for path in paths if _ends_with(path, file)]
-    inventory = _take_inventory(source, submission)
+    inventory = source.inventory(submission.budget)
     included: dict[str, None] = {}
     for (path, _), files in source.includes.items():
         if path in paths:
             included.update(dict.fromkeys(files))
     lacks = [
         *_missing_uses(
-            "property", "properties", properties, inventory.properties, inventory.used, paths
+            "property",
+            "properties",
+            properties,
+            inventory.first_places(inventory.properties, paths),
+            inventory.used,
         ),
-        *_missing_uses("macro", "macros", macros, inventory.macros, inventory.called, paths),
+        *_missing_uses(
+            "macro",
+            "macros",
+            macros,
+            inventory.first_places(inventory.macros, paths),
+            inventory.called,
+        ),
         *_missing_includes(includes, [*included]),
     ]
     if not lacks:
@@ -88,33 +95,12 @@ def xacro_uses(
             f"{enumerated(names, MAX_NAMED)}: xacro with the expected properties, macros "
             "and includes"
         )
-    _refuse_unknown(source, inventory)
+    source.check_known(inventory)
     message = "; ".join(lack.message for lack in lacks)
     detail = "".join(lack.detail for lack in lacks)
     places = [lack.location for lack in lacks if lack.location is not None]
     at = places[0] if places else LazyLocation(source, 0)
     return failed(message, at, detail=detail)
-
-
-def _take_inventory(source: "ExpandedSource", submission: Submission) -> "Inventory":
-    from grader.ros.xacro.inventory import take_inventory  # late: few rubrics need it
-
-    try:
-        return take_inventory(source.documents.values(), submission.budget)
-    except OutOfBudget as error:
-        raise NotDecided(str(error)) from None
-
-
-def _refuse_unknown(source: "ExpandedSource", found: "Inventory") -> None:
-    """Raise NotDecided if what seems to be missing may be in a part that is not known."""
-    followed = source.includes.keys()
-    is_open = any((place.source.path, place.tag) not in followed for place in found.includes)
-    if source.open_reason and is_open:
-        raise NotDecided(source.open_reason)
-    if found.dynamic:
-        place = found.dynamic[0].at()
-        reason = "xacro evaluates the name of a property or macro"
-        raise NotDecided(f"{reason} ({place.path}, line {place.line})", reason)
 
 
 def _find_source(submission: Submission, file: str) -> "ExpandedSource | Outcome":
@@ -125,7 +111,7 @@ def _find_source(submission: Submission, file: str) -> "ExpandedSource | Outcome
     assert isinstance(urdf, Read)  # else there is none that is needed
     source = reading.source
     if not isinstance(source, ExpandedSource) and find_xacro(source.text) is not None:
-        source = _expand_file(submission, urdf.path, urdf.data)
+        source = submission.surroundings(submission.budget).expanded(urdf.data, urdf.path)
     if isinstance(source, ExpandedSource):
         if (
             not file
@@ -167,9 +153,8 @@ def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome"
     if not found:
         raise MissingElement("file", file, message=f"the submission has no file {quoted(file)}")
     try:
-        source = _expand_file(
-            submission, found[0], submission.tree.files[found[0]].read(URDF_LIMIT)
-        )
+        data = submission.tree.files[found[0]].read(URDF_LIMIT)
+        source = submission.surroundings(submission.budget).expanded(data, found[0])
     except InputError as error:
         raise NotDecided(str(error), "a file cannot be read") from None
     if isinstance(source, ExpandedSource) and find_xacro(source.text) is not None:
@@ -177,30 +162,11 @@ def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome"
     return failed(f"{found[0]} has no expression and no tag of xacro", Location(found[0], 1, 1))
 
 
-def _expand_file(submission: Submission, path: str, data: bytes) -> "ExpandedSource | Source":
-    """Return a file as xacro; raise NotDecided or MissingElement where it cannot be expanded at
-    all.
-    """
-    from grader.ros.xacro.expansion import ExpandedSource, expand
-
-    expansion = expand(
-        data, path, submission.surroundings(submission.budget), submission.opening.arguments
-    )
-    if isinstance(expansion.source, ExpandedSource):
-        return expansion.source
-    for found in expansion.undetermined:
-        raise NotDecided(found.reason)
-    first = expansion.problems[0]
-    raise MissingElement(
-        "xacro", path, message=first.message, location=first.location, problem=first.message
-    )
-
-
 def _judge_expansion(submission: Submission) -> Outcome:
     """Return whether xacro is expanded before ROS 2 reads the robot."""
     urdf = submission.urdf
     assert isinstance(urdf, Read)
-    raw = next((problem for problem in urdf.loaded.problems if problem.kind is RAW_XACRO), None)
+    raw = urdf.loaded.raw_xacro
     if raw is not None:
         return failed(raw.message, raw.location, problem=raw.message)
     return passed(f"{urdf.path} is written in xacro, and is expanded before ROS 2 reads it")
@@ -210,19 +176,12 @@ def _missing_uses(
     kind: str,
     plural: str,
     wanted: int | list[str],
-    defined: "Definitions",
+    first_places: Mapping[str, Location],
     used: Collection[str],
-    paths: Sequence[str],
 ) -> Iterator[_Lack]:
     """Yield what is missing of definitions that are used: some of the named ones, or of a
     number.
     """
-    first_places: dict[str, Location] = {}
-    for name, places in defined.items():
-        for place in places:
-            if place.source.path in paths:
-                first_places[name] = place.at("name")
-                break
     if isinstance(wanted, int):
         unused = [name for name in first_places if name not in used]
         count = len(first_places) - len(unused)

@@ -21,7 +21,7 @@ from grader.lab.grading.subjects import Subjects
 from grader.lab.rubric.criterion import Carried, Criterion
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.submission import Submission
-from grader.ros.package.robot_file import Absent, is_another_robot, is_foreign_robot, known_links
+from grader.ros.package.robot_file import Absent
 from grader.ros.urdf.model import Robot
 from grader.ros.urdf.shapes import UnknownShape
 
@@ -366,7 +366,7 @@ def another_robot(rubric: Rubric, robot: Robot | None, link: str = "") -> Missin
     """Return the error for a robot that is another one, and so has no `link`; None if it may be
     that of the lab.
     """
-    if robot is None or not is_foreign_robot(robot, rubric.links):
+    if robot is None or not robot.is_foreign(rubric.links):
         return None
     missing = f"there is no link {link!r}, and " if link else ""
     message = f"{missing}this looks like another robot: it has {_known_links_text(rubric, robot)}"
@@ -377,7 +377,7 @@ def another_robot(rubric: Rubric, robot: Robot | None, link: str = "") -> Missin
 
 
 def _known_links_text(rubric: Rubric, robot: Robot) -> str:
-    count = known_links(robot, rubric.links)
+    count = robot.known_links(rubric.links)
     return (
         f"{f'only {count} of the {len(rubric.links)}' if count else 'none of the'} links of the "
         f"rubric {rubric.id}"
@@ -391,7 +391,7 @@ def _missing_work(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
     found, robot = {}, submission.robot
     if isinstance(submission.urdf, Absent):
         found["URDF"] = "no URDF was submitted"
-    elif robot is not None and is_another_robot(robot, rubric.links):
+    elif robot is not None and robot.is_another(rubric.links):
         another = another_robot(rubric, robot)
         lacking = f"the robot has {_known_links_text(rubric, robot)}"
         found["URDF"] = another.mistake if another is not None else lacking

@@ -13,13 +13,12 @@ from grader.base.errors import InputError
 from grader.base.problems import Problem, in_order
 from grader.base.text import counted_points, enumerated
 from grader.lab.checks.manual import MANUAL_CHECKS, evidence_shown
-from grader.lab.checks.meshes import mesh_problems
 from grader.lab.grading.deciding import another_robot, decide
 from grader.lab.grading.report import EvidenceResult, Report, Result, without_gifts
-from grader.lab.grading.slips import decide_as_meant
 from grader.lab.rubric.criterion import Evidence
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.submission import Submission
+from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.xml.xml_problems import RECOVERED
@@ -59,14 +58,17 @@ def grade(
     chosen, notes = _choose_parts(rubric, submission, parts, is_whole=is_whole)
     another = another_robot(rubric, submission.robot)
     wanted = {criterion.id for criterion in rubric.criteria if criterion.part in chosen}
-    decided = decide_as_meant(rubric, submission, wanted)
-    meant = decided.meant
-    results = without_gifts(decided.results, submission)
+    results = tuple(decide(rubric, submission, wanted))
+    meant = None
+    if any(result.is_lost or result.is_open for result in results):
+        from grader.lab.grading.slips import judge_as_meant  # late: many submissions lose nothing
+
+        results, meant = judge_as_meant(rubric, submission, results)
+    results = without_gifts(results, submission)
     problems: tuple[Problem, ...] = ()
     if isinstance(submission.urdf, Read):
-        problems = in_order(
-            (*submission.urdf.problems, *mesh_problems(submission, submission.urdf))
-        )
+        meshes = mesh_problems(submission.urdf, submission.packages, submission.tree)
+        problems = in_order((*submission.urdf.problems, *meshes))
     if submission.package is not None and any(
         rubric.part(part).needs == "package" for part in chosen
     ):

@@ -2,8 +2,8 @@
 judged on what the slip surely stands for.
 """
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple, cast
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, cast
 
 from grader.base.errors import InputError
 from grader.base.slips import Slip
@@ -25,28 +25,19 @@ _MAX_NAMED = 3  # in a message
 _Results = Mapping[str, Result]
 
 
-class Decided(NamedTuple):
-    """The results of the criteria, and what they were judged on where a word is not the meant
-    one.
-    """
-
-    results: tuple[Result, ...]
-    meant: Meant | None = None
-
-
-def decide_as_meant(rubric: Rubric, submission: Submission, wanted: Collection[str]) -> Decided:
-    """Return the results of criteria in the rubric's order, each slip paid by one of them.
+def judge_as_meant(
+    rubric: Rubric, submission: Submission, written: tuple[Result, ...]
+) -> tuple[tuple[Result, ...], Meant | None]:
+    """Return the results of criteria with each slip paid by one of them, and what they were judged
+    on. `written` are those on the words as they are written.
 
     A slip in a file that ROS 2 loads counts only if no criterion fails with the meant word that
     passes with the written one: what ROS 2 ignores without harm is a comment.
     """
-    written = tuple(decide(rubric, submission, wanted))
-    if not any(result.is_lost or result.is_open for result in written):
-        return Decided(written)
-    slips = slips_of(submission)
-    if not slips or submission.is_costly:
-        return Decided(written)
-    return _Readings(rubric, submission, written).decided(slips[:_MAX_SLIPS])
+    slips = [] if submission.is_costly else slips_of(submission)
+    if not slips:
+        return written, None
+    return _Readings(rubric, submission, written).judged(slips[:_MAX_SLIPS])
 
 
 def slips_of(submission: Submission) -> list[Slip]:
@@ -78,7 +69,7 @@ class _Readings:
             (): (submission, self._written)
         }
 
-    def decided(self, slips: Sequence[Slip]) -> Decided:
+    def judged(self, slips: Sequence[Slip]) -> tuple[tuple[Result, ...], Meant | None]:
         """Return the results with those slips corrected that count."""
         counting = self._readable(slips)
         payers: dict[Slip, str] = {}
@@ -91,7 +82,7 @@ class _Readings:
                     break
                 payers[slip] = payer
         if not counting:
-            return Decided(tuple(self._written.values()))
+            return tuple(self._written.values()), None
         submission, meant = self._read(counting)
         paid_by: dict[str, list[Slip]] = {}
         for slip, payer in payers.items():
@@ -105,7 +96,7 @@ class _Readings:
             else:
                 results.append(result)
         paid = tuple(PaidSlip(slip, payer) for slip, payer in payers.items())
-        return Decided(tuple(results), Meant(submission, tuple(meant.values()), paid))
+        return tuple(results), Meant(submission, tuple(meant.values()), paid)
 
     def _readable(self, slips: Sequence[Slip]) -> list[Slip]:
         """Return the slips whose edits fit together."""

@@ -17,7 +17,7 @@ from grader.lab.rubric.rubric import ReferenceSolution, Rubric
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.link_tree import JOINT_OF, selected_name
+from grader.ros.urdf.link_tree import JOINT_OF
 from grader.ros.urdf.model import Joint
 
 _SLIDING, _TURNING = ("prismatic",), ("revolute", "continuous")
@@ -176,10 +176,9 @@ def _find_joint(robot: Configuration, name: str) -> Joint:
     """Return a joint that turns or slides, by its name or by a selector of the link that it
     moves.
     """
-    if robot.robot.has_joint(name):
-        named = name
-    else:
-        named = selected_name(robot.known, robot.known_parents, name)
+    named = name
+    if not robot.robot.has_joint(name):
+        named = robot.selected_name(name)
     if named != name and not name.startswith(JOINT_OF):
         found = robot.parent_joints.get(named)
         if found is None:
@@ -199,7 +198,7 @@ def without_selectors(value: Any, robot: Configuration) -> Any:
     """Return a value with names in place of selectors; raises MissingElement and NotDecided."""
     match value:
         case str():
-            return selected_name(robot.known, robot.known_parents, value)
+            return robot.selected_name(value)
         case list() | tuple():
             return type(value)(without_selectors(item, robot) for item in value)
         case Mapping():

@@ -1,19 +1,11 @@
-"""Edits that hints propose: made for the elements of a text, applied to it, and to the files of
-a submission.
-"""
+"""Edits that hints propose, and what they gain."""
 
-import re
 from collections.abc import Mapping
 from decimal import Decimal
-from math import isclose
 from os.path import commonprefix
 from typing import NamedTuple
 
-from grader.base import markup
-from grader.base.source import Certainty, Edit, Edits, Source
-
-_SAME = 1e-3  # relative: -1.57 is -pi/2
-_PIECE = re.compile(r"(\s*)(\S+)")
+from grader.base.source import Certainty, Edits
 
 
 class Proposal(NamedTuple):
@@ -23,6 +15,7 @@ class Proposal(NamedTuple):
     from the student's own numbers, and from the files of a package. The search grades the
     submission with each, and makes those that gain points a `FoundHint`.
 
+    >>> from grader.base.element_edits import with_attribute
     >>> from grader.base.source import Source
     >>> source = Source("a.urdf", '<origin rpy="1.57 0 0"/>')
     >>> edit = with_attribute(source, 0, "rpy", "-1.57 0 0")
@@ -77,90 +70,3 @@ def _change_size(old: str, new: str) -> int:
     start = len(commonprefix((old, new)))  # noqa: RUF071  of texts, not of paths
     end = len(commonprefix((old[start:][::-1], new[start:][::-1])))  # noqa: RUF071
     return len(old) + len(new) - 2 * (start + end)
-
-
-def element_text(source: Source, start: int) -> str:
-    """Return the text of the element at an offset."""
-    return source.text[start : markup.element_end(source.text, start)]
-
-
-def with_attribute(source: Source, start: int, attribute: str, value: str) -> Edit:
-    """Return the edit that sets an attribute of the start tag at an offset, or adds it."""
-    found = markup.attribute(source.text, start, attribute)
-    if found is None:
-        end = markup.name_end(source.text, start)
-        return source.edit(start, end, f'{source.text[start:end]} {attribute}="{value}"')
-    head, tail = (
-        source.text[found.start : found.value_start],
-        source.text[found.value_end : found.end],
-    )
-    return source.edit(found.start, found.end, f"{head}{value}{tail}")
-
-
-def with_child(source: Source, start: int, xml: str) -> Edit:
-    """Return the edit that inserts an element as the first child of the one at an offset."""
-    text, newline = source.text, "\r\n" if "\r\n" in source.text else "\n"
-    end, is_empty = markup.head_end(text, start)
-    indent = markup.child_indentation(text, start)
-    child = f"{newline}{indent}{markup.indented(xml, indent, newline)}"
-    if not is_empty:
-        return source.edit(end, end, child)
-    slash = text.rfind("/", start, end)
-    name = text[start + 1 : markup.name_end(text, start)].strip()
-    closing = f"{newline}{markup.indentation(text, start)}</{name}>"
-    return source.edit(start, end, f"{text[start:slash].rstrip()}>{child}{closing}")
-
-
-def without_element(source: Source, start: int) -> Edit:
-    """Return the edit that removes the element at an offset, with its line where nothing else is
-    on it.
-    """
-    end = markup.element_end(source.text, start)
-    indent = markup.indentation(source.text, start)
-    line = start - len(indent)
-    is_alone = source.text[end : end + 2].startswith(("\n", "\r\n")) and (
-        line == 0 or source.text[line - 1] == "\n"
-    )
-    if is_alone:
-        return source.edit(line, source.text.find("\n", end) + 1, "")
-    return source.edit(start, end, "")
-
-
-def with_element(source: Source, start: int, xml: str) -> Edit:
-    """Return the edit that replaces the element at an offset by another one."""
-    newline = "\r\n" if "\r\n" in source.text else "\n"
-    indent = markup.indentation(source.text, start)
-    return source.edit(
-        start, markup.element_end(source.text, start), markup.indented(xml, indent, newline)
-    )
-
-
-def merged(old: str, new: str) -> str:
-    """Return a new list of numbers with those that stay, and the space between all, as the old
-    text writes them.
-    """
-    before, after = _PIECE.findall(old), new.split()
-    if len(before) != len(after):
-        return new
-    pieces = zip(before, after, strict=True)
-    return "".join(
-        (" " if space.strip(" ") else space) + _merge_one(piece, other)
-        for (space, piece), other in pieces
-    )
-
-
-def _merge_one(old: str, new: str) -> str:
-    """Return the new number, written as the old one where it is the same or only its sign
-    changes.
-    """
-    try:
-        before, after = float(old), float(new)
-    except ValueError:
-        return new
-    if isclose(before, after, rel_tol=_SAME, abs_tol=_SAME / 100):
-        return old
-    if isclose(before, -after, rel_tol=_SAME):
-        if before < 0:
-            return old.lstrip("-")
-        return f"-{old.lstrip('+')}"
-    return new

@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from grader.base.source import Edit, Edits
-from grader.base.text import enumerated
+from grader.base.text import enumerated, texts_in
 from grader.lab.hints.edits import FoundHint, Proposal
 from grader.lab.hints.robot_difference import MissingPart, Piece, RobotDifference
 from grader.lab.hints.robot_draft import Draft, Set
@@ -28,9 +28,8 @@ from grader.lab.hints.robot_variants import (
 )
 from grader.lab.rubric.criterion import Criterion
 from grader.lab.submission.submission import Submission
-from grader.ros.package.robot_file import Read, is_foreign_robot
+from grader.ros.package.robot_file import Read
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.link_tree import selected_or_name, texts_in
 from grader.ros.urdf.meant import Word
 from grader.ros.urdf.reader import Reading
 from grader.ros.xml.urdf_format import JOINT_TYPES
@@ -65,7 +64,7 @@ class Situation:
         if isinstance(submission.urdf, Read):
             self.reading = submission.urdf.loaded
             self.draft = Draft.of(submission.urdf.reading)
-        if self.draft is not None and not is_foreign_robot(self.draft.robot, wanted):
+        if self.draft is not None and not self.draft.robot.is_foreign(wanted):
             self.difference = RobotDifference(self.draft, reference or self.draft)
 
     @cached_property
@@ -225,7 +224,7 @@ def _links_of(criteria: Iterable[Criterion], difference: RobotDifference) -> lis
             continue
         named = []
         for text in texts_in(criterion.arguments):
-            name = selected_or_name(posed.robot, posed.parent_joints, text)
+            name = posed.selected_or_name(text)
             if reference.has_link(name) or robot.has_link(name):
                 named.append(name)
         if not named:
@@ -273,7 +272,7 @@ def _with_xacro(submission: Submission) -> Iterator[Proposal]:
     urdf = submission.urdf
     if not isinstance(urdf, Read) or urdf.as_it_stands is None:
         return
-    from grader.lab.hints.python_file import with_xacro  # late: most URDFs are no such file
+    from grader.ros.python.python_file import with_xacro  # late: most URDFs are no such file
 
     package = submission.package
     if package is not None:

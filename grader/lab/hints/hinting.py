@@ -282,7 +282,7 @@ def _lines(numbers: Sequence[int]) -> str:
 
 def _calls(edits: Sequence[Edit], source: "ExpandedSource", main: str | None) -> str:
     """Return where the macros of xacro that edits are in are called, if that is more than once."""
-    from grader.lab.hints.xacro_edits import ExpandedEdits  # late: most robots are not xacro
+    from grader.ros.xacro.rewriting import ExpandedEdits  # late: most robots are not xacro
 
     expanded = ExpandedEdits(source)
     texts: dict[str, str] = {}

@@ -14,19 +14,18 @@ from itertools import islice, product
 from keyword import kwlist
 from typing import Any
 
+from grader.base.element_edits import edited
 from grader.base.markup import indentation, indented
 from grader.base.merge_conflicts import find_conflicts
 from grader.base.names import closest
 from grader.base.source import Edit, Edits, Source
 from grader.lab.hints.edits import Proposal
 from grader.lab.hints.package_task import WHAT, PackageTask, change, file_proposals, package_names
-from grader.lab.hints.python_file import PythonFile, argument, called
-from grader.lab.submission.edited import edited
 from grader.ros.build.places import HOME, PREFIX, WORKING_FOLDER
 from grader.ros.launch.launch_model import Launch, NamedFile
 from grader.ros.package.package import SETUP, Package
 from grader.ros.python.library import USUAL_NAMES
-from grader.ros.python.parse import Code, SyntaxFault, parse
+from grader.ros.python.python_file import PythonFile, argument, called
 
 _WORD = re.compile(r"[^\W\d]\w*")
 _MAX_WORDS, _MAX_SUSPECTS = 8, 60
@@ -251,8 +250,8 @@ def _undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
     """Yield edits that import or correct names that are undefined, or not as they are used; and
     missing commas.
     """
-    if isinstance(file.parsed, SyntaxFault):
-        start = file.source.offset(file.parsed.location.line, 1)
+    if file.fault is not None:
+        start = file.source.offset(file.fault.location.line, 1)
         end = start + len(file.text[start:].partition("\n")[0].rstrip())
         yield change([file.source.edit(end, end, ",")], "a syntax error", what)
     yield change(file.with_imports(sorted(file.used)), "the imports", what)
@@ -320,10 +319,10 @@ def _indentations(file: PythonFile, what: str) -> Iterator[Proposal]:
     These are the line at which Python stops and the one before it, each alone, and with those that
     follow it without a blank line.
     """
-    if not isinstance(file.parsed, SyntaxFault):
+    if file.fault is None:
         return
     lines = file.text.split("\n")
-    stop = file.parsed.location.line - 1
+    stop = file.fault.location.line - 1
     for first in (stop, stop - 1):
         if not 0 <= first < len(lines) or not lines[first].strip():
             continue
@@ -335,9 +334,7 @@ def _indentations(file: PythonFile, what: str) -> Iterator[Proposal]:
             rows = range(first, min(end, first + _MAX_AROUND))
             edits = [_indented_line(file, row + 1, indent) for row in rows]
             text = edited(file.text, file.source.path, edits)
-            if text is None:
-                continue
-            if isinstance(parse(text.encode("utf-8", "surrogateescape"), ""), Code):
+            if text is not None and PythonFile(Source("", text)).fault is None:
                 yield change(edits, "the indentation", what)
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from grader.base.names import closest
 from grader.base.source import Edit, Source
 from grader.lab.hints.edits import Proposal
-from grader.ros.build.places import ENDINGS, is_in_launch_folder, is_launch_named
+from grader.ros.build.places import is_launch_file, is_launch_named
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import MANIFEST, SETUP, Package
 from grader.ros.python.budget import PYTHON_LIMIT
@@ -90,7 +90,7 @@ def _kind_of(path: str) -> str:
     """
     if path.endswith((".rviz", ".urdf", ".xacro")):
         return "rviz" if path.endswith(".rviz") else "urdf"
-    if path.endswith(ENDINGS) or is_in_launch_folder(path):
+    if is_launch_file(path):
         return "launch"
     if path.startswith("resource/") or path == "setup.cfg":
         return SETUP

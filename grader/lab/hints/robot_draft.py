@@ -6,9 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, cast
 
 from grader.base import markup
-from grader.base.source import Edit, Edits, Source
-from grader.lab.hints.edits import (
-    Proposal,
+from grader.base.element_edits import (
     element_text,
     merged,
     with_attribute,
@@ -16,16 +14,18 @@ from grader.lab.hints.edits import (
     with_element,
     without_element,
 )
+from grader.base.source import Edit, Edits, Source
+from grader.lab.hints.edits import Proposal
 from grader.lab.hints.robot_numbers import values_of
-from grader.ros.urdf.link_tree import parent_joints
-from grader.ros.urdf.model import Joint, Robot
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Robot
 from grader.ros.urdf.reader import Reading
 from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import PARTS
 
 if TYPE_CHECKING:
-    from grader.lab.hints.xacro_edits import ExpandedEdits, NumberDefinition
     from grader.ros.xacro.expansion import ExpandedSource
+    from grader.ros.xacro.rewriting import ExpandedEdits, NumberDefinition
 
 
 _ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
@@ -63,7 +63,7 @@ class Draft:
         self.is_broken = False  # whether tags in the text are broken
         self._elements = list(root.iter())
         self._tags = {element: tag for tag, element in enumerate(self._elements)}
-        self._parents: dict[str, Joint] = parent_joints(robot)
+        self._parents = Configuration(robot).known_parents
 
     @classmethod
     def of(cls, reading: Reading) -> "Draft | None":
@@ -175,7 +175,7 @@ class Draft:
         """
         if not self.source.is_expanded:
             return None
-        from grader.lab.hints.xacro_edits import ExpandedEdits  # late: most robots are not xacro
+        from grader.ros.xacro.rewriting import ExpandedEdits  # late: most robots are not xacro
 
         return ExpandedEdits(cast("ExpandedSource", self.source))
 
@@ -187,7 +187,7 @@ class Draft:
     def corrections(self, names: Sequence[str]) -> list[Proposal]:
         """Return edits that may correct what xacro refuses; `names` are those that may be meant."""
         if self._expanded is not None:
-            return self._expanded.corrections(names)
+            return [Proposal(*it) for it in self._expanded.corrections(names)]
         return []
 
     def numbers(self, element: Element, attribute: str) -> "list[NumberDefinition]":
@@ -367,8 +367,7 @@ class Draft:
             if not broken.endswith("/>"):
                 new = f"{new[:-2]}>"
             return (source.edit(start, start + len(broken), new),)
-        added = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
-        return (source.edit(start, end, f"{source.text[start:end]}{added}"),)
+        return (source.edit(start, end, f"{source.text[start:end]}{_attributes_text(values)}"),)
 
     def _broken_tag(self, text: str, start: int) -> str:
         if not self.is_broken:
@@ -404,8 +403,11 @@ def _attribute_text(source: Source, start: int, name: str) -> str | None:
 
 def _empty_element(tag: str, values: Mapping[str, str]) -> str:
     """Return the text of an element without content."""
-    attributes = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
-    return f"<{tag}{attributes}/>"
+    return f"<{tag}{_attributes_text(values)}/>"
+
+
+def _attributes_text(values: Mapping[str, str]) -> str:
+    return "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
 
 
 def escaped(value: str) -> str:

@@ -4,7 +4,7 @@ unit, the order.
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations
-from math import isclose, isfinite, radians
+from math import isclose, radians
 from typing import NamedTuple
 
 from grader.base.text import enumerated
@@ -104,20 +104,3 @@ def values_of(text: str | None) -> Values:
         return tuple(numbers(text))
     except NumberError:
         return ()
-
-
-def format_numbers(values: Values) -> str:
-    """Return numbers as a URDF contains them."""
-    return " ".join(map(format_number, values))
-
-
-def format_number(value: float) -> str:
-    """Return a number in as few characters as a robot that a person writes needs."""
-    if not isfinite(value):
-        return repr(value)
-    text = f"{round(value, 6) + 0.0:.6g}"
-    if text == "0" and abs(value) > 1e-12:  # an inertia
-        return f"{value:.6g}"
-    if "e" not in text:
-        return text
-    return f"{value:.6f}".rstrip("0").rstrip(".")

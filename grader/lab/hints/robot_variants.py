@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, combinations
 from math import inf
 
+from grader.base.element_edits import format_number, format_numbers
 from grader.base.source import Edits
 from grader.lab.hints.robot_difference import (
     OWN,
@@ -19,14 +20,7 @@ from grader.lab.hints.robot_difference import (
     normal,
 )
 from grader.lab.hints.robot_draft import Draft, Set, child_of, end_of
-from grader.lab.hints.robot_numbers import (
-    LARGE,
-    Values,
-    format_number,
-    format_numbers,
-    plausible,
-    values_of,
-)
+from grader.lab.hints.robot_numbers import LARGE, Values, plausible, values_of
 from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import TAGS
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from grader.base.errors import InputError, RubricError
 from grader.base.names import did_you_mean
-from grader.base.text import printable_path, shell_quoted
+from grader.base.text import printable_path, shell_quoted, texts_in
 from grader.files.reading import read_capped, sha256_of, shipped_folder
 from grader.lab.checks.check import LINK_ARGUMENTS
 from grader.lab.checks.manual import answered
@@ -38,7 +38,7 @@ from grader.lab.submission.opening import open_submission
 from grader.lab.submission.submission import Lab, Submission
 from grader.ros.launch.launch_cache import LaunchCache
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.link_tree import is_selector, texts_in
+from grader.ros.urdf.link_tree import is_selector
 from grader.ros.urdf.reader import Reading, find_xacro, read_urdf
 
 _URDF = "robot.urdf"

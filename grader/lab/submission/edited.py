@@ -5,34 +5,13 @@ them.
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from grader.base.source import Edit, Source
+from grader.base.element_edits import edited
+from grader.base.source import Edit
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import overlaid
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read, read_as_ros
 from grader.ros.python.budget import Budget
-
-
-def edited(text: str, path: str, edits: Iterable[Edit]) -> str | None:
-    """Return the text of a file after edits; None if they overlap, or if the text is not what they
-    replace.
-    """
-    source = Source(path, text)
-    pieces: list[str] = []
-    position = 0
-    for start, edit in _offsets(source, edits):
-        if start < position or not text.startswith(edit.old, start):
-            return None
-        pieces += (text[position:start], edit.new)
-        position = start + len(edit.old)
-    return "".join((*pieces, text[position:]))
-
-
-def _offsets(source: Source, edits: Iterable[Edit]) -> list[tuple[int, Edit]]:
-    return sorted(
-        ((source.offset(edit.line, edit.column), edit) for edit in edits), key=lambda pair: pair[0]
-    )
-
 
 _Files = Mapping[
     str, bytes | None

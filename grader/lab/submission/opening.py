@@ -1,7 +1,7 @@
 """Opens a submission: a URDF, a folder, an archive or standard input."""
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -15,6 +15,7 @@ from grader.lab.submission.submission import DEFAULTS, Lab, Opening, Submission
 from grader.ros.package.package import MANIFEST
 from grader.ros.package.robot_file import Absent, Surroundings, Unreadable, Urdf, read_as_ros
 from grader.ros.python.budget import Budget
+from grader.ros.workspace.opened import OpenedWorkspace
 
 STANDARD_INPUT = "-"
 # Other files of a lab, which are never meant as a URDF.
@@ -37,6 +38,7 @@ _NO_URDFS = frozenset(
     }
 )
 _TABLES = frozenset({".csv", ".tsv", ".xlsx", ".xls", ".ods"})
+_NO_LAB = Lab("robot.urdf")  # any robot, and any package
 _MAX_NAMED = 6  # files in a note
 _EXPECTED = "give a .urdf file, or the folder or archive that was submitted"
 
@@ -78,9 +80,9 @@ def open_submission(
             tree = tree.only(lambda inside: os.path.realpath(place / inside) not in opening.reports)
         return submission_of(tree, identity, lab, opening, shown=shown)
     if place.suffix.lower() in _NO_URDFS:
-        from grader.ros.package.robots import START, is_robot  # late: most URDFs are called .urdf
+        from grader.ros.package.robots import is_robot  # late: most URDFs are called .urdf
 
-        if not is_robot(read_start(place, START)):
+        if not is_robot(partial(read_start, place)):
             raise InputError(f"{shown} is not a URDF: {_EXPECTED}")
     data = read_capped(place, opening.max_size)
     identity = printable_path(place.stem)
@@ -89,6 +91,28 @@ def open_submission(
     return read_submission(
         data, identity=identity, path=printable_path(place.name), opening=opening
     )
+
+
+def open_workspace(path: str, max_size: int, arguments: Mapping[str, str]) -> OpenedWorkspace:
+    """Read the packages and the robot at a path, whatever they are for. Raises InputError."""
+    return open_submission(path, _NO_LAB, Opening(max_size, arguments), with_neighbours=True)
+
+
+def open_with_packages(path: str) -> Submission:
+    """Return a submission in which all of its packages are graded, the one with the URDF first.
+    Raises InputError.
+    """
+    from grader.ros.package.finding import is_backup, package_around  # late: many have no package
+
+    submission = open_submission(path, _NO_LAB)
+    main = package_around(submission.packages, submission.path) or submission.package
+    packages = [
+        it.name for it in submission.packages if it is not main and not is_backup(it.folder)
+    ]
+    if main is None or not packages:
+        return submission
+    urdf = (submission.path or _NO_LAB.urdf).removeprefix(main.path(""))
+    return open_submission(path, Lab(urdf, packages=tuple(dict.fromkeys([main.name, *packages]))))
 
 
 def _read_with_neighbours(place: Path, data: bytes, identity: str, opening: Opening) -> Submission:

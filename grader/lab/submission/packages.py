@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import product
 
 from grader.base.text import (
     MAX_NAMED,
@@ -10,27 +9,14 @@ from grader.base.text import (
     quoted,
 )
 from grader.ros.package.finding import (
-    IN_NAMED_FOLDER,
-    NAMED,
-    SIMILAR,
     is_backup,
     missing_files,
-    name_distance,
 )
 from grader.ros.package.package import NO_PACKAGE, Package
 
 DEEPER = "it matches equally well, but is deeper in the folders"
 LATER = "it matches equally well, but comes later in alphabetical order"
 BACKUP = "it is named like a backup"
-
-
-def best_named(packages: tuple[Package, ...], name: str) -> Package | None:
-    """Return the package that has this name, or is in a folder of this name; any if the name is
-    empty.
-    """
-    if packages and (not name or name_distance(packages[0], name) <= IN_NAMED_FOLDER):
-        return packages[0]
-    return None
 
 
 def with_preferred(packages: Sequence[Package], preferred: Package) -> tuple[Package, ...]:
@@ -45,22 +31,6 @@ def with_preferred(packages: Sequence[Package], preferred: Package) -> tuple[Pac
         table.setdefault(package.name, renewed[package])
     table[preferred.name] = renewed[preferred]
     return tuple(renewed.values())
-
-
-def packages_of_lab(packages: Sequence[Package], names: Sequence[str]) -> dict[str, Package]:
-    """Return the package that each name means: that of the name, else in a folder of it, else of a
-    similar name.
-    """
-    chosen: dict[str, Package] = {}
-    for distance, name in product((NAMED, IN_NAMED_FOLDER, SIMILAR), names):
-        if name in chosen:
-            continue
-        for package in packages:
-            is_spare = package not in chosen.values()
-            if is_spare and name_distance(package, name) <= distance:
-                chosen[name] = package
-                break
-    return chosen
 
 
 def why_none(

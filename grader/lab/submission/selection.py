@@ -16,29 +16,18 @@ from grader.base.text import (
 from grader.files.limits import PACKAGE_FILES
 from grader.files.tree import Tree
 from grader.lab.submission.labs import Belonging, LabFolders
-from grader.lab.submission.packages import (
-    BACKUP,
-    DEEPER,
-    LATER,
-    best_named,
-    packages_of_lab,
-    why_none,
-    why_not,
-    with_preferred,
-)
+from grader.lab.submission.packages import BACKUP, DEEPER, LATER, why_none, why_not, with_preferred
 from grader.lab.submission.submission import Lab, NoPackage, Opening
-from grader.ros.build.places import SHARE
-from grader.ros.package.finding import is_backup, package_around, read_packages
-from grader.ros.package.package import MANIFEST, Package
-from grader.ros.package.robot_file import (
-    OtherCandidate,
-    Read,
-    Surroundings,
-    is_another_robot,
-    known_links,
-    launch_folders,
-    read_as_ros,
+from grader.ros.package.finding import (
+    best_named,
+    is_backup,
+    launched_paths,
+    package_around,
+    packages_named,
+    read_packages,
 )
+from grader.ros.package.package import MANIFEST, Package
+from grader.ros.package.robot_file import OtherCandidate, Read, Surroundings, read_as_ros
 from grader.ros.package.robots import RobotFile, find_robots, parts_of
 from grader.ros.python.budget import READING, Budget
 
@@ -166,7 +155,7 @@ def _several_packages(
     """Return the packages of a lab that names several, by these names; that of the robot counts for
     a missing one.
     """
-    found = packages_of_lab(packages, lab.packages)
+    found = packages_named(packages, lab.packages)
     missing = [name for name in lab.packages if name not in found]
     if missing and around is not None and around not in found.values():
         found[missing[0]] = around
@@ -308,7 +297,7 @@ def _robots_in_packages(
 ) -> Sequence[RobotFile]:
     """Return the robots in the packages that a lab names; all of them if there is none there."""
     inside: set[RobotFile] = set()
-    for package in packages_of_lab(packages, lab.packages).values():
+    for package in packages_named(packages, lab.packages).values():
         inside.update(robot for robot in robots if package.holds(robot.path))
     if not inside:
         return robots
@@ -432,7 +421,7 @@ class UrdfSearch(NamedTuple):
             robots, key=lambda robot: (labs.belonging(robot.path), tiers[robot.path], robot.path)
         )
         readings = self._readings(in_order)
-        launched = self._launched_paths(robots)
+        launched = launched_paths(self.tree, self.packages, robots)
         included = parts_of(robots)
         for robot in robots:
             yield self._candidate(
@@ -499,30 +488,6 @@ class UrdfSearch(NamedTuple):
             parts_left = surroundings.budget.left
         return found
 
-    def _launched_paths(self, robots: Sequence[RobotFile]) -> set[str]:
-        """Return the paths of the robots that launch files load, also without a package."""
-        loose = [
-            robot.path for robot in robots if package_around(self.packages, robot.path) is None
-        ]
-        launched: set[str] = set()
-        for package in (*self.packages, *launch_folders(self.tree, self.packages, loose)):
-            for reference in {named.path or "" for named in package.robot_references()}:
-                owner_name = reference.removeprefix(f"{SHARE}/").partition("/")[0]
-                if owner_name in package.names:
-                    owner = package
-                else:
-                    owner = package.find(owner_name) or package
-                source = owner.source_of(reference)
-                if source:
-                    launched.add(owner.path(source))
-                    continue
-                # Where the build is not understood, the name of the file has to do.
-                file_name = reference.rpartition("/")[2]
-                for robot in robots:
-                    if robot.name == file_name and owner.holds(robot.path):
-                        launched.add(robot.path)
-        return launched
-
 
 def _count_links(read: Read, surroundings: Surroundings, name: str, lab: Lab) -> _ReadCandidate:
     robot = read.reading.robot
@@ -530,8 +495,8 @@ def _count_links(read: Read, surroundings: Surroundings, name: str, lab: Lab) ->
         return _ReadCandidate(surroundings, read=read)
     if robot is None:
         return _ReadCandidate(surroundings, bool(lab.links), 0, not name, read)
-    is_another = is_another_robot(robot, lab.links)
-    counted = len(robot.links) if is_another or not lab.links else known_links(robot, lab.links)
+    is_another = robot.is_another(lab.links)
+    counted = len(robot.links) if is_another or not lab.links else robot.known_links(lab.links)
     is_fragment = not robot.name or (
         read.is_expanded and not robot.links and not robot.incomplete
     )  # macros only

@@ -1,35 +1,32 @@
 """A submission: its files, and which URDF and which package of it are graded."""
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
-from grader.base.source import Source
 from grader.base.text import enumerated, was_not_committed
 from grader.files.limits import MAX_FILE_SIZE, ROBOT_ENDINGS
 from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.files.tree import File, Tree, make_tree
 from grader.ros.launch.launch_cache import LaunchCache
-from grader.ros.package.package import MANIFEST, NO_PACKAGE, Package
+from grader.ros.package.package import NO_PACKAGE, Package
 from grader.ros.package.robot_file import (
     Absent,
-    OtherCandidate,
     Read,
     Surroundings,
     Unreadable,
-    Urdf,
     read_as_ros,
 )
 from grader.ros.python.budget import Budget
 from grader.ros.urdf.model import Robot
 from grader.ros.urdf.reader import Reading, Verdict
+from grader.ros.workspace.opened import OpenedWorkspace
 
 if TYPE_CHECKING:
     from grader.lab.documents.collection import DocumentCollection
     from grader.lab.documents.evidence import LabelledFile
-    from grader.ros.workspace.workspace import Workspace
 
 # parts of a package's evaluation that take as long as reading a short URDF
 _WORK_OF_READING = 1_500
@@ -85,7 +82,7 @@ _NO_PACKAGE = NoPackage()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Submission:
+class Submission(OpenedWorkspace):
     """The work that a student submitted, with what of it is graded: a URDF, a package, documents.
 
     `opening.py` makes it of a path or of bytes: `selection.py` says which URDF and package it is,
@@ -104,20 +101,13 @@ class Submission:
     grader.base.errors.MissingElement: the submission has no ROS 2 package: there is no package.xml
     """
 
-    id: str  # of the student, or the name of the file
-    urdf: Urdf
-    other_candidates: tuple[OtherCandidate, ...] = ()  # robots and packages that are not graded
     tree: Tree = _NO_FILES  # the files of the lab
-    packages: tuple[Package, ...] = ()  # the one that matches best first
     package: Package | None = None  # the graded one
     no_package: NoPackage = _NO_PACKAGE
     lab_packages: Mapping[str, Package] = field(
         default_factory=dict
     )  # by the names that the lab gives
-    whole_tree: Tree = _NO_FILES  # the files of the lab and those around it
     several: str = ""  # the note that says that several robots fit
-    notes: tuple[str, ...] = ()  # on how it was read
-    is_single: bool = True  # whether it is a URDF on its own, not a folder or archive
     other_lab: str = ""  # the folder of another lab, where it is graded
     opening: Opening = DEFAULTS
     budget: Budget = field(default_factory=Budget)  # of the work to read it
@@ -159,34 +149,12 @@ class Submission:
             if path in named or file.suffix == ".docx"
         )
 
-    @cached_property
-    def workspace(self) -> "Workspace":
-        """Its packages and its robot, whose names are compared."""
-        from grader.ros.workspace.workspace import Workspace  # late: few rubrics ask for names
-
-        has_other_robots = any(
-            not it.is_part for it in self.unused_candidates if not it.path.endswith(MANIFEST)
-        )
-        return Workspace(self.packages, self.urdf, self.whole_tree, has_other_robots)
-
-    @property
-    def path(self) -> str | None:
-        """The path of the URDF, relative to the submission; None without one."""
-        if isinstance(self.urdf, Absent):
-            return None
-        return self.urdf.path or None
-
     @property
     def robot(self) -> Robot | None:
         """The robot that is graded; None if there is none."""
         if isinstance(self.urdf, Read):
             return self.urdf.reading.robot
         return None
-
-    @property
-    def unused_candidates(self) -> tuple[OtherCandidate, ...]:
-        """The other candidates that the URDF is not expanded from."""
-        return tuple(it for it in self.other_candidates if it.path not in self.included)
 
     @cached_property
     def sha256(self) -> str | None:
@@ -229,12 +197,6 @@ class Submission:
         if isinstance(self.urdf, Unreadable):
             return self.urdf.reason
         return ""
-
-    @property
-    def included(self) -> Collection[str]:
-        """The files that the URDF is expanded from, itself among them."""
-        source = self.urdf.reading.source if isinstance(self.urdf, Read) else None
-        return getattr(source, "documents", ())
 
     @property
     def verdict(self) -> Verdict | None:
@@ -339,12 +301,3 @@ class Submission:
                 f"no {missing} was found, but {archives} could not be opened",
                 "an archive could not be opened",
             )
-
-    def source(self, path: str) -> Source | None:
-        """Return the text of one of its files, for quoting; None if it cannot be read."""
-        if isinstance(self.urdf, Read) and path == self.urdf.path:
-            return self.urdf.source
-        data = self.whole_tree.read(path, URDF_LIMIT)
-        if data is not None:
-            return Source(path, data.decode("utf-8", "replace"))
-        return None

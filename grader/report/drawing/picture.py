@@ -12,16 +12,15 @@ from math import isfinite
 from typing import NamedTuple
 
 from grader.base.errors import InputError, MissingElement, NotDecided
-from grader.base.text import counted, enumerated, quoted
+from grader.base.text import counted, enumerated, quoted, texts_in
+from grader.base.transforms import Z_AXIS, Transform, Vector
 from grader.lab.checks.motion import travel_of, turning_joint
 from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.criterion import Criterion
 from grader.lab.rubric.rubric import Rubric
-from grader.ros.urdf.kinematics import Configuration, placed_by
-from grader.ros.urdf.link_tree import selected_or_name, texts_in
+from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Cylinder, Link, Mesh, Sphere, Visual
-from grader.ros.urdf.shapes import Shape, UnknownShape, is_empty
-from grader.ros.urdf.transforms import Z_AXIS, Transform, Vector
+from grader.ros.urdf.shapes import Shape, UnknownShape
 
 _Rgba = tuple[float, float, float, float]
 
@@ -152,8 +151,8 @@ def _body(link: str, visual: Visual, pose: Transform) -> Body | str:
             sizes, drawn = (radius, length, 0.0), Cylinder(abs(radius), abs(length))
         case Sphere(radius=radius):
             sizes, drawn = (radius, 0.0, 0.0), Sphere(abs(radius))
-    place = placed_by(Transform(), visual.origin)
-    if is_empty(visual.geometry) or not _is_drawable(sizes) or not _is_drawable(place.translation):
+    place = visual.origin.placed_in()
+    if visual.geometry.is_empty or not _is_drawable(sizes) or not _is_drawable(place.translation):
         return _UNKNOWN
     rgba = visual.material.rgba if visual.material is not None else _WITHOUT_MATERIAL
     red, green, blue, alpha = map(_channel, rgba)
@@ -265,18 +264,14 @@ def _reference(rubric: Rubric) -> Configuration | None:
     return None
 
 
-def _selected(robot: Configuration, name: str) -> str:
-    return selected_or_name(robot.robot, robot.parent_joints, name)
-
-
 def _frames(
     rubric: Rubric, robot: Configuration, solution: Configuration | None
 ) -> tuple[str | None, str | None]:
     """Return the links in whose frames both robots are drawn: the rubric's base, else the roots."""
-    tree, base = robot.main_tree, _selected(robot, rubric.base)
+    tree, base = robot.main_tree, robot.selected_or_name(rubric.base)
     if solution is None:
         return (base if base in tree else next(iter(tree), None)), None
-    other_tree, other_base = solution.main_tree, _selected(solution, rubric.base)
+    other_tree, other_base = solution.main_tree, solution.selected_or_name(rubric.base)
     if base in tree and other_base in other_tree:
         return base, other_base
     return next(iter(tree), None), next(iter(other_tree), None)
@@ -286,7 +281,7 @@ def _wheels(rubric: Rubric, robot: Configuration) -> Iterator[str]:
     """Yield the links that the rubric expects to roll."""
     for criterion in rubric.criteria:
         if criterion.check.about.picture == "wheel":
-            yield _selected(robot, str(criterion.arguments["link"]))
+            yield robot.selected_or_name(str(criterion.arguments["link"]))
 
 
 def _is_marked(result: Result) -> bool:
@@ -322,7 +317,7 @@ def _links(
     subject = next(
         (criterion.arguments[key] for key in _SUBJECTS if key in criterion.arguments), None
     )
-    for link in dict.fromkeys(_selected(robot, name) for name in texts_in(subject)):
+    for link in dict.fromkeys(robot.selected_or_name(name) for name in texts_in(subject)):
         if robot.robot.has_link(link) or (solution is not None and solution.robot.has_link(link)):
             yield link
 

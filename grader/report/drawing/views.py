@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from grader.base.transforms import Transform, Vector
 from grader.report.drawing.picture import Body, Picture
 from grader.ros.urdf.model import Box, Sphere
-from grader.ros.urdf.transforms import Transform, Vector
 
 Place = tuple[float, float]
 _Points = Any  # an array of shape (n, 3), or (n, 2) in a view

@@ -1,5 +1,6 @@
 """An inspection as JSON, schema grader/inspect/v1."""
 
+from grader.base.transforms import Transform
 from grader.report.inspection import EFFECTS, Inspection, main_root
 from grader.report.json_data import (
     NUMBER,
@@ -16,7 +17,6 @@ from grader.report.json_data import (
     to_json,
 )
 from grader.report.writers.as_json import PROBLEM
-from grader.ros.urdf.transforms import Transform
 
 
 def _poses(inspection: Inspection) -> dict[str, list[list[float]] | None]:

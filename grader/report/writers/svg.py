@@ -13,6 +13,7 @@ from math import cos, hypot, sin, tau
 from textwrap import wrap
 
 from grader.base.text import enumerated, printable
+from grader.base.transforms import AXES, Z_AXIS, Transform
 from grader.lab.grading.report import Report
 from grader.report.content import bonus_line, grade_line, notes, score_text, verdict_line
 from grader.report.criteria import points_of, remarks_on
@@ -28,7 +29,6 @@ from grader.report.drawing.views import (
     panels_of,
 )
 from grader.report.inspection import Inspection, effect
-from grader.ros.urdf.transforms import AXES, Z_AXIS, Transform
 
 _LEFT, _LINE = 14.0, 15.0  # pixels
 _LETTER_WIDTH = 6.8  # pixels, on average, of a font that is wider than most

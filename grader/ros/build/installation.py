@@ -3,9 +3,11 @@ CMakeLists.txt.
 """
 
 import posixpath
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from grader.base.names import closest
 from grader.base.source import Location, Source
 from grader.ros.build.file_search import EmptyGlob
 from grader.ros.python.evaluation import PythonError
@@ -87,6 +89,24 @@ class Installation:
         str, ...
     ] = ()  # likewise, of files that CMake installs with the right to execute them
     packages: tuple[str, ...] = ()  # the Python packages, as far as they are known
+
+    def empty_for(self, files: Sequence[str], word: str | None) -> EmptyGlob | None:
+        """Return the pattern without a match that is meant for one of these files, by its folder
+        or ending, or by a word in it.
+        """
+        folders = {posixpath.dirname(path) for path in files}
+        endings = tuple({posixpath.splitext(path)[1] for path in files} - {""})
+        for glob in self.empty:
+            folder = posixpath.dirname(glob.pattern)
+            if (
+                folder in folders
+                or (folder and closest(folder, folders))
+                or (endings and glob.pattern.endswith(endings))
+            ):
+                return glob
+        return next(
+            (it for it in self.empty if word is not None and word in it.pattern.lower()), None
+        )
 
     def has_program(self, name: str, package: str) -> bool | None:
         """Return whether a build installs a program where `ros2 run` looks for it; None where this

@@ -1,5 +1,6 @@
 """Stand-ins for folders that depend on the machine, and the names of launch files."""
 
+import posixpath
 import re
 from pathlib import PurePosixPath
 
@@ -22,10 +23,12 @@ ENDINGS = (
 )
 
 
-def is_in_launch_folder(path: str) -> bool:
-    """Return whether a file is a launch file because it is in a folder named launch, whatever its
-    own name.
+def is_launch_file(path: str) -> bool:
+    """Return whether a file is a launch file: by its name, or because it is in a folder named
+    launch.
     """
+    if path.endswith(ENDINGS):
+        return True
     folder, _, name = path.rpartition("/")
     if folder.rpartition("/")[2] != "launch" or name == "__init__.py":
         return False
@@ -61,3 +64,14 @@ def is_of_one_machine(path: str) -> bool:
     return path.startswith(HOME) or bool(
         re.match(r".:[\\/]|/(home|Users|root|mnt|media)/.", path, re.DOTALL)
     )
+
+
+def share_parts(path: str) -> tuple[str, str]:
+    """Return the package in whose share folder a path is, and the path in it; of another path,
+    empty texts.
+    """
+    inside = posixpath.normpath(path)
+    owner, _, rest = inside.removeprefix(f"{SHARE}/").partition("/")
+    if inside.startswith(f"{SHARE}/"):
+        return (owner, rest)
+    return ("", "")

@@ -156,6 +156,14 @@ def check_one_document(text: str, path: str) -> None:
         return  # which is reported where the nodes are read
 
 
+def yaml_root(source: Source) -> YamlNode | None:
+    """Return the root of a text; None where it is no YAML."""
+    try:
+        return read_yaml(source.text.encode("utf-8", "surrogateescape"), source.path)
+    except YamlFault:
+        return None
+
+
 def read_yaml(data: bytes, path: str) -> YamlNode:
     """Return the first document of a YAML text; an empty text is an empty mapping. Raises
     YamlFault.

@@ -4,6 +4,7 @@ functions exist.
 
 import ast
 import re
+from collections.abc import Collection
 from typing import NamedTuple
 
 from grader.base.names import closest
@@ -12,6 +13,7 @@ from grader.base.text import (
     MAX_NAMED,
     enumerated,
 )
+from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.package import Package
 from grader.ros.python.budget import PYTHON_LIMIT
 from grader.ros.python.constants import binds_unseen
@@ -31,7 +33,7 @@ class _EntryPoint(NamedTuple):
     location: Location
 
 
-class EntryFault(NamedTuple):
+class _EntryFault(NamedTuple):
     """Why a program certainly does not start, where setup.py names it, and the word in it that
     may mean another one.
     """
@@ -73,7 +75,18 @@ def _locate_name(package: Package, name: str) -> Location:
     return setup.location(setup.called_at)
 
 
-def entry_fault(package: Package, name: str) -> EntryFault | None:
+def certain_fault(package: Package, nodes: Collection[StartedNode]) -> _EntryFault | None:
+    """Return the first fault of nodes none of whose programs starts; None where one may start."""
+    faults = []
+    for node in nodes:
+        owner = package.find(node.package)
+        faults.append(entry_fault(owner, node.executable) if owner is not None else None)
+    if None in faults:
+        return None
+    return next(iter(faults), None)
+
+
+def entry_fault(package: Package, name: str) -> _EntryFault | None:
     """Return why a program certainly does not start; None where that is not known.
 
     Its module or the function in it is not there. Modules of other packages are not known, nor is
@@ -152,7 +165,7 @@ def _lacks_module(package: Package, module: str) -> bool:
     return True
 
 
-def _missing_module(package: Package, entry: _EntryPoint) -> EntryFault:
+def _missing_module(package: Package, entry: _EntryPoint) -> _EntryFault:
     folder = entry.module.rpartition(".")[0].replace(".", "/")
     others = [
         path.removeprefix(f"{folder}/").removesuffix(".py")
@@ -169,7 +182,7 @@ def _missing_module(package: Package, entry: _EntryPoint) -> EntryFault:
 
 def _fault(
     entry: _EntryPoint, message: str, written: str, known: list[str], own: str = ""
-) -> EntryFault:
+) -> _EntryFault:
     """Return the fault of an entry point, with the name that may be meant, else the names that
     there are.
     """
@@ -178,7 +191,7 @@ def _fault(
         message += f"; did you mean {meant!r}?"
     elif known:
         message += f"; there is {enumerated([repr(it) for it in known[:MAX_NAMED]])}"
-    return EntryFault(message, entry.location, written, meant)
+    return _EntryFault(message, entry.location, written, meant)
 
 
 def _certain_names(code: Code) -> frozenset[str] | None:

@@ -2,20 +2,24 @@
 
 import re
 from collections.abc import Sequence
+from itertools import product
 
 from grader.base.errors import InputError
 from grader.base.names import closest, folded
 from grader.base.source import Location, Source
 from grader.files.tree import Tree
 from grader.ros.build.manifest import Manifest, read_manifest
+from grader.ros.build.places import SHARE
 from grader.ros.launch.launch_cache import LaunchCache
 from grader.ros.package.package import CMAKE, MANIFEST, SETUP, Package
+from grader.ros.package.robot_file import launch_folders
+from grader.ros.package.robots import RobotFile
 
 # The files that hide a folder, with all that is below, from colcon.
 _IGNORING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 _MAX_PACKAGES = 40
 _MAX_MANIFEST_SIZE = 256 * 1024  # bytes
-NAMED, IN_NAMED_FOLDER, SIMILAR, _OTHER = range(4)  # how well a package has a name
+_NAMED, _IN_NAMED_FOLDER, _SIMILAR, _OTHER = range(4)  # how well a package has a name
 _CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
 _WORD = re.compile(r"[^\W\d_]+")
 _WORDS = frozenset(
@@ -114,7 +118,7 @@ def read_packages(
         packages.append(package)
     packages.sort(
         key=lambda it: (
-            min(name_distance(it, one) for one in wanted),
+            min(_name_distance(it, one) for one in wanted),
             is_backup(it.folder),
             missing_files(it, urdf),
             _depth(it.folder),
@@ -145,17 +149,42 @@ def missing_files(package: Package, urdf: str) -> tuple[int, bool]:
     return sum(not present for present in usual), not has_urdf
 
 
-def name_distance(package: Package, name: str) -> int:
+def best_named(packages: tuple[Package, ...], name: str) -> Package | None:
+    """Return the package that has this name, or is in a folder of this name; any if the name is
+    empty.
+    """
+    if packages and (not name or _name_distance(packages[0], name) <= _IN_NAMED_FOLDER):
+        return packages[0]
+    return None
+
+
+def packages_named(packages: Sequence[Package], names: Sequence[str]) -> dict[str, Package]:
+    """Return the package that each name means: that of the name, else in a folder of it, else of a
+    similar name.
+    """
+    chosen: dict[str, Package] = {}
+    for distance, name in product((_NAMED, _IN_NAMED_FOLDER, _SIMILAR), names):
+        if name in chosen:
+            continue
+        for package in packages:
+            is_spare = package not in chosen.values()
+            if is_spare and _name_distance(package, name) <= distance:
+                chosen[name] = package
+                break
+    return chosen
+
+
+def _name_distance(package: Package, name: str) -> int:
     """Return how well a package has a name; the smallest is best."""
     if package.manifest is not None and package.manifest.name == name:
-        return NAMED
+        return _NAMED
     own = package.manifest.name if package.manifest is not None else package.name
     if package.folder.rpartition("/")[2] == name or (
         own is not None and folded(own) == folded(name)
     ):
-        return IN_NAMED_FOLDER
+        return _IN_NAMED_FOLDER
     if package.manifest is not None and closest(package.name, [name]):
-        return SIMILAR
+        return _SIMILAR
     return _OTHER
 
 
@@ -197,3 +226,27 @@ def _find_marker(tree: Tree, folder: str) -> str:
         if not folder:
             return ""
         folder = folder.rpartition("/")[0]
+
+
+def launched_paths(
+    tree: Tree, packages: tuple[Package, ...], robots: Sequence[RobotFile]
+) -> set[str]:
+    """Return the paths of the robots that launch files load, also without a package."""
+    loose = [robot.path for robot in robots if package_around(packages, robot.path) is None]
+    launched: set[str] = set()
+    for package in (*packages, *launch_folders(tree, packages, loose)):
+        for reference in {named.path or "" for named in package.robot_references()}:
+            owner_name = reference.removeprefix(f"{SHARE}/").partition("/")[0]
+            owner = package
+            if owner_name not in package.names:
+                owner = package.find(owner_name) or package
+            source = owner.source_of(reference)
+            if source:
+                launched.add(owner.path(source))
+                continue
+            # Where the build is not understood, the name of the file has to do.
+            file_name = reference.rpartition("/")[2]
+            for robot in robots:
+                if robot.name == file_name and owner.holds(robot.path):
+                    launched.add(robot.path)
+    return launched

@@ -5,7 +5,6 @@ import re
 from typing import Literal, NamedTuple
 
 from grader.base.names import closest
-from grader.ros.build.places import SHARE
 from grader.ros.package.package import CMAKE, Package
 
 _FOR_TESTS = re.compile(r"if\s*\(\s*BUILD_TESTING.*?endif", re.DOTALL)
@@ -21,17 +20,6 @@ class Lookup(NamedTuple):
     # the file of the package; elsewhere: where a build installs it, below the prefix
     path: str = ""
     text: str = ""
-
-
-def share_parts(path: str) -> tuple[str, str]:
-    """Return the package in whose share folder a path is, and the path in it; of another path,
-    empty texts.
-    """
-    inside = posixpath.normpath(path)
-    owner, _, rest = inside.removeprefix(f"{SHARE}/").partition("/")
-    if inside.startswith(f"{SHARE}/"):
-        return (owner, rest)
-    return ("", "")
 
 
 def look_up(owner: Package, target: str) -> Lookup:

@@ -17,9 +17,10 @@ from grader.ros.build.places import (
     ENDINGS,
     PREFIX,
     SHARE,
-    is_in_launch_folder,
+    is_launch_file,
     is_launch_named,
     launch_stem,
+    share_parts,
 )
 from grader.ros.launch.launch_cache import LaunchCache
 from grader.ros.python.budget import PYTHON_LIMIT, Budget
@@ -164,6 +165,44 @@ class Package:
             return SETUP
         return CMAKE
 
+    def needed_manifest(self) -> "Manifest":
+        """Return its package.xml, also of one that is broken if its build type can be
+        read.
+        """
+        manifest = self.manifest
+        if manifest is not None and manifest.unread:
+            raise NotDecided(manifest.unread, "package.xml cannot be read")
+        if manifest is None:
+            where = f"the folder {self.folder!r}" if self.folder else "the submission"
+            message = f"{where} has a setup.py, but no package.xml, so it is not a ROS 2 package"
+            raise MissingElement(MANIFEST, self.folder, message=message, absent=MANIFEST)
+        if not manifest.build_type and manifest.refusals:
+            problem = manifest.refusals[0]
+            raise MissingElement(
+                MANIFEST, self.folder, message=problem.message, location=problem.location
+            )
+        return manifest
+
+    def needed_installation(self) -> "Installation":
+        """Return what its setup.py or CMakeLists.txt installs.
+
+        Raises MissingElement if there is none, or if it cannot be parsed; NotDecided if it needs
+        manual grading.
+        """
+        setup = self.installation
+        if setup is None:
+            message = f"the package has no {self.missing_build_file}, so a build installs nothing"
+            raise MissingElement(
+                SETUP, self.folder, message=message, absent=self.missing_build_file
+            )
+        if setup.fault is not None and setup.fault.is_certain:
+            raise MissingElement(
+                SETUP, self.folder, message=setup.fault_text, location=setup.fault.location
+            )
+        if setup.unread:
+            raise NotDecided(setup.unread, f"{setup.file} cannot be read")
+        return setup
+
     @property
     def missing_build_file(self) -> str:
         """What a package without a build file lacks, in words: that of its build type, or
@@ -233,9 +272,7 @@ class Package:
         """The paths of its launch files: by their names, or because they are in a folder named
         launch.
         """
-        return tuple(
-            path for path in self.tree.files if path.endswith(ENDINGS) or is_in_launch_folder(path)
-        )
+        return tuple(filter(is_launch_file, self.tree.files))
 
     @cached_property
     def rviz_files(self) -> tuple[str, ...]:
@@ -373,6 +410,17 @@ class Package:
             key=lambda path: (path.rpartition("/")[2] != name, path.count("/"), path),
             default=None,
         )
+
+    def owner_of_opened(self, launch: "Launch") -> "Package":
+        """Return the package of the submission whose RViz file a launch file opens; without one,
+        the package itself.
+        """
+        paths = [it.path for it in launch.named("rviz") if it.path is not None]
+        owners = [self, *(self.find(share_parts(path)[0]) for path in paths)]
+        for owner in owners:
+            if owner is not None and owner.rviz_opened(launch) is not None:
+                return owner
+        return self
 
     def rviz_opened(self, launch: "Launch") -> str | None:
         """Return the RViz file that a launch file opens, also by a wrong folder: that is another

@@ -6,11 +6,9 @@ import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
-from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple, cast
 
-from grader.base.errors import InputError, NotDecided
-from grader.base.names import closest
+from grader.base.errors import InputError, MissingElement, NotDecided
 from grader.base.problems import Problem, causes, in_order
 from grader.base.source import Source
 from grader.files.reading import URDF_LIMIT
@@ -18,7 +16,6 @@ from grader.files.tree import Tree, make_tree, parents
 from grader.ros.package.package import Package
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import Undetermined
-from grader.ros.urdf.model import Robot
 from grader.ros.urdf.reader import Reading, find_xacro, read_robot, read_urdf
 from grader.ros.urdf.urdf_problems import RAW_XACRO
 from grader.ros.xml.xml_problems import DOCTYPE, NOT_WELL_FORMED
@@ -28,7 +25,6 @@ if TYPE_CHECKING:
     from grader.ros.xacro.expansion import ExpandedSource
     from grader.ros.xacro.texts import OtherArguments
 
-_MAX_COMPARED = 50  # links whose names are compared
 _MAX_FOLDERS = 40  # whose launch files are read
 _NO_FILES = make_tree("", (), ())
 
@@ -138,6 +134,22 @@ class Surroundings(NamedTuple):
         if any(launch.unknown or launch.syntax for launch in launches):
             return "default" if references else "unknown"
         return "none" if references and not self.arguments else "default"
+
+    def expanded(self, data: bytes, path: str) -> "ExpandedSource":
+        """Return a file as xacro; raise NotDecided or MissingElement where it cannot be expanded at
+        all.
+        """
+        from grader.ros.xacro.expansion import ExpandedSource, expand  # late: most are no xacro
+
+        expansion = expand(data, path, self, self.arguments)
+        if isinstance(expansion.source, ExpandedSource):
+            return expansion.source
+        for found in expansion.undetermined:
+            raise NotDecided(found.reason)
+        first = expansion.problems[0]
+        raise MissingElement(
+            "xacro", path, message=first.message, location=first.location, problem=first.message
+        )
 
     def _launched_packages(self, path: str) -> list[Package]:
         if self.graded is None:
@@ -269,7 +281,7 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
             has_xacro=True,
         )
     reading = read_urdf(data, path)
-    if not any(problem.kind is RAW_XACRO for problem in reading.problems):
+    if reading.raw_xacro is None:
         return Read(path, data, reading, has_xacro=True)
     expanded = _expand_xacro(data, path, surroundings, [])
     if expanded.robot is None:
@@ -281,31 +293,6 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
             verdict="degraded"
         )  # ROS 2 ignores the tags of xacro, and what they stand for
     return Read(path, data, expanded, is_expanded=True, has_xacro=True, as_it_stands=reading)
-
-
-def known_links(robot: Robot, wanted: Collection[str]) -> int:
-    """Return how many of the wanted links a robot has, also under a similar name."""
-    names = {link.name for link in robot.links}
-    missing = set(wanted) - names
-    others = islice(sorted(names.difference(wanted)), _MAX_COMPARED)
-    similar = {closest(name, missing) for name in others} - {None} if missing else ()
-    return len(wanted) - len(missing) + len(similar)
-
-
-def is_another_robot(robot: Robot | None, wanted: Collection[str]) -> bool:
-    """Return whether a completely known robot has fewer than half of the wanted links."""
-    if robot is None or robot.incomplete or 2 * sum(map(robot.has_link, wanted)) >= len(wanted):
-        return False  # without comparing names, which takes long
-    return 2 * known_links(robot, wanted) < len(wanted)
-
-
-def is_foreign_robot(robot: Robot | None, wanted: Collection[str]) -> bool:
-    """Return whether a robot is another one, and not only unfinished: most of its links are not
-    wanted.
-    """
-    if robot is None or not is_another_robot(robot, wanted):
-        return False
-    return 2 * sum(link.name not in wanted for link in robot.links) > len(robot.links)
 
 
 def _says_xacro(name: str) -> bool:

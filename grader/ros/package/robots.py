@@ -3,14 +3,14 @@ parsed.
 """
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 from grader.base.errors import InputError
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import File, Tree
 
-START = 4096  # bytes that are read of a file
+_START = 4096  # bytes that are read of a file
 _LONG_START = 64 * 1024  # bytes that are read if these are comments only
 _MAX_READ = 2000  # files
 _MAX_ROBOTS = 400  # found by their content alone
@@ -141,8 +141,11 @@ def find_robots(
     return tuple(sorted(found))
 
 
-def is_robot(data: bytes) -> bool:
-    """Return whether a text is a robot: its first element is <robot>."""
+def is_robot(read: Callable[[int], bytes]) -> bool:
+    """Return whether a file is a robot: its first element is <robot>. `read` reads its first
+    bytes.
+    """
+    data = read(_START)
     return _ROBOT.match(data, _end_of_prolog(data)) is not None
 
 
@@ -165,7 +168,7 @@ def _robot_start(file: File) -> bytes | None:
     """
     if not file.size:
         return None
-    for count in (START, _LONG_START):
+    for count in (_START, _LONG_START):
         try:
             data = file.read(count, first=True)
         except InputError:

@@ -8,11 +8,11 @@ from math import atan2, hypot, isfinite
 from typing import NamedTuple
 
 from grader.base.source import LazyLocation, Source
+from grader.base.transforms import Transform, Vector, rotation_about
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.package import Package
 from grader.ros.urdf.link_tree import parent_joints
 from grader.ros.urdf.model import Joint, Link, Origin, Robot, UnresolvedPart
-from grader.ros.urdf.transforms import Transform, Vector, rotation_about
 
 STATIC_PUBLISHER = ("tf2_ros", "static_transform_publisher")
 _PLACE, _RPY, _QUATERNION = (

@@ -11,17 +11,17 @@ from math import dist, hypot
 from typing import NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
-from grader.ros.urdf.kinematics import Configuration, placed_by
-from grader.ros.urdf.model import Joint, Link, Origin, Robot
-from grader.ros.urdf.shapes import turn_between
-from grader.ros.urdf.transforms import (
+from grader.base.transforms import (
     IDENTITY,
     IDENTITY_ROTATION,
     Rotation,
     Transform,
     Vector,
     minus,
+    turn_between,
 )
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Joint, Link, Origin, Robot
 
 _NEAR = 0.005  # metres
 _MIN_POINTS = 4
@@ -164,7 +164,7 @@ def _reframe_link(link: Link, T_link_other: Transform) -> Link:
 def _reframe_joint(joint: Joint, T_parent_other: Transform, T_child_other: Transform) -> Joint:
     if joint.origin is None or (T_parent_other, T_child_other) == (IDENTITY, IDENTITY):
         return joint
-    T_parent_child = placed_by(T_parent_other.inverse(), joint.origin) @ T_child_other
+    T_parent_child = joint.origin.placed_in(T_parent_other.inverse()) @ T_child_other
     origin = replace(joint.origin, xyz=T_parent_child.translation, rpy=T_parent_child.rpy)
     return replace(
         joint,
@@ -174,5 +174,5 @@ def _reframe_joint(joint: Joint, T_parent_other: Transform, T_child_other: Trans
 
 
 def _reframe_origin(T: Transform, origin: Origin) -> Origin:
-    moved = placed_by(T, origin)
+    moved = origin.placed_in(T)
     return replace(origin, xyz=moved.translation, rpy=moved.rpy)

@@ -11,10 +11,10 @@ from grader.base.names import closest, did_you_mean
 from grader.base.problems import Effect, Kind, Problem
 from grader.base.source import LazyLocation
 from grader.base.text import cut, quoted
+from grader.base.transforms import Vector
 from grader.ros.urdf import urdf_problems
 from grader.ros.urdf.model import Joint, Origin, UnresolvedPart, UnresolvedParts
 from grader.ros.urdf.numbers import NumberError, number, vector
-from grader.ros.urdf.transforms import Vector
 from grader.ros.xml.parsing import Element, XmlDocument
 from grader.ros.xml.urdf_format import TAGS
 from grader.ros.xml.xml_problems import RECOVERED

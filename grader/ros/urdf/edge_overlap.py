@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from grader.base.transforms import Transform, Vector
 from grader.ros.urdf.model import Box, Cylinder
 from grader.ros.urdf.shapes import straight_edges
-from grader.ros.urdf.transforms import Transform, Vector
 
 _Array = np.ndarray[Any, np.dtype[np.float64]]
 

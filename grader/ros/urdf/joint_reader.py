@@ -3,6 +3,7 @@ names they refer to.
 """
 
 from grader.base.text import quoted
+from grader.base.transforms import X_AXIS, Vector, unit
 from grader.ros.urdf import urdf_problems
 from grader.ros.urdf.diagnostics import FULL_TURN, ElementReader, Problems, first_children
 from grader.ros.urdf.model import (
@@ -15,7 +16,6 @@ from grader.ros.urdf.model import (
     Robot,
     SafetyController,
 )
-from grader.ros.urdf.transforms import X_AXIS, Vector, unit
 from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import JOINT_TYPES
 

@@ -9,21 +9,18 @@ from functools import cached_property
 from math import isfinite, nan
 from typing import NamedTuple, overload
 
-from grader.base.errors import MissingElement
+from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import quoted
-from grader.ros.urdf.joint_reader import MOVING_TYPES
-from grader.ros.urdf.link_tree import parent_joints
-from grader.ros.urdf.model import Joint, Link, Origin, Robot
-from grader.ros.urdf.transforms import (
+from grader.base.transforms import (
     IDENTITY,
     Transform,
     Vector,
     rotation_about,
-    rotation_from_rpy,
     unit,
 )
-
-SINGLE = ("revolute", "continuous", "prismatic")  # the types of joints that a position moves
+from grader.ros.urdf.joint_reader import MOVING_TYPES
+from grader.ros.urdf.link_tree import parent_joints, selected_name
+from grader.ros.urdf.model import Joint, Link, Robot
 
 
 class _Frame(NamedTuple):
@@ -85,7 +82,7 @@ class _Frames:
         for joint in reversed(joints.values()):
             motion, pose = _motion_of(joint, self.position(joint)), None
             if joint.origin is not None and motion is not None:
-                pose = placed_by(frame.pose, joint.origin)
+                pose = joint.origin.placed_in(frame.pose)
                 pose = pose if motion is IDENTITY else pose @ motion
             if pose is not None and isfinite(sum(pose.translation)):
                 frame = _Frame(frame.root, frame.group, pose, frame.depth)
@@ -166,13 +163,6 @@ def _mimic_leaders(joint: Joint, robot: Robot) -> Iterable[Joint]:
     return chain.values()
 
 
-def placed_by(T_frame_parent: Transform, origin: Origin) -> Transform:
-    """Return T_frame_child: the frame that an origin places in its parent."""
-    if origin.rpy == (0.0, 0.0, 0.0):
-        return Transform(T_frame_parent.rotation, T_frame_parent.apply(origin.xyz))
-    return T_frame_parent @ Transform(rotation_from_rpy(origin.rpy), origin.xyz)
-
-
 def _motion_of(joint: Joint, position: float) -> Transform | None:
     """Return T_origin_child; None if it is undefined, as it is for every position about a zero axis
     (KDL).
@@ -205,7 +195,7 @@ def _motion_along(joint: Joint, direction: Vector, position: float) -> Transform
 
 def _check_position(joint: Joint, position: float) -> None:
     """Raise ValueError for a position that a joint of this type cannot have."""
-    if joint.type not in SINGLE:
+    if not joint.has_position:
         raise ValueError(
             f"joint {quoted(joint.name)} is {joint.type or 'without type'}: it cannot move"
         )
@@ -430,7 +420,7 @@ class Configuration:
         types = {joint.type for joint in path} - {"fixed"}
         if not types:
             self.known.check_complete()
-        joint = last_moving(
+        joint = _last_moving(
             path, link, types, f"no joint above {quoted(link)} moves; one should turn or slide"
         )
         if joint.type in MOVING_TYPES:
@@ -440,6 +430,27 @@ class Configuration:
         raise MissingElement(
             "moving joint", link, message=message, location=at and at._replace(attribute="type")
         )
+
+    def joint_between(self, one: str, other: str, types: Collection[str], message: str) -> Joint:
+        """Return the last joint with one of the types on the path from one link to another; raises
+        MissingElement where there is none.
+        """
+        return _last_moving(self.between(one, other), other, types, message)
+
+    def selected_name(self, name: str) -> str:
+        """Return the name that a selector means, and any other text as it is. Raises
+        MissingElement, NotDecided.
+        """
+        return selected_name(self.known, self.known_parents, name)
+
+    def selected_or_name(self, name: str) -> str:
+        """Return the link that a selector means; a name, or a selector that means no single link,
+        as it is.
+        """
+        try:
+            return selected_name(self.robot, self.parent_joints, name)
+        except (MissingElement, NotDecided):
+            return name
 
     def moved(self, joint: str | Joint, position: float) -> "Configuration":
         """Return the same robot with one joint elsewhere; raises ValueError for a position that it
@@ -496,7 +507,7 @@ class _MovedConfiguration(Configuration):
         return self.shared_views
 
 
-def last_moving(path: tuple[Joint, ...], link: str, types: Collection[str], message: str) -> Joint:
+def _last_moving(path: tuple[Joint, ...], link: str, types: Collection[str], message: str) -> Joint:
     """Return the last joint with one of the types on the path to a link; raises MissingElement
     where there is none.
     """

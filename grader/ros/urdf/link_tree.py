@@ -8,10 +8,10 @@ it holds: "@joint:left_wheel".
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import counted, enumerated, quoted
@@ -248,18 +248,6 @@ def is_selector(text: str) -> bool:
     return _SELECTOR.fullmatch(text) is not None
 
 
-def texts_in(value: Any) -> Iterator[str]:
-    """Yield a text, or the texts in a list or in the values of a table."""
-    match value:
-        case str():
-            yield value
-        case list() | tuple():
-            for item in value:
-                yield from texts_in(item)
-        case Mapping():
-            yield from texts_in(list(value.values()))
-
-
 def selected_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
     """Return the name that a selector means, and any other text as it is; `parents` are the parent
     joints of links.
@@ -291,16 +279,6 @@ def selected_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
         tips = {link for link, place in places.items() if place.depth == most and link not in inner}
         return _only_link(robot, tips, name)
     return _only_link(robot, _links_moved_by(places, parents, int(match[1]), most, name), name)
-
-
-def selected_or_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
-    """Return the link that a selector means; a name, or a selector that means no single link, as it
-    is.
-    """
-    try:
-        return selected_name(robot, parents, name)
-    except (MissingElement, NotDecided):
-        return name
 
 
 def _links_moved_by(

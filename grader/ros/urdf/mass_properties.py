@@ -7,12 +7,24 @@ are those of textbooks of dynamics (Featherstone, Rigid Body Dynamics Algorithms
 """
 
 from collections.abc import Iterable
-from math import isfinite, nan
+from itertools import combinations, combinations_with_replacement
+from math import hypot, isfinite, nan
 from typing import NamedTuple
 
-from grader.ros.urdf.model import Box, Collision, Geometry, Mesh, Origin, Sphere, Visual
-from grader.ros.urdf.shapes import Shape, is_empty, volume
-from grader.ros.urdf.transforms import Rotation, Transform, Vector, dot, minus
+from grader.base.transforms import Rotation, Transform, Vector, dot, minus
+from grader.ros.urdf.model import (
+    INERTIA,
+    Box,
+    Collision,
+    Geometry,
+    Inertial,
+    Mesh,
+    Origin,
+    Sphere,
+    Visual,
+)
+from grader.ros.urdf.overlap import penetration
+from grader.ros.urdf.shapes import Shape, UnknownShape, bounding_radius
 
 Tensor = tuple[
     float, float, float, float, float, float
@@ -27,6 +39,80 @@ class MassProperties(NamedTuple):
     mass: float
     centre: Vector
     inertia: Tensor
+
+
+class Solid(NamedTuple):
+    """Shapes of one density that are fixed to each other, each with its pose in one frame."""
+
+    shapes: tuple[tuple[Shape, Transform], ...]
+
+    @classmethod
+    def of(cls, placed: Iterable[tuple[Geometry, Origin]]) -> "Solid":
+        """Return the solid of shapes with their origins. Raises UnknownShape for a mesh."""
+        shapes: list[tuple[Shape, Transform]] = []
+        for geometry, origin in placed:
+            if isinstance(geometry, Mesh):
+                raise UnknownShape(geometry)
+            shapes.append((geometry, origin.placed_in()))
+        return cls(tuple(shapes))
+
+    @property
+    def size(self) -> float:
+        """An upper bound on the distance of two of its points, in metres: of a single shape, that
+        distance.
+        """
+        balls = [(pose.translation, bounding_radius(shape)) for shape, pose in self.shapes]
+        return max(
+            hypot(*minus(one, other)) + radius + reach
+            for (one, radius), (other, reach) in combinations_with_replacement(balls, 2)
+        )
+
+    def difference(self, inertial: Inertial) -> "_SolidDifference":
+        """Return how an <inertial> differs from it. Raises ValueError where its volume cannot be
+        computed.
+        """
+        T_link_inertial = inertial.origin.placed_in()
+        given = MassProperties(
+            inertial.mass,
+            T_link_inertial.translation,
+            turned(inertial.inertia, T_link_inertial.rotation),
+        )
+        expected = uniform_solid(self.shapes, inertial.mass)
+        largest = principal_moments(expected.inertia)[2]
+        percent = nan
+        if largest > 0.0:
+            percent = 100.0 * largest_difference(given.inertia, expected.inertia) / largest
+        distance = hypot(*minus(given.centre, expected.centre))
+        return _SolidDifference(inertial, given, expected, percent, distance)
+
+    def overlaps(self, allowed: float) -> bool:
+        """Return whether two of its shapes overlap by more than `allowed` metres."""
+        pairs = combinations(self.shapes, 2)
+        return any(penetration(*one, *other, allowed) > 0.0 for one, other in pairs)
+
+
+class _SolidDifference(NamedTuple):
+    """How an <inertial> differs from a uniform solid of its mass: the inertia about any axis, in
+    percent of the largest principal moment of the solid, and the centres of mass in metres.
+
+    Both are in the frame of the link.
+    """
+
+    inertial: Inertial
+    given: MassProperties
+    solid: MassProperties
+    percent: float
+    distance: float
+
+    def components(self, tolerance: float) -> list[tuple[str, float, float]]:
+        """Return the names of the numbers of the <inertia> that are off, and what they are and
+        should be, along the axes in which it is given. The tolerance is in percent.
+        """
+        expected = turned(self.solid.inertia, self.inertial.origin.placed_in().inverse().rotation)
+        # Of a symmetric matrix that is more off, one number is.
+        allowed = tolerance / 100.0 * principal_moments(expected)[2] / 3.0
+        numbers = zip(INERTIA, self.inertial.inertia, expected, strict=True)
+        return [row for row in numbers if not abs(row[1] - row[2]) <= allowed]
 
 
 def solid_inertia(shape: Shape, mass: float) -> Tensor:
@@ -49,7 +135,7 @@ def uniform_solid(shapes: Iterable[tuple[Shape, Transform]], mass: float) -> Mas
     What two shapes share counts twice. Raises ValueError for shapes without a volume, and for
     numbers that are too large.
     """
-    placed = [(shape, pose, volume(shape)) for shape, pose in shapes]
+    placed = [(shape, pose, shape.volume) for shape, pose in shapes]
     total = sum(volume for _, _, volume in placed)
     if not (total > 0.0 and isfinite(total)):
         raise ValueError("the shapes have no volume that can be computed")
@@ -67,8 +153,8 @@ def with_volume(elements: Iterable[Visual | Collision]) -> list[tuple[Geometry, 
     placed = dict.fromkeys((element.geometry, element.origin) for element in elements)
     shapes = []
     for shape, origin in placed:
-        has_volume = isinstance(shape, Mesh) or volume(shape) > 0.0
-        if has_volume and not is_empty(shape):
+        has_volume = isinstance(shape, Mesh) or shape.volume > 0.0
+        if has_volume and not shape.is_empty:
             shapes.append((shape, origin))
     return shapes
 

@@ -5,15 +5,17 @@ Lengths are metres, angles radians about fixed axes x, y, z (REP 103). `None` is
 file gives but that cannot be read; a value that the file does not give has ROS 2's default.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
+from itertools import islice
+from math import pi
 from typing import NamedTuple, NoReturn
 
 from grader.base.errors import MissingElement, NotDecided
-from grader.base.names import did_you_mean
+from grader.base.names import closest, did_you_mean
 from grader.base.source import LazyLocation
 from grader.base.text import quoted
-from grader.ros.urdf.transforms import Vector
+from grader.base.transforms import IDENTITY, Transform, Vector, rotation_from_rpy
 
 INERTIA = (
     "ixx",
@@ -23,6 +25,9 @@ INERTIA = (
     "iyz",
     "izz",
 )  # the components, in the order of Inertial.inertia
+
+
+_MAX_COMPARED = 50  # links whose names are compared
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +40,14 @@ class Origin:
     rpy: Vector = (0.0, 0.0, 0.0)
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
+    def placed_in(self, T_frame_parent: Transform = IDENTITY) -> Transform:
+        """Return T_frame_child, of the frame that it places in its parent; by default, in the
+        parent's own frame.
+        """
+        if self.rpy == (0.0, 0.0, 0.0):
+            return Transform(T_frame_parent.rotation, T_frame_parent.apply(self.xyz))
+        return T_frame_parent @ Transform(rotation_from_rpy(self.rpy), self.xyz)
+
 
 _SAME_FRAME = Origin()
 
@@ -46,6 +59,17 @@ class Box:
     size: Vector
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
+    @property
+    def volume(self) -> float:
+        """The volume in cubic metres."""
+        a, b, c = self.size
+        return abs(a * b * c)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether it is invisible: with one zero edge it is a plate, which RViz shows."""
+        return self.size.count(0.0) >= 2
+
 
 @dataclass(frozen=True, slots=True)
 class Cylinder:
@@ -55,6 +79,16 @@ class Cylinder:
     length: float
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
+    @property
+    def volume(self) -> float:
+        """The volume in cubic metres."""
+        return pi * self.radius * self.radius * abs(self.length)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether it is invisible: with a length of zero it is a disc, which RViz shows."""
+        return self.radius == 0.0
+
 
 @dataclass(frozen=True, slots=True)
 class Sphere:
@@ -62,6 +96,16 @@ class Sphere:
 
     radius: float
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def volume(self) -> float:
+        """The volume in cubic metres."""
+        return 4.0 / 3.0 * pi * self.radius * self.radius * abs(self.radius)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether it is invisible."""
+        return self.radius == 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +115,11 @@ class Mesh:
     filename: str
     scale: Vector = (1.0, 1.0, 1.0)
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether it is invisible, because it is scaled by zero along all three axes."""
+        return not any(self.scale)
 
 
 Geometry = Box | Cylinder | Sphere | Mesh
@@ -252,6 +301,11 @@ class Joint:
     unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)
 
     @property
+    def has_position(self) -> bool:
+        """Whether a position moves it."""
+        return self.type in ("revolute", "continuous", "prismatic")
+
+    @property
     def known(self) -> "Joint":
         """The joint as it is known, for code that decides itself what is open."""
         return self
@@ -309,6 +363,28 @@ class Robot:
     def has_link(self, name: str) -> bool:
         """Return whether there is a link of this name."""
         return name in self._links
+
+    def known_links(self, wanted: Collection[str]) -> int:
+        """Return how many of the wanted links it has, also under a similar name."""
+        names = {link.name for link in self.links}
+        missing = set(wanted) - names
+        others = islice(sorted(names.difference(wanted)), _MAX_COMPARED)
+        similar = {closest(name, missing) for name in others} - {None} if missing else ()
+        return len(wanted) - len(missing) + len(similar)
+
+    def is_another(self, wanted: Collection[str]) -> bool:
+        """Return whether it is completely known and has fewer than half of the wanted links."""
+        if self.incomplete or 2 * sum(map(self.has_link, wanted)) >= len(wanted):
+            return False  # without comparing names, which takes long
+        return 2 * self.known_links(wanted) < len(wanted)
+
+    def is_foreign(self, wanted: Collection[str]) -> bool:
+        """Return whether it is another robot, and not only unfinished: most of its links are not
+        wanted.
+        """
+        if not self.is_another(wanted):
+            return False
+        return 2 * sum(link.name not in wanted for link in self.links) > len(self.links)
 
     def check_complete(self) -> None:
         """Raise NotDecided if there may be more links and joints than are known."""

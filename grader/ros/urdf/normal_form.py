@@ -13,7 +13,7 @@ from dataclasses import fields, is_dataclass
 from hashlib import sha256
 from typing import Any, NamedTuple
 
-from grader.ros.urdf.kinematics import placed_by
+from grader.base.transforms import AXES, unit
 from grader.ros.urdf.model import (
     Collision,
     Cylinder,
@@ -27,8 +27,6 @@ from grader.ros.urdf.model import (
     Visual,
 )
 from grader.ros.urdf.reader import Reading
-from grader.ros.urdf.shapes import is_empty
-from grader.ros.urdf.transforms import AXES, IDENTITY, unit
 from grader.ros.xml.parsing import Element
 
 _MODEL = ("link", "joint", "material")
@@ -156,7 +154,7 @@ class _Forms(NamedTuple):
         self, shapes: tuple[Visual, ...] | tuple[Collision, ...]
     ) -> Iterator[object]:
         for shape in shapes:
-            if not is_empty(shape.geometry):
+            if not shape.geometry.is_empty:
                 material = shape.material if isinstance(shape, Visual) else None
                 colour = (*material.rgba, material.texture) if material is not None else ()
                 position, rotation = self._normalise_pose(shape.origin, shape.geometry)
@@ -168,7 +166,7 @@ class _Forms(NamedTuple):
         """Return a position and a rotation, without what the symmetry of a shape hides: a cylinder
         has a line.
         """
-        pose = placed_by(IDENTITY, origin)
+        pose = origin.placed_in()
         rotation = self._normalise_direction(pose.rotation)
         match geometry:
             case Cylinder():

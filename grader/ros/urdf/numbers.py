@@ -13,7 +13,7 @@ from math import isfinite, isinf, pi
 from typing import TypeVar
 
 from grader.base.text import counted, quoted
-from grader.ros.urdf.transforms import Vector
+from grader.base.transforms import Vector
 
 _NUMBER = re.compile(r"[ \t\n\v\f\r]*[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _MAX_CACHED_LENGTH = 64  # characters: longer texts would make the cache large

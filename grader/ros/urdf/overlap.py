@@ -11,9 +11,9 @@ from collections.abc import Iterator
 from itertools import product
 from math import copysign, hypot, inf
 
+from grader.base.transforms import Transform, Vector, cross, dot, minus, unit
 from grader.ros.urdf.model import Box, Cylinder, Sphere
 from grader.ros.urdf.shapes import Shape, bounding_radius, half_width, shrunk, straight_edges
-from grader.ros.urdf.transforms import Transform, Vector, cross, dot, minus, unit
 
 # metres that sums of coordinates may lose, so that shapes set side by side count as touching
 _ROUNDING = 1e-9

@@ -17,7 +17,6 @@ from grader.files.reading import read_capped
 from grader.ros.urdf import urdf_problems
 from grader.ros.urdf.diagnostics import Problems
 from grader.ros.urdf.joint_reader import check_references, read_joint
-from grader.ros.urdf.kinematics import SINGLE
 from grader.ros.urdf.link_reader import Materials, read_link
 from grader.ros.urdf.link_tree import check_tree
 from grader.ros.urdf.model import Joint, Link, Robot
@@ -81,6 +80,11 @@ class Reading(NamedTuple):
     is_meant: bool = False
     # the tags and words for which ROS 2 rejects the file, and that surely are others
     undone: "tuple[Word, ...]" = ()
+
+    @property
+    def raw_xacro(self) -> Problem | None:
+        """The problem of xacro that is loaded without xacro; None where it has none."""
+        return next((it for it in self.problems if it.kind is urdf_problems.RAW_XACRO), None)
 
     @property
     def elements(self) -> Element | None:
@@ -202,7 +206,7 @@ def _problems_for_python(document: XmlDocument, robot: Robot) -> Iterator[Proble
     """Yield that joint_state_publisher cannot read the file, if it has joints for which it
     publishes positions.
     """
-    is_moving = any(joint.type in SINGLE for joint in robot.joints)
+    is_moving = any(joint.has_position for joint in robot.joints)
     error = python_xml_error(document.source.text) if is_moving else None
     if error is None:
         return

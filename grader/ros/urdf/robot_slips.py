@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterator
 
 from grader.base import markup
+from grader.base.element_edits import tag_edits
 from grader.base.names import near
 from grader.base.problems import Problem
 from grader.base.slips import Slip
@@ -12,7 +13,6 @@ from grader.base.text import cut, quoted
 from grader.ros.urdf import urdf_problems
 from grader.ros.urdf.reader import Reading
 from grader.ros.urdf.words import meant_attribute, meant_tag, meant_value
-from grader.ros.xml.edits import tag_edits
 from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import ATTRIBUTES, CHILDREN
 

@@ -8,17 +8,18 @@ solids: symmetries, such as the turn of a sphere, do not count.
 
 from collections.abc import Iterator
 from itertools import permutations, product
-from math import acos, asin, degrees, hypot, inf, nan, pi
+from math import asin, degrees, hypot, inf, nan
 from typing import NamedTuple
 
 from grader.base.text import quoted
+from grader.base.transforms import AXES, Transform, Vector, dot, minus, turn_between, unit
 from grader.ros.urdf.model import Box, Cylinder, Geometry, Mesh, Sphere
-from grader.ros.urdf.transforms import AXES, Rotation, Transform, Vector, dot, minus, unit
 
 Shape = Box | Cylinder | Sphere
 
 # relative to its length; a direction that leans less from a face's normal means the whole face
 _TIE = 1e-9
+_MESH_ANGLE = 1.0  # degrees that two poses of a mesh may differ, whose points are not known
 # the signs of four corners of a box; the others are opposite to these
 _CORNERS = tuple(product((1.0,), (1.0, -1.0), (1.0, -1.0)))
 
@@ -74,52 +75,6 @@ def support(geometry: Geometry, direction: Vector) -> Vector:
         x, y, z = unit(direction) or (0.0, 0.0, 0.0)
         return (radius * x, radius * y, radius * z)
     raise UnknownShape(geometry)
-
-
-def extent(geometry: Geometry, T_frame_shape: Transform, direction: Vector) -> tuple[float, float]:
-    """Return the smallest and the largest coordinate of a shape along a unit direction of the
-    frame, metres.
-
-    Raises UnknownShape for a mesh.
-    """
-    middle = dot(T_frame_shape.translation, direction)
-    half = half_width(geometry, T_frame_shape.unrotate(direction))
-    return (middle - half, middle + half)
-
-
-def farthest(geometry: Geometry, T_frame_shape: Transform, direction: Vector) -> Vector:
-    """Return the farthest point of a shape along a direction of the frame; the middle of them if
-    several tie.
-
-    Metres, in the frame. Raises UnknownShape for a mesh.
-    """
-    return T_frame_shape.apply(support(geometry, T_frame_shape.unrotate(direction)))
-
-
-def volume(geometry: Geometry) -> float:
-    """Return the volume of a shape in cubic metres; UnknownShape for a mesh."""
-    if isinstance(geometry, Box):
-        a, b, c = geometry.size
-        return abs(a * b * c)
-    if isinstance(geometry, Cylinder):
-        return pi * geometry.radius * geometry.radius * abs(geometry.length)
-    if isinstance(geometry, Sphere):
-        return 4.0 / 3.0 * pi * geometry.radius * geometry.radius * abs(geometry.radius)
-    raise UnknownShape(geometry)
-
-
-def is_empty(geometry: Geometry) -> bool:
-    """Return whether a shape is invisible, because it has neither a volume nor an area.
-
-    That is a box with two or three zero edges (with one it is a plate, which RViz shows), a
-    cylinder or sphere of zero radius (a cylinder of zero length is a disc), and a mesh scaled by
-    zero along all three axes.
-    """
-    if isinstance(geometry, Box):
-        return geometry.size.count(0.0) >= 2
-    if isinstance(geometry, Mesh):
-        return not any(geometry.scale)
-    return geometry.radius == 0.0
 
 
 def straight_edges(geometry: Geometry) -> list[Vector]:
@@ -181,38 +136,55 @@ class ShapeDifference(NamedTuple):
         return nan
 
 
-def mismatch(
-    a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, tolerance: float, *, turned: bool = True
-) -> ShapeDifference | None:
-    """Return how two shapes differ, with as few differences beyond a tolerance as their symmetries
-    allow.
+class PlacedShape(NamedTuple):
+    """A shape with its pose in a frame, T_frame_shape."""
 
-    None for shapes of different kinds. Without `turned`, their orientations do not count.
-    """
-    apart = hypot(*minus(T_w_a.translation, T_w_b.translation))
-    differences = []
-    for size, turn, angle in _differences_by_pose(a, T_w_a, b, T_w_b):
-        if turned:
-            differences.append(ShapeDifference(apart, size, turn, angle))
-        else:
-            differences.append(ShapeDifference(apart, size, 0.0, 0.0))
+    geometry: Geometry
+    pose: Transform
 
-    def count_beyond(difference: ShapeDifference) -> int:
-        return (not difference.size <= tolerance) + (not difference.turn <= tolerance)
+    def extent(self, direction: Vector) -> tuple[float, float]:
+        """Return the smallest and the largest coordinate along a unit direction of the frame,
+        metres.
 
-    return min(differences, key=count_beyond, default=None)
+        Raises UnknownShape for a mesh.
+        """
+        middle = dot(self.pose.translation, direction)
+        half = half_width(self.geometry, self.pose.unrotate(direction))
+        return (middle - half, middle + half)
 
+    def farthest(self, direction: Vector) -> Vector:
+        """Return the farthest point along a direction of the frame; the middle of them if several
+        tie.
 
-def turn_between(one: Rotation, other: Rotation) -> float:
-    """Return the angle in degrees of the rotation from one to the other."""
-    trace = sum(
-        a * b for a, b in zip(one, other, strict=True)
-    )  # of that rotation: 1 + 2 cos(angle)
-    return degrees(acos(max(-1.0, min(1.0, (trace - 1.0) / 2.0))))
+        Metres, in the frame. Raises UnknownShape for a mesh.
+        """
+        return self.pose.apply(support(self.geometry, self.pose.unrotate(direction)))
+
+    def mismatch(
+        self, other: "PlacedShape", tolerance: float, *, turned: bool = True
+    ) -> ShapeDifference | None:
+        """Return how two shapes differ, with as few differences beyond a tolerance as their
+        symmetries allow.
+
+        None for shapes of different kinds, and for different meshes. Without `turned`, their
+        orientations do not count.
+        """
+        apart = hypot(*minus(self.pose.translation, other.pose.translation))
+        differences = []
+        for size, turn, angle in _differences_by_pose(*self, *other):
+            if turned:
+                differences.append(ShapeDifference(apart, size, turn, angle))
+            else:
+                differences.append(ShapeDifference(apart, size, 0.0, 0.0))
+
+        def count_beyond(difference: ShapeDifference) -> int:
+            return (not difference.size <= tolerance) + (not difference.turn <= tolerance)
+
+        return min(differences, key=count_beyond, default=None)
 
 
 def _differences_by_pose(
-    a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform
+    a: Geometry, T_w_a: Transform, b: Geometry, T_w_b: Transform
 ) -> Iterator[tuple[float, float, float]]:
     """Yield the size, turn and angle of the difference for each way to lay a shape over another,
     aligned axes first.
@@ -226,6 +198,9 @@ def _differences_by_pose(
             yield size, hypot(*lean) * hypot(a.radius, a.length / 2.0), _chord_angle(lean)
         case Box(), Box():
             yield from _box_differences(a, T_w_a, b, T_w_b)
+        case Mesh(), Mesh() if a == b:
+            angle = turn_between(T_w_a.rotation, T_w_b.rotation)
+            yield 0.0, 0.0 if angle <= _MESH_ANGLE else inf, angle
 
 
 def _box_differences(

@@ -13,7 +13,7 @@ from grader.base.text import enumerated, quoted
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode
 from grader.ros.known.known import known
 from grader.ros.workspace.gazebo import BRIDGE, GazeboTopic, gazebo_topics, roots
-from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections, place_text
+from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections
 from grader.ros.workspace.workspace import Workspace
 
 _TO_ROS, _TO_GAZEBO, _BOTH = "GZ_TO_ROS", "ROS_TO_GZ", "BIDIRECTIONAL"
@@ -218,7 +218,7 @@ def _contradictions(row: _BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mism
     are_alike = len({topic.is_input for topic in topics}) == 1
     if are_alike and row.direction == wrong:
         message = (
-            f"the topic {row.gz} is bridged {wrong}, but Gazebo {done} ({place_text(at)}): "
+            f"the topic {row.gz} is bridged {wrong}, but Gazebo {done} ({at.file_and_line}): "
             f"write {right}"
         )
         yield _wrong_direction(row, message, right, at)
@@ -226,7 +226,7 @@ def _contradictions(row: _BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mism
     # That no bridge converts the type is another mistake.
     if row.gz_type in _fitting_types(row) and row.gz_type not in types:
         message = (
-            f"the topic {row.gz} of Gazebo has {types[0]} ({place_text(at)}), not {row.gz_type}"
+            f"the topic {row.gz} of Gazebo has {types[0]} ({at.file_and_line}), not {row.gz_type}"
         )
         yield Mismatch("topics", message, row.gz_type_location, at, row.is_used)
 
@@ -244,7 +244,7 @@ def _not_there(row: _BridgeRow, unused: list[GazeboTopic], *, is_known: bool) ->
         at = fitting[meant]
         what = "no sensor publishes" if row.is_published else "nothing reads"
         message = (
-            f"{what} {quoted(row.gz)} in Gazebo; did you mean {quoted(meant)} ({place_text(at)})?"
+            f"{what} {quoted(row.gz)} in Gazebo; did you mean {quoted(meant)} ({at.file_and_line})?"
         )
         is_certain = row.is_used and is_known and len(fitting) == 1
         either = corrections(row.gz, row.location, meant, at)

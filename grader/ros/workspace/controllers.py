@@ -21,7 +21,6 @@ from grader.ros.workspace.names import (
     Mismatch,
     Use,
     corrections,
-    place_text,
 )
 from grader.ros.workspace.workspace import MANAGER, SPAWNERS, Workspace
 
@@ -184,7 +183,7 @@ def _section_facts(
             if before != joint.location:
                 message = (
                     f"{controller.name} claims the command interface {name} twice "
-                    f"({place_text(before)})"
+                    f"({before.file_and_line})"
                 )
                 yield Mismatch("controllers", message, joint.location, before)
 
@@ -247,7 +246,7 @@ def _interface_facts(
     message = f"{controller.name} needs the command interface {name}"
     if name in interfaces:
         offered, at = interfaces[name]
-        there = f"<ros2_control> has {', '.join(sorted(offered)) or 'none'} ({place_text(at)})"
+        there = f"<ros2_control> has {', '.join(sorted(offered)) or 'none'} ({at.file_and_line})"
         for missing in needed:
             if missing not in offered:
                 either = corrections(missing, joint.location, near(missing, offered), at)

@@ -10,14 +10,13 @@ from typing import NamedTuple
 from grader.base.names import closest, near
 from grader.base.source import Location
 from grader.ros.build.installation import Installation
-from grader.ros.build.places import PREFIX, SHARE
+from grader.ros.build.places import PREFIX, SHARE, share_parts
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.installed_files import (
     are_installs_known,
     is_surely_absent,
     look_up,
-    share_parts,
     similar_file,
 )
 from grader.ros.package.package import Package

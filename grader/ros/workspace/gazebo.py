@@ -10,7 +10,7 @@ from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.workspace.names import Fact, Mismatch, corrections, place_text
+from grader.ros.workspace.names import Fact, Mismatch, corrections
 from grader.ros.workspace.workspace import Workspace
 from grader.ros.xml.parsing import Element, XmlFile
 
@@ -112,7 +112,7 @@ def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Ite
             at = place(sensor)
             message = (
                 f"the world has no plugin gz::sim::systems::{system}, so the sensor "
-                f"{quoted(sensor.get('name', ''))} ({place_text(at)}) publishes nothing"
+                f"{quoted(sensor.get('name', ''))} ({at.file_and_line}) publishes nothing"
             )
             yield Mismatch("topics", message, file.location(world), at)
 

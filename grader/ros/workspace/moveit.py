@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.ros.workspace.controllers import defined_controllers
-from grader.ros.workspace.names import Fact, Mismatch, Use, corrections, place_text
+from grader.ros.workspace.names import Fact, Mismatch, Use, corrections
 from grader.ros.workspace.workspace import Workspace
 
 _MANAGER = "moveit_simple_controller_manager"
@@ -91,7 +91,7 @@ def _other_joints(workspace: Workspace, name: str, joints: YamlNode | None) -> I
         return
     if all(map(workspace.robot.has_joint, differing)):
         message = (
-            f"{name}.joints: MoveIt and the controller ({place_text(controlled.location)}) have "
+            f"{name}.joints: MoveIt and the controller ({controlled.location.file_and_line}) have "
             f"other joints: {', '.join(differing)}"
         )
         yield Mismatch("controllers", message, joints.location, controlled.location)

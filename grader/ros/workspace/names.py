@@ -181,7 +181,7 @@ def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mism
     if use.optional and meant is None:
         return None
     if meant is not None:
-        guess = f"; did you mean {quoted(meant)} ({place_text(known[meant])})?"
+        guess = f"; did you mean {quoted(meant)} ({known[meant].file_and_line})?"
     else:
         guess = ""
     message = f"{use.said}: there is no {use.kind} {quoted(use.name)}{guess}"
@@ -202,8 +202,3 @@ def corrections(
         Correction(at, name, meant),
         *([Correction(defined, meant, name)] if defined is not None else []),
     )
-
-
-def place_text(location: Location) -> str:
-    """Return a place as file and line."""
-    return f"{location.path}:{location.line}"

@@ -36,7 +36,6 @@ from grader.ros.workspace.names import (
     Undecided,
     Use,
     corrections,
-    place_text,
 )
 from grader.ros.workspace.workspace import Workspace
 
@@ -297,7 +296,7 @@ def _other_type(
     if not declared or not actual or declared == actual:
         return
     if given.location.path.endswith((".yaml", ".yml")):
-        there = f" ({place_text(at)})" if at is not None else ""
+        there = f" ({at.file_and_line})" if at is not None else ""
         message = (
             f"the parameter {name!r} is given {actual}; its node declares {declared}{there}, "
             "and stops"

@@ -13,7 +13,16 @@ from grader.ros.workspace.files import file_facts
 from grader.ros.workspace.frames import frame_facts
 from grader.ros.workspace.gazebo import gazebo_facts
 from grader.ros.workspace.moveit import moveit_facts
-from grader.ros.workspace.names import Agreement, Fact, Family, Mismatch, agreement
+from grader.ros.workspace.names import (
+    FAMILY_OF,
+    Agreement,
+    Definition,
+    Fact,
+    Family,
+    Mismatch,
+    Use,
+    agreement,
+)
 from grader.ros.workspace.parameters import parameter_facts
 from grader.ros.workspace.programs import program_facts
 from grader.ros.workspace.spawners import spawner_facts
@@ -63,3 +72,12 @@ def wrong_names(
 def read_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield what the files of a workspace define and use."""
     return chain.from_iterable(reader(workspace) for reader in _READERS)
+
+
+def compared_facts(
+    workspace: Workspace, families: Collection[Family]
+) -> Iterator[Use | Definition]:
+    """Yield the names of these families that files use or define."""
+    for fact in read_facts(workspace):
+        if isinstance(fact, Use | Definition) and FAMILY_OF[fact.kind] in families:
+            yield fact

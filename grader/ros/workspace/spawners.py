@@ -15,7 +15,7 @@ from grader.ros.launch.node_parameters import controllers_of, parameters_of
 from grader.ros.package.installed_files import open_meant
 from grader.ros.package.package import Package
 from grader.ros.workspace.controllers import Controller, defined_controllers
-from grader.ros.workspace.names import Fact, Mismatch, Open, Use, corrections, place_text
+from grader.ros.workspace.names import Fact, Mismatch, Open, Use, corrections
 from grader.ros.workspace.workspace import MANAGER, SPAWNERS, Workspace
 
 _OTHER_STARTS = re.compile(r"(load|switch|set)_controller|(Load|Switch)Controller")
@@ -86,7 +86,7 @@ def _managers_named(workspace: Workspace, spawner: StartedNode) -> Iterator[Fact
             at = managers[meant]
             message = (
                 f"spawner: there is no controller manager {name!r}; did you mean {meant!r} "
-                f"({place_text(at)})?"
+                f"({at.file_and_line})?"
             )
             either = corrections(name, spawner.location, meant)
             yield Mismatch("controllers", message, spawner.location, at, corrections=either)
@@ -126,7 +126,7 @@ def _without_type(
         at = lacking[0].location
         text = (
             "the controller manager is not given the parameters with the type of "
-            f"{_names_of(lacking)} ({place_text(at)})"
+            f"{_names_of(lacking)} ({at.file_and_line})"
         )
         yield Mismatch("controllers", text, manager.location, at)
 

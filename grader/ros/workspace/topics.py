@@ -20,7 +20,6 @@ from grader.ros.workspace.names import (
     Open,
     Use,
     corrections,
-    place_text,
 )
 from grader.ros.workspace.publishers import may_be_published
 from grader.ros.workspace.workspace import Workspace
@@ -104,11 +103,11 @@ def _differences(subscription: _OpenedTopic, publisher: _OpenedTopic) -> Iterato
         if reader.type != writer.type and writer.type is not None:
             message = (
                 f"the topic {publisher.topic} is published with {writer.type}, but the controller "
-                f"subscribes to it with {reader.type} ({place_text(reader.location)})"
+                f"subscribes to it with {reader.type} ({reader.location.file_and_line})"
             )
             yield Mismatch("topics", message, writer.location, reader.location)
         return
-    at = place_text(writer.location)
+    at = writer.location.file_and_line
     if reader.type is not None and writer.type is not None and reader.type != writer.type:
         message = (
             f"the topic {subscription.topic} is subscribed to with {reader.type}, but published "
@@ -144,7 +143,7 @@ def _bridged_types(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator
                 done = "published" if row.is_published else "subscribed to"
                 message = (
                     f"the topic {each.topic} has {kind} here, but is {done} by the "
-                    f"bridge with {row.ros_type} ({place_text(row.location)})"
+                    f"bridge with {row.ros_type} ({row.location.file_and_line})"
                 )
                 is_certain = row.is_used and each.is_started
                 yield Mismatch("topics", message, at, row.location, is_certain)
@@ -155,7 +154,7 @@ def _remappings(workspace: Workspace, node: StartedNode) -> Iterator[Fact]:
     python_node = workspace.python_node(node)
     if python_node is None or node.remaps is None:
         return
-    owner = f"{node.package}/{node.executable} {place_text(node.location)}"
+    owner = f"{node.package}/{node.executable} {node.location.file_and_line}"
     if python_node.doubts or any(endpoint.name is None for endpoint in python_node.endpoints):
         yield Open("topic", owner)
     for endpoint in python_node.endpoints:
@@ -203,7 +202,7 @@ def _unconnected(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator[F
         meant, at = alike[0].topic, alike[0].location
         if any(node.topic(rule[1]) == meant for rule in node.remaps or ()):
             continue  # a remapping of another name, which is said of it
-        message = f"nothing publishes {topic}; did you mean {meant} ({place_text(at)})?"
+        message = f"nothing publishes {topic}; did you mean {meant} ({at.file_and_line})?"
         either = corrections(topic, endpoint.location, meant, at)
         yield Mismatch("topics", message, endpoint.location, at, corrections=either)
 
@@ -230,7 +229,7 @@ def _unheard(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator[Misma
             if is_same or (is_certain and len(fitting) == 1):
                 message = (
                     f"nothing subscribes to {publisher.topic}; did you mean {waiting.topic} "
-                    f"({place_text(place)})?"
+                    f"({place.file_and_line})?"
                 )
                 yield Mismatch("topics", message, publisher.endpoint.location, place, is_certain)
 

@@ -16,8 +16,13 @@ from grader.ros.build.places import PREFIX, SHARE
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.ros.config.yaml_values import sections_in, values_in
 from grader.ros.known.known import known
-from grader.ros.launch.launch_model import GivenParameters, Launch, StartedNode
-from grader.ros.launch.node_parameters import NodeParameters, controllers_of, parameters_of
+from grader.ros.launch.launch_model import GivenParameters, Launch, ParameterValue, StartedNode
+from grader.ros.launch.node_parameters import (
+    NodeParameters,
+    controllers_of,
+    parameters_of,
+    value_in_file,
+)
 from grader.ros.package.finding import is_backup
 from grader.ros.package.installed_files import open_meant
 from grader.ros.package.package import Package
@@ -387,6 +392,14 @@ class Workspace:
         """Return the parameters that a node gets, whose launch file is in a package."""
         opened = partial(open_meant, package)
         return parameters_of(node, opened, self.name_of(node) or "", is_python=is_python)
+
+    def written_values(self, parameter: str) -> Iterator[ParameterValue]:
+        """Yield the values that files have for a parameter, of whatever node."""
+        for _, tree in self.trees:
+            for _, section in sections_in(tree):
+                node = section.get(*parameter.split("."))
+                if node is not None:
+                    yield value_in_file(node)
 
     def wildcard_places(self, node: StartedNode) -> frozenset[Location]:
         """Return the places of parameters that a file gives to every node."""

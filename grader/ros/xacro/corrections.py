@@ -8,6 +8,7 @@ from itertools import islice
 from typing import NamedTuple
 
 from grader.base import markup
+from grader.base.element_edits import tag_edits, with_attribute
 from grader.base.names import closest
 from grader.base.source import Edit, Edits, Location
 from grader.base.text import cut, quoted
@@ -18,7 +19,6 @@ from grader.ros.xacro.scopes import ScopePlace, UnknownName, XacroFails
 from grader.ros.xacro.texts import TEXT_IN_QUOTES
 from grader.ros.xacro.xacro_files import Files, XmlFails
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
-from grader.ros.xml.edits import tag_edits
 
 _MAX_NODES = 2000
 _OF_WALK = 500  # what looking at all elements of a file is charged
@@ -339,14 +339,9 @@ def _with_value(place: ScopePlace, name: str, new: str) -> Edits:
     tag.
     """
     source, start = place.source.element(place.tag)
-    found = markup.attribute(source.text, start, name)
-    if found is None:
+    if markup.attribute(source.text, start, name) is None:
         return ()
-    before, after = (
-        source.text[found.start : found.value_start],
-        source.text[found.value_end : found.end],
-    )
-    return (source.edit(found.start, found.end, f"{before}{new}{after}"),)
+    return (with_attribute(source, start, name, new),)
 
 
 def _correction(

@@ -10,8 +10,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from itertools import groupby
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
+from grader.base.errors import NotDecided
 from grader.base.merge_conflicts import describe_conflicts, find_conflicts
 from grader.base.problems import Problem
 from grader.base.source import Edit, Edits, Location, Source
@@ -33,6 +34,9 @@ from grader.ros.xml.parsing import (
     make_element,
 )
 from grader.ros.xml.xml_problems import MISPLACED_DECLARATION, RECOVERED
+
+if TYPE_CHECKING:
+    from grader.ros.xacro.inventory import Inventory
 
 _READING_OF_SHORT = 1_500  # parts
 
@@ -107,6 +111,27 @@ class ExpandedSource(Source):
     def open_reason(self) -> str:
         """Why something could not be expanded; empty if everything was."""
         return next((found.reason for found in self._expander.undetermined), "")
+
+    def inventory(self, budget: Budget) -> "Inventory":
+        """Return what its files define and use. Raises NotDecided where that takes too much."""
+        from grader.ros.xacro.inventory import take_inventory  # late: few rubrics need it
+
+        try:
+            return take_inventory(self.documents.values(), budget)
+        except OutOfBudget as error:
+            raise NotDecided(str(error)) from None
+
+    def check_known(self, found: "Inventory") -> None:
+        """Raise NotDecided if what seems to be missing may be in a part that is not known."""
+        is_open = any(
+            (place.source.path, place.tag) not in self.includes for place in found.includes
+        )
+        if self.open_reason and is_open:
+            raise NotDecided(self.open_reason)
+        if found.dynamic:
+            place = found.dynamic[0].at()
+            reason = "xacro evaluates the name of a property or macro"
+            raise NotDecided(f"{reason} ({place.path}, line {place.line})", reason)
 
     @property
     def cost(self) -> int:

@@ -3,9 +3,10 @@ written.
 """
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
+from grader.base.source import Location
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import EvaluationFails, Undetermined
 from grader.ros.xacro.macros import read_parameters
@@ -16,7 +17,7 @@ from grader.ros.xacro.xacro_nodes import XacroNode, walk
 
 _NAME = re.compile(r"(?<![\w.])[^\W\d]\w*+(?:\.[^\W\d]\w*+)*+(?!\s*=[^=])")
 
-Definitions = dict[str, list[ScopePlace]]
+_Definitions = dict[str, list[ScopePlace]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,14 +26,25 @@ class Inventory:
     evaluated names.
     """
 
-    properties: Definitions = field(default_factory=dict)
-    macros: Definitions = field(default_factory=dict)
+    properties: _Definitions = field(default_factory=dict)
+    macros: _Definitions = field(default_factory=dict)
     used: set[str] = field(default_factory=set)
     called: set[str] = field(default_factory=set)
     includes: list[ScopePlace] = field(default_factory=list)
     dynamic: list[ScopePlace] = field(default_factory=list)
 
-    def define(self, definitions: Definitions, name: str, place: ScopePlace) -> None:
+    @staticmethod
+    def first_places(definitions: _Definitions, paths: Sequence[str]) -> dict[str, Location]:
+        """Return where names are first defined in some files."""
+        found: dict[str, Location] = {}
+        for name, places in definitions.items():
+            for place in places:
+                if place.source.path in paths:
+                    found[name] = place.at("name")
+                    break
+        return found
+
+    def define(self, definitions: _Definitions, name: str, place: ScopePlace) -> None:
         """Note a definition, or that its name is evaluated."""
         if "$" in name:
             self.dynamic.append(place)

@@ -6,13 +6,13 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import islice
 from typing import NamedTuple
 
+from grader.base.element_edits import tag_edits
 from grader.base.slips import Slip
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.values import Undetermined
 from grader.ros.xacro.expansion import ExpandedSource
 from grader.ros.xacro.macros import MacroError, read_parameters
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
-from grader.ros.xml.edits import tag_edits
 from grader.ros.xml.urdf_format import CHILDREN
 
 _MAX_NODES = 2000

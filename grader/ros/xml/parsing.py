@@ -253,3 +253,15 @@ class XmlFile:
             return self.source.tag(self._indices[element], attribute)
         except IndexError:
             return Location(self.source.path, 1, 1)
+
+
+def root_of(text: str) -> tuple[Element | None, Source]:
+    """Return the root of a text, as ROS 2 reads it where it is no XML, and the text that its places
+    are in.
+    """
+    data, source = text.encode("utf-8", "surrogateescape"), Source("", text)
+    try:
+        return XmlFile(data, source).root, source
+    except XmlFault:
+        document = read_document(data, "")
+        return document.root, document.source

@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
+from grader.base.transforms import Transform, rotation_from_rpy
 from grader.report.drawing.picture import Body, Scene
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Cylinder, Link, Robot, Sphere
 from grader.ros.urdf.shapes import Shape
-from grader.ros.urdf.transforms import Transform, rotation_from_rpy
 
 Points = Any  # an array of shape (n, 3)
 

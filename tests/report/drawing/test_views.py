@@ -8,11 +8,11 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from grader.base.transforms import Rotation, Transform, Vector, rotation_from_rpy
 from grader.report.drawing.picture import Body, Picture
 from grader.report.drawing.views import FreePlaces, Panel, from_back_to_front, hull, panels_of
 from grader.ros.urdf.model import Box
 from grader.ros.urdf.shapes import Shape
-from grader.ros.urdf.transforms import Rotation, Transform, Vector, rotation_from_rpy
 from tests.examples import examples
 from tests.report.drawing.shapes import (
     POSES,

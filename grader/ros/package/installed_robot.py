@@ -12,7 +12,7 @@ from typing import NamedTuple
 from grader.base.errors import InputError
 from grader.base.problems import Problem
 from grader.files.reading import URDF_LIMIT
-from grader.lab.checks.meshes import mesh_file
+from grader.ros.package.mesh_files import mesh_file
 from grader.ros.package.package import Package
 from grader.ros.python.budget import Budget
 from grader.ros.urdf.model import Mesh, Robot

@@ -6,7 +6,7 @@ At 4 x 4 a product of Python floats costs no more than a numpy call, and saves t
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import atan2, cos, degrees, hypot, inf, nan, sin
+from math import acos, atan2, cos, degrees, hypot, inf, nan, sin
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -45,8 +45,6 @@ class Transform:
             return NotImplemented
         a, b, c, d, e, f, g, h, i = self.rotation
         j, k, l, m, n, o, p, q, r = other.rotation  # noqa: E741  rows, letter by letter
-        x, y, z = other.translation
-        u, v, w = self.translation
         return Transform(
             (
                 a * j + b * m + c * p,
@@ -59,15 +57,15 @@ class Transform:
                 g * k + h * n + i * q,
                 g * l + h * o + i * r,
             ),
-            (a * x + b * y + c * z + u, d * x + e * y + f * z + v, g * x + h * y + i * z + w),
+            self.apply(other.translation),
         )
 
     def apply(self, point: Iterable[float]) -> Vector:
         """Return a point given in b, as any three numbers, in frame a."""
-        a, b, c, d, e, f, g, h, i = self.rotation
-        x, y, z = point if isinstance(point, tuple) else map(float, point)  # also those of an array
+        first, second, third = point if isinstance(point, tuple) else map(float, point)
+        x, y, z = self.rotate((first, second, third))
         u, v, w = self.translation
-        return (a * x + b * y + c * z + u, d * x + e * y + f * z + v, g * x + h * y + i * z + w)
+        return (x + u, y + v, z + w)
 
     def rotate(self, direction: Vector) -> Vector:
         """Return a direction given in b in frame a: no translation."""
@@ -167,6 +165,14 @@ def rotation_about(axis: Vector, angle: float) -> Rotation:
         t * y * z + s * x,
         t * z * z + c,
     )
+
+
+def turn_between(one: Rotation, other: Rotation) -> float:
+    """Return the angle in degrees of the rotation from one to the other."""
+    trace = sum(
+        a * b for a, b in zip(one, other, strict=True)
+    )  # of that rotation: 1 + 2 cos(angle)
+    return degrees(acos(max(-1.0, min(1.0, (trace - 1.0) / 2.0))))
 
 
 def unit(vector: Vector) -> Vector | None:

@@ -16,10 +16,9 @@ from math import isclose
 from typing import NamedTuple
 
 from grader.base import markup
+from grader.base.element_edits import format_number, merged, tag_edits, with_attribute
 from grader.base.names import near
 from grader.base.source import Edit, Edits, Location, Source
-from grader.lab.hints.edits import Proposal, merged, with_attribute
-from grader.lab.hints.robot_numbers import format_number
 from grader.ros.python.values import EvaluationSignal
 from grader.ros.xacro.corrections import (
     Refusal,
@@ -31,7 +30,6 @@ from grader.ros.xacro.expansion import ExpandedSource
 from grader.ros.xacro.scopes import Key, ScopePlace, XacroDefinition, XacroFails, XacroScope
 from grader.ros.xacro.texts import Texts
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
-from grader.ros.xml.edits import tag_edits
 
 _MAX_LENGTH = 2_000  # of a text that is edited in parts
 _MAX_NAMES, _MAX_NODES = 8, 2000
@@ -466,6 +464,13 @@ def _conditions(source: Source, known: Sequence[str]) -> list[Edits]:
     return found
 
 
+class _XacroMistake(NamedTuple):
+    """Edits that may undo a mistake, and what it is."""
+
+    edits: Edits
+    mistake: str
+
+
 class NumberDefinition(NamedTuple):
     """A number of xacro from which an attribute is computed."""
 
@@ -526,7 +531,7 @@ class ExpandedEdits:
             found.setdefault((node.place.source.path, node.place.tag), []).append(index)
         return found
 
-    def corrections(self, names: Sequence[str]) -> list[Proposal]:
+    def corrections(self, names: Sequence[str]) -> list[_XacroMistake]:
         """Return edits that may correct undeclared and undefined names, calls of macros, and
         conditions.
 
@@ -534,14 +539,14 @@ class ExpandedEdits:
         """
         written = Source(self._source.path, self._source.text)
         if self._source.corrected:
-            found = [Proposal(self._source.corrected, "what xacro refuses")]
+            found = [_XacroMistake(self._source.corrected, "what xacro refuses")]
         else:
             found = []
         found += _corrections(written, self._source.documents, self._source.refused)
         given = sorted({word for name in names for word in name.split("_")})
         for document in self._source.documents.values():
             edited = _conditions(document.place.source, given)
-            found += [Proposal(edits, "a text in a condition") for edits in edited]
+            found += [_XacroMistake(edits, "a text in a condition") for edits in edited]
         return list({correction.edits: correction for correction in reversed(found)}.values())[::-1]
 
     def calls(self, edit: Edit) -> dict[str, list[Location]]:
@@ -565,7 +570,7 @@ class ExpandedEdits:
 
 def _corrections(
     document: Source, files: Mapping[str, XacroNode], refusals: Sequence[Refusal]
-) -> Iterator[Proposal]:
+) -> Iterator[_XacroMistake]:
     """Yield the edits that may correct what xacro refuses in a document with the files that it
     includes.
     """
@@ -574,13 +579,13 @@ def _corrections(
         _, start = document.element(0)
         end = markup.name_end(text, start)
         edit = document.edit(start, end, text[start:end] + _NAMESPACE)
-        yield Proposal((edit,), "the prefix xacro, which is not declared")
+        yield _XacroMistake((edit,), "the prefix xacro, which is not declared")
     nodes = [node for file in files.values() for node in islice(walk(file), 1, _MAX_NODES)]
     macros = {node.attributes.get("name", "") for node in nodes if node.tag == "xacro:macro"}
     for node in nodes:
         if node.tag in _PREFIXED or node.tag in macros:
             edits = tag_edits(*node.place.written, node.tag, f"xacro:{node.tag}")
-            yield Proposal(edits, f"<{node.tag}> without xacro:")
+            yield _XacroMistake(edits, f"<{node.tag}> without xacro:")
     named = [
         it
         for it in refusals
@@ -590,8 +595,8 @@ def _corrections(
         assert isinstance(error, XacroFails)
         if error.unknown is not None:
             for edits in respellings(place, attribute, error.unknown):
-                yield Proposal(edits, "a name that xacro does not know")
+                yield _XacroMistake(edits, "a name that xacro does not know")
         for edits, values in (
             values_of_other_calls(place, nodes, error.lacking) if error.lacking else ()
         ):
-            yield Proposal(edits, f"this call gives no value for {' and '.join(values)}")
+            yield _XacroMistake(edits, f"this call gives no value for {' and '.join(values)}")

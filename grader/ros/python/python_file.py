@@ -54,6 +54,11 @@ class PythonFile:
         """The syntax tree, or why there is none."""
         return parse(self.text.encode("utf-8", "surrogateescape"), self.source.path)
 
+    @property
+    def fault(self) -> SyntaxFault | None:
+        """Why Python cannot read the file; None if it can."""
+        return self.parsed if isinstance(self.parsed, SyntaxFault) else None
+
     @cached_property
     def nodes(self) -> list[ast.AST]:
         """All nodes of the syntax tree; nothing where Python cannot read the file."""

@@ -1,0 +1,152 @@
+"""Edits of the elements in a text, with numbers as a person writes them, and the text after
+edits.
+"""
+
+import re
+from collections.abc import Iterable
+from math import isclose, isfinite
+
+from grader.base import markup
+from grader.base.source import Edit, Edits, Source
+
+_SAME = 1e-3  # relative: -1.57 is -pi/2
+_PIECE = re.compile(r"(\s*)(\S+)")
+
+
+def element_text(source: Source, start: int) -> str:
+    """Return the text of the element at an offset."""
+    return source.text[start : markup.element_end(source.text, start)]
+
+
+def with_attribute(source: Source, start: int, attribute: str, value: str) -> Edit:
+    """Return the edit that sets an attribute of the start tag at an offset, or adds it."""
+    found = markup.attribute(source.text, start, attribute)
+    if found is None:
+        end = markup.name_end(source.text, start)
+        return source.edit(start, end, f'{source.text[start:end]} {attribute}="{value}"')
+    head, tail = (
+        source.text[found.start : found.value_start],
+        source.text[found.value_end : found.end],
+    )
+    return source.edit(found.start, found.end, f"{head}{value}{tail}")
+
+
+def with_child(source: Source, start: int, xml: str) -> Edit:
+    """Return the edit that inserts an element as the first child of the one at an offset."""
+    text, newline = source.text, "\r\n" if "\r\n" in source.text else "\n"
+    end, is_empty = markup.head_end(text, start)
+    indent = markup.child_indentation(text, start)
+    child = f"{newline}{indent}{markup.indented(xml, indent, newline)}"
+    if not is_empty:
+        return source.edit(end, end, child)
+    slash = text.rfind("/", start, end)
+    name = text[start + 1 : markup.name_end(text, start)].strip()
+    closing = f"{newline}{markup.indentation(text, start)}</{name}>"
+    return source.edit(start, end, f"{text[start:slash].rstrip()}>{child}{closing}")
+
+
+def without_element(source: Source, start: int) -> Edit:
+    """Return the edit that removes the element at an offset, with its line where nothing else is
+    on it.
+    """
+    end = markup.element_end(source.text, start)
+    indent = markup.indentation(source.text, start)
+    line = start - len(indent)
+    is_alone = source.text[end : end + 2].startswith(("\n", "\r\n")) and (
+        line == 0 or source.text[line - 1] == "\n"
+    )
+    if is_alone:
+        return source.edit(line, source.text.find("\n", end) + 1, "")
+    return source.edit(start, end, "")
+
+
+def with_element(source: Source, start: int, xml: str) -> Edit:
+    """Return the edit that replaces the element at an offset by another one."""
+    newline = "\r\n" if "\r\n" in source.text else "\n"
+    indent = markup.indentation(source.text, start)
+    return source.edit(
+        start, markup.element_end(source.text, start), markup.indented(xml, indent, newline)
+    )
+
+
+def merged(old: str, new: str) -> str:
+    """Return a new list of numbers with those that stay, and the space between all, as the old
+    text writes them.
+    """
+    before, after = _PIECE.findall(old), new.split()
+    if len(before) != len(after):
+        return new
+    pieces = zip(before, after, strict=True)
+    return "".join(
+        (" " if space.strip(" ") else space) + _merge_one(piece, other)
+        for (space, piece), other in pieces
+    )
+
+
+def _merge_one(old: str, new: str) -> str:
+    """Return the new number, written as the old one where it is the same or only its sign
+    changes.
+    """
+    try:
+        before, after = float(old), float(new)
+    except ValueError:
+        return new
+    if isclose(before, after, rel_tol=_SAME, abs_tol=_SAME / 100):
+        return old
+    if isclose(before, -after, rel_tol=_SAME):
+        if before < 0:
+            return old.lstrip("-")
+        return f"-{old.lstrip('+')}"
+    return new
+
+
+def edited(text: str, path: str, edits: Iterable[Edit]) -> str | None:
+    """Return the text of a file after edits; None if they overlap, or if the text is not what they
+    replace.
+    """
+    source = Source(path, text)
+    pieces: list[str] = []
+    position = 0
+    for start, edit in _offsets(source, edits):
+        if start < position or not text.startswith(edit.old, start):
+            return None
+        pieces += (text[position:start], edit.new)
+        position = start + len(edit.old)
+    return "".join((*pieces, text[position:]))
+
+
+def _offsets(source: Source, edits: Iterable[Edit]) -> list[tuple[int, Edit]]:
+    return sorted(
+        ((source.offset(edit.line, edit.column), edit) for edit in edits), key=lambda pair: pair[0]
+    )
+
+
+def format_numbers(values: Iterable[float]) -> str:
+    """Return numbers as a URDF contains them."""
+    return " ".join(map(format_number, values))
+
+
+def format_number(value: float) -> str:
+    """Return a number in as few characters as a robot that a person writes needs."""
+    if not isfinite(value):
+        return repr(value)
+    text = f"{round(value, 6) + 0.0:.6g}"
+    if text == "0" and abs(value) > 1e-12:  # an inertia
+        return f"{value:.6g}"
+    if "e" not in text:
+        return text
+    return f"{value:.6f}".rstrip("0").rstrip(".")
+
+
+def tag_edits(source: Source, start: int, old: str, new: str) -> Edits:
+    """Return the edits of the start tag of the element at an offset, and of its end tag if it has
+    one; none if its tag is another one.
+    """
+    if source.text[start : markup.name_end(source.text, start)] != f"<{old}":
+        return ()
+    edits = [source.edit(start, start + len(old) + 1, f"<{new}")]
+    end = markup.element_end(source.text, start)
+    closing = re.search(rf"</{re.escape(old)}\s*>\Z", source.text[start:end])
+    if closing is not None:
+        edits.append(source.edit(start + closing.start(), end, f"</{new}>"))
+    return tuple(edits)

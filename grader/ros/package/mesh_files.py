@@ -1,0 +1,230 @@
+"""What the name of a mesh means to ROS 2, and whether a build puts the file there. No mesh is
+loaded.
+"""
+
+import posixpath
+import re
+from collections.abc import Iterator, Sequence
+from itertools import islice
+from typing import NamedTuple
+
+from grader.base.errors import NotDecided
+from grader.base.names import closest
+from grader.base.problems import Problem
+from grader.base.source import LazyLocation
+from grader.base.text import quoted, quoted_end
+from grader.files.tree import Tree
+from grader.ros.build.package_problems import MESH_PATH
+from grader.ros.build.places import is_of_one_machine
+from grader.ros.package.installed_files import Lookup, look_up, similar_file
+from grader.ros.package.mesh_content import content_fault
+from grader.ros.package.package import Package
+from grader.ros.package.robot_file import Read
+from grader.ros.urdf.model import Mesh, Robot
+
+_SCHEME = re.compile(
+    r"([A-Za-z][A-Za-z0-9+.-]+):(//)?(.*)", re.DOTALL
+)  # one letter is a disk of Windows
+_ABSOLUTE = re.compile(r"[/~\\]|[A-Za-z]:")
+_ONE_MACHINE = "exists on one machine only; use package://"
+_BACKSLASH = "has a \\ in its path; separate folders by /"
+
+_MAX_WARNED = 20  # meshes of one file
+
+
+class MeshFile(NamedTuple):
+    """The file name of a <mesh>: the package that it names and the path in it, and why ROS 2 does
+    not find such a name.
+
+    `doubt` says why it cannot be determined whether it does. `written` is the name as the student
+    wrote it.
+    """
+
+    written: str
+    path: str
+    package: str = ""
+    fault: str = ""
+    doubt: str = ""
+
+    @property
+    def steps(self) -> tuple[str, ...]:
+        """The package, the folders and the name."""
+        whole = posixpath.normpath(f"{self.package}/{self.path}".replace("\\", "/"))
+        return tuple(step for step in whole.split("/") if step)
+
+    def ends_in(self, other: "MeshFile", *, any_case: bool = False) -> bool:
+        """Return whether the path ends in all the steps of another one."""
+        steps, end = self.steps, other.steps
+        if any_case:
+            steps, end = (tuple(map(str.casefold, path)) for path in (steps, end))
+        return steps[-len(end) :] == end != ()
+
+    def problem_text(self, link: str, fault: str) -> str:
+        """Return the message about what is wrong with the mesh of a link."""
+        return f"the mesh {quoted_end(self.written)} of {quoted(link)} {fault}"
+
+    def why_not_found(self, packages: Sequence[Package], tree: Tree) -> str:
+        """Return why ROS 2 does not find a package's file after a build; empty if it does, or no
+        package was submitted.
+
+        Raises NotDecided where that cannot be determined statically.
+        """
+        if not packages:
+            return ""
+        if not self.package:
+            if not self.doubt:
+                raise NotDecided(
+                    "RViz finds no relative path; other programs may",
+                    "a mesh is at a relative path",
+                )
+            return ""
+        package = packages[0].find(self.package)
+        path = posixpath.normpath(self.path)
+        if package is None:
+            return _without_package(self.package, path, packages, tree)
+        if path.startswith("../") or path in ("..", "."):
+            return "is outside of its package"
+        return _fault_in_package(package, f"share/{self.package}/{path}", tree)
+
+    def content_fault(self, packages: Sequence[Package]) -> str:
+        """Return what is wrong with the content of its file in a submitted package; empty if
+        nothing is, or there is no such file. Raises NotDecided.
+        """
+        package = packages[0].find(self.package) if packages else None
+        if package is None:
+            return ""
+        path = posixpath.normpath(self.path)
+        found = look_up(package, f"share/{self.package}/{path}")
+        file = package.tree.files.get(found.path if found.state == "installed" else path)
+        return content_fault(file, self.path) if file is not None else ""
+
+
+def mesh_file(filename: str, *, is_expanded: bool = False) -> MeshFile:
+    """Return what the file name of a <mesh> means; `is_expanded` says whether xacro has been
+    expanded in it.
+    """
+    found = _SCHEME.fullmatch(filename)
+    scheme, slashes, rest = found.groups() if found is not None else ("", "", filename)
+    fault = _BACKSLASH if "\\" in filename else ""
+    shared = _path_from_xacro(rest) if is_expanded and scheme in ("", "file") else None
+    if shared is not None:
+        written = f"{scheme}{'://' if scheme else ''}$(find {shared[0]})/{shared[1]}"
+        return MeshFile(
+            written, shared[1], shared[0], fault if scheme else "needs file:// before $(find ...)"
+        )
+    if scheme == "package" and slashes:
+        package, _, path = rest.partition("/")
+        return MeshFile(filename, path, package, fault)
+    doubt = ""
+    if not scheme:
+        is_absolute = _ABSOLUTE.match(filename) is not None
+        fault = f"is at an absolute path, which {_ONE_MACHINE}" if is_absolute else fault
+    elif scheme == "file":
+        fault = f"is at a file:// path, which {_ONE_MACHINE}"
+    elif scheme.lower() in ("package", "file") or not slashes:
+        fault = f"begins with {scheme}:{slashes or ''}; use package://"
+    else:
+        fault, doubt = "", f"it is at a {scheme}:// path, which not every program finds"
+    return MeshFile(filename, rest, "", fault, doubt)
+
+
+def mesh_problems(urdf: Read, packages: Sequence[Package], tree: Tree) -> Iterator[Problem]:
+    """Yield a warning for each mesh that RViz certainly does not find on another machine, or after
+    a build.
+
+    A file of a package that was not submitted may be installed, and so may a file:// path outside
+    of home folders.
+    """
+    robot = urdf.loaded.robot
+    found = _meshes(robot) if robot is not None else {}
+    for name, (link, mesh) in islice(found.items(), _MAX_WARNED):
+        file = mesh_file(name, is_expanded=urdf.is_expanded)
+        fault = _sure_fault(file, packages, tree)
+        if fault and mesh.location is not None and "$" not in name:
+            at = LazyLocation(mesh.location.source, mesh.location.tag, "filename")
+            yield Problem(MESH_PATH, file.problem_text(link, fault), at.resolve())
+
+
+def _meshes(robot: Robot) -> dict[str, tuple[str, Mesh]]:
+    """Return the meshes of a robot by the names of their files, each with a link that has it."""
+    shapes = [(link.name, it.geometry) for link in robot.links for it in link.visuals]
+    shapes += [(link.name, it.geometry) for link in robot.links for it in link.collisions]
+    return {mesh.filename: (link, mesh) for link, mesh in shapes if isinstance(mesh, Mesh)}
+
+
+def _sure_fault(file: MeshFile, packages: Sequence[Package], tree: Tree) -> str:
+    """Return why RViz does not find a mesh, if that is certain."""
+    if file.written.startswith("file://") and not file.package and not is_of_one_machine(file.path):
+        return ""
+    if not (file.package or file.fault or file.doubt):
+        return "is at a relative path, which RViz does not find; use package://"
+    if file.fault or not any(package.name == file.package for package in packages):
+        return file.fault
+    try:
+        return file.why_not_found(packages, tree)
+    except NotDecided:
+        return ""
+
+
+def _fault_in_package(package: Package, target: str, tree: Tree) -> str:
+    """Return what is wrong with the file that a build installs at a path, or why it installs none
+    there.
+    """
+    found, name = look_up(package, target), posixpath.basename(target)
+    file = package.tree.files.get(found.path) if found.state == "installed" else None
+    if file is not None:
+        return content_fault(file, target)
+    if found.state == "unknown" or any(
+        posixpath.basename(path) == name for path in package.tree.files
+    ):
+        return _why_not_installed(package, target, found)
+    if tree.unopened:
+        raise NotDecided(
+            f"{name} may be in an archive that could not be opened",
+            "an archive could not be opened",
+        )
+    similar = similar_file(package, name)
+    return (
+        "is not in the package "
+        f"{package.name!r}{f'; there is {quoted(similar)}' if similar else ''}"
+    )
+
+
+def _path_from_xacro(path: str) -> tuple[str, str] | None:
+    """Return the package and the path in it where $(find ...) has given a path."""
+    from grader.ros.xacro.texts import INSTALLED  # late: most URDFs are no xacro
+
+    found = re.fullmatch(rf"/*{INSTALLED}/([^/]+)/share/\1/+(.*)", path, re.DOTALL)
+    if found is not None:
+        return (found[1], found[2])
+    return None
+
+
+def _without_package(name: str, path: str, packages: Sequence[Package], tree: Tree) -> str:
+    """Return that no submitted package has a name; raise NotDecided if one may be in an archive
+    that is closed.
+    """
+    if tree.unopened:
+        reason = "an archive could not be opened"
+        raise NotDecided(
+            f"the package {quoted(name)} may be in an archive that could not be opened", reason
+        )
+    holding = [package.name for package in packages if path in package.tree.files]
+    meant = closest(name, [package.name for package in packages]) or next(iter(holding), None)
+    if meant is not None:
+        hint = f"; the submission has {quoted(meant)}"
+    else:
+        hint = ", which is not part of the submission"
+    return f"names the package {quoted(name)}{hint}"
+
+
+def _why_not_installed(package: Package, target: str, found: Lookup) -> str:
+    """Return why a build does not install a file of a package at a path, by what it has instead."""
+    setup = package.installation
+    if found.state == "unknown":
+        raise NotDecided(found.text, found.text)
+    if found.state == "elsewhere":
+        return f"is looked for at {target}, but {found.text}"
+    if setup is None or found.state == "no build":
+        return f"is not installed: {found.text}"
+    return f"is not installed: add {found.path} to {setup.entries}, for {posixpath.dirname(target)}"
