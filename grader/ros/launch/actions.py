@@ -124,7 +124,7 @@ class ActionVisitor:
         self.depth += 1
         try:
             if isinstance(value, Unknown):
-                raise Undetermined(value.reason, value.at)
+                raise value.as_signal(value.at)
             if isinstance(value, Call) and class_named(value.name) is None:
                 raise Undetermined(f"the result of {value.name} is not evaluated", value.at)
             if not isinstance(value, Call) or not is_a(value.name, ENTITY):
@@ -232,7 +232,7 @@ def _refuse_action(_: ActionVisitor, call: Call, __: Context, ___: bool | None) 
 
 def _condition_holds(given: Value, context: Context, at: Position) -> bool:
     if isinstance(given, Unknown):
-        raise Undetermined(given.reason, given.at)
+        raise given.as_signal(given.at)
     if not isinstance(given, Call):
         raise EvaluationFails(
             f"condition is {kind_of(given)}, not a condition such as IfCondition(...)", at
@@ -329,7 +329,7 @@ def _set_argument(name: str, value: Value, call: Call, context: Context, when: b
     try:
         context.arguments[name] = resolve(value, context, call.at) if when else uncertain
     except EvaluationSignal as signal:
-        context.arguments[name] = Unknown(str(signal), signal.at or call.at)
+        context.arguments[name] = signal.as_unknown(call.at)
         raise
 
 
@@ -463,7 +463,7 @@ def _call_opaque_function(
     arguments = (Call("launch.launch_context.LaunchContext", [], {}, call.at), *args)
     found = visitor.call_function(function, call.at, arguments if when else None, context)
     if isinstance(found, Unknown):
-        visitor.findings.add(Undetermined(found.reason), found.at, when)
+        visitor.findings.add(found.as_signal(), found.at, when)
     elif found is not None:
         visitor.visit_all(found, call, context, when)
 

@@ -269,7 +269,7 @@ def _is_text(value: Value) -> bool:
         case UnknownText():
             return True
         case Unknown():
-            raise Undetermined(value.reason)
+            raise value.as_signal()
         case QualifiedName():
             raise Undetermined(f"the value of {value.name}")
         case Call() if class_named(value.name) is not None:
@@ -289,7 +289,7 @@ def _is_entity(call: Call) -> bool:
 def items_in(value: Value) -> list[Value] | None:
     """Return what iterating over a value gives; None where Python cannot. Raises Undetermined."""
     if isinstance(value, Unknown):
-        raise Undetermined(value.reason)
+        raise value.as_signal()
     if isinstance(value, Call) and class_named(value.name) is None:
         raise Undetermined(f"the result of {value.name}")
     if isinstance(value, Items):
@@ -350,7 +350,7 @@ def _check_of_type(kind: type) -> Callable[[Value], _Fault | None]:
 def _wrong_parameters(value: Value) -> _Fault | None:
     """Return what is wrong with the parameters of a node. Raises Undetermined."""
     if isinstance(value, Unknown):
-        raise Undetermined(value.reason)
+        raise value.as_signal()
     if not isinstance(value, list):
         return _NO_LIST
     return _first_fault(map(_wrong_item, value))
@@ -454,7 +454,7 @@ def _wrong_remappings(value: Value) -> _Fault | None:
         return _NO_LIST
     for rule in rules:
         if isinstance(rule, Unknown):
-            raise Undetermined(rule.reason)
+            raise rule.as_signal()
         if not isinstance(rule, tuple) or len(rule) != 2:
             return _Fault("takes pairs: ('from', 'to')")
         fault = _wrong_text(rule[0]) or _wrong_text(rule[1])

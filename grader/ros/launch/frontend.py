@@ -28,7 +28,6 @@ from grader.ros.python.values import (
     EvaluationFails,
     EvaluationSignal,
     Undetermined,
-    Unknown,
     Value,
 )
 from grader.ros.xml.parsing import Element, XmlFault, XmlFile
@@ -363,7 +362,7 @@ def read_actions(parent: _Entity, findings: Findings) -> list[Value]:
         except EvaluationFails as error:
             findings.add_fault(str(error), error.at or entity.at)
         except EvaluationSignal as signal:
-            found.append(Unknown(str(signal), signal.at or entity.at))
+            found.append(signal.as_unknown(entity.at))
     return found
 
 
@@ -450,7 +449,7 @@ def _checked_call(call: Call) -> Call:
     cls = class_named(call.name)
     doubt = check(cls, call) if cls is not None else None
     if doubt is not None:
-        raise Undetermined(doubt.reason, doubt.at)
+        raise doubt.as_signal(doubt.at)
     return call
 
 

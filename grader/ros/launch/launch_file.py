@@ -371,8 +371,9 @@ class _PythonLaunchFile:
         """Return the text of a substitution as Python gets it."""
         try:
             found = resolve(call.owner, self.context, call.at)
-        except Undetermined as error:  # at this call, not at the substitution
-            raise Undetermined(str(error)) from None
+        except Undetermined as error:
+            error.at = None  # at this call, not at the substitution
+            raise
         reason = "the content of a file is not evaluated"
         if isinstance(found, Contents):
             return FileText(reason=reason, at=call.at, contents=found)

@@ -414,7 +414,7 @@ def _text_if_known(value: Value, context: Context, at: Position) -> Resolved:
             return resolve(value, context, at)
         return Unknown("there is none", at)
     except EvaluationSignal as signal:
-        return Unknown(str(signal), signal.at or at)
+        return signal.as_unknown(at)
 
 
 def _resolve_words(value: Value, context: Context, at: Position) -> list[str]:

@@ -74,10 +74,9 @@ def known_text(value: Value, context: Context, at: Position) -> str:
     found = resolve(value, context, at)
     if isinstance(found, str):
         return found
-    raise Undetermined(
-        found.reason if isinstance(found, Unknown) else "the content of a file is used as a text",
-        at,
-    )
+    if isinstance(found, Unknown):
+        raise found.as_signal(at)
+    raise Undetermined("the content of a file is used as a text", at)
 
 
 def boolean(text: str, at: Position) -> bool:

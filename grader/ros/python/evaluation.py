@@ -31,7 +31,6 @@ class PythonError(NamedTuple):
 
 NOT_EVALUATED = "is not evaluated"
 MISSING_COMMA = "a {} cannot be called: is there a comma missing before it?"
-FAILED = "Python raises an error before"  # the reason of a value that would follow
 # All parts of such an expression are evaluated before the expression itself; such a part may change
 # something.
 _WHOLE = (
@@ -104,8 +103,8 @@ class Evaluation(Expressions):
         try:
             return self.value(node, scope)
         except py.Undetermined as error:
-            unknown = py.Unknown(str(error), error.at or position_of(node))
-            if unknown.reason == FAILED and not error.is_final:
+            unknown = error.as_unknown(position_of(node))
+            if error.follows_error:
                 return unknown
             may_change = not isinstance(node, _WHOLE) and any(
                 isinstance(part, _CHANGING) for part in ast.walk(node)
@@ -115,7 +114,7 @@ class Evaluation(Expressions):
             return self.doubted(unknown)
         except py.EvaluationFails as error:
             self.error(str(error), error.at or position_of(node))
-            return py.Unknown(FAILED, position_of(node))
+            return py.unknown_after_error(position_of(node))
 
     def _name(self, node: ast.Name, scope: py.Scope) -> py.Value:
         """Return the value of a name. An undefined name is an error; its value is the most likely
@@ -210,7 +209,7 @@ class Evaluation(Expressions):
                 found = self._method(owner, name, made)
             case py.PlainFunction():
                 found = self._plain(function, made)
-            case py.Unknown(reason=reason) if reason == FAILED:
+            case py.Unknown(follows_error=True):
                 found = function
             case _ if isinstance(function, py.PLAIN):
                 kind = type(function).__name__
@@ -246,7 +245,7 @@ class Evaluation(Expressions):
         if function is None and made.name.startswith(
             "?."
         ):  # an undefined name, which is an error already
-            return py.Unknown(FAILED, made.at)
+            return py.unknown_after_error(made.at)
         if function is None:
             reason = f"{made.name.removeprefix('builtins.')} {NOT_EVALUATED}"
             raise py.Undetermined(reason, made.at, is_final=True)
@@ -268,8 +267,8 @@ class Evaluation(Expressions):
         found = method(owner, name, self.budget)
         if found is not None:
             return self.call_value(found, made)
-        if isinstance(owner, py.Unknown) and (name in _TEXT_METHODS or owner.reason == FAILED):
-            raise py.Undetermined(owner.reason, owner.at)
+        if isinstance(owner, py.Unknown) and (name in _TEXT_METHODS or owner.follows_error):
+            raise owner.as_signal(owner.at)
         raise py.Undetermined(
             f"the method {name} of this value {NOT_EVALUATED}", made.at, is_final=True
         )

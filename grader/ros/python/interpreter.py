@@ -20,7 +20,7 @@ from grader.base.names import closest
 from grader.ros.python import values as py
 from grader.ros.python.budget import Budget
 from grader.ros.python.builtins import truth
-from grader.ros.python.evaluation import FAILED, MISSING_COMMA, NOT_EVALUATED, Evaluation
+from grader.ros.python.evaluation import MISSING_COMMA, NOT_EVALUATED, Evaluation
 from grader.ros.python.library import (
     CONSTANTS,
     UNCERTAIN,
@@ -123,7 +123,7 @@ class Interpreter(Evaluation):
     ) -> py.Unknown:
         if isinstance(error, RecursionError):
             error = py.Undetermined("the file is too deeply nested, which is not evaluated")
-        return self.doubted(py.Unknown(str(error), error.at or at or self.at))
+        return self.doubted(error.as_unknown(at or self.at))
 
     def _block(self, body: list[ast.stmt], scope: py.Scope) -> None:
         for node in body:
@@ -201,9 +201,8 @@ class Interpreter(Evaluation):
 
     def _for(self, node: ast.For, scope: py.Scope) -> None:
         items = self.evaluate(node.iter, scope)
-        if (
-            isinstance(items, py.Unknown) and items.reason == FAILED
-        ):  # how often it runs once that is fixed is not known
+        # How often it runs once the error is fixed is not known.
+        if isinstance(items, py.Unknown) and items.follows_error:
             self.doubted(items)
             items = []
         for item in iterate(items):
@@ -216,9 +215,8 @@ class Interpreter(Evaluation):
             self.evaluate(node.items[0].context_expr, scope),
             node.items[0].optional_vars,
         )
-        has_failed = (
-            isinstance(value, py.Unknown) and value.reason == FAILED
-        )  # of a file that does not exist
+        # Such as open() of a file that does not exist.
+        has_failed = isinstance(value, py.Unknown) and value.follows_error
         if isinstance(value, py.Call):
             self.call_value(py.BoundMethod(value, "__enter__"), py.Call("", [], {}, self.at))
         if len(node.items) > 1 or not (isinstance(value, py.Call | StringIO) or has_failed):
