@@ -14,7 +14,7 @@ from grader.ros.python import values as py
 from grader.ros.python.budget import Budget
 from grader.ros.python.builtins import BUILTINS, call, truth
 from grader.ros.python.expressions import Expressions
-from grader.ros.python.library import PYTHON_3_12, USUAL_NAMES
+from grader.ros.python.library import PYTHON_3_12, USUAL_NAMES, usual_meaning
 from grader.ros.python.operators import method, operate
 from grader.ros.python.parse import START, Position, position_of
 from grader.ros.python.values import call_plain, iterate, known, reason_of
@@ -133,7 +133,7 @@ class Evaluation(Expressions):
         meant = closest(node.id, texts) if node.id not in USUAL_NAMES else None
         if meant is not None:
             return self.module.names[meant]
-        return py.QualifiedName(USUAL_NAMES.get(node.id, f"?.{node.id}"))
+        return usual_meaning(node.id)
 
     def _builtin(self, name: str) -> py.Value:
         full = f"builtins.{name}"
@@ -195,6 +195,8 @@ class Evaluation(Expressions):
         match function:
             case py.Function():
                 found = self.call_function(function, made)
+            case py.QualifiedName(is_defined=False):
+                found = py.unknown_after_error(made.at)
             case py.QualifiedName(name=name):
                 if name == "glob":
                     self.error(
@@ -242,10 +244,6 @@ class Evaluation(Expressions):
     def _by_name(self, made: py.Call) -> py.Value:
         """Return the value of a call of something outside of the file, by the table."""
         function = self.functions.get(made.name)
-        if function is None and made.name.startswith(
-            "?."
-        ):  # an undefined name, which is an error already
-            return py.unknown_after_error(made.at)
         if function is None:
             reason = f"{made.name.removeprefix('builtins.')} {NOT_EVALUATED}"
             raise py.Undetermined(reason, made.at, is_final=True)

@@ -23,11 +23,11 @@ from grader.ros.python.builtins import truth
 from grader.ros.python.evaluation import MISSING_COMMA, NOT_EVALUATED, Evaluation
 from grader.ros.python.library import (
     CONSTANTS,
-    UNCERTAIN,
-    USUAL_NAMES,
+    Uncertain,
     attribute_error,
     import_error,
     imported_names,
+    usual_meaning,
 )
 from grader.ros.python.operators import has_attribute, operate
 from grader.ros.python.parse import Code, Position, bound_in, own_nodes, position_of
@@ -256,16 +256,14 @@ class Interpreter(Evaluation):
                 )
             error = import_error(module, alias.name, self.exports)
             bound = imported_names(module, alias, self.exports)
-            if error == UNCERTAIN:
+            if isinstance(error, Uncertain):
                 reason = (
                     f"whether {module or alias.name} is installed is not known; it is not evaluated"
                 )
                 self.doubted(py.Unknown(reason, self.at))
             elif error is not None:
                 self.error(error, self.at)
-                bound = dict.fromkeys(
-                    bound, py.QualifiedName(USUAL_NAMES.get(alias.name, f"?.{alias.name}"))
-                )
+                bound = dict.fromkeys(bound, usual_meaning(alias.name))
             if bound.pop("*", None) is not None:
                 raise py.Undetermined(
                     f"the names of {module} are not evaluated", self.at, is_final=True
@@ -346,7 +344,7 @@ class Interpreter(Evaluation):
                         raise py.EvaluationFails(error)
                     self.error(error, position_of(node))
                     full = meant
-                return CONSTANTS.get(full, py.QualifiedName(full))
+                return CONSTANTS.get(full, py.QualifiedName(full, is_defined=owner.is_defined))
             case PurePosixPath() if name in _PARTS:
                 value = getattr(owner, name)
                 return self.budget.checked(list(value) if name == "parents" else value, "path")
@@ -476,7 +474,8 @@ class Interpreter(Evaluation):
         """Set an item of a list or dict."""
         if isinstance(owner, py.QualifiedName | py.Call):
             made = py.Call(f"{owner.name}.__setitem__", [key, value], {}, at)
-            self.call_value(py.QualifiedName(made.name), made)
+            is_defined = isinstance(owner, py.Call) or owner.is_defined
+            self.call_value(py.QualifiedName(made.name, is_defined=is_defined), made)
             return
         if not isinstance(owner, py.PLAIN) or isinstance(key, slice):
             refuse(owner, "this assignment to an item is not supported")

@@ -109,10 +109,12 @@ class Unknown:
 
 
 class QualifiedName:
-    """A module, or something in one, by its full name: os.path.join."""
+    """A module, or something in one, by its full name: os.path.join. With `is_defined` False, the
+    file uses the name without defining or importing it, which is an error that is recorded already.
+    """
 
-    def __init__(self, name: str) -> None:
-        self.name = name
+    def __init__(self, name: str, *, is_defined: bool = True) -> None:
+        self.name, self.is_defined = name, is_defined
 
 
 class BoundMethod:
