@@ -24,7 +24,7 @@ from grader.ros.launch.api import (
     is_a,
 )
 from grader.ros.launch.launch_model import UnknownText, not_evaluated
-from grader.ros.launch.substitutions import CONDITIONS, PERFORMS
+from grader.ros.launch.substitutions import CONDITIONS, PERFORMS, listed
 from grader.ros.python.evaluation import Evaluation, record
 from grader.ros.python.parse import position_of
 from grader.ros.python.values import (
@@ -155,7 +155,7 @@ def join_path(evaluation: Evaluation, call: Call) -> Value:
     assert owner is not None
     assert cls is not None
     before = owner.kwargs.get("substitutions", [owner.kwargs.get("path")])
-    parts = [*before, *call.args] if isinstance(before, list | tuple) else [before, *call.args]
+    parts = [*listed(before), *call.args]
     return _record_constructor(cls, evaluation, Call("", [parts], {}, call.at))
 
 
@@ -323,7 +323,7 @@ def _first_fault(faults: Iterable[_Fault | None]) -> _Fault | None:
 def kind_of(value: Value) -> str:
     """Return what a value is, in words."""
     if isinstance(value, Call):
-        return OPENED.get(value.name, f"{value.name.rpartition('.')[2]}(...)")
+        return OPENED.get(value.name, f"{value.short}(...)")
     if isinstance(value, PurePosixPath):
         return "a path: write str(...) around it"
     return _NAMES.get(type(value), f"a {type(value).__name__}")

@@ -37,6 +37,7 @@ from grader.ros.launch.launch_model import (
     Machine,
     StartedNode,
     UnknownText,
+    texts_by_name,
 )
 from grader.ros.launch.substitutions import resolve
 from grader.ros.python.evaluation import Evaluation, record
@@ -472,17 +473,14 @@ class _PythonLaunchFile:
 def _contents_read(call: Call) -> Contents:
     """Return what a call of open or xacro reads, as far as this is known."""
     given = call.kwargs.get("mappings")
-    pairs = given.items() if isinstance(given, dict) else ()
-    arguments = tuple(
-        (str(name), value if isinstance(value, str) else None) for name, value in pairs
-    )
+    arguments = texts_by_name(given) if isinstance(given, dict) else ()
     return Contents(call.args[0], "xacro" if call.name.startswith("xacro.") else "open", arguments)
 
 
 def _add_action(evaluation: Evaluation, call: Call) -> Value:
     """Record an action that is added to a description."""
     if len(call.args) + len(call.kwargs) != 1:
-        raise EvaluationFails(f"{call.name.rpartition('.')[2]} takes one action")
+        raise EvaluationFails(f"{call.short} takes one action")
     record(evaluation, call)
 
 

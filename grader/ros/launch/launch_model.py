@@ -55,6 +55,13 @@ class FileText(UnknownText):
 Resolved = str | Contents | Unknown
 
 
+def texts_by_name(table: Mapping[Any, Value]) -> tuple[tuple[str, str | None], ...]:
+    """Return the values in a table by their names; None for one that is no known text."""
+    return tuple(
+        (str(name), value if isinstance(value, str) else None) for name, value in table.items()
+    )
+
+
 def not_evaluated(reason: str) -> str:
     """Return a reason with the words that say what it means."""
     return reason if "evaluated" in reason else f"{reason}, which is not evaluated"
@@ -361,13 +368,16 @@ class Findings:
             case Unknown(reason=reason):
                 self.references.append(NamedFile(purpose, None, location, reason, is_certain=False))
             case Contents():
-                found = NamedFile(
-                    purpose, path.path, location, "", by=path.by, arguments=path.arguments
+                file = NamedFile(
+                    purpose,
+                    path.path,
+                    location,
+                    by=path.by,
+                    arguments=path.arguments,
+                    stops_at_stderr=path.stops_at_stderr,
+                    is_deprecated=path.is_deprecated,
                 )
-                found = replace(
-                    found, stops_at_stderr=path.stops_at_stderr, is_deprecated=path.is_deprecated
-                )
-                self.references.append(found)
+                self.references.append(file)
             case _:
                 self.references.append(NamedFile(purpose, path, location, wrong))
 

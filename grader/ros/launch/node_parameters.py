@@ -7,7 +7,7 @@ line, in order.
 import posixpath
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import inf, nan
 from pathlib import PurePosixPath
@@ -19,6 +19,7 @@ from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_va
 from grader.ros.known.known import is_written_in_cpp, spawner_options
 from grader.ros.launch.call_arguments import FILE, SCALARS, TYPED, items_in, kind_of, type_of
 from grader.ros.launch.launch_model import (
+    NAMESPACE,
     Contents,
     Context,
     GivenParameters,
@@ -28,7 +29,7 @@ from grader.ros.launch.launch_model import (
     UnknownTable,
     UnknownText,
 )
-from grader.ros.launch.substitutions import PART_UNKNOWN, boolean, known_text, resolve
+from grader.ros.launch.substitutions import PART_UNKNOWN, boolean, known_text, not_a_text, resolve
 from grader.ros.python.parse import START, Position
 from grader.ros.python.values import (
     Call,
@@ -56,28 +57,85 @@ _SPECIAL = {".nan": nan, ".inf": inf, "+.inf": inf, "-.inf": -inf}
 _PARAM_FILES = ("-p", "--param-file")
 
 
-def evaluate_parameters(parameters: Value, context: Context, at: Position) -> None:
-    """Evaluate the parameters of a node, as launch_ros does first. Raises EvaluationSignal and
-    Undetermined.
+def evaluate_parameters(
+    call: Call, context: Context, location: Location
+) -> tuple[list[GivenParameters], EvaluationSignal | None]:
+    """Return the parameters that a Node action gives its node, each of them unknown for itself, and
+    the first error or doubt in them, at which launch_ros stops.
     """
-    for item in items_in(parameters) or ():
-        if isinstance(item, dict):
-            evaluate_dict(item, context, at)
-        elif isinstance(item, Call) and item.name == FILE:
-            _evaluate_file(item, context)
-        elif isinstance(item, Call) and item.name in TYPED:
-            raise Undetermined("a parameter of this kind is not evaluated", item.at)
-        elif not isinstance(item, PurePosixPath):
-            resolve(item, context, at)
+    parameters = call.kwargs.get("parameters")
+    has_namespace = call.kwargs.get("namespace") is not None or NAMESPACE in context.arguments
+    is_named = has_namespace and call.kwargs.get("name") is not None
+    reader = _ParameterReader(context, call.at, location, is_named)
+    try:
+        items = items_in(parameters) or []
+    except Undetermined as signal:
+        reader.signals.append(signal)
+        items = [parameters]
+    given = [reader.read_item(item) for item in items]
+    return given, next(iter(reader.signals), None)
 
 
-def _evaluate_file(call: Call, context: Context) -> None:
-    path = _resolve_path(call, context)
-    text = context.text_of(path) if isinstance(path, str) else None
-    if call.kwargs.get("allow_substs") not in (None, False) and (
-        text is None or _SUBSTITUTION in text
-    ):
-        raise Undetermined("substitutions in a parameter file are not evaluated", call.at)
+@dataclass(slots=True)
+class _ParameterReader:
+    """Reads the items of `parameters`. `signals` are the errors and doubts so far."""
+
+    context: Context
+    at: Position
+    location: Location
+    is_named: bool
+    signals: list[EvaluationSignal] = field(default_factory=list)
+
+    def read_item(self, item: Value) -> GivenParameters:
+        """Return what an item gives the node: a table, or a file by its path."""
+        try:
+            if isinstance(item, dict):
+                return self._read_table(item)
+            if isinstance(item, Call) and item.name == FILE:
+                return self._read_file(item)
+            if isinstance(item, Call) and item.name in TYPED:
+                raise Undetermined("a parameter of this kind is not evaluated", item.at)
+            if isinstance(item, PurePosixPath):
+                return GivenParameters(self.location, str(item))
+            return self._make_file(resolve(item, self.context, self.at))
+        except EvaluationSignal as signal:
+            self.signals.append(signal)
+            return GivenParameters(self.location, unknown=str(signal))
+
+    def _read_file(self, call: Call) -> GivenParameters:
+        """Return the file of a ParameterFile. Raises EvaluationSignal."""
+        path = _resolve_path(call, self.context)
+        is_plain = call.kwargs.get("allow_substs") in (None, False)
+        text = self.context.text_of(path) if isinstance(path, str) else None
+        if not is_plain and (text is None or _SUBSTITUTION in text):
+            reason = "substitutions in a parameter file are not evaluated"
+            self.signals.append(Undetermined(reason, call.at))
+        return self._make_file(path, is_plain=is_plain)
+
+    def _make_file(self, path: Resolved, *, is_plain: bool = True) -> GivenParameters:
+        if isinstance(path, str):
+            return GivenParameters(self.location, path, is_plain=is_plain)
+        return GivenParameters(self.location, unknown=str(not_a_text(path, self.at)))
+
+    def _read_table(self, table: dict[Any, Value]) -> GivenParameters:
+        """Return the values in a dict, each unknown for itself; all are unknown if a name is.
+        Raises EvaluationSignal for names and for dicts in it.
+        """
+        values: dict[str, ParameterValue] = {}
+        for key, value in table.items():
+            name = resolve(key, self.context, self.at)
+            if not isinstance(name, str):
+                _evaluate_dict(table, self.context, self.at)  # launch needs no name to go on
+                return GivenParameters(self.location, unknown=str(not_a_text(name, self.at)))
+            try:
+                evaluated = _evaluate_dict({name: value}, self.context, self.at)
+            except EvaluationSignal as signal:
+                if isinstance(value, dict):
+                    raise
+                self.signals.append(signal)
+                evaluated = {name: Unknown(str(signal), self.at)}
+            values |= _parameter_values(evaluated, value, self.at, self.location)
+        return GivenParameters(self.location, values=values, is_named=self.is_named)
 
 
 def _resolve_path(call: Call, context: Context) -> Resolved:
@@ -93,21 +151,21 @@ def _resolve_path(call: Call, context: Context) -> Resolved:
     return resolve(given, context, call.at)
 
 
-def evaluate_dict(table: dict[Any, Value], context: Context, at: Position) -> dict[str, Any]:
+def _evaluate_dict(table: dict[Any, Value], context: Context, at: Position) -> dict[str, Any]:
     """Return the values in a dict of parameters, those of dicts in it by dotted names. Raises
     EvaluationSignal.
     """
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for key, value in table.items():
-        name = resolve(list(key) if isinstance(key, tuple) else key, context, at)
-        shown = name if isinstance(name, str) else "?"
-        if isinstance(value, dict):
-            found |= {
-                f"{shown}.{inner}": it for inner, it in evaluate_dict(value, context, at).items()
-            }
-        else:
-            found[shown] = _evaluate_value(shown, value, context, at)
-    return found
+        name = resolve(key, context, at)
+        if not isinstance(name, str):
+            name = "?"
+        if not isinstance(value, dict):
+            values[name] = _evaluate_value(name, value, context, at)
+            continue
+        for inner, evaluated in _evaluate_dict(value, context, at).items():
+            values[f"{name}.{inner}"] = evaluated
+    return values
 
 
 def _evaluate_value(name: str, value: Value, context: Context, at: Position) -> Any:
@@ -228,49 +286,20 @@ _OpenFile = Callable[
 ]  # returns an installed file, and its path in the submission
 
 
-class _Place(NamedTuple):
-    """Where parameters are written: in which action, and the place of it."""
-
-    context: Context
-    at: Position
-    location: Location
-
-
-def given_parameters(
-    call: Call, words: Sequence[str], context: Context, at: Location
-) -> tuple[GivenParameters, ...]:
-    """Return the parameters that a Node action gives its node, in the order of its command line.
-
-    Args:
-        call: The action.
-        words: Its arguments for ROS, what follows --ros-args.
-        context: What launch knows when it executes the action.
-        at: The place of the action.
-    """
-    place = _Place(context, call.at, at)
-    has_namespace = call.kwargs.get("namespace") is not None or "ros_namespace" in context.arguments
-    is_named = has_namespace and call.kwargs.get("name") is not None
-    given = call.kwargs.get("parameters")
-    if isinstance(given, list | tuple):
-        items = list(given)
-    elif given is None:
-        items = []
-    else:
-        items = [given]
-    found = (_given_item(item, place, is_named=is_named) for item in items)
-    return (*_read_command_line(words, at), *context.to_all.get(TO_ALL, ()), *found)
-
-
 def set_for_all(
     name: Value, value: Value, context: Context, at: Position, location: Location
 ) -> GivenParameters:
-    """Return what SetParameter gives to all nodes; unknown where it is not evaluated."""
-    found = _given_item(
-        {(name,) if not isinstance(name, list | tuple) else tuple(name): value},
-        _Place(context, at, location),
-    )
-    rules = {key: _as_rule(it) for key, it in found.values.items()}
-    return found._replace(values=rules)
+    """Return what SetParameter gives to all nodes; unknown where its name is not known. Raises
+    EvaluationSignal for its value.
+    """
+    evaluated = _evaluate_dict({"": value}, context, at)
+    try:
+        prefix = known_text(name, context, at)
+    except EvaluationSignal as signal:
+        return GivenParameters(location, unknown=str(signal))
+    values = _parameter_values(evaluated, value, at, location)
+    rules = {f"{prefix}{below}": _as_rule(given) for below, given in values.items()}
+    return GivenParameters(location, values=rules)
 
 
 def _as_rule(given: ParameterValue) -> ParameterValue:
@@ -288,47 +317,16 @@ def file_for_all(
     return GivenParameters(location, known_text(path, context, at))
 
 
-def _given_item(item: Value, place: _Place, *, is_named: bool = False) -> GivenParameters:
-    context, at, location = place
-    try:
-        if isinstance(item, dict):
-            return GivenParameters(location, values=_values_in(item, place), is_named=is_named)
-        if isinstance(item, Call) and item.name == FILE:
-            is_plain = item.kwargs.get("allow_substs") in (None, False)
-            return GivenParameters(
-                location, known_text(_resolve_path(item, context), context, at), is_plain=is_plain
-            )
-        if isinstance(item, Call) and item.name in TYPED:
-            raise Undetermined("a parameter of this kind is not evaluated")
-        return GivenParameters(
-            location,
-            str(item) if isinstance(item, PurePosixPath) else known_text(item, context, at),
-        )
-    except EvaluationSignal as signal:
-        return GivenParameters(location, unknown=str(signal))
-
-
-def _values_in(table: dict[Any, Value], place: _Place) -> dict[str, ParameterValue]:
-    """Return the values in a dict of parameters, each unknown for itself. Raises EvaluationSignal
-    for unknown names.
-    """
-    found: dict[str, ParameterValue] = {}
-    for key, value in table.items():
-        name = known_text(list(key) if isinstance(key, tuple) else key, place.context, place.at)
-        location = place.location
-        if isinstance(value, Call) and location.line != value.at.line:
-            location = location._replace(line=value.at.line, column=value.at.column)
-        try:
-            values = evaluate_dict({name: value}, place.context, place.at)
-        except EvaluationSignal as signal:
-            if isinstance(value, dict):
-                raise
-            values = {name: Unknown(str(signal), place.at)}
-        found |= {
-            own: ParameterValue(_replace_stand_ins(it, place.at), location)
-            for own, it in values.items()
-        }
-    return found
+def _parameter_values(
+    evaluated: Mapping[str, Any], value: Value, at: Position, location: Location
+) -> dict[str, ParameterValue]:
+    """Return what a value in a table gives by the names of parameters, with its place."""
+    if isinstance(value, Call) and location.line != value.at.line:
+        location = location._replace(line=value.at.line, column=value.at.column)
+    return {
+        name: ParameterValue(_replace_stand_ins(given, at), location)
+        for name, given in evaluated.items()
+    }
 
 
 def _replace_stand_ins(value: Any, at: Position) -> Any:
@@ -339,7 +337,7 @@ def _replace_stand_ins(value: Any, at: Position) -> Any:
     return Unknown("the contents of a file are not evaluated", at)
 
 
-def _read_command_line(words: Sequence[str], at: Location) -> Iterator[GivenParameters]:
+def parameters_in_words(words: Sequence[str], at: Location) -> Iterator[GivenParameters]:
     """Yield the parameters of the arguments for ROS: -p name:=value, --params-file path."""
     for option, word in pairwise(words):
         if option not in ("-p", "--param", "--params-file"):
