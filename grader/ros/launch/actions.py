@@ -12,7 +12,6 @@ from grader.ros.build.places import PREFIX
 from grader.ros.launch.api import CONDITION, ENTITY, SOURCE, class_named, is_a
 from grader.ros.launch.call_arguments import items_in, kind_of
 from grader.ros.launch.launch_model import (
-    ANY,
     NAMESPACE,
     Context,
     Findings,
@@ -109,12 +108,8 @@ class ActionVisitor:
             later, self.later = self.later, []
             for actions, call, own, when, target in later:
                 is_started = self.executed.get(target, False) if isinstance(target, Call) else when
-                self.visit_all(
-                    actions,
-                    call,
-                    replace(own, arguments=context.arguments),
-                    is_started if when else None,
-                )
+                inner = replace(own, arguments=context.arguments, has_others=context.has_others)
+                self.visit_all(actions, call, inner, is_started if when else None)
 
     def visit(self, value: Value, context: Context, when: bool | None, at: Position) -> None:
         """Visit an action."""
@@ -493,8 +488,7 @@ def _include_file(visitor: ActionVisitor, call: Call, context: Context, when: bo
         visitor.findings.refer("include", path, call)
     # An included file shares its arguments with the actions that follow.
     context.arguments.update(inner.arguments)
-    if fault is not None:
-        context.arguments[ANY] = Unknown(fault.reason, call.at)
+    context.has_others = inner.has_others or fault is not None
 
 
 def _launch_arguments(given: Value, context: Context, at: Position) -> dict[str, Resolved]:

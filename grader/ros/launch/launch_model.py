@@ -15,7 +15,6 @@ from grader.ros.python.parse import Position
 from grader.ros.python.values import Call, EvaluationFails, EvaluationSignal, Unknown, Value
 
 _MAX_STEPS = 50_000
-ANY = "**"
 # the launch configuration that has the namespace of what follows, as in launch_ros
 NAMESPACE = "ros_namespace"
 STATE_PUBLISHER = "robot_state_publisher"
@@ -93,12 +92,14 @@ class Machine(Protocol):
 class Context:
     """The path of the installed launch file, and what launch knows when it executes an action.
 
-    `arguments` are the launch configurations; one with the name ANY stands for any other one.
+    `arguments` are the launch configurations. With `has_others` there may be more of them, which a
+    file that is not read declares.
     """
 
     path: str
     machine: Machine
     arguments: dict[str, Resolved] = field(default_factory=dict)
+    has_others: bool = False
     when: bool | None = True  # whether the file is launched at all
     # What SetRemap and SetParameter give to all nodes, by the configurations that launch_ros keeps
     # them in: lists, which groups share, as there. None is one that is not known.

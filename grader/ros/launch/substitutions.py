@@ -13,7 +13,7 @@ from grader.base.text import enumerated
 from grader.ros.build.places import HOME, PREFIX, SHARE
 from grader.ros.config.yaml_nodes import yaml_value
 from grader.ros.known.known import is_on_every_machine, programs_of
-from grader.ros.launch.launch_model import ANY, Contents, Context, FileText, Resolved
+from grader.ros.launch.launch_model import Contents, Context, FileText, Resolved
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.builtins import BUILTINS, MATH
 from grader.ros.python.expressions import evaluate
@@ -118,7 +118,7 @@ def condition_holds(given: Call, context: Context) -> bool:
     )  # no other object is the key of one
     if (
         isinstance(name, Unknown)
-        or (found is None and ANY in context.arguments)
+        or (found is None and context.has_others)
         or not isinstance(found, str | None)
     ):
         raise Undetermined("the launch configuration of this condition is not evaluated", given.at)
@@ -166,7 +166,7 @@ class _Substitution:
         if name in arguments:
             return arguments[name]
         default = self.call.kwargs.get("default")
-        if ANY in arguments:
+        if self.context.has_others:
             raise Undetermined(
                 f"whether {name!r} is declared in a file that is not submitted is not evaluated",
                 self.at,
