@@ -4,7 +4,7 @@
 includes, arguments, timers, events.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -94,8 +94,8 @@ class ActionVisitor:
     )  # the processes: each is executed once
     # What timers and events execute, and the process whose start does.
     later: list[tuple[Value, Call, Context, bool | None, Value]] = field(default_factory=list)
-    # what the current node is given, once it is evaluated
-    parameters: dict[Call, list[GivenParameters]] = field(default_factory=dict)
+    # what the current node is given, evaluated up to the first error or doubt
+    parameters: dict[Call, Iterator[GivenParameters]] = field(default_factory=dict)
     steps: int = 0
     depth: int = 0
 
@@ -190,7 +190,6 @@ class ActionVisitor:
             value = call.kwargs.get(name)
             if value is None or name in _LATE or (name == "output" and isinstance(value, dict)):
                 continue
-            signal: EvaluationSignal | None
             if parameter.check == "parameters":
                 location = self.findings.locate(call.at)
                 self.parameters[call], signal = evaluate_parameters(call, context, location)
@@ -431,10 +430,8 @@ def _register_handler(
     else:
         actions = value
     if kind == "OnProcessStart" and value is actions and when is not False:
-        target, executed = (
-            handler.kwargs.get("target_action"),
-            actions if isinstance(actions, list) else [actions],
-        )
+        target = handler.kwargs.get("target_action")
+        executed = actions if isinstance(actions, list) else [actions]
         visitor.later.append((executed, handler, context, when, target))
     elif not isinstance(actions, QualifiedName | None):
         visitor.perhaps(actions, handler, context, when)
@@ -521,9 +518,8 @@ def _execute_process(
         start_process(visitor.findings, call, context, when)
     if when is not False and before is not False:
         message = f"the same {call.short} is executed twice: make two of them"
-        raise (
-            EvaluationFails(message, call.at) if before and when else Undetermined(message, call.at)
-        )
+        kind = EvaluationFails if before and when else Undetermined
+        raise kind(message, call.at)
     if when is not False:
         evaluate(call, context)
     on_exit = call.kwargs.get("on_exit")

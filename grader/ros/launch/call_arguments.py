@@ -508,10 +508,8 @@ def _wrong_opaque_function(call: Call) -> str:
 
 
 def _wrong_event_handler(call: Call) -> str:
-    value, target = (
-        call.kwargs.get("on_exit", call.kwargs.get("on_start")),
-        call.kwargs.get("target_action"),
-    )
+    value = call.kwargs.get("on_exit", call.kwargs.get("on_start"))
+    target = call.kwargs.get("target_action")
     items = value if isinstance(value, list) else [value]
     if not isinstance(value, Function) and not all(
         isinstance(it, Call) and _is_entity(it) for it in items

@@ -325,10 +325,8 @@ class MoveItConfigurations:
     def _semantic(
         self, own: _Configuration, at: Position, given: Mapping[str, Value]
     ) -> dict[str, Value]:
-        path, key = (
-            self._path(own, given, f"config/{own.robot}.srdf"),
-            f"{own.description}_semantic",
-        )
+        path = self._path(own, given, f"config/{own.robot}.srdf")
+        key = f"{own.description}_semantic"
         is_open = "file_path" not in given and any(
             name.endswith(".srdf") for name in self._names(own) or ()
         )
@@ -490,7 +488,7 @@ def _named(call: Call, names: Sequence[str]) -> dict[str, Value]:
     if wrong is not None or len(call.args) > len(names):
         what = f"no argument {wrong!r}" if wrong is not None else f"at most {len(names)} arguments"
         raise EvaluationFails(f"{call.short} takes {what}", call.at)
-    given = {**dict(zip(names, call.args, strict=False)), **call.kwargs}
+    given = dict(zip(names, call.args, strict=False)) | call.kwargs
     return {name: value for name, value in given.items() if value is not None}
 
 

@@ -7,8 +7,8 @@ line, in order.
 import posixpath
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from itertools import pairwise
+from dataclasses import replace
+from itertools import chain, pairwise
 from math import inf, nan
 from pathlib import PurePosixPath
 from typing import Any, NamedTuple
@@ -29,7 +29,14 @@ from grader.ros.launch.launch_model import (
     UnknownTable,
     UnknownText,
 )
-from grader.ros.launch.substitutions import PART_UNKNOWN, boolean, known_text, not_a_text, resolve
+from grader.ros.launch.substitutions import (
+    PART_UNKNOWN,
+    TEXT_PARTS,
+    boolean,
+    known_text,
+    not_a_text,
+    resolve,
+)
 from grader.ros.python.parse import START, Position
 from grader.ros.python.values import (
     Call,
@@ -57,85 +64,110 @@ _SPECIAL = {".nan": nan, ".inf": inf, "+.inf": inf, "-.inf": -inf}
 _PARAM_FILES = ("-p", "--param-file")
 
 
-def evaluate_parameters(
-    call: Call, context: Context, location: Location
-) -> tuple[list[GivenParameters], EvaluationSignal | None]:
-    """Return the parameters that a Node action gives its node, each of them unknown for itself, and
-    the first error or doubt in them, at which launch_ros stops.
-    """
-    parameters = call.kwargs.get("parameters")
-    has_namespace = call.kwargs.get("namespace") is not None or NAMESPACE in context.arguments
-    is_named = has_namespace and call.kwargs.get("name") is not None
-    reader = _ParameterReader(context, call.at, location, is_named)
-    try:
-        items = items_in(parameters) or []
-    except Undetermined as signal:
-        reader.signals.append(signal)
-        items = [parameters]
-    given = [reader.read_item(item) for item in items]
-    return given, next(iter(reader.signals), None)
-
-
-@dataclass(slots=True)
-class _ParameterReader:
-    """Reads the items of `parameters`. `signals` are the errors and doubts so far."""
+class _Place(NamedTuple):
+    """Where the parameters of a node are written: in which action, and the place of it."""
 
     context: Context
     at: Position
     location: Location
     is_named: bool
-    signals: list[EvaluationSignal] = field(default_factory=list)
 
-    def read_item(self, item: Value) -> GivenParameters:
-        """Return what an item gives the node: a table, or a file by its path."""
+
+_Read = Iterator[GivenParameters | EvaluationSignal]
+
+
+def evaluate_parameters(
+    call: Call, context: Context, location: Location
+) -> tuple[Iterator[GivenParameters], EvaluationSignal | None]:
+    """Evaluate the parameters of a Node action up to the first error or doubt, at which launch_ros
+    stops.
+
+    Returns:
+        What each item gives the node: what follows the first error or doubt is evaluated when it is
+        iterated. And that error or doubt, if there is one.
+    """
+    has_namespace = call.kwargs.get("namespace") is not None or NAMESPACE in context.arguments
+    is_named = has_namespace and call.kwargs.get("name") is not None
+    place = _Place(context, call.at, location, is_named)
+    reading = _read_items(call.kwargs.get("parameters"), place)
+    read: list[GivenParameters] = []
+    for part in reading:
+        if isinstance(part, EvaluationSignal):
+            rest = (part for part in reading if isinstance(part, GivenParameters))
+            return chain(read, rest), part
+        read.append(part)
+    return iter(read), None
+
+
+def _read_items(parameters: Value, place: _Place) -> _Read:
+    """Yield what each item gives the node, and each error or doubt where it is met."""
+    try:
+        items = items_in(parameters) or []
+    except Undetermined as signal:
+        yield signal
+        items = [parameters]
+    for item in items:
         try:
-            if isinstance(item, dict):
-                return self._read_table(item)
-            if isinstance(item, Call) and item.name == FILE:
-                return self._read_file(item)
-            if isinstance(item, Call) and item.name in TYPED:
-                raise Undetermined("a parameter of this kind is not evaluated", item.at)
-            if isinstance(item, PurePosixPath):
-                return GivenParameters(self.location, str(item))
-            return self._make_file(resolve(item, self.context, self.at))
+            yield from _read_item(item, place)
         except EvaluationSignal as signal:
-            self.signals.append(signal)
-            return GivenParameters(self.location, unknown=str(signal))
+            yield signal
+            yield GivenParameters(place.location, unknown=str(signal))
 
-    def _read_file(self, call: Call) -> GivenParameters:
-        """Return the file of a ParameterFile. Raises EvaluationSignal."""
-        path = _resolve_path(call, self.context)
-        is_plain = call.kwargs.get("allow_substs") in (None, False)
-        text = self.context.text_of(path) if isinstance(path, str) else None
-        if not is_plain and (text is None or _SUBSTITUTION in text):
-            reason = "substitutions in a parameter file are not evaluated"
-            self.signals.append(Undetermined(reason, call.at))
-        return self._make_file(path, is_plain=is_plain)
 
-    def _make_file(self, path: Resolved, *, is_plain: bool = True) -> GivenParameters:
-        if isinstance(path, str):
-            return GivenParameters(self.location, path, is_plain=is_plain)
-        return GivenParameters(self.location, unknown=str(not_a_text(path, self.at)))
+def _read_item(item: Value, place: _Place) -> _Read:
+    """Yield the table, or the file by its path, that an item is. Raises EvaluationSignal."""
+    if isinstance(item, dict):
+        yield from _read_table(item, place)
+    elif isinstance(item, Call) and item.name == FILE:
+        yield from _read_file(item, place)
+    elif isinstance(item, Call) and item.name in TYPED:
+        raise Undetermined("a parameter of this kind is not evaluated", item.at)
+    elif isinstance(item, PurePosixPath):
+        yield GivenParameters(place.location, str(item))
+    else:
+        yield _make_file(resolve(item, place.context, place.at), place)
 
-    def _read_table(self, table: dict[Any, Value]) -> GivenParameters:
-        """Return the values in a dict, each unknown for itself; all are unknown if a name is.
-        Raises EvaluationSignal for names and for dicts in it.
-        """
-        values: dict[str, ParameterValue] = {}
-        for key, value in table.items():
-            name = resolve(key, self.context, self.at)
-            if not isinstance(name, str):
-                _evaluate_dict(table, self.context, self.at)  # launch needs no name to go on
-                return GivenParameters(self.location, unknown=str(not_a_text(name, self.at)))
+
+def _read_file(call: Call, place: _Place) -> _Read:
+    """Yield the file of a ParameterFile. Raises EvaluationSignal."""
+    path = _resolve_path(call, place.context)
+    is_plain = call.kwargs.get("allow_substs") in (None, False)
+    text = place.context.text_of(path) if isinstance(path, str) else None
+    if not is_plain and (text is None or _SUBSTITUTION in text):
+        yield Undetermined("substitutions in a parameter file are not evaluated", call.at)
+    yield _make_file(path, place, is_plain=is_plain)
+
+
+def _make_file(path: Resolved, place: _Place, *, is_plain: bool = True) -> GivenParameters:
+    if isinstance(path, str):
+        return GivenParameters(place.location, path, is_plain=is_plain)
+    return GivenParameters(place.location, unknown=str(not_a_text(path, place.at)))
+
+
+def _read_table(table: dict[Any, Value], place: _Place) -> _Read:
+    """Yield the values in a dict, each unknown for itself; all are unknown if a name is. Raises
+    EvaluationSignal for names and for dicts in it.
+    """
+    context, at, location, is_named = place
+    values: dict[str, ParameterValue] = {}
+    for key, value in table.items():
+        name = resolve(key, context, at)
+        if not isinstance(name, str):
             try:
-                evaluated = _evaluate_dict({name: value}, self.context, self.at)
+                _evaluate_dict(table, context, at)  # launch needs no name to go on
             except EvaluationSignal as signal:
-                if isinstance(value, dict):
-                    raise
-                self.signals.append(signal)
-                evaluated = {name: Unknown(str(signal), self.at)}
-            values |= _parameter_values(evaluated, value, self.at, self.location)
-        return GivenParameters(self.location, values=values, is_named=self.is_named)
+                yield signal
+            yield GivenParameters(location, unknown=str(not_a_text(name, at)))
+            return
+        try:
+            evaluated = _evaluate_dict({name: value}, context, at)
+        except EvaluationSignal as signal:
+            if isinstance(value, dict):
+                raise
+            yield signal
+            evaluated = {name: Unknown(str(signal), at)}
+        values |= _parameter_values(evaluated, value, at, location)
+    yield GivenParameters(location, values=values, is_named=is_named)
 
 
 def _resolve_path(call: Call, context: Context) -> Resolved:
@@ -144,8 +176,7 @@ def _resolve_path(call: Call, context: Context) -> Resolved:
     if isinstance(given, PurePosixPath):
         return str(given)
     if not all(
-        isinstance(it, str | Call | Unknown)
-        for it in (given if isinstance(given, list) else [given])
+        isinstance(it, TEXT_PARTS) for it in (given if isinstance(given, list) else [given])
     ):
         raise Undetermined("the path of a parameter file is not evaluated", call.at)
     return resolve(given, context, call.at)
@@ -184,7 +215,7 @@ def _evaluate_value(name: str, value: Value, context: Context, at: Position) -> 
 def _evaluate_list(name: str, items: list[Value], context: Context, at: Position) -> Any:
     kinds = {type(item) for item in items if isinstance(item, SCALARS)}
     if any(isinstance(item, Call) for item in items) and all(
-        isinstance(it, str | Call | Unknown) for it in items
+        isinstance(it, TEXT_PARTS) for it in items
     ):
         return _read_as_yaml(name, items, context, at)
     if not items or not all(isinstance(item, SCALARS) for item in items):

@@ -90,7 +90,7 @@ def start_node(
     call: Call,
     context: Context,
     when: bool | None,
-    parameters: Sequence[GivenParameters] = (),
+    parameters: Iterable[GivenParameters] = (),
 ) -> None:
     """Add the node that a Node action starts, and the files that it is given. `parameters` are
     those that the action has for it.
@@ -123,7 +123,7 @@ def _add_names(
     call: Call,
     context: Context,
     findings: Findings,
-    own: Sequence[GivenParameters],
+    own: Iterable[GivenParameters],
 ) -> StartedNode:
     """Return a node with its name, arguments, parameters and remappings, and whether it is given
     the robot itself.
@@ -242,12 +242,10 @@ def evaluate_node(call: Call, context: Context) -> None:
         )
     if namespace is not None or NAMESPACE in context.arguments:
         namespace_below(namespace or "", context, call.at)
-    package = call.kwargs.get("package")
-    if package is not None:
-        text, program = (
-            known_text(call.kwargs[it], context, call.at) for it in ("package", "executable")
-        )
-        check_program(text, program, context, call.at)
+    if call.kwargs.get("package") is not None:
+        package = known_text(call.kwargs["package"], context, call.at)
+        program = known_text(call.kwargs["executable"], context, call.at)
+        check_program(package, program, context, call.at)
 
 
 def evaluate_process(call: Call, context: Context) -> None:

@@ -31,6 +31,7 @@ from grader.ros.python.values import (
 
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 _MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression
+TEXT_PARTS = (str, Call, Unknown)  # of which a text may consist
 PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown
 _PROGRAMS = frozenset({"xacro", "cat", "ros2", "python3", "bash", "sh", "echo", "env", "rviz2"})
 
@@ -174,7 +175,7 @@ class _Substitution:
         if default is not None:
             items = listed(default)
             return self.resolve(
-                [item if isinstance(item, str | Call | Unknown) else str(item) for item in items]
+                [item if isinstance(item, TEXT_PARTS) else str(item) for item in items]
             )
         message = (
             f"the launch argument {name!r} is used, but DeclareLaunchArgument does not declare "
@@ -274,8 +275,7 @@ class _Substitution:
         elif isinstance(value, int | float):
             value = str(value)
         elif not all(
-            isinstance(it, str | Call | Unknown)
-            for it in (value if isinstance(value, list) else [value])
+            isinstance(it, TEXT_PARTS) for it in (value if isinstance(value, list) else [value])
         ):
             raise Undetermined("the text of a list in this substitution is not evaluated", self.at)
         return known_text(value, self.context, self.at)
