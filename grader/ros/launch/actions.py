@@ -491,17 +491,17 @@ def _include_file(visitor: ActionVisitor, call: Call, context: Context, when: bo
 def _launch_arguments(given: Value, context: Context, at: Position) -> dict[str, Resolved]:
     """Return the launch arguments that an include passes on. Raises EvaluationSignal."""
     pairs = items_in(given) if given is not None else []
-    found: dict[str, Resolved] = {}
+    arguments: dict[str, Resolved] = {}
     for pair in pairs or ():
         if not isinstance(pair, list | tuple | str) or len(pair) != 2:
             raise Undetermined("launch_arguments that are no pairs are not evaluated", at)
-        for part in pair:
-            if not isinstance(part, str | Call | Unknown | list | tuple):
+        for item in pair:
+            if not isinstance(item, str | Call | Unknown | list | tuple):
                 raise EvaluationFails(
-                    f"the value of a launch argument is {kind_of(part)}, not a string", at
+                    f"the value of a launch argument is {kind_of(item)}, not a string", at
                 )
-        found[known_text(pair[0], context, at)] = resolve(pair[1], context, at)
-    return found
+        arguments[known_text(pair[0], context, at)] = resolve(pair[1], context, at)
+    return arguments
 
 
 def _execute_process(

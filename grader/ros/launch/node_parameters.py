@@ -257,25 +257,25 @@ def _evaluate_typed(call: Call, context: Context) -> Any:
 
 
 def _read_as_yaml(name: str, value: Value, context: Context, at: Position) -> Any:
-    found = _value_as_yaml(name, value, context, at)
-    if not (isinstance(found, list) and _is_uniform(found)) and not isinstance(
-        found, (*SCALARS, bytes)
+    loaded = _value_as_yaml(name, value, context, at)
+    if not (isinstance(loaded, list) and _is_uniform(loaded)) and not isinstance(
+        loaded, (*SCALARS, bytes)
     ):
         hint = "write ParameterValue(..., value_type=str)"
         raise EvaluationFails(
-            f"the parameter {name!r} is read as YAML, and is {kind_of(found)} then: {hint}", at
+            f"the parameter {name!r} is read as YAML, and is {kind_of(loaded)} then: {hint}", at
         )
-    return found
+    return loaded
 
 
 def _value_as_yaml(name: str, value: Value, context: Context, at: Position) -> Any:
     """Return the value of a text as YAML. Raises EvaluationSignal."""
-    found = resolve(value, context, at)
-    if isinstance(found, Unknown):
+    resolved = resolve(value, context, at)
+    if isinstance(resolved, Unknown):
         raise Undetermined(
-            f"the value of the parameter {name!r} is not evaluated: {found.reason}", at
+            f"the value of the parameter {name!r} is not evaluated: {resolved.reason}", at
         )
-    text = context.text_of(found.path) if isinstance(found, Contents) else found
+    text = context.text_of(resolved.path) if isinstance(resolved, Contents) else resolved
     if text is None:
         return ""  # a file that is not there is reported for itself
     try:
@@ -283,7 +283,7 @@ def _value_as_yaml(name: str, value: Value, context: Context, at: Position) -> A
             raise Undetermined(f"the parameter {name!r} is too long to be read as YAML", at)
         return yaml_value(text) if text else text
     except ValueError:
-        if isinstance(found, Contents) and found.by == "xacro" and not _is_never_yaml(text):
+        if isinstance(resolved, Contents) and resolved.by == "xacro" and not _is_never_yaml(text):
             raise Undetermined(
                 f"whether the output of xacro is YAML, as which {name!r} is read, is not evaluated",
                 at,
@@ -500,44 +500,44 @@ def _forget_below(
 
 def _full_name(node: StartedNode, name: str) -> str | None:
     """Return the name of a node with its namespace; None where it is not known."""
-    own = name or node.node_name
-    if own and own.startswith("/"):
-        return own
-    if own and node.namespace is not None:
-        return f"/{node.namespace.strip('/')}/{own}".replace("//", "/")
+    own_name = name or node.node_name
+    if own_name and own_name.startswith("/"):
+        return own_name
+    if own_name and node.namespace is not None:
+        return f"/{node.namespace.strip('/')}/{own_name}".replace("//", "/")
     return None
 
 
 def _read_tables(
-    given: GivenParameters, open_file: _OpenFile, own: str | None
+    given: GivenParameters, open_file: _OpenFile, full_name: str | None
 ) -> Iterator[tuple[str | None, Mapping[str, ParameterValue]]]:
-    """Yield the parameters by keys of nodes; `own` is the full name that the launch file gives.
+    """Yield the parameters by keys of nodes; `full_name` is the one that the launch file gives.
     Raises Undetermined.
     """
     if given.unknown:
         raise Undetermined(given.unknown)
     if not given.path:
-        yield _find_key(given, own), given.values
+        yield _find_key(given, full_name), given.values
         return
     path = posixpath.normpath(given.path)
-    found = open_file(path.removeprefix(f"{PREFIX}/")) if path.startswith(f"{PREFIX}/") else None
-    if found is None:
+    file = open_file(path.removeprefix(f"{PREFIX}/")) if path.startswith(f"{PREFIX}/") else None
+    if file is None:
         raise Undetermined(
             f"the file {path.removeprefix(PREFIX)} is not read: the submission does not install it"
         )
     try:
-        root = read_yaml(*found)
+        root = read_yaml(*file)
     except YamlFault as fault:
-        raise Undetermined(f"the file {found[1]} is not readable as YAML: {fault}") from None
+        raise Undetermined(f"the file {file[1]} is not readable as YAML: {fault}") from None
     yield from _sections(root, "", is_plain=given.is_plain)
 
 
-def _find_key(given: GivenParameters, own: str | None) -> str | None:
+def _find_key(given: GivenParameters, full_name: str | None) -> str | None:
     """Return for which nodes the parameters of a launch file are; None for the node itself, whose
     name is not known.
     """
     if given.is_named:
-        return own
+        return full_name
     if given.node:
         return f"/{given.node.strip('/')}"
     return _EVERY_NODE
@@ -614,10 +614,10 @@ def _select_for_any_name(
 
 
 def _merge(tables: Iterable[Mapping[str, ParameterValue]]) -> dict[str, ParameterValue]:
-    found: dict[str, ParameterValue] = {}
+    merged: dict[str, ParameterValue] = {}
     for table in tables:
-        found |= table
-    return found
+        merged |= table
+    return merged
 
 
 def _matches(key: str | None, full: str) -> bool:

@@ -418,15 +418,15 @@ def _find_configuration(findings: Findings, call: Call, context: Context) -> Non
 
 def _display_config(words: list[str]) -> str | None:
     """Return what follows -d; of several, the last counts, as for Qt's parser."""
-    found: str | None = None
+    path: str | None = None
     for index, word in enumerate(words):
         if word in ("-d", "--display-config"):
-            found = "".join(words[index + 1 : index + 2])
+            path = "".join(words[index + 1 : index + 2])
         elif word.startswith("--display-config="):
-            found = word.removeprefix("--display-config=")
+            path = word.removeprefix("--display-config=")
         elif word.startswith("-d"):
-            found = word.removeprefix("-d") if word[2:3].isspace() else PART_UNKNOWN
-    return found
+            path = word.removeprefix("-d") if word[2:3].isspace() else PART_UNKNOWN
+    return path
 
 
 def _text_if_known(value: Value, context: Context, at: Position) -> Resolved:

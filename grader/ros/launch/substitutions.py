@@ -381,16 +381,16 @@ def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr:
         raise EvaluationFails("the quotes in this command are not closed", at) from None
     if not words:
         raise EvaluationFails("this command is empty", at)
-    found = _printed_file(words[3:] if words[:3] == ["ros2", "run", "xacro"] else words)
-    if found is None:
+    contents = _printed_file(words[3:] if words[:3] == ["ros2", "run", "xacro"] else words)
+    if contents is None:
         unknown = next((text.reason for text in texts if isinstance(text, Unknown)), "")
         raise Undetermined(
             f"the output of this command is not evaluated{unknown and ': ' + unknown}", at
         )
-    if found.by != "xacro" or not stops_at_stderr:
-        return found
+    if contents.by != "xacro" or not stops_at_stderr:
+        return contents
     return replace(
-        found, stops_at_stderr=True, is_deprecated=not {"-i", "--inorder"}.isdisjoint(words)
+        contents, stops_at_stderr=True, is_deprecated=not {"-i", "--inorder"}.isdisjoint(words)
     )
 
 
