@@ -41,7 +41,7 @@ from grader.ros.python.values import (
 
 _MAX_GUESSES = 10
 _ROOT = f"/{PACKAGE_FOLDER}"
-_SETUPS = ("setuptools.setup", "distutils.core.setup", "?.setup")
+_SETUPS = ("setuptools.setup", "distutils.core.setup")
 # The arguments that name the Python packages; without one, setuptools searches for packages, but
 # not in the folders below, those of `FlatLayoutPackageFinder.DEFAULT_EXCLUDE`.
 _PACKAGES = ("packages", "py_modules", "ext_modules", "package_dir")

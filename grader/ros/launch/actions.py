@@ -4,7 +4,7 @@
 includes, arguments, timers, events.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -12,17 +12,16 @@ from grader.ros.build.places import PREFIX
 from grader.ros.launch.api import CONDITION, ENTITY, SOURCE, class_named, is_a
 from grader.ros.launch.call_arguments import items_in, kind_of
 from grader.ros.launch.launch_model import (
-    ANY,
     NAMESPACE,
     Context,
     Findings,
     GivenParameters,
     PassedArguments,
     Resolved,
+    texts_by_name,
 )
 from grader.ros.launch.node_parameters import (
     TO_ALL,
-    evaluate_dict,
     evaluate_parameters,
     file_for_all,
     set_for_all,
@@ -41,6 +40,7 @@ from grader.ros.launch.substitutions import (
     boolean,
     condition_holds,
     known_text,
+    listed,
     resolve,
 )
 from grader.ros.python.parse import START, Position
@@ -94,6 +94,8 @@ class ActionVisitor:
     )  # the processes: each is executed once
     # What timers and events execute, and the process whose start does.
     later: list[tuple[Value, Call, Context, bool | None, Value]] = field(default_factory=list)
+    # what the current node is given, evaluated up to the first error or doubt
+    parameters: dict[Call, Iterator[GivenParameters]] = field(default_factory=dict)
     steps: int = 0
     depth: int = 0
 
@@ -106,12 +108,8 @@ class ActionVisitor:
             later, self.later = self.later, []
             for actions, call, own, when, target in later:
                 is_started = self.executed.get(target, False) if isinstance(target, Call) else when
-                self.visit_all(
-                    actions,
-                    call,
-                    replace(own, arguments=context.arguments),
-                    is_started if when else None,
-                )
+                inner = replace(own, arguments=context.arguments, has_others=context.has_others)
+                self.visit_all(actions, call, inner, is_started if when else None)
 
     def visit(self, value: Value, context: Context, when: bool | None, at: Position) -> None:
         """Visit an action."""
@@ -124,7 +122,7 @@ class ActionVisitor:
         self.depth += 1
         try:
             if isinstance(value, Unknown):
-                raise Undetermined(value.reason, value.at)
+                raise value.as_signal(value.at)
             if isinstance(value, Call) and class_named(value.name) is None:
                 raise Undetermined(f"the result of {value.name} is not evaluated", value.at)
             if not isinstance(value, Call) or not is_a(value.name, ENTITY):
@@ -164,10 +162,12 @@ class ActionVisitor:
         return True if when and holds else None
 
     def _execute(self, call: Call, context: Context, when: bool | None) -> None:
-        kind, start = call.name.rpartition(".")[2], len(context.reads)
+        kind = call.short
+        start = len(context.reads)
         self._evaluate_fields(call, context, when)
         try:
-            _KINDS.get(kind, _refuse_action)(self, call, context, when)
+            if when is not False or kind not in _EFFECTS:
+                _KINDS.get(kind, _refuse_action)(self, call, context, when)
         except EvaluationSignal as signal:
             self.findings.add(signal, call.at, when)
             if (
@@ -184,15 +184,18 @@ class ActionVisitor:
     def _evaluate_fields(self, call: Call, context: Context, when: bool | None) -> None:
         """Evaluate the arguments of an action that may contain substitutions."""
         cls = class_named(call.name)
-        if cls is None or when is False:
+        if cls is None:
             return
         for name, parameter in cls.parameters.items():
-            value, test = call.kwargs.get(name), parameter.check
+            value = call.kwargs.get(name)
             if value is None or name in _LATE or (name == "output" and isinstance(value, dict)):
                 continue
-            try:
-                _evaluate_field(value, test, context, call.at)
-            except EvaluationSignal as signal:
+            if parameter.check == "parameters":
+                location = self.findings.locate(call.at)
+                self.parameters[call], signal = evaluate_parameters(call, context, location)
+            else:
+                signal = _evaluate_field(value, parameter.check, context, call.at)
+            if signal is not None:
                 self.findings.add(signal, call.at, when)
 
     def visit_all(self, actions: Value, call: Call, context: Context, when: bool | None) -> None:
@@ -212,32 +215,26 @@ class ActionVisitor:
         """Visit what may never be executed: errors in it do not count, but for what is no
         action.
         """
-        silent, self.findings.is_silent, kept, self.executed = (
-            self.findings.is_silent,
-            True,
-            self.executed,
-            {},
-        )
-        items = actions if isinstance(actions, list | tuple) else [actions]
-        inner = replace(
-            context.copy(), to_all={name: [*given] for name, given in context.to_all.items()}
-        )
-        self.visit_all(items, call, inner, False if when is False else None)
-        self.findings.is_silent, self.executed = silent, kept
+        was_silent, executed = self.findings.is_silent, self.executed
+        self.findings.is_silent, self.executed = True, {}
+        inner = context.copy()
+        inner.to_all = {name: [*given] for name, given in context.to_all.items()}
+        self.visit_all(listed(actions), call, inner, False if when is False else None)
+        self.findings.is_silent, self.executed = was_silent, executed
 
 
 def _refuse_action(_: ActionVisitor, call: Call, __: Context, ___: bool | None) -> None:
-    raise Undetermined(f"what {call.name.rpartition('.')[2]} does is not evaluated")
+    raise Undetermined(f"what {call.short} does is not evaluated")
 
 
 def _condition_holds(given: Value, context: Context, at: Position) -> bool:
     if isinstance(given, Unknown):
-        raise Undetermined(given.reason, given.at)
+        raise given.as_signal(given.at)
     if not isinstance(given, Call):
         raise EvaluationFails(
             f"condition is {kind_of(given)}, not a condition such as IfCondition(...)", at
         )
-    kind = given.name.rpartition(".")[2]
+    kind = given.short
     if not is_a(given.name, CONDITION) or kind not in CONDITIONS:
         raise Undetermined(f"the condition {kind} is not evaluated", given.at)
     return condition_holds(given, context)
@@ -253,22 +250,26 @@ def _texts_in(value: Value) -> Sequence[Value]:
     return texts
 
 
-def _evaluate_field(value: Value, test: str, context: Context, at: Position) -> None:
-    """Evaluate an argument of an action, which has the check `test`. Raises EvaluationSignal."""
-    match test:
-        case "text":
-            resolve(value, context, at)
-        case "texts" | "mapping":
-            for item in _texts_in(value):
-                resolve(item, context, at)
-        case "bool" if not isinstance(value, bool):
-            boolean(known_text(value, context, at), at)
-        case "parameters":
-            evaluate_parameters(value, context, at)
-        case "remappings":
-            for rule in items_in(value) or ():
-                for name in items_in(rule) or ():
-                    resolve(name, context, at)
+def _evaluate_field(
+    value: Value, check: str, context: Context, at: Position
+) -> EvaluationSignal | None:
+    """Evaluate an argument of an action by its check; return the error or doubt in it."""
+    try:
+        match check:
+            case "text":
+                resolve(value, context, at)
+            case "texts" | "mapping":
+                for item in _texts_in(value):
+                    resolve(item, context, at)
+            case "bool" if not isinstance(value, bool):
+                boolean(known_text(value, context, at), at)
+            case "remappings":
+                for rule in items_in(value) or ():
+                    for name in items_in(rule) or ():
+                        resolve(name, context, at)
+    except EvaluationSignal as signal:
+        return signal
+    return None
 
 
 def _visit_description(
@@ -314,14 +315,8 @@ def _assign_argument(
     visitor: ActionVisitor, call: Call, context: Context, when: bool | None
 ) -> None:
     del visitor
-    if when is not False:
-        _set_argument(
-            known_text(call.kwargs["name"], context, call.at),
-            call.kwargs["value"],
-            call,
-            context,
-            when,
-        )
+    name = known_text(call.kwargs["name"], context, call.at)
+    _set_argument(name, call.kwargs["value"], call, context, when)
 
 
 def _set_argument(name: str, value: Value, call: Call, context: Context, when: bool | None) -> None:
@@ -329,15 +324,15 @@ def _set_argument(name: str, value: Value, call: Call, context: Context, when: b
     try:
         context.arguments[name] = resolve(value, context, call.at) if when else uncertain
     except EvaluationSignal as signal:
-        context.arguments[name] = Unknown(str(signal), signal.at or call.at)
+        context.arguments[name] = signal.as_unknown(call.at)
         raise
 
 
 def _set_environment(
     visitor: ActionVisitor, call: Call, context: Context, when: bool | None
 ) -> None:
-    del visitor
-    variable = known_text(call.kwargs["name"], context, call.at) if when is not False else "X"
+    del visitor, when
+    variable = known_text(call.kwargs["name"], context, call.at)
     if not variable or "=" in variable:
         raise EvaluationFails(f"an environment variable cannot be called {variable!r}", call.at)
     if variable in _SEARCHED:
@@ -348,17 +343,14 @@ def _push_namespace(
     visitor: ActionVisitor, call: Call, context: Context, when: bool | None
 ) -> None:
     del visitor
-    if when is not False:
-        found = namespace_below(call.kwargs["namespace"], context, call.at)
-        context.arguments[NAMESPACE] = (
-            found if when else Unknown("the namespace is set under a condition", call.at)
-        )
+    namespace: Resolved = namespace_below(call.kwargs["namespace"], context, call.at)
+    if not when:
+        namespace = Unknown("the namespace is set under a condition", call.at)
+    context.arguments[NAMESPACE] = namespace
 
 
 def _set_remap(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     del visitor
-    if when is False:
-        return
     rules = context.to_all.setdefault(REMAPS, [])
     rules.append(None)  # until it is known
     rule = tuple(known_text(call.kwargs[name], context, call.at) for name in ("src", "dst"))
@@ -380,15 +372,14 @@ def _set_parameter(visitor: ActionVisitor, call: Call, context: Context, when: b
         found = file_for_all(call.kwargs["filename"], context, call.at, location)
         visitor.findings.refer("read" if when else "parameters", found.path, call)
     else:
-        evaluate_dict({"": call.kwargs["value"]}, context, call.at)
         found = set_for_all(call.kwargs["name"], call.kwargs["value"], context, call.at, location)
     given[-1] = found if when else given[-1]
 
 
 def _set_time(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     """Set the clock of launch itself: no node gets the parameter."""
-    del visitor, context
-    if when is not False and not isinstance(call.kwargs["value"], bool):
+    del visitor, context, when
+    if not isinstance(call.kwargs["value"], bool):
         raise Undetermined("the value of SetUseSimTime is not evaluated", call.at)
 
 
@@ -397,8 +388,8 @@ def _do_nothing(visitor: ActionVisitor, call: Call, context: Context, when: bool
 
 
 def _shut_down(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
-    del context
-    if when is not False and not visitor.findings.is_silent:
+    del context, when
+    if not visitor.findings.is_silent:
         raise Undetermined("what a shutdown stops is not evaluated", call.at)
 
 
@@ -429,7 +420,7 @@ def _register_handler(
     visitor: ActionVisitor, call: Call, context: Context, when: bool | None
 ) -> None:
     handler = call.kwargs["event_handler"]
-    kind = handler.name.rpartition(".")[2] if isinstance(handler, Call) else ""
+    kind = handler.short if isinstance(handler, Call) else ""
     if kind not in ("OnProcessExit", "OnProcessStart"):
         visitor.add_form(Undetermined("this event handler is not evaluated"), call.at, when)
         return
@@ -439,10 +430,8 @@ def _register_handler(
     else:
         actions = value
     if kind == "OnProcessStart" and value is actions and when is not False:
-        target, executed = (
-            handler.kwargs.get("target_action"),
-            actions if isinstance(actions, list) else [actions],
-        )
+        target = handler.kwargs.get("target_action")
+        executed = actions if isinstance(actions, list) else [actions]
         visitor.later.append((executed, handler, context, when, target))
     elif not isinstance(actions, QualifiedName | None):
         visitor.perhaps(actions, handler, context, when)
@@ -458,19 +447,15 @@ def _call_opaque_function(
         or call.kwargs.get("kwargs")
     ):
         raise Undetermined("the result of this OpaqueFunction is not evaluated", call.at)
-    if when is False:
-        return
     arguments = (Call("launch.launch_context.LaunchContext", [], {}, call.at), *args)
     found = visitor.call_function(function, call.at, arguments if when else None, context)
     if isinstance(found, Unknown):
-        visitor.findings.add(Undetermined(found.reason), found.at, when)
+        visitor.findings.add(found.as_signal(), found.at, when)
     elif found is not None:
         visitor.visit_all(found, call, context, when)
 
 
 def _include_file(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
-    if when is False:
-        return
     source = call.kwargs["launch_description_source"]
     if isinstance(source, Call) and is_a(source.name, SOURCE):
         source = source.kwargs.get(
@@ -478,16 +463,16 @@ def _include_file(visitor: ActionVisitor, call: Call, context: Context, when: bo
         )
     given = _launch_arguments(call.kwargs.get("launch_arguments"), context, call.at)
     path = known_text(source, context, call.at)
-    values = tuple(
-        (name, value if isinstance(value, str) else None) for name, value in given.items()
-    )
     at = visitor.findings.locate(call.at)
-    visitor.findings.passed.append(
-        PassedArguments(path.removeprefix(f"{PREFIX}/"), values, at, when)
-    )
-    arguments = {**context.arguments, **given}
+    passed = PassedArguments(path.removeprefix(f"{PREFIX}/"), texts_by_name(given), at, when)
+    visitor.findings.passed.append(passed)
     inner = replace(
-        context, path=path, arguments=arguments, when=when, reads=[], given=frozenset(given)
+        context,
+        path=path,
+        arguments={**context.arguments, **given},
+        when=when,
+        reads=[],
+        given=frozenset(given),
     )
     inner.included_by = (*context.included_by, context.path.removeprefix(f"{PREFIX}/"))
     fault = visitor.include(path, inner)
@@ -500,24 +485,23 @@ def _include_file(visitor: ActionVisitor, call: Call, context: Context, when: bo
         visitor.findings.refer("include", path, call)
     # An included file shares its arguments with the actions that follow.
     context.arguments.update(inner.arguments)
-    if fault is not None:
-        context.arguments[ANY] = Unknown(fault.reason, call.at)
+    context.has_others = inner.has_others or fault is not None
 
 
 def _launch_arguments(given: Value, context: Context, at: Position) -> dict[str, Resolved]:
     """Return the launch arguments that an include passes on. Raises EvaluationSignal."""
     pairs = items_in(given) if given is not None else []
-    found: dict[str, Resolved] = {}
+    arguments: dict[str, Resolved] = {}
     for pair in pairs or ():
         if not isinstance(pair, list | tuple | str) or len(pair) != 2:
             raise Undetermined("launch_arguments that are no pairs are not evaluated", at)
-        for part in pair:
-            if not isinstance(part, str | Call | Unknown | list | tuple):
+        for item in pair:
+            if not isinstance(item, str | Call | Unknown | list | tuple):
                 raise EvaluationFails(
-                    f"the value of a launch argument is {kind_of(part)}, not a string", at
+                    f"the value of a launch argument is {kind_of(item)}, not a string", at
                 )
-        found[known_text(pair[0], context, at)] = resolve(pair[1], context, at)
-    return found
+        arguments[known_text(pair[0], context, at)] = resolve(pair[1], context, at)
+    return arguments
 
 
 def _execute_process(
@@ -526,17 +510,16 @@ def _execute_process(
     """Start a process, which an action can do once only."""
     before = visitor.executed.get(call, False)
     visitor.executed[call] = when
-    start, evaluate = (
-        (start_node, evaluate_node)
-        if "executable" in call.kwargs
-        else (start_process, evaluate_process)
-    )
-    start(visitor.findings, call, context, when)
+    if "executable" in call.kwargs:
+        evaluate = evaluate_node
+        start_node(visitor.findings, call, context, when, visitor.parameters.pop(call, ()))
+    else:
+        evaluate = evaluate_process
+        start_process(visitor.findings, call, context, when)
     if when is not False and before is not False:
-        message = f"the same {call.name.rpartition('.')[2]} is executed twice: make two of them"
-        raise (
-            EvaluationFails(message, call.at) if before and when else Undetermined(message, call.at)
-        )
+        message = f"the same {call.short} is executed twice: make two of them"
+        kind = EvaluationFails if before and when else Undetermined
+        raise kind(message, call.at)
     if when is not False:
         evaluate(call, context)
     on_exit = call.kwargs.get("on_exit")
@@ -546,22 +529,27 @@ def _execute_process(
         raise Undetermined("this value of on_exit is not evaluated", call.at)
 
 
-# What each kind of action does, besides the evaluation of its arguments.
-_KINDS: Mapping[str, Callable[[ActionVisitor, Call, Context, bool | None], None]] = {
-    **dict.fromkeys(_PROCESSES, _execute_process),
+_ActionFunction = Callable[[ActionVisitor, Call, Context, bool | None], None]
+# What each kind of action does that needs no visit if it is certainly not executed.
+_EFFECTS: Mapping[str, _ActionFunction] = {
     "LogInfo": _do_nothing,
-    "LaunchDescription": _visit_description,
-    "DeclareLaunchArgument": _declare_argument,
     "SetLaunchConfiguration": _assign_argument,
-    "GroupAction": _visit_group,
     **dict.fromkeys(("SetEnvironmentVariable", "AppendEnvironmentVariable"), _set_environment),
     "IncludeLaunchDescription": _include_file,
     "OpaqueFunction": _call_opaque_function,
-    "TimerAction": _start_timer,
-    "RegisterEventHandler": _register_handler,
     **dict.fromkeys(("Shutdown", "EmitEvent"), _shut_down),
     "PushROSNamespace": _push_namespace,
     "SetRemap": _set_remap,
     "SetUseSimTime": _set_time,
+}
+# What each kind of action does, besides the evaluation of its arguments.
+_KINDS: Mapping[str, _ActionFunction] = {
+    **_EFFECTS,
+    **dict.fromkeys(_PROCESSES, _execute_process),
+    "LaunchDescription": _visit_description,
+    "DeclareLaunchArgument": _declare_argument,
+    "GroupAction": _visit_group,
+    "TimerAction": _start_timer,
+    "RegisterEventHandler": _register_handler,
     **dict.fromkeys(("SetParameter", "SetParametersFromFile"), _set_parameter),
 }

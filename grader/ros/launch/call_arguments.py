@@ -24,7 +24,7 @@ from grader.ros.launch.api import (
     is_a,
 )
 from grader.ros.launch.launch_model import UnknownText, not_evaluated
-from grader.ros.launch.substitutions import CONDITIONS, PERFORMS
+from grader.ros.launch.substitutions import CONDITIONS, PERFORMS, listed
 from grader.ros.python.evaluation import Evaluation, record
 from grader.ros.python.parse import position_of
 from grader.ros.python.values import (
@@ -155,7 +155,7 @@ def join_path(evaluation: Evaluation, call: Call) -> Value:
     assert owner is not None
     assert cls is not None
     before = owner.kwargs.get("substitutions", [owner.kwargs.get("path")])
-    parts = [*before, *call.args] if isinstance(before, list | tuple) else [before, *call.args]
+    parts = [*listed(before), *call.args]
     return _record_constructor(cls, evaluation, Call("", [parts], {}, call.at))
 
 
@@ -269,7 +269,7 @@ def _is_text(value: Value) -> bool:
         case UnknownText():
             return True
         case Unknown():
-            raise Undetermined(value.reason)
+            raise value.as_signal()
         case QualifiedName():
             raise Undetermined(f"the value of {value.name}")
         case Call() if class_named(value.name) is not None:
@@ -289,7 +289,7 @@ def _is_entity(call: Call) -> bool:
 def items_in(value: Value) -> list[Value] | None:
     """Return what iterating over a value gives; None where Python cannot. Raises Undetermined."""
     if isinstance(value, Unknown):
-        raise Undetermined(value.reason)
+        raise value.as_signal()
     if isinstance(value, Call) and class_named(value.name) is None:
         raise Undetermined(f"the result of {value.name}")
     if isinstance(value, Items):
@@ -323,7 +323,7 @@ def _first_fault(faults: Iterable[_Fault | None]) -> _Fault | None:
 def kind_of(value: Value) -> str:
     """Return what a value is, in words."""
     if isinstance(value, Call):
-        return OPENED.get(value.name, f"{value.name.rpartition('.')[2]}(...)")
+        return OPENED.get(value.name, f"{value.short}(...)")
     if isinstance(value, PurePosixPath):
         return "a path: write str(...) around it"
     return _NAMES.get(type(value), f"a {type(value).__name__}")
@@ -350,7 +350,7 @@ def _check_of_type(kind: type) -> Callable[[Value], _Fault | None]:
 def _wrong_parameters(value: Value) -> _Fault | None:
     """Return what is wrong with the parameters of a node. Raises Undetermined."""
     if isinstance(value, Unknown):
-        raise Undetermined(value.reason)
+        raise value.as_signal()
     if not isinstance(value, list):
         return _NO_LIST
     return _first_fault(map(_wrong_item, value))
@@ -454,7 +454,7 @@ def _wrong_remappings(value: Value) -> _Fault | None:
         return _NO_LIST
     for rule in rules:
         if isinstance(rule, Unknown):
-            raise Undetermined(rule.reason)
+            raise rule.as_signal()
         if not isinstance(rule, tuple) or len(rule) != 2:
             return _Fault("takes pairs: ('from', 'to')")
         fault = _wrong_text(rule[0]) or _wrong_text(rule[1])
@@ -508,10 +508,8 @@ def _wrong_opaque_function(call: Call) -> str:
 
 
 def _wrong_event_handler(call: Call) -> str:
-    value, target = (
-        call.kwargs.get("on_exit", call.kwargs.get("on_start")),
-        call.kwargs.get("target_action"),
-    )
+    value = call.kwargs.get("on_exit", call.kwargs.get("on_start"))
+    target = call.kwargs.get("target_action")
     items = value if isinstance(value, list) else [value]
     if not isinstance(value, Function) and not all(
         isinstance(it, Call) and _is_entity(it) for it in items

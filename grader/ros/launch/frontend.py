@@ -28,7 +28,6 @@ from grader.ros.python.values import (
     EvaluationFails,
     EvaluationSignal,
     Undetermined,
-    Unknown,
     Value,
 )
 from grader.ros.xml.parsing import Element, XmlFault, XmlFile
@@ -295,7 +294,7 @@ class _YamlReader:
 
     def entries(self, listed: YamlNode, depth: int) -> list[_Entity]:
         """Return the actions of a list, each below its own key. Raises EvaluationFails."""
-        found: list[_Entity] = []
+        entities: list[_Entity] = []
         for item in listed.items:
             table = item.value if isinstance(item.value, dict) else {}
             if len(table) != 1:
@@ -304,8 +303,8 @@ class _YamlReader:
                     f"expected one action below one key, found {names}. Is it indented far enough?"
                 )
                 raise EvaluationFails(message, _locate_node(item))
-            found += [self.entity(kind, value, depth + 1) for kind, value in table.items()]
-        return found
+            entities += [self.entity(kind, value, depth + 1) for kind, value in table.items()]
+        return entities
 
     def entity(self, kind: str, node: YamlNode, depth: int) -> _Entity:
         """Return one action or element."""
@@ -338,12 +337,12 @@ def _plain_value(node: YamlNode) -> Any:
     if text is None or node.quoted:
         return text
     try:
-        found = yaml_value(text) if len(text) < 50 else text  # longer ones are no numbers
+        loaded = yaml_value(text) if len(text) < 50 else text  # longer ones are no numbers
     except ValueError:
         return text
-    if isinstance(found, dict | list) or (isinstance(found, str) and found != text):
+    if isinstance(loaded, dict | list) or (isinstance(loaded, str) and loaded != text):
         return text
-    return found
+    return loaded
 
 
 def _locate_node(node: YamlNode) -> Position:
@@ -356,15 +355,15 @@ def _position_at(location: Location) -> Position:
 
 def read_actions(parent: _Entity, findings: Findings) -> list[Value]:
     """Return the actions in an entity; errors, which stop the launch, are added to the findings."""
-    found: list[Value] = []
+    values: list[Value] = []
     for entity in parent.actions:
         try:
-            found.append(_read_action(entity, findings))
+            values.append(_read_action(entity, findings))
         except EvaluationFails as error:
             findings.add_fault(str(error), error.at or entity.at)
         except EvaluationSignal as signal:
-            found.append(Unknown(str(signal), signal.at or entity.at))
-    return found
+            values.append(signal.as_unknown(entity.at))
+    return values
 
 
 def _read_action(entity: _Entity, findings: Findings) -> Call:
@@ -450,16 +449,16 @@ def _checked_call(call: Call) -> Call:
     cls = class_named(call.name)
     doubt = check(cls, call) if cls is not None else None
     if doubt is not None:
-        raise Undetermined(doubt.reason, doubt.at)
+        raise doubt.as_signal(doubt.at)
     return call
 
 
 def _take_condition(given: dict[str, Any], entity: _Entity) -> Call | None:
     """Take the condition out of the attributes."""
-    own = {name: given.pop(name) for name in ("if", "unless") if name in given}
-    if len(own) > 1:
+    conditions = {name: given.pop(name) for name in ("if", "unless") if name in given}
+    if len(conditions) > 1:
         raise EvaluationFails("if and unless cannot be used together", entity.at)
-    for name, text in own.items():
+    for name, text in conditions.items():
         kind = "if_condition.IfCondition" if name == "if" else "unless_condition.UnlessCondition"
         kwargs = {"predicate_expression": _parse_value(text, entity.place(name))}
         return Call(f"launch.conditions.{kind}", [], kwargs, entity.at)
@@ -569,10 +568,10 @@ def _separated_values(entity: _Entity, kind: str | None) -> list[Value]:
     text, separator = str(entity.attributes["value"]), str(entity.attributes["value-sep"])
     if not separator:
         raise EvaluationFails("value-sep is empty", entity.at)
-    found: list[Value] = [_typed_text(part, None, entity.at) for part in text.split(separator)]
-    if kind is not None or "$(" in text or len({type(it) for it in found}) > 1:
+    items: list[Value] = [_typed_text(part, None, entity.at) for part in text.split(separator)]
+    if kind is not None or "$(" in text or len({type(item) for item in items}) > 1:
         raise Undetermined("this list in a <param> is not evaluated", entity.at)
-    return [_parse_value(it, entity.at)[0] if isinstance(it, str) else it for it in found]
+    return [_parse_value(item, entity.at)[0] if isinstance(item, str) else item for item in items]
 
 
 def _parse_value(text: str, at: Position) -> list[Value]:
@@ -625,14 +624,14 @@ def _typed_text(text: str, kind: type | None, at: Position) -> Any:
             return text
     text = {"1": "true", "0": "false"}.get(text, text) if kind is bool else text
     try:
-        found = yaml_value(text) if text else text
+        typed = yaml_value(text) if text else text
     except ValueError:
         return text
-    if not _is_typed(found, kind, at):
+    if not _is_typed(typed, kind, at):
         raise EvaluationFails(
             f"{text[:40]!r} is of no type that is accepted here: put quotes in it", at
         )
-    return found
+    return typed
 
 
 def _is_typed(value: Any, kind: type | None, at: Position) -> bool:
@@ -658,13 +657,13 @@ class _ValueParser:
 
     def template(self, quote: str, depth: int) -> list[Value]:
         """Return strings and substitutions, up to the closing quote or the end."""
-        found: list[Value] = []
+        parts: list[Value] = []
         while self.position < len(self.text) and (not quote or self.next != quote):
-            found.append(self.part(quote, quote, depth))
+            parts.append(self.part(quote, quote, depth))
         if quote and self.position >= len(self.text):
             raise EvaluationFails(f"a quote is not closed in {self.text[:60]!r}", self.at)
         self.position += len(quote)
-        return found
+        return parts
 
     def part(self, ends: str, quote: str, depth: int) -> Value:
         """Return a substitution, or a string up to the next one or an end."""

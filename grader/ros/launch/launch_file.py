@@ -37,6 +37,7 @@ from grader.ros.launch.launch_model import (
     Machine,
     StartedNode,
     UnknownText,
+    texts_by_name,
 )
 from grader.ros.launch.substitutions import resolve
 from grader.ros.python.evaluation import Evaluation, record
@@ -371,8 +372,9 @@ class _PythonLaunchFile:
         """Return the text of a substitution as Python gets it."""
         try:
             found = resolve(call.owner, self.context, call.at)
-        except Undetermined as error:  # at this call, not at the substitution
-            raise Undetermined(str(error)) from None
+        except Undetermined as error:
+            error.at = None  # at this call, not at the substitution
+            raise
         reason = "the content of a file is not evaluated"
         if isinstance(found, Contents):
             return FileText(reason=reason, at=call.at, contents=found)
@@ -471,17 +473,14 @@ class _PythonLaunchFile:
 def _contents_read(call: Call) -> Contents:
     """Return what a call of open or xacro reads, as far as this is known."""
     given = call.kwargs.get("mappings")
-    pairs = given.items() if isinstance(given, dict) else ()
-    arguments = tuple(
-        (str(name), value if isinstance(value, str) else None) for name, value in pairs
-    )
+    arguments = texts_by_name(given) if isinstance(given, dict) else ()
     return Contents(call.args[0], "xacro" if call.name.startswith("xacro.") else "open", arguments)
 
 
 def _add_action(evaluation: Evaluation, call: Call) -> Value:
     """Record an action that is added to a description."""
     if len(call.args) + len(call.kwargs) != 1:
-        raise EvaluationFails(f"{call.name.rpartition('.')[2]} takes one action")
+        raise EvaluationFails(f"{call.short} takes one action")
     record(evaluation, call)
 
 

@@ -15,7 +15,6 @@ from grader.ros.python.parse import Position
 from grader.ros.python.values import Call, EvaluationFails, EvaluationSignal, Unknown, Value
 
 _MAX_STEPS = 50_000
-ANY = "**"
 # the launch configuration that has the namespace of what follows, as in launch_ros
 NAMESPACE = "ros_namespace"
 STATE_PUBLISHER = "robot_state_publisher"
@@ -55,6 +54,13 @@ class FileText(UnknownText):
 Resolved = str | Contents | Unknown
 
 
+def texts_by_name(table: Mapping[Any, Value]) -> tuple[tuple[str, str | None], ...]:
+    """Return the values in a table by their names; None for one that is no known text."""
+    return tuple(
+        (str(name), value if isinstance(value, str) else None) for name, value in table.items()
+    )
+
+
 def not_evaluated(reason: str) -> str:
     """Return a reason with the words that say what it means."""
     return reason if "evaluated" in reason else f"{reason}, which is not evaluated"
@@ -86,12 +92,14 @@ class Machine(Protocol):
 class Context:
     """The path of the installed launch file, and what launch knows when it executes an action.
 
-    `arguments` are the launch configurations; one with the name ANY stands for any other one.
+    `arguments` are the launch configurations. With `has_others` there may be more of them, which a
+    file that is not read declares.
     """
 
     path: str
     machine: Machine
     arguments: dict[str, Resolved] = field(default_factory=dict)
+    has_others: bool = False
     when: bool | None = True  # whether the file is launched at all
     # What SetRemap and SetParameter give to all nodes, by the configurations that launch_ros keeps
     # them in: lists, which groups share, as there. None is one that is not known.
@@ -361,13 +369,16 @@ class Findings:
             case Unknown(reason=reason):
                 self.references.append(NamedFile(purpose, None, location, reason, is_certain=False))
             case Contents():
-                found = NamedFile(
-                    purpose, path.path, location, "", by=path.by, arguments=path.arguments
+                file = NamedFile(
+                    purpose,
+                    path.path,
+                    location,
+                    by=path.by,
+                    arguments=path.arguments,
+                    stops_at_stderr=path.stops_at_stderr,
+                    is_deprecated=path.is_deprecated,
                 )
-                found = replace(
-                    found, stops_at_stderr=path.stops_at_stderr, is_deprecated=path.is_deprecated
-                )
-                self.references.append(found)
+                self.references.append(file)
             case _:
                 self.references.append(NamedFile(purpose, path, location, wrong))
 

@@ -18,7 +18,14 @@ from grader.ros.build.places import BY_MOVEIT, PREFIX, SHARE
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_value
 from grader.ros.known.known import moveit_launches
 from grader.ros.launch.api import DESCRIPTION
-from grader.ros.launch.launch_model import Contents, Context, FileText, UnknownTable, UnknownText
+from grader.ros.launch.launch_model import (
+    Contents,
+    Context,
+    FileText,
+    UnknownTable,
+    UnknownText,
+    texts_by_name,
+)
 from grader.ros.python.evaluation import Evaluation
 from grader.ros.python.parse import Position
 from grader.ros.python.values import (
@@ -318,10 +325,8 @@ class MoveItConfigurations:
     def _semantic(
         self, own: _Configuration, at: Position, given: Mapping[str, Value]
     ) -> dict[str, Value]:
-        path, key = (
-            self._path(own, given, f"config/{own.robot}.srdf"),
-            f"{own.description}_semantic",
-        )
+        path = self._path(own, given, f"config/{own.robot}.srdf")
+        key = f"{own.description}_semantic"
         is_open = "file_path" not in given and any(
             name.endswith(".srdf") for name in self._names(own) or ()
         )
@@ -482,8 +487,8 @@ def _named(call: Call, names: Sequence[str]) -> dict[str, Value]:
     wrong = next((name for name in call.kwargs if name not in names), None)
     if wrong is not None or len(call.args) > len(names):
         what = f"no argument {wrong!r}" if wrong is not None else f"at most {len(names)} arguments"
-        raise EvaluationFails(f"{call.name.rpartition('.')[2]} takes {what}", call.at)
-    given = {**dict(zip(names, call.args, strict=False)), **call.kwargs}
+        raise EvaluationFails(f"{call.short} takes {what}", call.at)
+    given = dict(zip(names, call.args, strict=False)) | call.kwargs
     return {name: value for name, value in given.items() if value is not None}
 
 
@@ -492,9 +497,7 @@ def _mappings(given: Mapping[str, Value]) -> tuple[tuple[str, str | None], ...]:
     table = given.get("mappings", {})
     if not isinstance(table, dict):
         raise Undetermined("the mappings for xacro are not evaluated")
-    return tuple(
-        (str(name), value if isinstance(value, str) else None) for name, value in table.items()
-    )
+    return texts_by_name(table)
 
 
 def _read_value(node: YamlNode, depth: int) -> Value:

@@ -8,7 +8,7 @@ import posixpath
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import chain, pairwise
 from math import inf, nan
 from pathlib import PurePosixPath
 from typing import Any, NamedTuple
@@ -19,6 +19,7 @@ from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_va
 from grader.ros.known.known import is_written_in_cpp, spawner_options
 from grader.ros.launch.call_arguments import FILE, SCALARS, TYPED, items_in, kind_of, type_of
 from grader.ros.launch.launch_model import (
+    NAMESPACE,
     Contents,
     Context,
     GivenParameters,
@@ -28,7 +29,14 @@ from grader.ros.launch.launch_model import (
     UnknownTable,
     UnknownText,
 )
-from grader.ros.launch.substitutions import PART_UNKNOWN, boolean, known_text, resolve
+from grader.ros.launch.substitutions import (
+    PART_UNKNOWN,
+    TEXT_PARTS,
+    boolean,
+    known_text,
+    not_a_text,
+    resolve,
+)
 from grader.ros.python.parse import START, Position
 from grader.ros.python.values import (
     Call,
@@ -56,28 +64,110 @@ _SPECIAL = {".nan": nan, ".inf": inf, "+.inf": inf, "-.inf": -inf}
 _PARAM_FILES = ("-p", "--param-file")
 
 
-def evaluate_parameters(parameters: Value, context: Context, at: Position) -> None:
-    """Evaluate the parameters of a node, as launch_ros does first. Raises EvaluationSignal and
-    Undetermined.
+class _Place(NamedTuple):
+    """Where the parameters of a node are written: in which action, and the place of it."""
+
+    context: Context
+    at: Position
+    location: Location
+    is_named: bool
+
+
+_Read = Iterator[GivenParameters | EvaluationSignal]
+
+
+def evaluate_parameters(
+    call: Call, context: Context, location: Location
+) -> tuple[Iterator[GivenParameters], EvaluationSignal | None]:
+    """Evaluate the parameters of a Node action up to the first error or doubt, at which launch_ros
+    stops.
+
+    Returns:
+        What each item gives the node: what follows the first error or doubt is evaluated when it is
+        iterated. And that error or doubt, if there is one.
     """
-    for item in items_in(parameters) or ():
-        if isinstance(item, dict):
-            evaluate_dict(item, context, at)
-        elif isinstance(item, Call) and item.name == FILE:
-            _evaluate_file(item, context)
-        elif isinstance(item, Call) and item.name in TYPED:
-            raise Undetermined("a parameter of this kind is not evaluated", item.at)
-        elif not isinstance(item, PurePosixPath):
-            resolve(item, context, at)
+    has_namespace = call.kwargs.get("namespace") is not None or NAMESPACE in context.arguments
+    is_named = has_namespace and call.kwargs.get("name") is not None
+    place = _Place(context, call.at, location, is_named)
+    reading = _read_items(call.kwargs.get("parameters"), place)
+    read: list[GivenParameters] = []
+    for part in reading:
+        if isinstance(part, EvaluationSignal):
+            rest = (part for part in reading if isinstance(part, GivenParameters))
+            return chain(read, rest), part
+        read.append(part)
+    return iter(read), None
 
 
-def _evaluate_file(call: Call, context: Context) -> None:
-    path = _resolve_path(call, context)
-    text = context.text_of(path) if isinstance(path, str) else None
-    if call.kwargs.get("allow_substs") not in (None, False) and (
-        text is None or _SUBSTITUTION in text
-    ):
-        raise Undetermined("substitutions in a parameter file are not evaluated", call.at)
+def _read_items(parameters: Value, place: _Place) -> _Read:
+    """Yield what each item gives the node, and each error or doubt where it is met."""
+    try:
+        items = items_in(parameters) or []
+    except Undetermined as signal:
+        yield signal
+        items = [parameters]
+    for item in items:
+        try:
+            yield from _read_item(item, place)
+        except EvaluationSignal as signal:
+            yield signal
+            yield GivenParameters(place.location, unknown=str(signal))
+
+
+def _read_item(item: Value, place: _Place) -> _Read:
+    """Yield the table, or the file by its path, that an item is. Raises EvaluationSignal."""
+    if isinstance(item, dict):
+        yield from _read_table(item, place)
+    elif isinstance(item, Call) and item.name == FILE:
+        yield from _read_file(item, place)
+    elif isinstance(item, Call) and item.name in TYPED:
+        raise Undetermined("a parameter of this kind is not evaluated", item.at)
+    elif isinstance(item, PurePosixPath):
+        yield GivenParameters(place.location, str(item))
+    else:
+        yield _make_file(resolve(item, place.context, place.at), place)
+
+
+def _read_file(call: Call, place: _Place) -> _Read:
+    """Yield the file of a ParameterFile. Raises EvaluationSignal."""
+    path = _resolve_path(call, place.context)
+    is_plain = call.kwargs.get("allow_substs") in (None, False)
+    text = place.context.text_of(path) if isinstance(path, str) else None
+    if not is_plain and (text is None or _SUBSTITUTION in text):
+        yield Undetermined("substitutions in a parameter file are not evaluated", call.at)
+    yield _make_file(path, place, is_plain=is_plain)
+
+
+def _make_file(path: Resolved, place: _Place, *, is_plain: bool = True) -> GivenParameters:
+    if isinstance(path, str):
+        return GivenParameters(place.location, path, is_plain=is_plain)
+    return GivenParameters(place.location, unknown=str(not_a_text(path, place.at)))
+
+
+def _read_table(table: dict[Any, Value], place: _Place) -> _Read:
+    """Yield the values in a dict, each unknown for itself; all are unknown if a name is. Raises
+    EvaluationSignal for names and for dicts in it.
+    """
+    context, at, location, is_named = place
+    values: dict[str, ParameterValue] = {}
+    for key, value in table.items():
+        name = resolve(key, context, at)
+        if not isinstance(name, str):
+            try:
+                _evaluate_dict(table, context, at)  # launch needs no name to go on
+            except EvaluationSignal as signal:
+                yield signal
+            yield GivenParameters(location, unknown=str(not_a_text(name, at)))
+            return
+        try:
+            evaluated = _evaluate_dict({name: value}, context, at)
+        except EvaluationSignal as signal:
+            if isinstance(value, dict):
+                raise
+            yield signal
+            evaluated = {name: Unknown(str(signal), at)}
+        values |= _parameter_values(evaluated, value, at, location)
+    yield GivenParameters(location, values=values, is_named=is_named)
 
 
 def _resolve_path(call: Call, context: Context) -> Resolved:
@@ -86,28 +176,27 @@ def _resolve_path(call: Call, context: Context) -> Resolved:
     if isinstance(given, PurePosixPath):
         return str(given)
     if not all(
-        isinstance(it, str | Call | Unknown)
-        for it in (given if isinstance(given, list) else [given])
+        isinstance(it, TEXT_PARTS) for it in (given if isinstance(given, list) else [given])
     ):
         raise Undetermined("the path of a parameter file is not evaluated", call.at)
     return resolve(given, context, call.at)
 
 
-def evaluate_dict(table: dict[Any, Value], context: Context, at: Position) -> dict[str, Any]:
+def _evaluate_dict(table: dict[Any, Value], context: Context, at: Position) -> dict[str, Any]:
     """Return the values in a dict of parameters, those of dicts in it by dotted names. Raises
     EvaluationSignal.
     """
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for key, value in table.items():
-        name = resolve(list(key) if isinstance(key, tuple) else key, context, at)
-        shown = name if isinstance(name, str) else "?"
-        if isinstance(value, dict):
-            found |= {
-                f"{shown}.{inner}": it for inner, it in evaluate_dict(value, context, at).items()
-            }
-        else:
-            found[shown] = _evaluate_value(shown, value, context, at)
-    return found
+        name = resolve(key, context, at)
+        if not isinstance(name, str):
+            name = "?"
+        if not isinstance(value, dict):
+            values[name] = _evaluate_value(name, value, context, at)
+            continue
+        for inner, evaluated in _evaluate_dict(value, context, at).items():
+            values[f"{name}.{inner}"] = evaluated
+    return values
 
 
 def _evaluate_value(name: str, value: Value, context: Context, at: Position) -> Any:
@@ -126,7 +215,7 @@ def _evaluate_value(name: str, value: Value, context: Context, at: Position) -> 
 def _evaluate_list(name: str, items: list[Value], context: Context, at: Position) -> Any:
     kinds = {type(item) for item in items if isinstance(item, SCALARS)}
     if any(isinstance(item, Call) for item in items) and all(
-        isinstance(it, str | Call | Unknown) for it in items
+        isinstance(it, TEXT_PARTS) for it in items
     ):
         return _read_as_yaml(name, items, context, at)
     if not items or not all(isinstance(item, SCALARS) for item in items):
@@ -168,25 +257,25 @@ def _evaluate_typed(call: Call, context: Context) -> Any:
 
 
 def _read_as_yaml(name: str, value: Value, context: Context, at: Position) -> Any:
-    found = _value_as_yaml(name, value, context, at)
-    if not (isinstance(found, list) and _is_uniform(found)) and not isinstance(
-        found, (*SCALARS, bytes)
+    loaded = _value_as_yaml(name, value, context, at)
+    if not (isinstance(loaded, list) and _is_uniform(loaded)) and not isinstance(
+        loaded, (*SCALARS, bytes)
     ):
         hint = "write ParameterValue(..., value_type=str)"
         raise EvaluationFails(
-            f"the parameter {name!r} is read as YAML, and is {kind_of(found)} then: {hint}", at
+            f"the parameter {name!r} is read as YAML, and is {kind_of(loaded)} then: {hint}", at
         )
-    return found
+    return loaded
 
 
 def _value_as_yaml(name: str, value: Value, context: Context, at: Position) -> Any:
     """Return the value of a text as YAML. Raises EvaluationSignal."""
-    found = resolve(value, context, at)
-    if isinstance(found, Unknown):
+    resolved = resolve(value, context, at)
+    if isinstance(resolved, Unknown):
         raise Undetermined(
-            f"the value of the parameter {name!r} is not evaluated: {found.reason}", at
+            f"the value of the parameter {name!r} is not evaluated: {resolved.reason}", at
         )
-    text = context.text_of(found.path) if isinstance(found, Contents) else found
+    text = context.text_of(resolved.path) if isinstance(resolved, Contents) else resolved
     if text is None:
         return ""  # a file that is not there is reported for itself
     try:
@@ -194,7 +283,7 @@ def _value_as_yaml(name: str, value: Value, context: Context, at: Position) -> A
             raise Undetermined(f"the parameter {name!r} is too long to be read as YAML", at)
         return yaml_value(text) if text else text
     except ValueError:
-        if isinstance(found, Contents) and found.by == "xacro" and not _is_never_yaml(text):
+        if isinstance(resolved, Contents) and resolved.by == "xacro" and not _is_never_yaml(text):
             raise Undetermined(
                 f"whether the output of xacro is YAML, as which {name!r} is read, is not evaluated",
                 at,
@@ -228,49 +317,20 @@ _OpenFile = Callable[
 ]  # returns an installed file, and its path in the submission
 
 
-class _Place(NamedTuple):
-    """Where parameters are written: in which action, and the place of it."""
-
-    context: Context
-    at: Position
-    location: Location
-
-
-def given_parameters(
-    call: Call, words: Sequence[str], context: Context, at: Location
-) -> tuple[GivenParameters, ...]:
-    """Return the parameters that a Node action gives its node, in the order of its command line.
-
-    Args:
-        call: The action.
-        words: Its arguments for ROS, what follows --ros-args.
-        context: What launch knows when it executes the action.
-        at: The place of the action.
-    """
-    place = _Place(context, call.at, at)
-    has_namespace = call.kwargs.get("namespace") is not None or "ros_namespace" in context.arguments
-    is_named = has_namespace and call.kwargs.get("name") is not None
-    given = call.kwargs.get("parameters")
-    if isinstance(given, list | tuple):
-        items = list(given)
-    elif given is None:
-        items = []
-    else:
-        items = [given]
-    found = (_given_item(item, place, is_named=is_named) for item in items)
-    return (*_read_command_line(words, at), *context.to_all.get(TO_ALL, ()), *found)
-
-
 def set_for_all(
     name: Value, value: Value, context: Context, at: Position, location: Location
 ) -> GivenParameters:
-    """Return what SetParameter gives to all nodes; unknown where it is not evaluated."""
-    found = _given_item(
-        {(name,) if not isinstance(name, list | tuple) else tuple(name): value},
-        _Place(context, at, location),
-    )
-    rules = {key: _as_rule(it) for key, it in found.values.items()}
-    return found._replace(values=rules)
+    """Return what SetParameter gives to all nodes; unknown where its name is not known. Raises
+    EvaluationSignal for its value.
+    """
+    evaluated = _evaluate_dict({"": value}, context, at)
+    try:
+        prefix = known_text(name, context, at)
+    except EvaluationSignal as signal:
+        return GivenParameters(location, unknown=str(signal))
+    values = _parameter_values(evaluated, value, at, location)
+    rules = {f"{prefix}{below}": _as_rule(given) for below, given in values.items()}
+    return GivenParameters(location, values=rules)
 
 
 def _as_rule(given: ParameterValue) -> ParameterValue:
@@ -288,47 +348,16 @@ def file_for_all(
     return GivenParameters(location, known_text(path, context, at))
 
 
-def _given_item(item: Value, place: _Place, *, is_named: bool = False) -> GivenParameters:
-    context, at, location = place
-    try:
-        if isinstance(item, dict):
-            return GivenParameters(location, values=_values_in(item, place), is_named=is_named)
-        if isinstance(item, Call) and item.name == FILE:
-            is_plain = item.kwargs.get("allow_substs") in (None, False)
-            return GivenParameters(
-                location, known_text(_resolve_path(item, context), context, at), is_plain=is_plain
-            )
-        if isinstance(item, Call) and item.name in TYPED:
-            raise Undetermined("a parameter of this kind is not evaluated")
-        return GivenParameters(
-            location,
-            str(item) if isinstance(item, PurePosixPath) else known_text(item, context, at),
-        )
-    except EvaluationSignal as signal:
-        return GivenParameters(location, unknown=str(signal))
-
-
-def _values_in(table: dict[Any, Value], place: _Place) -> dict[str, ParameterValue]:
-    """Return the values in a dict of parameters, each unknown for itself. Raises EvaluationSignal
-    for unknown names.
-    """
-    found: dict[str, ParameterValue] = {}
-    for key, value in table.items():
-        name = known_text(list(key) if isinstance(key, tuple) else key, place.context, place.at)
-        location = place.location
-        if isinstance(value, Call) and location.line != value.at.line:
-            location = location._replace(line=value.at.line, column=value.at.column)
-        try:
-            values = evaluate_dict({name: value}, place.context, place.at)
-        except EvaluationSignal as signal:
-            if isinstance(value, dict):
-                raise
-            values = {name: Unknown(str(signal), place.at)}
-        found |= {
-            own: ParameterValue(_replace_stand_ins(it, place.at), location)
-            for own, it in values.items()
-        }
-    return found
+def _parameter_values(
+    evaluated: Mapping[str, Any], value: Value, at: Position, location: Location
+) -> dict[str, ParameterValue]:
+    """Return what a value in a table gives by the names of parameters, with its place."""
+    if isinstance(value, Call) and location.line != value.at.line:
+        location = location._replace(line=value.at.line, column=value.at.column)
+    return {
+        name: ParameterValue(_replace_stand_ins(given, at), location)
+        for name, given in evaluated.items()
+    }
 
 
 def _replace_stand_ins(value: Any, at: Position) -> Any:
@@ -339,7 +368,7 @@ def _replace_stand_ins(value: Any, at: Position) -> Any:
     return Unknown("the contents of a file are not evaluated", at)
 
 
-def _read_command_line(words: Sequence[str], at: Location) -> Iterator[GivenParameters]:
+def parameters_in_words(words: Sequence[str], at: Location) -> Iterator[GivenParameters]:
     """Yield the parameters of the arguments for ROS: -p name:=value, --params-file path."""
     for option, word in pairwise(words):
         if option not in ("-p", "--param", "--params-file"):
@@ -471,44 +500,44 @@ def _forget_below(
 
 def _full_name(node: StartedNode, name: str) -> str | None:
     """Return the name of a node with its namespace; None where it is not known."""
-    own = name or node.node_name
-    if own and own.startswith("/"):
-        return own
-    if own and node.namespace is not None:
-        return f"/{node.namespace.strip('/')}/{own}".replace("//", "/")
+    own_name = name or node.node_name
+    if own_name and own_name.startswith("/"):
+        return own_name
+    if own_name and node.namespace is not None:
+        return f"/{node.namespace.strip('/')}/{own_name}".replace("//", "/")
     return None
 
 
 def _read_tables(
-    given: GivenParameters, open_file: _OpenFile, own: str | None
+    given: GivenParameters, open_file: _OpenFile, full_name: str | None
 ) -> Iterator[tuple[str | None, Mapping[str, ParameterValue]]]:
-    """Yield the parameters by keys of nodes; `own` is the full name that the launch file gives.
+    """Yield the parameters by keys of nodes; `full_name` is the one that the launch file gives.
     Raises Undetermined.
     """
     if given.unknown:
         raise Undetermined(given.unknown)
     if not given.path:
-        yield _find_key(given, own), given.values
+        yield _find_key(given, full_name), given.values
         return
     path = posixpath.normpath(given.path)
-    found = open_file(path.removeprefix(f"{PREFIX}/")) if path.startswith(f"{PREFIX}/") else None
-    if found is None:
+    file = open_file(path.removeprefix(f"{PREFIX}/")) if path.startswith(f"{PREFIX}/") else None
+    if file is None:
         raise Undetermined(
             f"the file {path.removeprefix(PREFIX)} is not read: the submission does not install it"
         )
     try:
-        root = read_yaml(*found)
+        root = read_yaml(*file)
     except YamlFault as fault:
-        raise Undetermined(f"the file {found[1]} is not readable as YAML: {fault}") from None
+        raise Undetermined(f"the file {file[1]} is not readable as YAML: {fault}") from None
     yield from _sections(root, "", is_plain=given.is_plain)
 
 
-def _find_key(given: GivenParameters, own: str | None) -> str | None:
+def _find_key(given: GivenParameters, full_name: str | None) -> str | None:
     """Return for which nodes the parameters of a launch file are; None for the node itself, whose
     name is not known.
     """
     if given.is_named:
-        return own
+        return full_name
     if given.node:
         return f"/{given.node.strip('/')}"
     return _EVERY_NODE
@@ -585,10 +614,10 @@ def _select_for_any_name(
 
 
 def _merge(tables: Iterable[Mapping[str, ParameterValue]]) -> dict[str, ParameterValue]:
-    found: dict[str, ParameterValue] = {}
+    merged: dict[str, ParameterValue] = {}
     for table in tables:
-        found |= table
-    return found
+        merged |= table
+    return merged
 
 
 def _matches(key: str | None, full: str) -> bool:

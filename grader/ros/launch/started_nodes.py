@@ -22,13 +22,19 @@ from grader.ros.launch.launch_model import (
     Contents,
     Context,
     Findings,
+    GivenParameters,
     NamedFile,
     Purpose,
     Resolved,
     StartedNode,
 )
-from grader.ros.launch.node_parameters import controllers_of, given_parameters, remap_rules
-from grader.ros.launch.substitutions import PART_UNKNOWN, check_program, known_text, resolve
+from grader.ros.launch.node_parameters import (
+    TO_ALL,
+    controllers_of,
+    parameters_in_words,
+    remap_rules,
+)
+from grader.ros.launch.substitutions import PART_UNKNOWN, check_program, known_text, listed, resolve
 from grader.ros.python.parse import Position
 from grader.ros.python.values import (
     Call,
@@ -79,8 +85,16 @@ _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _NAMESPACE = re.compile(r"|/|/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 
 
-def start_node(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
-    """Add the node that a Node action starts, and the files that it is given."""
+def start_node(
+    findings: Findings,
+    call: Call,
+    context: Context,
+    when: bool | None,
+    parameters: Iterable[GivenParameters] = (),
+) -> None:
+    """Add the node that a Node action starts, and the files that it is given. `parameters` are
+    those that the action has for it.
+    """
     package, executable = (
         _text_if_known(call.kwargs.get(name), context, call.at)
         for name in ("package", "executable")
@@ -93,7 +107,7 @@ def start_node(findings: Findings, call: Call, context: Context, when: bool | No
         return
     prefix = _frame_prefix(call, context) if executable == STATE_PUBLISHER else ""
     node = StartedNode(package, executable, when, findings.locate(call.at), prefix)
-    started = _add_names(node, call, context, findings)
+    started = _add_names(node, call, context, findings, parameters)
     findings.nodes.append(started)
     for controller in (controllers_of(started) if executable == "spawner" else ()) or ():
         for given in controller.parameters or ():
@@ -104,7 +118,13 @@ def start_node(findings: Findings, call: Call, context: Context, when: bool | No
         _find_configuration(findings, call, context)
 
 
-def _add_names(node: StartedNode, call: Call, context: Context, findings: Findings) -> StartedNode:
+def _add_names(
+    node: StartedNode,
+    call: Call,
+    context: Context,
+    findings: Findings,
+    own: Iterable[GivenParameters],
+) -> StartedNode:
     """Return a node with its name, arguments, parameters and remappings, and whether it is given
     the robot itself.
     """
@@ -118,7 +138,12 @@ def _add_names(node: StartedNode, call: Call, context: Context, findings: Findin
     has_description = bool(words) and not words[0].startswith("-") and node.executable != _RVIZ
     for table in _tables_in(call.kwargs.get("parameters")):
         has_description |= "robot_description" in table
-    parameters = given_parameters(call, ros_words, context, node.location)
+    # In the order of its command line.
+    parameters = (
+        *parameters_in_words(ros_words, node.location),
+        *context.to_all.get(TO_ALL, ()),
+        *own,
+    )
     for given in parameters:
         if given.path:
             findings.refer("parameters", given.path, call)
@@ -217,21 +242,19 @@ def evaluate_node(call: Call, context: Context) -> None:
         )
     if namespace is not None or NAMESPACE in context.arguments:
         namespace_below(namespace or "", context, call.at)
-    package = call.kwargs.get("package")
-    if package is not None:
-        text, program = (
-            known_text(call.kwargs[it], context, call.at) for it in ("package", "executable")
-        )
-        check_program(text, program, context, call.at)
+    if call.kwargs.get("package") is not None:
+        package = known_text(call.kwargs["package"], context, call.at)
+        program = known_text(call.kwargs["executable"], context, call.at)
+        check_program(package, program, context, call.at)
 
 
 def evaluate_process(call: Call, context: Context) -> None:
     """Evaluate what launch does with the arguments of a process besides their texts. Raises
     EvaluationSignal.
     """
-    if "cmd" in call.kwargs and not items_in(call.kwargs["cmd"]):
-        raise EvaluationFails("cmd is empty", call.at)
     if "cmd" in call.kwargs:
+        if not items_in(call.kwargs["cmd"]):
+            raise EvaluationFails("cmd is empty", call.at)
         words = _resolve_words(call.kwargs["cmd"], context, call.at)
         node = _node_of_command(words, call)
         if node is not None:
@@ -245,13 +268,13 @@ def evaluate_process(call: Call, context: Context) -> None:
             f"whether the prefix {prefix[0][:40]!r} starts the program is not evaluated", call.at
         )
     output = call.kwargs.get("output", "log")
-    if (
-        not isinstance(output, dict)
-        and (text := known_text(output, context, call.at)) not in _OUTPUTS
-    ):
+    if isinstance(output, dict):
+        if not output.keys() <= {"stdout", "stderr", "both"}:
+            raise EvaluationFails("output has the keys stdout, stderr and both only", call.at)
+        return
+    text = known_text(output, context, call.at)
+    if text not in _OUTPUTS:
         raise EvaluationFails(f"output={text!r} is not one of {', '.join(_OUTPUTS)}", call.at)
-    if isinstance(output, dict) and not output.keys() <= {"stdout", "stderr", "both"}:
-        raise EvaluationFails("output has the keys stdout, stderr and both only", call.at)
 
 
 def namespace_below(value: Value, context: Context, at: Position) -> str:
@@ -285,8 +308,7 @@ def _frame_prefix(call: Call, context: Context) -> str | None:
 
 def _find_description(findings: Findings, call: Call, context: Context) -> None:
     """Add the file that robot_state_publisher gets the robot from."""
-    given = call.kwargs.get("parameters") or []
-    parameters = given if isinstance(given, list | tuple) else [given]
+    parameters = listed(call.kwargs.get("parameters") or [])
     tables = [table for table in _tables_in(parameters) if "robot_description" in table]
     if tables:
         _refer_description(findings, tables[-1]["robot_description"], call, context)
@@ -396,15 +418,15 @@ def _find_configuration(findings: Findings, call: Call, context: Context) -> Non
 
 def _display_config(words: list[str]) -> str | None:
     """Return what follows -d; of several, the last counts, as for Qt's parser."""
-    found: str | None = None
+    path: str | None = None
     for index, word in enumerate(words):
         if word in ("-d", "--display-config"):
-            found = "".join(words[index + 1 : index + 2])
+            path = "".join(words[index + 1 : index + 2])
         elif word.startswith("--display-config="):
-            found = word.removeprefix("--display-config=")
+            path = word.removeprefix("--display-config=")
         elif word.startswith("-d"):
-            found = word.removeprefix("-d") if word[2:3].isspace() else PART_UNKNOWN
-    return found
+            path = word.removeprefix("-d") if word[2:3].isspace() else PART_UNKNOWN
+    return path
 
 
 def _text_if_known(value: Value, context: Context, at: Position) -> Resolved:
@@ -414,7 +436,7 @@ def _text_if_known(value: Value, context: Context, at: Position) -> Resolved:
             return resolve(value, context, at)
         return Unknown("there is none", at)
     except EvaluationSignal as signal:
-        return Unknown(str(signal), signal.at or at)
+        return signal.as_unknown(at)
 
 
 def _resolve_words(value: Value, context: Context, at: Position) -> list[str]:

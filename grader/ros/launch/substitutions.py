@@ -13,7 +13,7 @@ from grader.base.text import enumerated
 from grader.ros.build.places import HOME, PREFIX, SHARE
 from grader.ros.config.yaml_nodes import yaml_value
 from grader.ros.known.known import is_on_every_machine, programs_of
-from grader.ros.launch.launch_model import ANY, Contents, Context, FileText, Resolved
+from grader.ros.launch.launch_model import Contents, Context, FileText, Resolved
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.builtins import BUILTINS, MATH
 from grader.ros.python.expressions import evaluate
@@ -31,6 +31,7 @@ from grader.ros.python.values import (
 
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 _MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression
+TEXT_PARTS = (str, Call, Unknown)  # of which a text may consist
 PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown
 _PROGRAMS = frozenset({"xacro", "cat", "ros2", "python3", "bash", "sh", "echo", "env", "rviz2"})
 
@@ -57,6 +58,11 @@ def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Res
     raise Undetermined("the text of this value is not evaluated", at)
 
 
+def listed(value: Value) -> Sequence[Value]:
+    """Return the parts of a value that may be one, or a list of them."""
+    return value if isinstance(value, list | tuple) else [value]
+
+
 def _joined_text(parts: list[Resolved], at: Position) -> Resolved:
     if len(parts) == 1:
         return parts[0]
@@ -74,10 +80,14 @@ def known_text(value: Value, context: Context, at: Position) -> str:
     found = resolve(value, context, at)
     if isinstance(found, str):
         return found
-    raise Undetermined(
-        found.reason if isinstance(found, Unknown) else "the content of a file is used as a text",
-        at,
-    )
+    raise not_a_text(found, at)
+
+
+def not_a_text(value: Contents | Unknown, at: Position) -> Undetermined:
+    """Return the signal that a text is needed in place of a value."""
+    if isinstance(value, Unknown):
+        return value.as_signal(at)
+    return Undetermined("the content of a file is used as a text", at)
 
 
 def boolean(text: str, at: Position) -> bool:
@@ -95,7 +105,7 @@ def boolean(text: str, at: Position) -> bool:
 
 def condition_holds(given: Call, context: Context) -> bool:
     """Return whether a condition of `CONDITIONS` holds. Raises EvaluationSignal."""
-    kind = given.name.rpartition(".")[2]
+    kind = given.short
     if kind in ("IfCondition", "UnlessCondition"):
         text = known_text(given.kwargs["predicate_expression"], context, given.at)
         holds = _BOOLEANS.get(text.strip().lower())
@@ -109,7 +119,7 @@ def condition_holds(given: Call, context: Context) -> bool:
     )  # no other object is the key of one
     if (
         isinstance(name, Unknown)
-        or (found is None and ANY in context.arguments)
+        or (found is None and context.has_others)
         or not isinstance(found, str | None)
     ):
         raise Undetermined("the launch configuration of this condition is not evaluated", given.at)
@@ -122,19 +132,24 @@ class _Substitution:
     context: Context
     depth: int
 
+    @property
+    def at(self) -> Position:
+        return self.call.at
+
     def value(self) -> Resolved:
-        perform = PERFORMS.get(self.call.name.rpartition(".")[2])
+        perform = PERFORMS.get(self.call.short)
         if perform is None:
-            raise Undetermined(
-                f"{self.call.name.rpartition('.')[2]} is not evaluated", self.call.at
-            )
+            raise Undetermined(f"{self.call.short} is not evaluated", self.at)
         return perform(self)
 
     def resolve(self, value: Value) -> Resolved:
-        return resolve(value, self.context, self.call.at, self.depth + 1)
+        return resolve(value, self.context, self.at, self.depth + 1)
 
     def argument(self, name: str, default: Value = "") -> Resolved:
         return self.resolve(self.call.kwargs.get(name, default))
+
+    def known_argument(self, name: str) -> str:
+        return known_text(self.call.kwargs[name], self.context, self.at)
 
     def texts(self, *values: Value) -> list[str] | Unknown:
         """Return the texts of some values; Unknown if one of them is."""
@@ -143,30 +158,30 @@ class _Substitution:
         texts = [it for it in found if isinstance(it, str)]
         if len(texts) == len(found):
             return texts
-        return unknown or Unknown("the content of a file is used", self.call.at)
+        return unknown or Unknown("the content of a file is used", self.at)
 
     def configuration(self) -> Resolved:
         name, arguments = self.argument("variable_name"), self.context.arguments
         if not isinstance(name, str):
-            raise Undetermined("the name of a launch configuration is not evaluated", self.call.at)
+            raise Undetermined("the name of a launch configuration is not evaluated", self.at)
         if name in arguments:
             return arguments[name]
         default = self.call.kwargs.get("default")
-        if ANY in arguments:
+        if self.context.has_others:
             raise Undetermined(
                 f"whether {name!r} is declared in a file that is not submitted is not evaluated",
-                self.call.at,
+                self.at,
             )
         if default is not None:
-            items = default if isinstance(default, list | tuple) else [default]
+            items = listed(default)
             return self.resolve(
-                [item if isinstance(item, str | Call | Unknown) else str(item) for item in items]
+                [item if isinstance(item, TEXT_PARTS) else str(item) for item in items]
             )
         message = (
             f"the launch argument {name!r} is used, but DeclareLaunchArgument does not declare "
             "it before"
         )
-        raise EvaluationFails(message, self.call.at)
+        raise EvaluationFails(message, self.at)
 
     def variable(self) -> Resolved:
         name, default = self.argument("name"), self.call.kwargs.get("default_value")
@@ -174,21 +189,21 @@ class _Substitution:
             return HOME
         if default is None:
             raise Undetermined(
-                f"whether the environment variable {name!r} is set is not evaluated", self.call.at
+                f"whether the environment variable {name!r} is set is not evaluated", self.at
             )
         self.resolve(default)
-        return Unknown("the environment is not evaluated", self.call.at)
+        return Unknown("the environment is not evaluated", self.at)
 
     def path(self) -> Resolved:
         given = self.call.kwargs
-        parts = (
-            given["substitutions"] if "substitutions" in given else [given["path"]]
-        )  # of a PathSubstitution
-        texts = self.texts(*(parts if isinstance(parts, list | tuple) else [parts]))
+        if "substitutions" in given:
+            texts = self.texts(*listed(given["substitutions"]))
+        else:
+            texts = self.texts(given["path"])  # of a PathSubstitution
         if isinstance(texts, Unknown):
             return texts
         if not texts:
-            raise EvaluationFails("PathJoinSubstitution is given no path", self.call.at)
+            raise EvaluationFails("PathJoinSubstitution is given no path", self.at)
         return posixpath.join(*texts)
 
     def package_folder(self) -> Resolved:
@@ -198,7 +213,7 @@ class _Substitution:
         if not isinstance(package, str) or not self.context.machine.has_package(package):
             shown = repr(package) if isinstance(package, str) else "that is read from a file"
             raise Undetermined(
-                f"whether the package {shown} is installed is not evaluated", self.call.at
+                f"whether the package {shown} is installed is not evaluated", self.at
             )
         return f"{SHARE}/{package}"
 
@@ -206,33 +221,30 @@ class _Substitution:
         name = self.argument("name")
         if isinstance(name, str) and name not in _PROGRAMS:
             raise Undetermined(
-                f"whether the program {name!r} is installed is not evaluated", self.call.at
+                f"whether the program {name!r} is installed is not evaluated", self.at
             )
         return name
 
     def command(self) -> Resolved:
         mode = self.argument("on_stderr", "fail")
         if isinstance(mode, str) and mode not in ("fail", "ignore", "warn", "capture"):
-            raise EvaluationFails("on_stderr is one of fail, ignore, warn, capture", self.call.at)
-        parts = self.call.kwargs["command"]
-        texts = [
-            self.resolve(piece) for piece in (parts if isinstance(parts, list | tuple) else [parts])
-        ]
-        contents = _command_output(texts, self.call.at, stops_at_stderr=mode == "fail")
-        self.context.reads.append((contents, self.call.at))
+            raise EvaluationFails("on_stderr is one of fail, ignore, warn, capture", self.at)
+        texts = [self.resolve(part) for part in listed(self.call.kwargs["command"])]
+        contents = _command_output(texts, self.at, stops_at_stderr=mode == "fail")
+        self.context.reads.append((contents, self.at))
         return contents
 
     def expression(self) -> Resolved:
         texts = self.texts(self.call.kwargs["expression"])
         if isinstance(texts, Unknown):
-            raise Undetermined(f"this expression is not evaluated: {texts.reason}", self.call.at)
+            raise Undetermined(f"this expression is not evaluated: {texts.reason}", self.at)
         if "python_modules" in self.call.kwargs:
-            raise Undetermined("the modules of this expression are not evaluated", self.call.at)
-        return _expression_text(texts[0], self.call.at, self.context)
+            raise Undetermined("the modules of this expression are not evaluated", self.at)
+        return _expression_text(texts[0], self.at, self.context)
 
     def is_true(self, name: str) -> bool:
         """Return an argument that is read as a boolean."""
-        return boolean(known_text(self.call.kwargs[name], self.context, self.call.at), self.call.at)
+        return boolean(self.known_argument(name), self.at)
 
     def both(self) -> str:
         left, right = self.is_true("left"), self.is_true("right")
@@ -263,28 +275,20 @@ class _Substitution:
         elif isinstance(value, int | float):
             value = str(value)
         elif not all(
-            isinstance(it, str | Call | Unknown)
-            for it in (value if isinstance(value, list) else [value])
+            isinstance(it, TEXT_PARTS) for it in (value if isinstance(value, list) else [value])
         ):
-            raise Undetermined(
-                "the text of a list in this substitution is not evaluated", self.call.at
-            )
-        return known_text(value, self.context, self.call.at)
+            raise Undetermined("the text of a list in this substitution is not evaluated", self.at)
+        return known_text(value, self.context, self.at)
 
     def file_content(self) -> Contents:
-        contents = Contents(
-            known_text(self.call.kwargs["path"], self.context, self.call.at), "open"
-        )
-        self.context.reads.append((contents, self.call.at))
+        contents = Contents(self.known_argument("path"), "open")
+        self.context.reads.append((contents, self.at))
         return contents
 
     def executable(self) -> Resolved:
         """Return the path of a program of a package. Raises EvaluationSignal."""
-        package, name = (
-            known_text(self.call.kwargs[it], self.context, self.call.at)
-            for it in ("package", "executable")
-        )
-        check_program(package, name, self.context, self.call.at)
+        package, name = self.known_argument("package"), self.known_argument("executable")
+        check_program(package, name, self.context, self.at)
         return f"{PREFIX}/lib/{package}/{name}"
 
 
@@ -377,16 +381,16 @@ def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr:
         raise EvaluationFails("the quotes in this command are not closed", at) from None
     if not words:
         raise EvaluationFails("this command is empty", at)
-    found = _printed_file(words[3:] if words[:3] == ["ros2", "run", "xacro"] else words)
-    if found is None:
+    contents = _printed_file(words[3:] if words[:3] == ["ros2", "run", "xacro"] else words)
+    if contents is None:
         unknown = next((text.reason for text in texts if isinstance(text, Unknown)), "")
         raise Undetermined(
             f"the output of this command is not evaluated{unknown and ': ' + unknown}", at
         )
-    if found.by != "xacro" or not stops_at_stderr:
-        return found
+    if contents.by != "xacro" or not stops_at_stderr:
+        return contents
     return replace(
-        found, stops_at_stderr=True, is_deprecated=not {"-i", "--inorder"}.isdisjoint(words)
+        contents, stops_at_stderr=True, is_deprecated=not {"-i", "--inorder"}.isdisjoint(words)
     )
 
 

@@ -14,7 +14,7 @@ from grader.ros.python import values as py
 from grader.ros.python.budget import Budget
 from grader.ros.python.builtins import BUILTINS, call, truth
 from grader.ros.python.expressions import Expressions
-from grader.ros.python.library import PYTHON_3_12, USUAL_NAMES
+from grader.ros.python.library import PYTHON_3_12, USUAL_NAMES, usual_meaning
 from grader.ros.python.operators import method, operate
 from grader.ros.python.parse import START, Position, position_of
 from grader.ros.python.values import call_plain, iterate, known, reason_of
@@ -31,7 +31,6 @@ class PythonError(NamedTuple):
 
 NOT_EVALUATED = "is not evaluated"
 MISSING_COMMA = "a {} cannot be called: is there a comma missing before it?"
-FAILED = "Python raises an error before"  # the reason of a value that would follow
 # All parts of such an expression are evaluated before the expression itself; such a part may change
 # something.
 _WHOLE = (
@@ -104,8 +103,8 @@ class Evaluation(Expressions):
         try:
             return self.value(node, scope)
         except py.Undetermined as error:
-            unknown = py.Unknown(str(error), error.at or position_of(node))
-            if unknown.reason == FAILED and not error.is_final:
+            unknown = error.as_unknown(position_of(node))
+            if error.follows_error:
                 return unknown
             may_change = not isinstance(node, _WHOLE) and any(
                 isinstance(part, _CHANGING) for part in ast.walk(node)
@@ -115,7 +114,7 @@ class Evaluation(Expressions):
             return self.doubted(unknown)
         except py.EvaluationFails as error:
             self.error(str(error), error.at or position_of(node))
-            return py.Unknown(FAILED, position_of(node))
+            return py.unknown_after_error(position_of(node))
 
     def _name(self, node: ast.Name, scope: py.Scope) -> py.Value:
         """Return the value of a name. An undefined name is an error; its value is the most likely
@@ -134,7 +133,7 @@ class Evaluation(Expressions):
         meant = closest(node.id, texts) if node.id not in USUAL_NAMES else None
         if meant is not None:
             return self.module.names[meant]
-        return py.QualifiedName(USUAL_NAMES.get(node.id, f"?.{node.id}"))
+        return usual_meaning(node.id)
 
     def _builtin(self, name: str) -> py.Value:
         full = f"builtins.{name}"
@@ -196,6 +195,8 @@ class Evaluation(Expressions):
         match function:
             case py.Function():
                 found = self.call_function(function, made)
+            case py.QualifiedName(is_defined=False):
+                found = py.unknown_after_error(made.at)
             case py.QualifiedName(name=name):
                 if name == "glob":
                     self.error(
@@ -210,7 +211,7 @@ class Evaluation(Expressions):
                 found = self._method(owner, name, made)
             case py.PlainFunction():
                 found = self._plain(function, made)
-            case py.Unknown(reason=reason) if reason == FAILED:
+            case py.Unknown(follows_error=True):
                 found = function
             case _ if isinstance(function, py.PLAIN):
                 kind = type(function).__name__
@@ -243,10 +244,6 @@ class Evaluation(Expressions):
     def _by_name(self, made: py.Call) -> py.Value:
         """Return the value of a call of something outside of the file, by the table."""
         function = self.functions.get(made.name)
-        if function is None and made.name.startswith(
-            "?."
-        ):  # an undefined name, which is an error already
-            return py.Unknown(FAILED, made.at)
         if function is None:
             reason = f"{made.name.removeprefix('builtins.')} {NOT_EVALUATED}"
             raise py.Undetermined(reason, made.at, is_final=True)
@@ -268,8 +265,8 @@ class Evaluation(Expressions):
         found = method(owner, name, self.budget)
         if found is not None:
             return self.call_value(found, made)
-        if isinstance(owner, py.Unknown) and (name in _TEXT_METHODS or owner.reason == FAILED):
-            raise py.Undetermined(owner.reason, owner.at)
+        if isinstance(owner, py.Unknown) and (name in _TEXT_METHODS or owner.follows_error):
+            raise owner.as_signal(owner.at)
         raise py.Undetermined(
             f"the method {name} of this value {NOT_EVALUATED}", made.at, is_final=True
         )

@@ -20,14 +20,14 @@ from grader.base.names import closest
 from grader.ros.python import values as py
 from grader.ros.python.budget import Budget
 from grader.ros.python.builtins import truth
-from grader.ros.python.evaluation import FAILED, MISSING_COMMA, NOT_EVALUATED, Evaluation
+from grader.ros.python.evaluation import MISSING_COMMA, NOT_EVALUATED, Evaluation
 from grader.ros.python.library import (
     CONSTANTS,
-    UNCERTAIN,
-    USUAL_NAMES,
+    Uncertain,
     attribute_error,
     import_error,
     imported_names,
+    usual_meaning,
 )
 from grader.ros.python.operators import has_attribute, operate
 from grader.ros.python.parse import Code, Position, bound_in, own_nodes, position_of
@@ -123,7 +123,7 @@ class Interpreter(Evaluation):
     ) -> py.Unknown:
         if isinstance(error, RecursionError):
             error = py.Undetermined("the file is too deeply nested, which is not evaluated")
-        return self.doubted(py.Unknown(str(error), error.at or at or self.at))
+        return self.doubted(error.as_unknown(at or self.at))
 
     def _block(self, body: list[ast.stmt], scope: py.Scope) -> None:
         for node in body:
@@ -201,9 +201,8 @@ class Interpreter(Evaluation):
 
     def _for(self, node: ast.For, scope: py.Scope) -> None:
         items = self.evaluate(node.iter, scope)
-        if (
-            isinstance(items, py.Unknown) and items.reason == FAILED
-        ):  # how often it runs once that is fixed is not known
+        # How often it runs once the error is fixed is not known.
+        if isinstance(items, py.Unknown) and items.follows_error:
             self.doubted(items)
             items = []
         for item in iterate(items):
@@ -216,9 +215,8 @@ class Interpreter(Evaluation):
             self.evaluate(node.items[0].context_expr, scope),
             node.items[0].optional_vars,
         )
-        has_failed = (
-            isinstance(value, py.Unknown) and value.reason == FAILED
-        )  # of a file that does not exist
+        # Such as open() of a file that does not exist.
+        has_failed = isinstance(value, py.Unknown) and value.follows_error
         if isinstance(value, py.Call):
             self.call_value(py.BoundMethod(value, "__enter__"), py.Call("", [], {}, self.at))
         if len(node.items) > 1 or not (isinstance(value, py.Call | StringIO) or has_failed):
@@ -258,16 +256,14 @@ class Interpreter(Evaluation):
                 )
             error = import_error(module, alias.name, self.exports)
             bound = imported_names(module, alias, self.exports)
-            if error == UNCERTAIN:
+            if isinstance(error, Uncertain):
                 reason = (
                     f"whether {module or alias.name} is installed is not known; it is not evaluated"
                 )
                 self.doubted(py.Unknown(reason, self.at))
             elif error is not None:
                 self.error(error, self.at)
-                bound = dict.fromkeys(
-                    bound, py.QualifiedName(USUAL_NAMES.get(alias.name, f"?.{alias.name}"))
-                )
+                bound = dict.fromkeys(bound, usual_meaning(alias.name))
             if bound.pop("*", None) is not None:
                 raise py.Undetermined(
                     f"the names of {module} are not evaluated", self.at, is_final=True
@@ -348,7 +344,7 @@ class Interpreter(Evaluation):
                         raise py.EvaluationFails(error)
                     self.error(error, position_of(node))
                     full = meant
-                return CONSTANTS.get(full, py.QualifiedName(full))
+                return CONSTANTS.get(full, py.QualifiedName(full, is_defined=owner.is_defined))
             case PurePosixPath() if name in _PARTS:
                 value = getattr(owner, name)
                 return self.budget.checked(list(value) if name == "parents" else value, "path")
@@ -478,7 +474,8 @@ class Interpreter(Evaluation):
         """Set an item of a list or dict."""
         if isinstance(owner, py.QualifiedName | py.Call):
             made = py.Call(f"{owner.name}.__setitem__", [key, value], {}, at)
-            self.call_value(py.QualifiedName(made.name), made)
+            is_defined = isinstance(owner, py.Call) or owner.is_defined
+            self.call_value(py.QualifiedName(made.name, is_defined=is_defined), made)
             return
         if not isinstance(owner, py.PLAIN) or isinstance(key, slice):
             refuse(owner, "this assignment to an item is not supported")

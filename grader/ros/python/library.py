@@ -8,6 +8,7 @@ import ast
 import posixpath
 import sys
 from collections.abc import Callable, Collection, Mapping
+from enum import Enum
 from functools import cache, lru_cache
 from importlib import import_module
 from itertools import chain
@@ -130,7 +131,6 @@ _ADDED = {
     "monitoring",
 }
 PYTHON_3_12 = ("PythonFinalizationError",)  # built-in names that only a newer Python has
-UNCERTAIN = "?"  # in place of a message: whether an import fails is not known
 # The names of ROS 2's launch that files use most (ros2/launch and ros2/launch_ros, Jazzy), by their
 # modules.
 _LAUNCH_NAMES: dict[str, tuple[str, ...]] = {
@@ -198,10 +198,24 @@ CONSTANTS = {
 }
 
 
-def import_error(module: str, name: str, exports: Mapping[str, Collection[str]]) -> str | None:
-    """Return what is wrong with `import name` or `from module import name`: None where it works,
-    UNCERTAIN, or why.
-    """
+def usual_meaning(name: str) -> py.QualifiedName:
+    """Return what a name usually means that is used without its import."""
+    full = USUAL_NAMES.get(name)
+    if full is None:
+        return py.QualifiedName(f"?.{name}", is_defined=False)
+    return py.QualifiedName(full)
+
+
+class Uncertain(Enum):
+    """What is not known of a statement."""
+
+    IMPORT = "whether it fails"
+
+
+def import_error(
+    module: str, name: str, exports: Mapping[str, Collection[str]]
+) -> str | Uncertain | None:
+    """Return what is wrong with `import name` or `from module import name`; None where it works."""
     if module.startswith("."):
         return (
             "the file is in no package, so it cannot import "
@@ -218,7 +232,7 @@ def import_error(module: str, name: str, exports: Mapping[str, Collection[str]])
 
 
 @lru_cache(maxsize=256)
-def _import_error(module: str, name: str) -> str | None:
+def _import_error(module: str, name: str) -> str | Uncertain | None:
     top, full = (module or name).split(".")[0], module or name
     if top in _REMOVED:
         return f"there is no module {top!r} in Python 3.12"
@@ -241,18 +255,18 @@ def _import_error(module: str, name: str) -> str | None:
         or top in sys.stdlib_module_names
         or top == "setuptools"
     ):
-        return None if is_there else UNCERTAIN
+        return None if is_there else Uncertain.IMPORT
     return f"there is no module {top!r}; did you mean {guess!r}?"
 
 
-def _missing_name(module: str, name: str) -> str | None:
+def _missing_name(module: str, name: str) -> str | Uncertain | None:
     if module == "setuptools":
         missing, guess = name not in _SETUPTOOLS, did_you_mean(name, _SETUPTOOLS_PUBLIC[:3])
     else:
         found = import_module(module)  # one of the few above, never a student's choice
         missing, guess = not hasattr(found, name), did_you_mean(name, dir(found))
     if name in _ADDED:
-        return UNCERTAIN
+        return Uncertain.IMPORT
     if missing:
         return f"{module} has no {name!r}{guess}"
     return None
@@ -263,7 +277,7 @@ def attribute_error(module: str, name: str) -> str | None:
     if module not in _INSPECTED and module != "setuptools":
         return None
     error = _import_error(module, name)
-    return error if error != UNCERTAIN else None
+    return error if isinstance(error, str) else None
 
 
 def imported_names(

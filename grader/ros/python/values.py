@@ -49,9 +49,15 @@ class EvaluationSignal(Exception):
     `at` is the place that it is about; None for that of the expression.
     """
 
+    follows_error = False
+
     def __init__(self, message: str = "", at: "Position | None" = None) -> None:
         super().__init__(message[:_MAX_MESSAGE])
         self.at = at
+
+    def as_unknown(self, at: "Position") -> "Unknown":
+        """Return the value of the expression at this place, which is not known for this reason."""
+        return Unknown(str(self), self.at or at, follows_error=self.follows_error)
 
 
 class EvaluationFails(EvaluationSignal):
@@ -64,24 +70,36 @@ class Undetermined(EvaluationSignal):
     """A value, or whether there is an error, cannot be determined statically; the text says why.
 
     With `is_final`, nothing that follows in the file can be determined either: what is not
-    evaluated may do anything.
+    evaluated may do anything. With `follows_error`, an error that is recorded already certainly
+    stops Python before it needs the value.
     """
 
     def __init__(
-        self, message: str, at: "Position | None" = None, *, is_final: bool = False
+        self,
+        message: str,
+        at: "Position | None" = None,
+        *,
+        is_final: bool = False,
+        follows_error: bool = False,
     ) -> None:
         super().__init__(message, at)
-        self.is_final = is_final
+        self.is_final, self.follows_error = is_final, follows_error
 
 
 # These are no dataclasses: making one takes 1 ms of the start of every command.
 
 
 class Unknown:
-    """A value that is not known, and why."""
+    """A value that is not known, and why. With `follows_error`, an error that is recorded already
+    certainly stops Python before it has the value.
+    """
 
-    def __init__(self, reason: str, at: "Position") -> None:
-        self.reason, self.at = reason, at
+    def __init__(self, reason: str, at: "Position", *, follows_error: bool = False) -> None:
+        self.reason, self.at, self.follows_error = reason, at, follows_error
+
+    def as_signal(self, at: "Position | None" = None) -> Undetermined:
+        """Return the signal that the value is needed at this place."""
+        return Undetermined(self.reason, at, follows_error=self.follows_error)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Unknown) and (self.reason, self.at) == (other.reason, other.at)
@@ -91,10 +109,12 @@ class Unknown:
 
 
 class QualifiedName:
-    """A module, or something in one, by its full name: os.path.join."""
+    """A module, or something in one, by its full name: os.path.join. With `is_defined` False, the
+    file uses the name without defining or importing it, which is an error that is recorded already.
+    """
 
-    def __init__(self, name: str) -> None:
-        self.name = name
+    def __init__(self, name: str, *, is_defined: bool = True) -> None:
+        self.name, self.is_defined = name, is_defined
 
 
 class BoundMethod:
@@ -287,7 +307,14 @@ def iterate(value: Value) -> Iterator[Value]:
 
 def refuse(value: Value, message: str) -> NoReturn:
     """Raise Undetermined for a value that is not known, or not supported."""
+    if isinstance(value, Unknown):
+        raise value.as_signal(value.at)
     raise Undetermined(reason_of(value) or message, getattr(value, "at", None))
+
+
+def unknown_after_error(at: "Position") -> Unknown:
+    """Return the value of an expression that certainly raises an error."""
+    return Unknown("Python raises an error before", at, follows_error=True)
 
 
 def items_of(value: Value) -> list[Value]:
