@@ -3,7 +3,6 @@ judged on what the slip surely stands for.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, cast
 
 from grader.base.errors import InputError
 from grader.base.slips import Slip
@@ -15,9 +14,6 @@ from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.edited import edited_files, with_files, with_urdf
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
-
-if TYPE_CHECKING:
-    from grader.ros.xacro.expansion import ExpandedSource
 
 _MAX_SLIPS = 12  # because each is graded without the others
 _MAX_NAMED = 3  # in a message
@@ -42,20 +38,12 @@ def judge_as_meant(
 
 def slips_of(submission: Submission) -> list[Slip]:
     """Return the slips in the files of a submission that may explain points that are not given."""
-    from grader.ros.urdf.robot_slips import robot_slips  # late: many submissions lose nothing
+    slips = submission.urdf.slips if isinstance(submission.urdf, Read) else []
+    packages = [submission.package, *submission.lab_packages.values()]
+    for package in dict.fromkeys(filter(None, packages)):
+        from grader.ros.package.package_slips import package_slips  # late: many have no package
 
-    slips: list[Slip] = []
-    if isinstance(submission.urdf, Read):
-        reading = submission.urdf.reading
-        if reading.source.is_expanded:
-            from grader.ros.xacro.xacro_slips import xacro_slips
-
-            slips += xacro_slips(cast("ExpandedSource", reading.source))
-        slips += robot_slips(reading)
-    if submission.package is not None:
-        from grader.ros.package.package_slips import package_slips
-
-        slips += package_slips(submission.package)
+        slips += package_slips(package)
     return slips
 
 

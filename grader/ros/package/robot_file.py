@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 
 from grader.base.errors import InputError, MissingElement, NotDecided
 from grader.base.problems import Problem, causes, in_order
+from grader.base.slips import Slip
 from grader.base.source import Source
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree, parents
@@ -90,6 +91,18 @@ class Read(NamedTuple):
             return self.reading.problems
         raw = [problem for problem in self.as_it_stands.problems if problem.kind is RAW_XACRO]
         return (*raw, *self.reading.problems)
+
+    @property
+    def slips(self) -> list[Slip]:
+        """The words of the file, and of those that xacro includes, that surely are others."""
+        from grader.ros.urdf.robot_slips import robot_slips  # late: most files have none
+
+        slips: list[Slip] = []
+        if self.reading.source.is_expanded:
+            from grader.ros.xacro.xacro_slips import xacro_slips
+
+            slips += xacro_slips(cast("ExpandedSource", self.reading.source))
+        return slips + robot_slips(self.reading)
 
 
 Urdf = Absent | Unreadable | Read

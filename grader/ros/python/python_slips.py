@@ -29,6 +29,9 @@ _TRAILING = re.compile(r"[\s,)\]}:]*$")
 _COMMENT = re.compile(r"""((?:[^#'"]|"[^"]*"|'[^']*')*?)(\s*(?:\#.*)?)$""")
 
 
+_Way = Callable[[SyntaxFault, list[str]], Iterator["_Change"]]
+
+
 class _Change(NamedTuple):
     """A line as it may be meant."""
 
@@ -80,7 +83,9 @@ def _meant(fault: SyntaxFault, lines: list[str], path: str) -> _Change | None:
     """Return the change of a line after which Python reads the file, or at least reads on; None if
     different ones do.
     """
-    for way in _WAYS:
+    for message, way in _WAYS:
+        if message.search(fault.message) is None:
+            continue
         read: dict[str, _Change] = {}  # by what the file is then
         for change in islice(way(fault, lines), _MAX_TRIED):
             after = [*lines]
@@ -137,7 +142,7 @@ def _with_quote(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
     index, column = fault.location.line - 1, fault.location.column - 1
     line = lines[index]
     quote = line[column : column + 1]
-    if quote not in ("'", '"') or not fault.message.startswith("unterminated string"):
+    if quote not in ("'", '"'):
         return
     end = _TRAILING.search(line)
     if end is not None and end.start() > column:
@@ -168,12 +173,11 @@ def _with_comma(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
         code, rest = _code_and_rest(lines[at])
         if code.strip() and not code.endswith((",", "(", "[", "{", ":")):
             yield _Change(at, f"{code.rstrip(';.')},{rest}")
-    if fault.message.endswith("forgot a comma?"):
-        # The first of two expressions begins here, and may end in a later line.
-        for at, later in enumerate(lines[index + 1 : index + _MAX_LINES], index + 1):
-            code, rest = _code_and_rest(later)
-            if code.endswith((")", "]", "}")):
-                yield _Change(at, f"{code},{rest}")
+    # The first of two expressions begins here, and may end in a later line.
+    for at, later in enumerate(lines[index + 1 : index + _MAX_LINES], index + 1):
+        code, rest = _code_and_rest(later)
+        if code.endswith((")", "]", "}")):
+            yield _Change(at, f"{code},{rest}")
     line = lines[index]
     if len(line) <= _MAX_LENGTH:
         for found in _TOKEN.finditer(line, max(fault.location.column - 1, 0)):
@@ -188,7 +192,7 @@ def _with_bracket_in_line(fault: SyntaxFault, lines: list[str]) -> Iterator[_Cha
     """
     index, column = fault.location.line - 1, fault.location.column - 1
     line = lines[index]
-    if fault.message.startswith("unmatched"):
+    if line[column : column + 1] in (")", "]", "}"):
         yield _Change(index, line[:column] + line[column + 1 :])
     mismatched = re.search(r"does not match opening parenthesis '([(\[{])'", fault.message)
     if mismatched is not None:
@@ -217,8 +221,6 @@ def _with_bracket_at_end(fault: SyntaxFault, lines: list[str]) -> Iterator[_Chan
 def _with_indentation(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
     """Yield the line with the indentation of the lines before that is nearest to its own."""
     index = fault.location.line - 1
-    if not fault.message.startswith(("unexpected indent", "unindent does not match")):
-        return
     own = _indentation(lines[index])
     others = {_indentation(line) for line in lines[:index] if line.strip()} | {""}
     by_distance: dict[int, list[str]] = {}
@@ -244,14 +246,15 @@ def _with_pair(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
         yield _Change(index, f"{line[: found.start()]}{key}: {line[found.end() :]}")
 
 
-_WAYS: tuple[Callable[[SyntaxFault, list[str]], Iterator[_Change]], ...] = (
-    _with_plain_quotes,
-    _with_quote,
-    _with_colon,
-    _with_pair,
-    _with_comma,
-    _with_keyword,
-    _with_bracket_at_end,
-    _with_bracket_in_line,
-    _with_indentation,
+# What is tried for a message of Python, in this order.
+_WAYS: tuple[tuple[re.Pattern[str], _Way], ...] = (
+    (re.compile("invalid"), _with_plain_quotes),
+    (re.compile("unterminated string"), _with_quote),
+    (re.compile("expected ':'|invalid syntax"), _with_colon),
+    (re.compile("dictionary|invalid syntax|cannot assign"), _with_pair),
+    (re.compile("comma|invalid syntax"), _with_comma),
+    (re.compile("invalid syntax|expected"), _with_keyword),
+    (re.compile("closed|match|invalid syntax|comma|follows"), _with_bracket_at_end),
+    (re.compile("closed|match|invalid syntax|comma"), _with_bracket_in_line),
+    (re.compile("indent"), _with_indentation),
 )
