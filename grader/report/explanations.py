@@ -142,19 +142,23 @@ def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
     yield _fill(criterion.feedback)
     if criterion.requires:
         yield _fill(f"Skipped unless these passed: {', '.join(criterion.requires)}.")
-    positions = ", ".join(f"{name} = {value:g}" for name, value in criterion.at.items())
-    if positions:
-        pose = f"The robot is posed: {positions} (degrees or metres); its other joints are at 0."
-    else:
-        pose = ""
+    pose = _pose_text(criterion.at) if criterion.at else ""
     given = " ".join(f"{name}:={value}" for name, value in criterion.args.items())
     launched = f"Launch files and the robot are read under the arguments {given}." if given else ""
     yield _check_text("Check", criterion.check, criterion.arguments, pose, launched)
-    for causes, check, arguments in criterion.carried:
-        failures = f"If it fails and {enumerated(causes, word='or')} failed before it"
+    for carried in criterion.carried:
+        failures = f"If it fails and {enumerated(carried.causes, word='or')} failed before it"
         yield _check_text(
-            f"{failures}, the points are given if this check passes", check, arguments
+            f"{failures}, the points are given if this check passes",
+            carried.check,
+            carried.arguments,
+            _pose_text(carried.at) if carried.at else "",
         )
+
+
+def _pose_text(at: Mapping[str, float]) -> str:
+    positions = ", ".join(f"{name} = {value:g}" for name, value in at.items())
+    return f"The robot is posed: {positions} (degrees or metres); its other joints are at 0."
 
 
 def _check_text(title: str, check: Check, arguments: Mapping[str, object], *more: str) -> str:

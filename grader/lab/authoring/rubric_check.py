@@ -99,6 +99,8 @@ def _carried_failures(rubric: Rubric) -> Iterator[tuple[TomlPath, str, Outcome]]
     assert rubric.solution is not None
     for criterion in (it for it in rubric.criteria if not (it.adjustment or it.bonus)):
         for index, one in enumerate(criterion.carried):
+            if one.at:  # a fact of robots with that mistake only
+                continue
             row = criterion._replace(
                 check=one.check, arguments=one.arguments, carried=(), requires=()
             )

@@ -310,7 +310,7 @@ def _names_in(rubric: Rubric) -> Iterator[str]:
     that it poses.
     """
     for it in rubric.criteria:
-        yield from _texts_in((it.arguments, it.at, [one.arguments for one in it.carried]))
+        yield from _texts_in((it.arguments, it.at, [(one.arguments, one.at) for one in it.carried]))
 
 
 def _texts_in(value: Any) -> Iterator[str]:

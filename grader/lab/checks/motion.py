@@ -30,6 +30,7 @@ ABOUT = {
 _SMALL_ANGLE = 1e-3  # radians
 _STANDSTILL = 1e-9  # metres
 _MAX_SLOPE = 45.0  # degrees between the axis of a wheel and the level
+_MAX_SLANT = 45.0  # degrees off straight ahead within which a base is said to drive forward
 _NEARLY = 5.0  # degrees within which an axis is said to be vertical
 
 
@@ -69,7 +70,9 @@ def rolls_forward(
     off = degrees_between(travel, ahead)
     fine = off <= tolerance + SLACK
     message = f"a small positive rotation of {link!r} {_describe_heading(off, travel, base)}"
-    message += "" if fine else "; it should drive it forward"
+    message += (
+        "" if fine else f"; it should drive it {'straight ahead' if off <= 45.0 else 'forward'}"
+    )
     return judged(fine, message, travel, ahead, tolerance, "deg", at=at, detail=detail)
 
 
@@ -220,7 +223,7 @@ def _flatten(vector: Vector, up: Vector) -> Vector:
 
 
 def _describe_heading(off: float, travel: Vector, base: str) -> str:
-    if off <= 45.0:
+    if off <= _MAX_SLANT:
         slant = f", {in_degrees(off)} off straight ahead" if off > 0.05 else ""
         return f"drives {base!r} forward{slant}"
     if off >= 135.0:

@@ -168,7 +168,9 @@ class _Grading:
         if cause is None:
             return result
         try:
-            other = self._run_check(result.criterion, carried.check, carried.arguments)
+            criterion = carried.of(result.criterion)
+            other = self._run_check(criterion, carried.check, carried.arguments)
+            other = other._replace(criterion=result.criterion)
         except MissingElement:
             return result
         name, outcome = cause.criterion.id, result.outcome
@@ -199,7 +201,9 @@ class _Grading:
         for carried in (it for it in criterion.carried if cause in it.causes):
             with suppress(MissingElement):
                 if (
-                    self._run_check(criterion, carried.check, carried.arguments).outcome.status
+                    self._run_check(
+                        carried.of(criterion), carried.check, carried.arguments
+                    ).outcome.status
                     == "passed"
                 ):
                     return True

@@ -159,7 +159,8 @@ def check_selectors(robot: Configuration, criterion: Criterion) -> None:
     has, or several have.
     """
     carried = [dict(one.arguments) for one in criterion.carried]
-    without_selectors([dict(criterion.arguments), *carried, [*criterion.at]], robot)
+    joints = [*criterion.at, *(name for one in criterion.carried for name in one.at)]
+    without_selectors([dict(criterion.arguments), *carried, joints], robot)
 
 
 def joints_at(robot: Configuration, at: Mapping[str, float]) -> list[tuple[Joint, float, str]]:

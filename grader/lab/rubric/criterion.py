@@ -22,6 +22,11 @@ class Carried(NamedTuple):
     causes: tuple[str, ...]
     check: Check
     arguments: Mapping[str, Any]
+    at: Mapping[str, float] = {}  # positions of joints, if not those of the criterion
+
+    def of(self, criterion: "Criterion") -> "Criterion":
+        """Return a criterion with the joints at the positions of this fact."""
+        return criterion._replace(at=self.at) if self.at else criterion
 
 
 class Adjustment(NamedTuple):

@@ -188,6 +188,10 @@ CARRIED = KeyTable(
         ),
         "check": described(_TEXT, "The check that counts instead."),
         "with": described(_table_type({"type": "object"}), "The arguments of that check."),
+        "at": described(
+            toml_type(Mapping[str, float]),
+            "Positions of joints for that check; default: those of the criterion.",
+        ),
     },
     required=("from", "check"),
 )

@@ -346,7 +346,7 @@ def _make_criterion(
         "position": position,
         "answer": answer if answers else "",
     }
-    texts = texts_in((arguments, *(given for _, _, given in carried)))
+    texts = texts_in((arguments, *(given for _, _, given, _ in carried)))
     own["has_selectors"] = any(map(is_selector, texts))
     return Criterion(**own, carried=tuple(Carried(*one) for one in carried))
 

@@ -19,8 +19,8 @@ _MAX_LISTED = 20  # names in one message
 
 BoundCheck = tuple[Check, TomlRow]
 BoundCarried = tuple[
-    tuple[str, ...], Check, TomlRow
-]  # the possible causes, and the fact that counts instead
+    tuple[str, ...], Check, TomlRow, Mapping[str, float]
+]  # the possible causes, the fact that counts instead, and its own positions of joints
 
 
 class Validation:
@@ -222,7 +222,7 @@ class Validation:
         self._check_order((*where, "from"), row, positions)
         bound = self._bind_check(where, carried)
         if bound is not None and "from" in carried:
-            return (carried["from"], *bound)
+            return (carried["from"], *bound, carried.get("at", {}))
         return None
 
     def _read_adjustments(self, positions: Mapping[str, int]) -> dict[str, TomlRow]:
