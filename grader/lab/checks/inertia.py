@@ -111,10 +111,8 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
     if not within(off, 0.0, tolerance):
         reason = _components_off(inertial, solid, T_link_inertial, tolerance)
         solid_text = f"a uniform solid of its {what} with a mass of {inertial.mass:.6g} kg"
-        wrong.append(
-            f"the inertia of {link!r} is {_round_percentage(off)} % off that of "
-            f"{solid_text}: {reason}"
-        )
+        shown = f"{off:,.0f}" if 1e3 <= off < 1e10 else f"{off:.3g}"
+        wrong.append(f"the inertia of {link!r} is {shown} % off that of {solid_text}: {reason}")
     if not within(distance, 0.0, max(_CENTRE, _CENTRE_SHARE * _size_bound(shapes))):
         at = at if wrong else place(inertial.origin.location, "xyz") or place(inertial.location)
         centres = f"at {point(given.centre)} m; it should be at {point(solid.centre)} m"
@@ -214,10 +212,3 @@ def _size_bound(shapes: Sequence[tuple[Shape, Transform]]) -> float:
     return max(
         hypot(*minus(one, other)) + radius + reach for (one, radius), (other, reach) in pairs
     )
-
-
-def _round_percentage(percentage: float) -> str:
-    """Return a percentage rounded for reading: 61.2, 1,000."""
-    if not 1e3 <= percentage < 1e10:
-        return f"{percentage:.3g}"
-    return f"{percentage:,.0f}"
