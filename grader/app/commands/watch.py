@@ -54,16 +54,15 @@ def watch(request: GradeRequest, terminal: Terminal) -> None:
         GraderError: What no change of a file corrects: wrong usage, an unknown rubric, standard
             output that is closed, a report that cannot be saved.
     """
+    saves = request.saves
     watched = _watched(request)
-    rubric = files_of(request.rubric, request.answers) if request.saves else ()
-    check_saves(request.saves, rubric, request.path)
+    rubric = files_of(request.rubric, request.answers) if saves else ()
+    check_saves(saves, rubric, request.path)
     _ = request.threshold  # refuse a wrong one at once
     gc.enable()  # unlike other commands, this one may run for hours
     last: Report | None = None
     terminal.warn(f"watching {printable_path(request.path)}; stop with Ctrl-C")
-    for besides in _changes(
-        watched, frozenset(os.path.realpath(file) for _, file in request.saves)
-    ):
+    for besides in _changes(watched, frozenset(os.path.realpath(file) for _, file in saves)):
         try:
             result = grade_submission(request, terminal.warn)
         except (InputError, MachineError, RubricError) as error:
