@@ -47,7 +47,7 @@ _SOURCES = (
     ".rviz",
     ".cfg",
 )  # files that no report may replace
-_MAX_NAMED = 8  # criteria in a message
+MAX_NAMED_CRITERIA = 8  # in a message
 _MAX_UP = 3  # folders between a package and what is graded in it
 _SHA256 = r"[0-9a-fA-F]{64}"
 
@@ -98,7 +98,7 @@ class GradeRun(NamedTuple):
     def reason(self) -> str:
         """Why the exit code is 1 although nothing failed; empty otherwise."""
         names = enumerated(
-            [result.criterion.id for result in self.report.pending_automatic], _MAX_NAMED
+            [result.criterion.id for result in self.report.pending_automatic], MAX_NAMED_CRITERIA
         )
         if self.exit_code != ExitCode.FAILED or not names or self.report.has_failures:
             return ""

@@ -13,6 +13,7 @@ _LINE_COMMAND = re.compile(r"^(\s*):(?=:)", re.MULTILINE)
 _TAG_COMMAND = re.compile(r"##(vso)?\[", re.IGNORECASE)
 _MAX_NAME = 60  # characters of a name that are shown
 MAX_NAMED = 5  # names that a message lists, where nothing asks for more or fewer
+MAX_PEOPLE = 12  # whom a line lists
 
 
 def printable(text: str) -> str:
@@ -115,7 +116,7 @@ def enumerated(
     return last
 
 
-def people_text(names: Collection[str], most: int) -> str:
+def people_text(names: Collection[str], most: int = MAX_PEOPLE) -> str:
     """Return the names of people like `enumerated`: "Doe, Jane; Roe, Al and 3 more"."""
     return enumerated(names, most, separator="; " if any(", " in name for name in names) else ", ")
 

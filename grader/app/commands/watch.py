@@ -14,6 +14,7 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.app.grading import (
+    MAX_NAMED_CRITERIA,
     GradeRequest,
     check_saves,
     grade_submission,
@@ -34,7 +35,6 @@ from grader.report.writing import Terminal
 
 _POLL = 0.1  # seconds between two looks
 _SHARE = 10  # a look at many files is followed by a pause of this many times its own time
-_MAX_NAMED = 8
 _CHANGES = {
     "passed": "now passed",
     "failed": "now failed",
@@ -132,7 +132,7 @@ def comparison_lines(before: Report, after: Report) -> list[str]:
             gain = _gain(new.points - (was.points if was else 0))
             names.append(printable(new.criterion.id) + gain)
         if names:
-            lines.append(f"{change}: {enumerated(names, _MAX_NAMED)}")
+            lines.append(f"{change}: {enumerated(names, MAX_NAMED_CRITERIA)}")
     return lines
 
 

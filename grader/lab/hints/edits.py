@@ -18,6 +18,7 @@ from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read, read_as_ros
 from grader.ros.python.budget import Budget
 
+MAX_IN_HINT = 4  # edits, links, criteria or places that a hint names
 _SAME = 1e-3  # relative: -1.57 is -pi/2
 _PIECE = re.compile(r"(\s*)(\S+)")
 
