@@ -16,7 +16,14 @@ from grader.files.limits import ROBOT_ENDINGS
 from grader.lab.rubric.hint_levels import HintLevel
 from grader.lab.rubric.rubric_files import load_named
 from grader.report.formats import Format, inputs_of, render
-from grader.report.invocation import ExitCode, Saves, exit_code, read_arguments, read_threshold
+from grader.report.invocation import (
+    ExitCode,
+    Saves,
+    exit_code,
+    read_arguments,
+    read_saves,
+    read_threshold,
+)
 from grader.report.repository import base_of, folder_of
 from grader.report.writing import (
     Warn,
@@ -40,7 +47,7 @@ _SOURCES = (
     ".rviz",
     ".cfg",
 )  # files that no report may replace
-_MAX_NAMED = 8  # criteria in a message
+MAX_NAMED_CRITERIA = 8  # in a message
 _MAX_UP = 3  # folders between a package and what is graded in it
 _SHA256 = r"[0-9a-fA-F]{64}"
 
@@ -55,7 +62,7 @@ class GradeRequest(NamedTuple):
         Sequence[str] | None
     )  # the ids of the parts to grade; default: all that the submission can meet
     output_format: Format  # of standard output
-    saves: Saves  # the files to write, with their formats
+    save: Sequence[str] | None  # FORMAT=FILE, of the reports to write
     fail_under: str | None  # the score that must be reached, in points or percent
     max_size: int  # of a URDF, in bytes
     arg: Sequence[str] | None  # NAME=VALUE, of xacro
@@ -63,6 +70,12 @@ class GradeRequest(NamedTuple):
     verbose: bool  # whether the terminal shows everything
     hints: HintLevel | None  # the most that hints tell; None for what the rubric allows
     fix: Path | None  # where to write the files with all proven edits
+    watch: bool  # whether to grade again after every change
+
+    @property
+    def saves(self) -> Saves:
+        """The files to write, with their formats. Raises GraderError."""
+        return read_saves(self.save or ())
 
     @property
     def threshold(self) -> tuple[Decimal, bool] | None:
@@ -85,7 +98,7 @@ class GradeRun(NamedTuple):
     def reason(self) -> str:
         """Why the exit code is 1 although nothing failed; empty otherwise."""
         names = enumerated(
-            [result.criterion.id for result in self.report.pending_automatic], _MAX_NAMED
+            [result.criterion.id for result in self.report.pending_automatic], MAX_NAMED_CRITERIA
         )
         if self.exit_code != ExitCode.FAILED or not names or self.report.has_failures:
             return ""

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from grader.base.errors import InputError, MachineError, OutOfTime
-from grader.base.text import enumerated, format_points, printable, printable_path
+from grader.base.text import MAX_NAMED, enumerated, format_points, printable, printable_path
 from grader.files.limits import ROBOT_ENDINGS
 from grader.lab.grading.report import INCOMPLETE_HINTS, Report
 from grader.lab.hints.hinting import Fix, fixed, hinted
@@ -15,7 +15,6 @@ from grader.lab.rubric.hint_levels import LEVELS, HintLevel
 from grader.lab.submission.submission import Submission
 from grader.report.writing import Warn, make_folder, refuse_inputs, refuse_symlinks, save_bytes
 
-_MAX_NAMED = 6
 _FILES = (*ROBOT_ENDINGS, ".zip")  # endings that no folder has
 
 
@@ -125,7 +124,7 @@ def write_fix(
     if not report.hints_complete:
         gone.append(f"; {INCOMPLETE_HINTS}")
     names = enumerated(
-        [printable(path) for path, data in fix.files.items() if data is not None], _MAX_NAMED
+        [printable(path) for path, data in fix.files.items() if data is not None], MAX_NAMED
     )
     before, after = format_points(report.score), format_points(fix.report.score)
     score = f"{before} -> {after} of {format_points(report.max_score)} points"

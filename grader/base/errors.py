@@ -55,18 +55,13 @@ class MachineError(GraderError):
     submission.
     """
 
-    @staticmethod
-    def is_cause(error: BaseException) -> bool:
-        """Return whether an error is a fault of the machine, and not of a file."""
-        return isinstance(error, OSError) and error.errno not in _OF_FILES
-
     @classmethod
     def check(cls, error: BaseException | None, shown: str) -> None:
         """Raise MachineError for the error of a file, or of an archive, if the file is not the
         cause.
         """
         while error is not None:
-            if isinstance(error, OSError) and cls.is_cause(error):
+            if isinstance(error, OSError) and error.errno not in _OF_FILES:
                 raise cls(f"cannot read {shown}: {error.strerror} ({_ADVICE})") from None
             error = error.__context__  # zipfile raises BadZipFile for a file that cannot be read
 

@@ -15,6 +15,7 @@ _TAG_COMMAND = re.compile(r"##(vso)?\[", re.IGNORECASE)
 _MAX_NAME = 60  # characters of a name that are shown
 _MAX_FILE_NAME = 100  # characters of a path that are shown, its last ones
 MAX_NAMED = 5  # names that a message lists, where nothing asks for more or fewer
+MAX_PEOPLE = 12  # whom a line lists
 
 
 def printable(text: str) -> str:
@@ -127,7 +128,7 @@ def enumerated(
     return last
 
 
-def people_text(names: Collection[str], most: int) -> str:
+def people_text(names: Collection[str], most: int = MAX_PEOPLE) -> str:
     """Return the names of people like `enumerated`: "Doe, Jane; Roe, Al and 3 more"."""
     return enumerated(names, most, separator="; " if any(", " in name for name in names) else ", ")
 

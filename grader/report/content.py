@@ -540,13 +540,9 @@ def next_command(report: Report) -> str:
         if entry.result.manual_mark is None
     ]
     first = next(iter((*failed, *report.pending_automatic)), None)
-    if first is not None:
-        return _explain_command(first.criterion.id, report)
-    return ""
-
-
-def _explain_command(name: str, report: Report) -> str:
-    """Return the command that explains a criterion, with the path of the rubric as it was given."""
-    if report.rubric.is_copy_of_shipped:
-        return f"grader explain {name}"
-    return f"grader explain {name} --rubric {shell_quoted(report.rubric.path)}"
+    if first is None:
+        return ""
+    command = f"grader explain {first.criterion.id}"
+    if not report.rubric.is_copy_of_shipped:
+        command += f" --rubric {shell_quoted(report.rubric.path)}"
+    return command

@@ -29,10 +29,6 @@ EFFECTS = {
 _NO_BASE = Base(is_outside=True)
 
 
-def _no_source(_: str) -> Source | None:
-    return None
-
-
 @dataclass(frozen=True, slots=True)
 class Inspection:
     """A URDF as read, with its joints at given positions; `robot` is None if ROS 2 reads nothing.
@@ -45,7 +41,7 @@ class Inspection:
     robot: Configuration | None = None
     relative_to: str | None = None
     names: tuple[Problem, ...] = ()
-    source_of: Callable[[str], Source | None] = _no_source
+    source_of: Callable[[str], Source | None] | None = None
     base: Base = _NO_BASE  # its place in a repository
 
     @property
@@ -74,7 +70,7 @@ class Inspection:
         own = self.reading.source if self.reading is not None else None
         if own is not None and own.path == path:
             return own
-        return self.source_of(path)
+        return self.source_of(path) if self.source_of is not None else None
 
     def poses(self) -> Iterator[tuple[str, Transform | str]]:
         """Yield the pose of every link in the frame `relative_to`, in file order, or the reason why

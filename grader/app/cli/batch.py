@@ -113,6 +113,7 @@ def batch(
 
       See https://urdf-grader.github.io/urdf-grader/grade-a-class.html for more.
     """
+    options = {**locals()}  # by their names
     if cluster is None and paths:  # a class that is graded may need no workers
         with suppress(OSError):  # it is started again when it is needed
             # it loads what grades a submission, while this process loads what the class needs
@@ -122,28 +123,5 @@ def batch(
     for kind in report_format or ():
         if kind.needs == "identity":
             raise GraderError(f"{kind} is for one repository: use `grader grade` there")
-    request = ClassRequest(
-        paths=paths,
-        gradebook=gradebook,
-        rubric=rubric,
-        usual_rubric=os.environ.get(RUBRIC_VARIABLE) or DEFAULT_RUBRIC,
-        roster=roster,
-        due=due,
-        layout=layout,
-        assignment=assignment,
-        ignore=ignore,
-        part=part,
-        arg=arg,
-        ignore_file=ignore_file,
-        max_size=max_size,
-        jobs=jobs,
-        timeout=timeout,
-        force=force,
-        cluster=cluster,
-        reports=reports,
-        report_format=report_format,
-        answers=answers,
-        verbose=verbose,
-        output_format=output_format,
-    )
-    return grade_class(request, TERMINAL)
+    usual = os.environ.get(RUBRIC_VARIABLE) or DEFAULT_RUBRIC
+    return grade_class(ClassRequest(**options, usual_rubric=usual), TERMINAL)

@@ -15,7 +15,6 @@ from grader.files.reading import URDF_LIMIT
 from grader.lab.rubric.hint_levels import HintLevel
 from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
 from grader.report.formats import Format, render
-from grader.report.invocation import read_saves
 from grader.report.writing import write_stdout
 
 _PATH = "A .urdf file, package, workspace, repository, .zip or .tar.gz, or - for standard input."
@@ -75,23 +74,9 @@ def grade(
 
       grader grade lab6.zip --save markdown=report.md --save junit=report.xml
     """
+    request = GradeRequest(**locals())  # its fields are the options
     try:
-        request = GradeRequest(
-            path=path,
-            rubric=rubric,
-            expect_rubric=expect_rubric,
-            part=part,
-            output_format=output_format,
-            saves=read_saves(save or ()),
-            fail_under=fail_under,
-            max_size=max_size,
-            arg=arg,
-            answers=answers,
-            verbose=verbose,
-            hints=hints,
-            fix=fix,
-        )
-        if watch:
+        if request.watch:
             from grader.app.commands.watch import watch as grade_on_change
 
             grade_on_change(request, TERMINAL)

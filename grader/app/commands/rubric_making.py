@@ -38,7 +38,7 @@ from grader.workers.pool import Processes, processors
 from grader.workers.queue import Progress
 
 _SCHEMA = "rubric.schema.json"  # beside the rubric, as the documentation calls it
-_MAX_NAMED = 4
+_MAX_IN_NOTE = 4  # files or criteria
 _GROUP, _SECONDS = 20, 60.0  # mutants that a worker grades at once, and how long they may take
 
 
@@ -97,7 +97,7 @@ def _solution(submission: Submission, reference: str, warn: Warn) -> Solution | 
     if others:
         warn(
             f"the rubric is made from {submission.path}; other candidates: "
-            f"{enumerated(others, _MAX_NAMED)}"
+            f"{enumerated(others, _MAX_IN_NOTE)}"
         )
     return Solution(submission, reading, Configuration(reading.robot))
 
@@ -151,7 +151,7 @@ def _omission_lines(omissions: Iterable[Omission]) -> Iterator[str]:
     by_reason: dict[str, list[str]] = {}
     for omission in omissions:
         by_reason.setdefault(omission.why, []).append(omission.what)
-    yield from (f"{enumerated(names, _MAX_NAMED)}: {why}" for why, names in by_reason.items())
+    yield from (f"{enumerated(names, _MAX_IN_NOTE)}: {why}" for why, names in by_reason.items())
 
 
 def test_rubric(

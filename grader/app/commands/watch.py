@@ -14,6 +14,7 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.app.grading import (
+    MAX_NAMED_CRITERIA,
     GradeRequest,
     check_saves,
     grade_submission,
@@ -34,7 +35,6 @@ from grader.report.writing import Terminal
 
 _POLL = 0.1  # seconds between two looks
 _SHARE = 10  # a look at many files is followed by a pause of this many times its own time
-_MAX_NAMED = 8
 _CHANGES = {
     "passed": "now passed",
     "failed": "now failed",
@@ -54,16 +54,15 @@ def watch(request: GradeRequest, terminal: Terminal) -> None:
         GraderError: What no change of a file corrects: wrong usage, an unknown rubric, standard
             output that is closed, a report that cannot be saved.
     """
+    saves = request.saves
     watched = _watched(request)
-    rubric = files_of(request.rubric, request.answers) if request.saves else ()
-    check_saves(request.saves, rubric, request.path)
+    rubric = files_of(request.rubric, request.answers) if saves else ()
+    check_saves(saves, rubric, request.path)
     _ = request.threshold  # refuse a wrong one at once
     gc.enable()  # unlike other commands, this one may run for hours
     last: Report | None = None
     terminal.warn(f"watching {printable_path(request.path)}; stop with Ctrl-C")
-    for besides in _changes(
-        watched, frozenset(os.path.realpath(file) for _, file in request.saves)
-    ):
+    for besides in _changes(watched, frozenset(os.path.realpath(file) for _, file in saves)):
         try:
             result = grade_submission(request, terminal.warn)
         except (InputError, MachineError, RubricError) as error:
@@ -133,7 +132,7 @@ def comparison_lines(before: Report, after: Report) -> list[str]:
             gain = _gain(new.points - (was.points if was else 0))
             names.append(printable(new.criterion.id) + gain)
         if names:
-            lines.append(f"{change}: {enumerated(names, _MAX_NAMED)}")
+            lines.append(f"{change}: {enumerated(names, MAX_NAMED_CRITERIA)}")
     return lines
 
 

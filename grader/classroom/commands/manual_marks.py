@@ -38,7 +38,6 @@ from grader.files.reading import read_capped
 from grader.lab.rubric.criterion import DEADLINE, TOTAL
 from grader.report.writing import Warn
 
-_MAX_NAMED = 12
 _EMPTY = dict.fromkeys((*COLUMNS, SURPLUS), "")
 
 
@@ -90,11 +89,11 @@ def _unassigned(grades: Sequence[StudentGrade]) -> Iterator[str]:
     )
     if paths := [stored.paths[0] for stored in visitors if stored is not None and stored.paths]:
         yield (
-            f"still unassigned: {people_text(paths, _MAX_NAMED)}: a student with this mark may "
+            f"still unassigned: {people_text(paths)}: a student with this mark may "
             "have submitted it"
         )
     if unclear := [one.student.key for one in grades if Reason.UNCLEAR in one.concerns]:
-        yield f"no mark for {people_text(unclear, _MAX_NAMED)}: {Reason.UNCLEAR}"
+        yield f"no mark for {people_text(unclear)}: {Reason.UNCLEAR}"
 
 
 def import_marks(gradebook: Path, file: Path, by: str) -> str:

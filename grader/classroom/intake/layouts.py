@@ -65,7 +65,7 @@ _PATTERNS = {
 # student's name.
 _MAX_GROWTH = 1000
 _NAME_IN_CANVAS = re.compile(r"[^\x00-,./:-@[-^`{-\x7f\s]*")
-_MAX_NAMED = 10
+_MAX_ASSIGNMENTS = 10  # that a message names
 _MAX_TIME = 100  # bytes
 
 
@@ -260,7 +260,9 @@ def nbgrader(course: ClassFolder) -> Iterator[NamedPath]:
     else:
         wanted = [name for name in found if folded(name) == folded(folder.lab)]
     if len(wanted) != 1:
-        named = enumerated([printable_path(name) for name in sorted(found)], _MAX_NAMED) or "none"
+        named = (
+            enumerated([printable_path(name) for name in sorted(found)], _MAX_ASSIGNMENTS) or "none"
+        )
         raise InputError(f"name the assignment to grade with --assignment; there are: {named}")
     lab = wanted[0]
     folder.ignore(

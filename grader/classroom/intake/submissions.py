@@ -36,7 +36,8 @@ from grader.lab.submission.labs import MAX_WRAPPERS, LabFolders, is_part
 _NUMBERED = re.compile(
     r"(.+?)-[1-9][0-9]?((?:\.[A-Za-z][A-Za-z0-9]*)*(?:\.[A-Za-z0-9]*)?)", re.DOTALL
 )
-_MAX_LINES, _MAX_NAMED = 200, 10
+_MAX_LINES = 200
+_MAX_OWNERS = 10  # students to whom a submission may belong, in a message
 _ANONYMOUS = (
     "this is an anonymous download: its submissions (anon_...) match no student. "
     "Canvas shows the names when the grades are posted: download again then"
@@ -422,7 +423,9 @@ class _Owners:
         """
         if not is_contested:
             self._visitors.append(one)
-        keys = enumerated([self.people.students[index].key for index in students], _MAX_NAMED, "or")
+        keys = enumerated(
+            [self.people.students[index].key for index in students], _MAX_OWNERS, "or"
+        )
         reason = f"may belong to {keys}" if students else "is not on the roster"
         reason += ", and so may another submission: none is graded" if is_contested else ""
         key, place = (

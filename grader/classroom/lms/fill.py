@@ -29,7 +29,8 @@ _NOT_GRADED = frozenset({"", "-", "needs grading"})  # the last in Blackboard
 _POINTS_ROW = "Points Possible"  # in the first cell, of Canvas
 _THOUSANDS = re.compile(r"\s|[.,](?=.*[.,])")  # in 1.000,00: the last comma or point is decimal
 _COMMA, _WORDS = r"[0-9],[0-9]{1,2}$", r"[^\W\d_]+|\d+"
-_MAX_CHANGES, _MAX_REASONS, _MAX_NAMED, _MAX_COLUMNS = 40, 50, 3, 20
+_MAX_CHANGES, _MAX_REASONS, _MAX_COLUMNS = 40, 50, 20
+_MAX_CONCERNED = 3  # people who are named for one reason
 
 
 class _Note(NamedTuple):
@@ -197,7 +198,7 @@ def by_reason(notes: Iterable[tuple[str, str, str]]) -> list[str]:
     for (kind, why), people in concerned.items():
         who = people[0]
         if len(people) > 1:
-            who = f"{len(people)} ({people_text(people, _MAX_NAMED)})"
+            who = f"{len(people)} ({people_text(people, _MAX_CONCERNED)})"
         lines.append(printable(": ".join(text for text in (kind, who, why) if text)))
     return first_lines(lines, _MAX_REASONS)
 

@@ -13,6 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from grader.base.text import (
+    MAX_PEOPLE,
     counted,
     counted_points,
     cut,
@@ -47,7 +48,6 @@ _MAX_ROWS = 40
 _MAX_COSTS = 3  # criteria named in a row
 _BAR_WIDTH = 40
 _MAX_MISTAKES, _MAX_GROUPS = 10, 20
-_MAX_NAMED = 12
 _MAX_STEPS = 5  # criteria of a student that changed
 
 
@@ -160,7 +160,7 @@ def render_class(figures: ClassStatistics, console: Console, *, verbose: bool = 
     _show_lines("Common mistakes", mistakes, page, indent=8)
     equal = []
     for work in figures.equal[:_MAX_GROUPS]:
-        students = people_text([labels[key] for key in work.students], _MAX_NAMED)
+        students = people_text([labels[key] for key in work.students])
         equal.append(f"{students}: {work.equal}")
     _show_lines("Equal work", equal, page, note=EQUAL_NOTE)
     attention = []
@@ -189,7 +189,7 @@ def _attention_line(
 ) -> str:
     """Return the students who need attention for one reason, each with a detail."""
     names = [f"{name} ({detail})" if detail else name for name, detail in who]
-    shown = people_text(names, len(who) if verbose else _MAX_NAMED)
+    shown = people_text(names, len(who) if verbose else MAX_PEOPLE)
     return f"{reason[:1].upper()}{reason[1:]} ({len(who)}): {shown}"
 
 

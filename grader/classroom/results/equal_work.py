@@ -80,10 +80,9 @@ def _groups(
         form = stored.work.get(kind, "")
         if form and form not in known:
             groups[form].append(stored)
-    several = [group for group in groups.values() if _is_of_several(group)]
+    several = []
+    for group in groups.values():
+        submissions = {(stored.root, stored.paths) for stored in group}
+        if len(submissions) > 1:  # members of a team share one
+            several.append(group)
     return sorted(several, key=lambda group: (-len(group), [stored.student for stored in group]))
-
-
-def _is_of_several(group: Iterable[StoredResult]) -> bool:
-    """Return whether results are of more than one submission: members of a group share one."""
-    return len({(stored.root, stored.paths) for stored in group}) > 1

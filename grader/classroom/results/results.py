@@ -21,7 +21,7 @@ from typing import Any, Literal, NamedTuple, Self
 from zlib import crc32
 
 from grader.base.errors import InputError
-from grader.base.text import enumerated, printable_path
+from grader.base.text import MAX_NAMED, enumerated, printable_path
 from grader.files.reading import read_error, sha256_of
 from grader.lab.checks.outcome import Status
 
@@ -32,7 +32,6 @@ StoredCriterion = (
     tuple[float | None, Status, str, str] | tuple[float | None, Status, str, str, float]
 )
 _DIGITS = 16  # of a hash
-_MAX_NAMED = 10  # lines
 _RUN, _GRADED, _TEXTS = b'{"run":', b'{"student":', b'{"texts":'
 _CHECKSUM = b',"crc32":'  # of all bytes before it
 
@@ -194,7 +193,7 @@ class Results:
     @property
     def damage(self) -> str:
         """Which lines are damaged; empty without any."""
-        lines = enumerated([*map(str, self.damaged)], _MAX_NAMED)
+        lines = enumerated([*map(str, self.damaged)], MAX_NAMED)
         noun, verb = ("line", "does") if len(self.damaged) == 1 else ("lines", "do")
         if lines:
             where = f"{noun} {lines} of {printable_path(self._file)}"

@@ -95,10 +95,8 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
             for name, actual, wanted in difference.components(tolerance)
         )
         solid_text = f"a uniform solid of its {what} with a mass of {inertial.mass:.6g} kg"
-        wrong.append(
-            f"the inertia of {link!r} is {_round_percentage(off)} % off that of "
-            f"{solid_text}: {reason}"
-        )
+        shown = f"{off:,.0f}" if 1e3 <= off < 1e10 else f"{off:.3g}"
+        wrong.append(f"the inertia of {link!r} is {shown} % off that of {solid_text}: {reason}")
     if not within(distance, 0.0, max(_CENTRE, _CENTRE_SHARE * solid.size)):
         at = at if wrong else place(inertial.origin.location, "xyz") or place(inertial.location)
         wrong.append(
@@ -159,10 +157,3 @@ def _solid_of(robot: Configuration, link: str) -> tuple[str, Solid]:
             return word if len(placed) == 1 else f"{word}s", Solid.of(placed)
     message = f"link {link!r} has no visual or collision shape with a volume"
     raise MissingElement("visual", link, message=message, location=place(found.location))
-
-
-def _round_percentage(percentage: float) -> str:
-    """Return a percentage rounded for reading: 61.2, 1,000."""
-    if not 1e3 <= percentage < 1e10:
-        return f"{percentage:.3g}"
-    return f"{percentage:,.0f}"

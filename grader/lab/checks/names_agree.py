@@ -6,7 +6,7 @@ from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.submission.submission import Submission
 from grader.ros.workspace.names import Family
 
-_MAX_NAMED = 3  # mistakes in a message
+_MAX_IN_MESSAGE = 3  # mistakes, and places of each
 
 
 def names_agree(submission: Submission, *, of: Family) -> Outcome:
@@ -36,7 +36,7 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
             places.setdefault(it.message, {})[it.location.file_and_line] = None
         (first, (_, *also)), *others = places.items()
         texts = [f"{at}: {message}{_also(more)}" for message, (at, *more) in others]
-        message = "; ".join([f"{first}{_also(also)}", *first_lines(texts, _MAX_NAMED - 1)])
+        message = "; ".join([f"{first}{_also(also)}", *first_lines(texts, _MAX_IN_MESSAGE - 1)])
         return failed(message, wrong[0].location, mistake=first)
     if of in undecided:
         reason = undecided[of]
@@ -48,5 +48,5 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
 def _also(places: list[str]) -> str:
     """Return the further places of one mistake, in parentheses; empty without one."""
     if places:
-        return f" (also {enumerated(places, _MAX_NAMED)})"
+        return f" (also {enumerated(places, _MAX_IN_MESSAGE)})"
     return ""

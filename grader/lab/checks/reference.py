@@ -48,7 +48,7 @@ _Samples = Annotated[
         "from 1 to 10000", lambda value: 1 <= value <= 10_000, {"minimum": 1, "maximum": 10_000}
     ),
 ]
-_MAX_NAMED = 8  # joints in a message
+_MAX_JOINTS = 8  # in a message
 _MAX_CHAIN = 500  # joints that lead to a link
 _LEAST = 1e-9  # of a tolerance: below it, only rounding differs
 # The poses of links of references, by what they are relative to, their names, and the joints with
@@ -159,7 +159,7 @@ def _pair_joints(
 
 
 def _list_names(names: Sequence[str] | dict[str, Joint]) -> str:
-    return enumerated([*map(quoted, names)], _MAX_NAMED)
+    return enumerated([*map(quoted, names)], _MAX_JOINTS)
 
 
 def _check_names(robot: Configuration, names: Sequence[str]) -> None:
@@ -168,7 +168,9 @@ def _check_names(robot: Configuration, names: Sequence[str]) -> None:
     if not missing:
         return
     known = tuple(joint.name for joint in robot.robot.joints)
-    message = f"there is no joint {enumerated([*map(quoted, missing)], _MAX_NAMED, 'and no joint')}"
+    message = (
+        f"there is no joint {enumerated([*map(quoted, missing)], _MAX_JOINTS, 'and no joint')}"
+    )
     guess = did_you_mean(missing[0], known) or f"; the file has: {_list_names(known) or 'none'}"
     raise MissingElement("joint", missing[0], known, message=message, detail=guess)
 
@@ -245,7 +247,7 @@ class _MotionComparison(NamedTuple):
         elif wrong:
             differing = [self.joints[index][0] for index in wrong]
             at = differing[0].axis_location or differing[0].location
-            names = enumerated([quoted(joint.name) for joint in differing], _MAX_NAMED, "or")
+            names = enumerated([quoted(joint.name) for joint in differing], _MAX_JOINTS, "or")
             cause = f"; it differs as soon as {names} moves"
         message = f"{worst.link!r} does not move as in the reference: it is {worst.text} off"
         outcome = failed(message, at, detail=f" with {self._positions_text(worst)}{cause}")
@@ -299,7 +301,7 @@ class _MotionComparison(NamedTuple):
 
     def _links_text(self) -> str:
         names = [quoted(link) for link, _ in self.links]
-        return f"{enumerated(names, _MAX_NAMED)} {'moves' if len(names) == 1 else 'move'}"
+        return f"{enumerated(names, _MAX_JOINTS)} {'moves' if len(names) == 1 else 'move'}"
 
     def _positions_text(self, offset: _Offset) -> str:
         if not any(offset.positions):
@@ -312,7 +314,7 @@ class _MotionComparison(NamedTuple):
                 value, unit = degrees(position), "degrees"
             if position:
                 moved.append(f"{quoted(joint.name)} at {point((value,))} {unit}")
-        return enumerated(moved, _MAX_NAMED)
+        return enumerated(moved, _MAX_JOINTS)
 
 
 def _angle_between(one: Transform, other: Transform) -> float:

@@ -80,7 +80,10 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
         links += filter(None, _frames_of_link(opened, link.name))
     message, detail = f"the Fixed Frame is {actual!r}", ""
     if actual not in frames:
-        message += f"; it should be {expected!r}{_prefix_reason(expected, frame)}"
+        message += f"; it should be {expected!r}"
+        prefix = expected.removesuffix(frame)
+        if prefix:
+            message += f", because the frame_prefix of robot_state_publisher is {prefix!r}"
         if links and actual not in links and actual != frame:
             detail = f"; the robot has no link {actual!r}{did_you_mean(actual, links)}"
     elif links and actual not in links:
@@ -180,12 +183,6 @@ def _frames_of_link(opened: "Launch | None", link: str) -> tuple[str | None, ...
     if opened is not None:
         return opened.frames_of(link)
     return (link,)
-
-
-def _prefix_reason(frame: str, link: str) -> str:
-    """Return why a frame is not called like its link."""
-    prefix = frame.removesuffix(link)
-    return f", because the frame_prefix of robot_state_publisher is {prefix!r}" if prefix else ""
 
 
 def _judge_model(model: "Display", topic: str, opened: "Launch | None") -> tuple[Status, str]:

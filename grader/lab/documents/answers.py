@@ -290,9 +290,12 @@ class _AnswerSearch:
         )
         joined: list[Passage] = []
         for group in groups:
-            heads = [
-                (document, head) for document, head in group if _is_shared(wanted.pattern, head)
-            ]
+            heads = []
+            for document, head in group:
+                # "question" means also those that say which: "REQUIRED Question".
+                is_question = wanted.pattern == ("question",) and "question" in head.pattern
+                if is_question or head.pattern == wanted.pattern:
+                    heads.append((document, head))
             passages = [self._passage_of(document, head) for document, head in heads[:_MAX_MATCHES]]
             answers = [passage for passage in passages if passage is not None]
             match = _match_answer(wanted, self._task, answers)
@@ -347,15 +350,6 @@ def _heading_of_file(document: TextDocument, pattern: Pattern) -> Heading:
     return Heading(
         0, len(document.lines), name, read_label(name), section=task, pattern=found, number=number
     )
-
-
-def _is_shared(pattern: Pattern, head: Heading) -> bool:
-    """Return whether a heading has this pattern; "question" means also those that say which:
-    "REQUIRED Question".
-    """
-    if pattern == ("question",):
-        return "question" in head.pattern
-    return head.pattern == pattern
 
 
 def _joined_passage(match: _AnswerMatch, passages: list[Passage]) -> Passage:

@@ -73,13 +73,15 @@ def explain(
         for it in problems
         if it.location == place and _explains(it, outcome, is_part=part in _DROPPING)
     ]
+    is_of_looks = "material" in looks_at
     about = [
         it
         for it in problems
-        if it.kind is not urdf_problems.MISSPELT or _is_about(it.subject, looks_at)
+        # A misspelt colour explains no shape.
+        if is_of_looks or it.kind is not urdf_problems.MISSPELT or it.subject not in _LOOKS
     ]
     if part not in _OUTSIDE:
-        inside = [*_inside(place, about, source, is_of_link="material" in looks_at)]
+        inside = [*_inside(place, about, source, is_of_link=is_of_looks)]
     else:
         inside = []
     for problem in problems:
@@ -89,13 +91,6 @@ def explain(
                 message=message, location=problem.location, mistake=mistake, problem=problem.message
             )
     return outcome
-
-
-def _is_about(tag: str, looks_at: Collection[str]) -> bool:
-    """Return whether a mistake in an element may explain what a check finds: a colour explains no
-    shape.
-    """
-    return tag not in _LOOKS or "material" in looks_at
 
 
 def _explains(problem: Problem, outcome: Outcome, *, is_part: bool) -> bool:

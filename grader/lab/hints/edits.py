@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 from grader.base.source import Certainty, Edits
 
+MAX_IN_HINT = 4  # edits, links, criteria or places that a hint names
+
 
 class Proposal(NamedTuple):
     """An edit that may undo a mistake, in the words and with the order in which it is tried.

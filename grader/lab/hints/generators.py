@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from grader.base.source import Edit, Edits
 from grader.base.text import enumerated, texts_in
-from grader.lab.hints.edits import FoundHint, Proposal
+from grader.lab.hints.edits import MAX_IN_HINT, FoundHint, Proposal
 from grader.lab.hints.robot_difference import MissingPart, Piece, RobotDifference
 from grader.lab.hints.robot_draft import Draft, Set
 from grader.lab.hints.robot_variants import (
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 _RAW_XACRO = "the URDF contains xacro, but is loaded without xacro"
 _MAX_LINKS = 40
-_MAX_SIMILAR, _MAX_NAMED = 2, 4
+_MAX_SIMILAR = 2
 
 
 class Situation:
@@ -332,7 +332,7 @@ def missing_hints(
         hints = {name: hint for name, hint in hints.items() if hint.proposal.link != joints[0].link}
         hints[loading[0]] = _hint_of_parts(written, joints)
     else:
-        lacking = enumerated([repr(part.link) for part in joints], _MAX_NAMED)
+        lacking = enumerated([repr(part.link) for part in joints], MAX_IN_HINT)
         cause = f"the joints of {lacking} are missing"
         hints[loading[0]] = FoundHint(Proposal((), cause), {}, words=f"add the joints of {lacking}")
     return hints

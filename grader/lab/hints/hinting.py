@@ -13,7 +13,7 @@ from grader.base.text import counted, enumerated
 from grader.files.limits import ROBOT_ENDINGS
 from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Hint, Report, Result
-from grader.lab.hints.edits import FoundHint
+from grader.lab.hints.edits import MAX_IN_HINT, FoundHint
 from grader.lab.hints.robot_draft import Draft
 from grader.lab.hints.search import HintSearch, Trials, costs_of, hints_on_slips, judged_results
 from grader.lab.rubric.hint_levels import HintLevel
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from grader.ros.xacro.expansion import ExpandedSource
 
 
-_MAX_NAMED = 4  # criteria and edits that are named
 _MAX_LINES = 6
 _MAX_TEXT = 240  # characters of a changed text
 
@@ -93,7 +92,7 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
             hint = _hint(in_order, text, entry, results[name], keeps_edits=keeps_edits)
             hints[name] = hint._replace(after=earlier)
     if level == "edit":
-        others = enumerated(list(dict.fromkeys(entries.values())), _MAX_NAMED)
+        others = enumerated(list(dict.fromkeys(entries.values())), MAX_IN_HINT)
         for name in costs:
             if name not in hints and name in search.results and not search.results[name].is_lost:
                 at = results[name].outcome.location or Location("", 1, 1)
@@ -218,7 +217,7 @@ def message(
     text = _clause(found, level, submission)
     if earlier:
         edits = "edits" if len(earlier) > 1 else "edit"
-        return f"After the {edits} for {enumerated(earlier, _MAX_NAMED)}, {text}."
+        return f"After the {edits} for {enumerated(earlier, MAX_IN_HINT)}, {text}."
     return f"{text[0].upper()}{text[1:]}."
 
 
@@ -244,10 +243,10 @@ def _changes(edits: Sequence[Edit], submission: Submission) -> str:
     """Return the edits in words, and where a macro is called that one of them changes."""
     changes = _moves(edits, submission) or _indents(edits, submission)
     if not changes:
-        changes = [_change(edit, submission) for edit in edits[:_MAX_NAMED]]
-    if len(edits) > len(changes) == _MAX_NAMED:
-        changes.append(counted(len(edits) - _MAX_NAMED, "more edit"))
-    text = enumerated(changes, _MAX_NAMED + 1)
+        changes = [_change(edit, submission) for edit in edits[:MAX_IN_HINT]]
+    if len(edits) > len(changes) == MAX_IN_HINT:
+        changes.append(counted(len(edits) - MAX_IN_HINT, "more edit"))
+    text = enumerated(changes, MAX_IN_HINT + 1)
     source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
     if source is not None and source.is_expanded:
         text += _calls(edits, cast("ExpandedSource", source), submission.path)
@@ -258,7 +257,7 @@ def _texts_to_check(edits: Sequence[Edit], submission: Submission) -> str:
     """Return the texts to look at, each with its line."""
     texts = [f"{_quote(edit.old)} ({_where(edit, submission)})" for edit in edits if edit.old]
     if texts:
-        return enumerated(texts, _MAX_NAMED)
+        return enumerated(texts, MAX_IN_HINT)
     return _places(edits, submission)
 
 
@@ -289,7 +288,7 @@ def _calls(edits: Sequence[Edit], source: "ExpandedSource", main: str | None) ->
     for edit in edits:
         for macro, calls in expanded.calls(edit).items():
             if len(calls) > 1:
-                places = enumerated([_at(call, main) for call in calls], _MAX_NAMED)
+                places = enumerated([_at(call, main) for call in calls], MAX_IN_HINT)
                 texts[macro] = f"the macro {macro} is called in {places}"
     if not texts:
         return ""

@@ -198,10 +198,9 @@ class RobotDifference:
             yield from self._value_pieces(values)
         for step in found:
             own, like = step.own, step.like
+            aliases = TAGS[own.tag].aliases if own.tag in TAGS else {}
             match step.verb:
-                case "rename" | "unset" if new := step.other or _meant_attribute(
-                    own.tag, step.name
-                ):
+                case "rename" | "unset" if new := step.other or aliases.get(step.name):
                     edits: Edits = ()
                     if new not in own.values:
                         edits = self.draft.rename_attribute(own.of, step.name, new)
@@ -453,13 +452,6 @@ def _values_of_one(found: Iterable[Step]) -> Iterator[list[Step]]:
             together.append(step)
     if together:
         yield together
-
-
-def _meant_attribute(tag: str, name: str) -> str:
-    """Return the attribute that a wrong name of one often means; empty if none is known."""
-    if tag in TAGS:
-        return TAGS[tag].aliases.get(name, "")
-    return ""
 
 
 def _rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:

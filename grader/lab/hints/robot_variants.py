@@ -34,7 +34,7 @@ _SIDES = {
     "upper": "lower",
 }
 _WORD = re.compile(r"[^\W\d_]+")
-_MAX_NAMED = 3  # values whose mistakes are named one by one
+_MAX_ONE_BY_ONE = 3  # values whose mistakes are named
 _WITH_NUMBERS = (
     "origin",
     "axis",
@@ -311,7 +311,7 @@ def _group(difference: RobotDifference, link: str, sets: list[Set], what: str) -
     changed = {(change.owner, change.tag): change for change in sets}
     if len(changed) < 2:
         return
-    if len(changed) == len(sets) <= _MAX_NAMED:
+    if len(changed) == len(sets) <= _MAX_ONE_BY_ONE:
         what = " and ".join(difference.piece_of_sets([change]).cause for change in changed.values())
     yield Piece(what, link, tuple(dict.fromkeys(sets)), (), STRUCTURE)
 

@@ -68,13 +68,14 @@ def steps(own: Node, like: Node) -> list[Step]:
     moved: list[Step] = []
     left: list[Step] = []
     for step in every_step:
-        alike = _first_alike(spare, step.like) if step.verb == "add" else None
-        if alike is None:
+        other, alike = step.like, None
+        if step.verb == "add" and other is not None:
+            alike = next((node for node in spare if _is_alike(node, other)), None)
+        if other is None or alike is None:
             left.append(step)
         else:
-            assert step.like is not None
-            moved.append(Step("move", alike, step.like, parent=step.own))
-            moved += _steps(alike, step.like)
+            moved.append(Step("move", alike, other, parent=step.own))
+            moved += _steps(alike, other)
             spare = [node for node in spare if node is not alike]
     kept: list[Step] = []
     for step in left:
@@ -82,14 +83,6 @@ def steps(own: Node, like: Node) -> list[Step]:
         if step.verb != "remove" or not was_moved:
             kept.append(step)
     return moved + sorted(kept, key=lambda step: _ORDER.get(step.verb, 0))
-
-
-def _first_alike(nodes: Sequence[Node], other: Node | None) -> Node | None:
-    """Return the first node that may be another one in another place."""
-    for node in nodes:
-        if other is not None and _is_alike(node, other):
-            return node
-    return None
 
 
 def _steps(own: Node, like: Node) -> Iterator[Step]:

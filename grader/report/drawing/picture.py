@@ -26,7 +26,7 @@ _Rgba = tuple[float, float, float, float]
 
 _MAX_BODIES = 500  # in software, a browser draws more only in seconds
 _MAX_COORDINATE = 1e4  # metres
-_MAX_NAMED = 4
+_MAX_OMITTED = 4  # links that are not shown
 _WITHOUT_MATERIAL: _Rgba = (1.0, 0.0, 0.0, 1.0)  # RViz shows such a shape in red
 _MESHES, _UNKNOWN = (
     "mesh files are not opened",
@@ -111,7 +111,7 @@ def scene_of(robot: Configuration, frame: str, wheels: Collection[str] = ()) -> 
                 omitted.setdefault(body, {})[link.name] = None
     missing = []
     for why, names in omitted.items():
-        shown = enumerated([quoted(name) for name in names], _MAX_NAMED)
+        shown = enumerated([quoted(name) for name in names], _MAX_OMITTED)
         missing.append(f"Not shown: {shown}: {why}")
     if len(bodies) > _MAX_BODIES:
         missing.append(f"Not shown: {counted(len(bodies) - _MAX_BODIES, 'more shape')}")

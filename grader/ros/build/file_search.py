@@ -133,7 +133,7 @@ class PackageListing:
                     raise Undetermined(_OUTSIDE)
                 here = here.rpartition("/")[0]
             elif part not in ("", "."):
-                here = f"{here}/{part}" if here else part
+                here = posixpath.join(here, part)
             elif index and here not in self.folders:
                 return None
             if here in self._links:
@@ -396,12 +396,12 @@ class _PackageFolder:
         evaluation.budget.charge(10)
         names = self.listing.names(real)
         self.listing.order_matters |= len(names) > 1
-        paths = {name: _path_below(real, name) for name in names}
+        paths = {name: posixpath.join(real, name) for name in names}
         folders = [name for name, path in paths.items() if path in self.listing.folders]
         yield (spelled, folders, [name for name in paths if name not in folders])
         for name in folders:
             yield from self._steps(
-                evaluation, self.real(_path_below(real, name)), posixpath.join(spelled, name)
+                evaluation, self.real(posixpath.join(real, name)), posixpath.join(spelled, name)
             )
 
     def open(self, evaluation: Evaluation, call: Call) -> Value:
@@ -456,15 +456,10 @@ def _find_packages(listing: PackageListing, _: Evaluation, call: Call) -> Value:
 
 def _package_names(listing: PackageListing, folder: str) -> Iterator[str]:
     for name in listing.names(folder):
-        path = _path_below(folder, name)
+        path = posixpath.join(folder, name)
         if "." not in name and f"{path}/__init__.py" in listing.files:
             yield path.replace("/", ".")
             yield from _package_names(listing, path)
-
-
-def _path_below(folder: str, name: str) -> str:
-    """Return the path of a name in a folder, which may be the package's, empty."""
-    return f"{folder}/{name}" if folder else name
 
 
 def _matches_any(name: str, patterns: Value) -> bool:

@@ -65,7 +65,7 @@ def read_manifest(data: bytes, path: str) -> Manifest:
             kinds.BAD_MANIFEST, f"the root of package.xml is <{root.tag}>, not <package>", start
         )
         return Manifest(source, None, "", (problem,), start, start)
-    name = _first(root, "name")
+    name = next((it for it in root.iterchildren("*") if tag_of(it) == "name"), None)
     build_types = []
     for element in _exports(root):
         is_used = evaluate_condition(element.get("condition")) is not False
@@ -103,10 +103,6 @@ def _read_broken(data: bytes, source: Source, problem: Problem) -> Manifest:
     return Manifest(
         source, name.strip() or None, build_type.strip(), (problem,), location, location
     )
-
-
-def _first(root: Element, tag: str) -> Element | None:
-    return next((element for element in root.iterchildren("*") if tag_of(element) == tag), None)
 
 
 def _exports(root: Element) -> list[Element]:

@@ -33,15 +33,17 @@ def evaluate_condition(condition: str | None) -> bool | None:
         return None
     # With each comparison replaced by what it is, the rest is Python: `and` binds closer than `or`
     # in both.
-    decided = _COMPARISON.sub(lambda found: f" {_compare(*found.groups())} ", condition)
+    decided = _COMPARISON.sub(_compare, condition)
     try:
         return _decide(ast.parse(" ".join(decided.split()), mode="eval").body)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None
 
 
-def _compare(left: str, operator: str, right: str) -> bool:
-    return _COMPARE[operator](_evaluate_term(left), _evaluate_term(right))
+def _compare(comparison: re.Match[str]) -> str:
+    """Return True or False as text, with spaces around it."""
+    left, operator, right = comparison.groups()
+    return f" {_COMPARE[operator](_evaluate_term(left), _evaluate_term(right))} "
 
 
 def _evaluate_term(term: str) -> str:

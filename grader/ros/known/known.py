@@ -17,9 +17,12 @@ class _Known(TypedDict):
     frames: list[str]
     without_frames: list[str]
     without_lifecycle: list[str]
+    without_commands: list[str]
+    topics_of_others: list[str]
     written: list[str]
     metapackages: dict[str, list[str]]
     node_names: dict[str, str]
+    compared: list[str]
     programs: dict[str, list[str]]
     required_parameters: dict[str, list[str]]
     children: dict[str, list[str]]
@@ -29,6 +32,12 @@ class _Known(TypedDict):
     controllers: Mapping[Any, dict[str, str]]  # by the type that a file may give
     controller_topics: Mapping[Any, dict[Literal["subscription", "publisher"], dict[str, str]]]
     controller_actions: dict[str, list[str]]
+    moveit_actions: dict[str, str]
+    frame_elements: list[str]
+    joint_elements: list[str]
+    odometry_systems: list[str]
+    odometry_elements: list[str]
+    odometry_frames: list[str]
     bridge_types: dict[str, list[str]]
     gazebo_systems: dict[str, dict[str, dict[str, str]]]
     gazebo_sensors: dict[str, str]
@@ -79,6 +88,13 @@ def programs_of(package: str) -> Sequence[str]:
 def lacks_program(package: str, name: str) -> bool:
     """Return whether a package on every machine certainly has no such program."""
     return package in _machine()["packages"] and name not in programs_of(package)
+
+
+def compared_programs(package: str) -> Sequence[str] | None:
+    """Return the programs of a package with which a workspace is compared; None if it is not."""
+    if package in known()["compared"]:
+        return programs_of(package)
+    return known()["programs"].get(package)
 
 
 def is_imported_by_launch(module: str) -> bool:

@@ -16,7 +16,7 @@ from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import MANIFEST, RESOURCE_INDEX, Package
 
 _MAX_FILES = 5  # launch files, and RViz files
-_MAX_NAMED = 3  # files that a message names
+_MAX_FILES_NAMED = 3  # in a message
 
 
 def package_problems(package: Package) -> tuple[Problem, ...]:
@@ -130,4 +130,4 @@ def why_no_match(package: Package, pattern: str) -> str:
     files = files or [path for path in package.tree.files if path.rpartition("/")[0] == folder]
     if not files:
         return f", because the folder {folder!r} is empty"
-    return f"; there {'are' if len(files) > 1 else 'is'} {enumerated(files, _MAX_NAMED)}"
+    return f"; there {'are' if len(files) > 1 else 'is'} {enumerated(files, _MAX_FILES_NAMED)}"

@@ -22,26 +22,6 @@ _FRAMES = re.compile(r"(^|_)(frame|frame_id)$")
 _OWN_FRAMES = re.compile(
     r"^(odom|map|world|global|fixed|parent|target)_frame(_id)?$|^frame_prefix$"
 )
-_GAZEBO_FRAMES = ("gz_frame_id", "ignition_frame_id", "frame_id", "frame_name", "frameName")
-_GAZEBO_JOINTS = (
-    "left_joint",
-    "right_joint",
-    "joint_name",
-    "left_steering_joint",
-    "right_steering_joint",
-)
-
-# Systems of gz-sim that publish odometry, the elements that name its frames, and the default beside
-# the robot's links.
-_ODOMETRY = (
-    "AckermannSteering",
-    "DiffDrive",
-    "MecanumDrive",
-    "OdometryPublisher",
-    "TrackedVehicle",
-)
-_ODOMETRY_FRAMES = ("frame_id", "child_frame_id", "odom_frame", "robot_base_frame")
-_DEFAULT_FRAMES = ("odom", "base_footprint")
 
 
 def frame_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -137,14 +117,15 @@ def _in_robot(workspace: Workspace) -> Iterator[Fact]:
     if root is None or robot is None:
         return
     joints = {joint.name for joint in robot.joints}
+    joint_elements = known()["joint_elements"]
     for element in root.iterchildren("gazebo"):
         at = workspace.place(element)
         reference = element.get("reference")
         if reference and reference not in joints:
             yield Use("link", reference, at, "<gazebo reference>")
-        for inner in element.iter(*_GAZEBO_FRAMES, *_GAZEBO_JOINTS):
+        for inner in element.iter(*known()["frame_elements"], *joint_elements):
             text, parent = (inner.text or "").strip(), inner.getparent()
-            if text and inner.tag in _GAZEBO_JOINTS:
+            if text and inner.tag in joint_elements:
                 yield Use("joint", text, workspace.place(inner), f"<{inner.tag}>")
             elif text and inner.tag == "frame_id" and parent is not None and parent.tag == "plugin":
                 yield Definition("frame", text, workspace.place(inner))  # that the plugin publishes
@@ -163,13 +144,13 @@ def _odometry_frames(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
         if node.executable == "create":
             options = pairwise(node.arguments or ())
             created |= {name for option, name in options if option == "-name" and name}
-    defaults = [*_DEFAULT_FRAMES, *(link.name for link in robot.links)]
+    defaults = [*known()["odometry_frames"], *(link.name for link in robot.links)]
     for root, place in roots(workspace):
         for plugin in root.iter("plugin"):
-            if system_of(plugin) not in _ODOMETRY:
+            if system_of(plugin) not in known()["odometry_systems"]:
                 continue
             at = place(plugin)
-            for element in plugin.iterchildren(*_ODOMETRY_FRAMES):
+            for element in plugin.iterchildren(*known()["odometry_elements"]):
                 yield Definition("frame", (element.text or "").strip(), at)
             around = {model.get("name", "") for model in plugin.iterancestors("robot", "model")}
             for model in sorted(around | created):

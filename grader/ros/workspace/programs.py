@@ -9,7 +9,7 @@ from typing import NamedTuple
 from grader.base.errors import InputError
 from grader.base.names import closest, near
 from grader.base.source import Location
-from grader.ros.known.known import known
+from grader.ros.known.known import compared_programs, known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import parameters_of
 from grader.ros.package.entry_points import entry_fault, entry_points
@@ -43,7 +43,7 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
         if owner is not None:
             yield from _own_program(owner, node)
             continue
-        programs = known()["programs"].get(node.package)
+        programs = compared_programs(node.package)
         if programs is not None and node.executable not in programs:
             missing = _missing_program(node.package, node.executable, programs)
             either = corrections(node.executable, node.location, missing.meant)

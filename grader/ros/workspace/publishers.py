@@ -8,31 +8,13 @@ from grader.ros.workspace.gazebo import BRIDGE
 from grader.ros.workspace.workspace import Workspace
 
 _SOURCES = (".cpp", ".cc", ".cxx", ".c", ".hpp", ".hh", ".h")
-# Topics that drivers, players, and nodes which are started by hand publish.
-_BY_OTHERS = (
-    "cmd_vel",
-    "joint_states",
-    "odom",
-    "scan",
-    "tf",
-    "tf_static",
-    "map",
-    "clock",
-    "goal_pose",
-    "initialpose",
-    "joy",
-    "robot_description",
-    "imu",
-    "rosout",
-    "diagnostics",
-)
 
 
 def may_be_published(workspace: Workspace, topic: str) -> bool:
     """Return whether something may publish a topic for which no publisher is known."""
     name = topic.strip("/")
     first, last = name.partition("/")[0], topic.rpartition("/")[2]
-    if last in _BY_OTHERS or first in workspace.controllers:
+    if last in known()["topics_of_others"] or first in workspace.controllers:
         return True
     if any(launch.more for _, _, launch in workspace.launches):
         return True

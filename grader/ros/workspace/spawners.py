@@ -19,7 +19,7 @@ from grader.ros.workspace.names import Fact, Mismatch, Open, Use, corrections
 from grader.ros.workspace.workspace import MANAGER, SPAWNERS, Workspace
 
 _OTHER_STARTS = re.compile(r"(load|switch|set)_controller|(Load|Switch)Controller")
-_MAX_NAMED = 3
+_MAX_CONTROLLERS = 3  # in a message
 
 
 def spawner_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -133,7 +133,7 @@ def _without_type(
 
 def _names_of(controllers: Sequence[Controller], word: str = "and") -> str:
     names = dict.fromkeys(quoted(controller.name) for controller in controllers)
-    return enumerated(names, _MAX_NAMED, word)
+    return enumerated(names, _MAX_CONTROLLERS, word)
 
 
 def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Iterator[Fact]:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from grader.base.names import closest
 from grader.base.source import Location
+from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.python_nodes import Endpoint
 from grader.ros.workspace.bridges import bridge_rows
@@ -23,15 +24,6 @@ from grader.ros.workspace.names import (
 )
 from grader.ros.workspace.publishers import may_be_published
 from grader.ros.workspace.workspace import Workspace
-
-# Packages whose programs subscribe to no commands.
-_WITHOUT_COMMANDS = (
-    "controller_manager",
-    "robot_state_publisher",
-    "joint_state_publisher",
-    "joint_state_publisher_gui",
-    "rviz2",
-)
 
 
 class _OpenedTopic(NamedTuple):
@@ -239,7 +231,7 @@ def _is_known(workspace: Workspace, launch: int) -> bool:
     if workspace.roots[launch][1].unknown:
         return False
     for number, node in workspace.launched:
-        if number == launch and node.package not in _WITHOUT_COMMANDS:
+        if number == launch and node.package not in known()["without_commands"]:
             python_node = workspace.python_node(node)
             if python_node is None or python_node.doubts:
                 return False

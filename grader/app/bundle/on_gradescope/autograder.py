@@ -97,9 +97,9 @@ def _results_of(completed: _Completed, seconds: float) -> dict[str, Any] | None:
             f"The grader was stopped because it took longer than {seconds:g} seconds."
         )
     if completed.code == _NOT_GRADED:
-        return _nothing_graded(
-            f"The grader could not grade your submission:\n\n{_messages(completed.errors)}"
-        )
+        lines = _printable(completed.errors).splitlines()
+        messages = "\n".join(line.removeprefix("grader: ") for line in lines)
+        return _nothing_graded(f"The grader could not grade your submission:\n\n{messages}")
     if completed.code in _GRADED:
         return _report(completed.output)
     return None
@@ -115,11 +115,6 @@ def _nothing_graded(why: str) -> dict[str, Any]:
         "stdout_visibility": "hidden",
         "tests": [],
     }
-
-
-def _messages(errors: bytes) -> str:
-    """Return the grader's messages on standard error, without its name before each line."""
-    return "\n".join(line.removeprefix("grader: ") for line in _printable(errors).splitlines())
 
 
 def _printable(data: bytes) -> str:

@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from fnmatch import translate
-from itertools import pairwise
+from itertools import pairwise, takewhile
 
 from grader.base.names import did_you_mean
 from grader.base.source import Source
@@ -20,22 +20,8 @@ from grader.ros.python.parse import START, Position
 from grader.ros.python.values import Undetermined, Unknown
 
 _MANIFEST = "package.xml"
-_INTERFACE_KEYWORDS = frozenset(
-    {
-        "DEPENDENCIES",
-        "LIBRARY_NAME",
-        "SKIP_INSTALL",
-        "ADD_LINTER_TESTS",
-        "SKIP_GROUP_MEMBERSHIP_CHECK",
-    }
-)
-_PYTHON_KEYWORDS = frozenset(
-    {"PACKAGE_DIR", "SETUP_CFG", "DESTINATION", "SCRIPTS_DESTINATION", "VERSION", "SKIP_COMPILE"}
-)
-_ARTIFACTS = frozenset(
-    {"ARCHIVE", "LIBRARY", "RUNTIME", "INCLUDES", "PUBLIC_HEADER", "PRIVATE_HEADER"}
-)
 _Options = Mapping[str, list[str]]
+_Groups = Sequence[tuple[str, list[str]]]  # arguments by the keyword before them
 
 
 class Build:
@@ -223,12 +209,8 @@ class Build:
     def generate_interfaces(self, command: Command) -> None:
         """Install the message, service and action files of a package."""
         texts = self.values.texts(command.arguments)
-        texts = texts[
-            : next(
-                (index for index, text in enumerate(texts) if text in _INTERFACE_KEYWORDS),
-                len(texts),
-            )
-        ]
+        keywords = cmake_words("interface_keywords")
+        texts = [*takewhile(lambda text: text not in keywords, texts)]
         known = [text for text in texts if isinstance(text, str)]
         if not texts or len(known) < len(texts):
             self.give_up("the arguments of rosidl_generate_interfaces() are not known", command.at)
@@ -272,12 +254,11 @@ class Build:
             return
         executables = (name for name in self._automatic if self.targets[name] == "executable")
         self.programs.update(f"lib/{self._project()}/{name}" for name in executables)
-        for keyword, folders in _groups(texts, frozenset({"INSTALL_TO_SHARE", "INSTALL_TO_PATH"}))[
-            1:
-        ]:
+        groups = _groups(texts, cmake_words("auto_keywords"))
+        for keyword, folders in groups[1:]:
             target = self._share() if keyword == "INSTALL_TO_SHARE" else "bin"
             for folder in folders:
-                self._copy_folder(folder, target, command, {})
+                self._copy_folder(folder, target, command, groups[:1])
         self.package(command)
 
     def python_package(self, command: Command) -> None:
@@ -288,7 +269,7 @@ class Build:
                 "the arguments of ament_python_install_package() are not known", command.at
             )
             return
-        options = dict(_groups(texts, _PYTHON_KEYWORDS))
+        options = dict(_groups(texts, cmake_words("python_keywords")))
         folder = self.inside((options.get("PACKAGE_DIR") or texts)[0])
         self.modules.append(texts[0])
         if "SCRIPTS_DESTINATION" in options or "setup.cfg" in self.listing.files:
@@ -332,7 +313,7 @@ class Build:
             return  # CMake does not look at the rest then
         target, before = self._destination(options, command), set(self.copies)
         for text in groups[0][1] if target is not None and kind == "DIRECTORY" else ():
-            self._copy_folder(text, target or "", command, options, _Patterns(groups))
+            self._copy_folder(text, target or "", command, groups)
         if target is not None and kind != "DIRECTORY":
             self._copy_files(groups[0][1], target, command, options)
         if kind == "PROGRAMS" or any("PERMISSIONS" in key for key in options):
@@ -359,11 +340,11 @@ class Build:
             return None
         return target
 
-    def _install_targets(self, groups: Sequence[tuple[str, list[str]]], command: Command) -> None:
+    def _install_targets(self, groups: _Groups, command: Command) -> None:
         """Install executables; where libraries go is not needed."""
         kind, places = "", dict[str, str]()
         for keyword, values in groups[1:]:
-            if keyword in _ARTIFACTS:
+            if keyword in cmake_words("artifacts"):
                 kind = keyword
             elif keyword == "DESTINATION" and values:
                 places.setdefault(kind, posixpath.normpath(values[0].removeprefix(f"{PREFIX}/")))
@@ -400,29 +381,18 @@ class Build:
                 hint = "" if state else did_you_mean(path or "", self.listing.files)
                 self.stop(reason, command.at, path or text, hint)
 
-    def _copy_folder(
-        self,
-        text: str,
-        target: str,
-        command: Command,
-        options: _Options,
-        patterns: "_Patterns | None" = None,
-    ) -> None:
+    def _copy_folder(self, text: str, target: str, command: Command, groups: _Groups) -> None:
         """Install the files of a folder; with a slash at its end without its own name."""
+        options, patterns = dict(groups), _Patterns(groups)
         path = self.inside(text)
         state = self._has(path) if path is not None else None
-        if (
-            path is None
-            or state is None
-            or (patterns is not None and patterns.has_regex)
-            or text == "."
-        ):
+        if path is None or state is None or patterns.has_regex or text == ".":
             self._leave_open(
                 Unknown(f"which files of {text} are installed is not known", command.at)
             )
         elif path in self.listing.files:
             self.stop("it is a file: write install(FILES ...)", command.at, path)
-        elif not state and (patterns is not None and patterns.is_limited):
+        elif not state and patterns.is_limited:
             pass  # CMake takes it for a file that no pattern matches
         elif not state and "OPTIONAL" not in options:
             self.stop(
@@ -443,14 +413,12 @@ class Build:
                     command.at,
                 )
 
-    def _below(self, folder: str, patterns: "_Patterns | None") -> Iterator[str]:
+    def _below(self, folder: str, patterns: "_Patterns") -> Iterator[str]:
         """Yield the paths of the files below a folder, as seen from it."""
         start = f"{folder}/" if folder else ""
         for file in self.listing.files:
             self.listing.budget.charge(1)
-            if file.startswith(start) and (
-                patterns is None or patterns.include(folder, file[len(start) :])
-            ):
+            if file.startswith(start) and patterns.include(folder, file[len(start) :]):
                 yield file[len(start) :]
 
     def _copy(self, path: str, target: str, at: Position) -> None:
@@ -472,7 +440,7 @@ class _Patterns:
     FILES_MATCHING included.
     """
 
-    def __init__(self, groups: Sequence[tuple[str, list[str]]]) -> None:
+    def __init__(self, groups: _Groups) -> None:
         keywords = [keyword for keyword, _ in groups]
         self.has_regex = "REGEX" in keywords
         self.is_limited = "FILES_MATCHING" in keywords
