@@ -112,14 +112,14 @@ class _Readings:
         after_submission, after = self._read(slips)
         changed = []
         for name, result in before.items():
-            if result.criterion.check.about.is_of_writing and not slip.is_refused:
-                continue
             meant = after[name]
             is_unpassed = meant.outcome.status != "passed" and not meant.carried
             if result.outcome.status == "passed" and is_unpassed and not slip.is_refused:
                 return None
+            is_of_writing = result.criterion.check.about.is_of_writing and not slip.is_refused
             if (result.is_lost or result.is_open) and _is_changed(result, meant):
-                changed.append(result)
+                if not is_of_writing:
+                    changed.append(result)
         if _parts_of(before_submission) != _parts_of(after_submission):
             for name, result in before.items():
                 if result.criterion.check.function is urdf_loads:

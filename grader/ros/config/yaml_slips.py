@@ -15,7 +15,7 @@ _MAX_SLIPS = 5  # in one file
 _MAX_LENGTH = 1_000  # characters of a line
 _MAX_SHOWN = 60
 _MAX_DEPTH = 5  # of the keys of nodes
-_NO_BLANK = re.compile(r"(\s*(?:- )?[A-Za-z_][\w /.-]*):(?=[^\s:/])")
+_NO_BLANK = re.compile(r"(\s*(?:- )?[A-Za-z_][\w /.-]+):(?=[^\s:/]|/[^/])")
 _CLOSING = {"[": "]", "{": "}"}
 
 

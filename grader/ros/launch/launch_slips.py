@@ -2,7 +2,7 @@
 
 import ast
 import builtins
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
 from grader.base.names import closest, near
 from grader.base.slips import Slip
@@ -70,12 +70,15 @@ class _LaunchNames:
         for alias in node.names:
             if alias.name in known or alias.name == "*":
                 continue
-            meant = _surely(alias.name, known)
+            if alias.asname is None:
+                self._bound.discard(alias.name)
+            # A class is not a module: LaunchDescription and launch_description.
+            is_class = alias.name[:1].isupper()
+            meant = _surely(alias.name, [name for name in known if name[:1].isupper() == is_class])
             if meant is None:
                 continue
             if alias.asname is None:
                 self._renamed[alias.name] = meant
-                self._bound.discard(alias.name)
                 self._bound.add(meant)
                 self._classes[meant] = f"{node.module}.{meant}"
             yield self._slip(alias, alias.name, meant, f"{node.module} has no {alias.name}")
@@ -136,5 +139,5 @@ class _LaunchNames:
         return Slip((edit,), reaction, f"{written} is read as {meant}", location, is_refused=True)
 
 
-def _surely(name: str, known: "Mapping[str, object] | set[str]") -> str | None:
+def _surely(name: str, known: Collection[str]) -> str | None:
     return near(name, known) or closest(name, known, is_clear=True)

@@ -202,7 +202,9 @@ def _with_bracket_in_line(fault: SyntaxFault, lines: list[str]) -> Iterator[_Cha
 
 
 def _with_bracket_at_end(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
-    """Yield a line with a bracket at its end: from the line where one is opened."""
+    """Yield a line with a bracket at its end: from the line where one is opened to the first that
+    ends what is indented below it.
+    """
     index = fault.location.line - 1
     first, last = max(index - 1, 0), index + 1
     brackets = ")]}"
@@ -210,12 +212,17 @@ def _with_bracket_at_end(fault: SyntaxFault, lines: list[str]) -> Iterator[_Chan
     if opened is not None:
         brackets = _CLOSING[opened[1]]
         first = int(opened[2]) - 1 if opened[2] else index
-        last = index + 1 if opened[2] else index + _MAX_LINES
+        last = index + _MAX_LINES
+    indentation = len(_indentation(lines[first]))
     for at in range(first, min(last, len(lines))):
         code, rest = _code_and_rest(lines[at])
         for bracket in brackets if code.strip() else ():
             comma = "," if code.endswith(",") else ""
             yield _Change(at, f"{code.removesuffix(',')}{bracket}{comma}{rest}")
+        following = next((line for line in lines[at + 1 :] if line.strip()), "")
+        is_inside = len(_indentation(following)) > indentation
+        if opened is not None and not is_inside and following.lstrip()[:1] not in (")", "]", "}"):
+            return
 
 
 def _with_indentation(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
