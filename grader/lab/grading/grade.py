@@ -14,14 +14,13 @@ from grader.base.problems import Problem, in_order
 from grader.base.text import counted_points, enumerated
 from grader.lab.checks.manual import MANUAL_CHECKS, evidence_shown
 from grader.lab.grading.deciding import another_robot, decide
-from grader.lab.grading.report import EvidenceResult, Report, Result, without_gifts
+from grader.lab.grading.report import EvidenceResult, Meant, Report, Result, without_gifts
 from grader.lab.rubric.criterion import Evidence
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.submission import Submission
 from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.xml.xml_problems import RECOVERED
 
 if TYPE_CHECKING:
     from grader.lab.documents.evidence import EvidenceFile
@@ -65,22 +64,7 @@ def grade(
 
         results, meant = judge_as_meant(rubric, submission, results)
     results = without_gifts(results, submission)
-    problems: tuple[Problem, ...] = ()
-    if isinstance(submission.urdf, Read):
-        meshes = mesh_problems(submission.urdf, submission.packages, submission.tree)
-        problems = in_order((*submission.urdf.problems, *meshes))
-    if submission.package is not None and any(
-        rubric.part(part).needs == "package" for part in chosen
-    ):
-        # Late: a URDF on its own needs none of what reads a package.
-        from grader.ros.package.found_problems import package_problems
-
-        problems += package_problems(submission.package)
-    if meant is not None:
-        assumed = [
-            Problem(RECOVERED, paid.slip.assumption, paid.slip.location) for paid in meant.paid
-        ]
-        problems = in_order((*problems, *assumed))
+    problems = _find_problems(rubric, submission, chosen, meant)
     evidence, other_pictures = _find_evidence(rubric, submission, chosen if is_whole else ())
     notes.append(_note_on_unread(submission, evidence))
     by_convention: frozenset[str] = frozenset()
@@ -107,6 +91,28 @@ def grade(
         by_convention=by_convention,
         meant=meant,
     )
+
+
+def _find_problems(
+    rubric: Rubric, submission: Submission, chosen: Sequence[str], meant: Meant | None
+) -> tuple[Problem, ...]:
+    """Return the problems of the URDF and, where a part needs it, of the package."""
+    problems: tuple[Problem, ...] = ()
+    if isinstance(submission.urdf, Read):
+        meshes = mesh_problems(submission.urdf, submission.packages, submission.tree)
+        problems = in_order((*submission.urdf.problems, *meshes))
+    if meant is not None:
+        from grader.lab.grading.slips import problems_as_meant  # late, as above
+
+        problems = in_order(problems_as_meant(problems, meant))
+    if submission.package is not None and any(
+        rubric.part(part).needs == "package" for part in chosen
+    ):
+        # Late: a URDF on its own needs none of what reads a package.
+        from grader.ros.package.found_problems import package_problems
+
+        problems += package_problems(submission.package)
+    return problems
 
 
 def _choose_parts(

@@ -2,9 +2,10 @@
 judged on what the slip surely stands for.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from grader.base.errors import InputError
+from grader.base.problems import Kind, Problem
 from grader.base.slips import Slip
 from grader.base.text import enumerated, sentence_end
 from grader.lab.checks.loading import urdf_loads
@@ -14,6 +15,7 @@ from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.edited import edited_files, with_files, with_urdf
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
+from grader.ros.xml.xml_problems import RECOVERED
 
 _MAX_SLIPS = 12  # because each is graded without the others
 _MAX_NAMED = 3  # in a message
@@ -116,10 +118,10 @@ class _Readings:
             is_unpassed = meant.outcome.status != "passed" and not meant.carried
             if result.outcome.status == "passed" and is_unpassed and not slip.is_refused:
                 return None
-            is_of_writing = result.criterion.check.about.is_of_writing and not slip.is_refused
+            if result.criterion.check.about.is_of_writing and not slip.is_refused:
+                continue
             if (result.is_lost or result.is_open) and _is_changed(result, meant):
-                if not is_of_writing:
-                    changed.append(result)
+                changed.append(result)
         if _parts_of(before_submission) != _parts_of(after_submission):
             for name, result in before.items():
                 if result.criterion.check.function is urdf_loads:
@@ -156,6 +158,22 @@ class _Readings:
             absent=(),
         )
         return Result(before[name].criterion, changed)
+
+
+def problems_as_meant(problems: Iterable[Problem], meant: Meant) -> Iterator[Problem]:
+    """Yield the problems of a URDF that are left with the words that are meant, those at these
+    words, and what is assumed about each.
+    """
+    left: set[tuple[Kind, int]] = set()
+    if isinstance(meant.submission.urdf, Read):
+        left = {(it.kind, it.location.line) for it in meant.submission.urdf.problems}
+    lines = {paid.slip.location.file_and_line for paid in meant.paid}
+    for problem in problems:
+        at = problem.location
+        if at.file_and_line in lines or (problem.kind, at.line) in left:
+            yield problem
+    for paid in meant.paid:
+        yield Problem(RECOVERED, paid.slip.assumption, paid.slip.location)
 
 
 def _corrected(submission: Submission, slips: Iterable[Slip]) -> Submission:

@@ -21,7 +21,8 @@ from grader.ros.xml.xml_problems import RECOVERED
 
 _FORMAT_DIRECTIVE = re.compile(r"%[-+ #0-9.$*'hlLqjzt]*n")  # %n, %1$n, %hhn
 _MAX_PROBLEMS = 1000
-_MAX_GUESSES = 50  # in one file, because they take long
+MAX_GUESSES = 50  # names of one file that are compared, because that takes long
+NO_GUESSES = 0
 _PRINTED = frozenset(
     {"origin", "box", "cylinder", "sphere", "mass"}
 )  # whose values urdfdom uses as printf's format
@@ -43,14 +44,15 @@ _Value = TypeVar("_Value")
 class Problems:
     """The problems of one file, and the locations of its elements."""
 
-    def __init__(self, document: XmlDocument, root: Element) -> None:
+    def __init__(self, document: XmlDocument, root: Element, guesses: int = MAX_GUESSES) -> None:
+        """`guesses` is how many names are compared with known ones."""
         self.source = document.source
         self.root = root
         self.unresolved = document.unresolved
         self.listed: list[Problem] = []
         self.effects: set[Effect] = set()
         self.unlisted = 0
-        self._guesses = _MAX_GUESSES
+        self._guesses = guesses
         self._elements = list(root.iter())
         self._indices = {element: index for index, element in enumerate(self._elements)}
 

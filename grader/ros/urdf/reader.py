@@ -15,7 +15,7 @@ from grader.base.text import enumerated, quoted
 from grader.files.limits import ROBOT_ENDINGS
 from grader.files.reading import read_capped
 from grader.ros.urdf import urdf_problems
-from grader.ros.urdf.diagnostics import Problems
+from grader.ros.urdf.diagnostics import MAX_GUESSES, NO_GUESSES, Problems
 from grader.ros.urdf.joint_reader import check_references, read_joint
 from grader.ros.urdf.link_reader import Materials, read_link
 from grader.ros.urdf.link_tree import check_tree
@@ -32,7 +32,7 @@ from grader.ros.xml.urdf_format import (
     TAGS,
     numbers_in,
 )
-from grader.ros.xml.xml_problems import NOT_WELL_FORMED
+from grader.ros.xml.xml_problems import NOT_WELL_FORMED, RECOVERED
 
 if TYPE_CHECKING:
     from grader.ros.urdf.meant import Word
@@ -179,7 +179,8 @@ def _read_content(document: XmlDocument, root: Element) -> Reading:
         meant = read_as_meant(root, robot, partial(_read_robot, document, root))
         if meant is not None:
             is_meant, robot, undone = True, meant.robot, tuple(meant.words)
-            found = [*causes(found), *meant.problems]
+            own = _without_other_guesses(document, root, causes(found), meant.problems)
+            found = [*own, *meant.problems]
     if document.root is None:
         broken = {problem.location.line for problem in listed}
         found = [
@@ -227,8 +228,27 @@ def _verdict(effects: Collection[Effect]) -> Verdict:
     return "degraded" if "drops" in effects else "clean"
 
 
-def _read_robot(document: XmlDocument, root: Element) -> tuple[Robot, Problems]:
-    problems = Problems(document, root)
+def _without_other_guesses(
+    document: XmlDocument, root: Element, found: list[Problem], assumed: list[Problem]
+) -> list[Problem]:
+    """Return problems without guesses where words of another line are read as others: these tell
+    what is meant.
+    """
+    lines = {problem.location.line for problem in assumed if problem.kind is RECOVERED}
+    _, problems = _read_robot(document, root, NO_GUESSES)
+    plain = {(problem.kind, problem.location): problem for problem in problems.listed}
+    return [
+        problem
+        if problem.location.line in lines
+        else plain.get((problem.kind, problem.location), problem)
+        for problem in found
+    ]
+
+
+def _read_robot(
+    document: XmlDocument, root: Element, guesses: int = MAX_GUESSES
+) -> tuple[Robot, Problems]:
+    problems = Problems(document, root, guesses)
     if root.get("name") is None:
         problems.add(
             urdf_problems.ROBOT_WITHOUT_NAME, "<robot> has no name; ROS 2 rejects the file", root
