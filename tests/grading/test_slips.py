@@ -122,6 +122,31 @@ def test_a_slip_hides_no_mistake(slip: WrittenSlip) -> None:
         assert _lost(_graded(both, slip.rubric)) == alone | other, (new, slip.name)
 
 
+def test_edits_that_do_not_fit_are_left() -> None:
+    """A slip whose text is written in another way than it reads is left as it is written."""
+    files = solution(DIFFDRIVE).whole_tree.files
+    path = next(path for path in files if path.endswith("controllers.yaml"))
+    text = files[path].read(1 << 20).decode()
+    keyed = text.replace("drive_circle:\n  ros__parameters", 'drive_circle:\n  "ros_parameters"')
+    report = _graded(with_files(solution(DIFFDRIVE), {path: keyed.encode()}), DIFFDRIVE)
+    assert report.meant is None
+    assert _lost(report)
+
+
+def test_a_package_without_a_robot() -> None:
+    """A slip in a package is corrected where there is no URDF, too."""
+    submission = solution(LAB6)
+    files: dict[str, bytes | None] = {}
+    for path, file in submission.whole_tree.files.items():
+        if path.endswith("setup.py"):
+            files[path] = file.read(1 << 20).replace(b"zip_safe=True,", b"zip_safe=True")
+        elif path.endswith(".urdf"):
+            files[path] = None
+    report = _graded(with_files(submission, files), LAB6)
+    assert report.meant is not None
+    assert [paid.payer for paid in report.meant.paid] == ["setup-imports"]
+
+
 def test_what_is_ignored_without_harm_costs_nothing() -> None:
     """A robot that is right as written keeps its points, beside a mistake elsewhere as well."""
     files = solution(LAB6).whole_tree.files

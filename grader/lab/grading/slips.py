@@ -4,8 +4,7 @@ judged on what the slip surely stands for.
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from grader.base.errors import InputError
-from grader.base.problems import Kind, Problem
+from grader.base.problems import Problem
 from grader.base.slips import Slip
 from grader.base.text import enumerated, sentence_end
 from grader.lab.checks.loading import urdf_loads
@@ -122,12 +121,11 @@ class _Readings:
                 continue
             if (result.is_lost or result.is_open) and _is_changed(result, meant):
                 changed.append(result)
+        loading: list[Result] = []
         if _parts_of(before_submission) != _parts_of(after_submission):
-            for name, result in before.items():
-                if result.criterion.check.function is urdf_loads:
-                    return name
+            loading = [it for it in before.values() if it.criterion.check.function is urdf_loads]
         failed = [result for result in changed if result.outcome.status == "failed"]
-        return next((result.criterion.id for result in failed or changed), None)
+        return next((it.criterion.id for it in (*loading, *failed, *changed)), None)
 
     def _paid(self, name: str, paid: Sequence[Slip], slips: Sequence[Slip]) -> Result:
         """Return the failure of a criterion that pays for slips."""
@@ -164,9 +162,9 @@ def problems_as_meant(problems: Iterable[Problem], meant: Meant) -> Iterator[Pro
     """Yield the problems of a URDF that are left with the words that are meant, those at these
     words, and what is assumed about each.
     """
-    left: set[tuple[Kind, int]] = set()
-    if isinstance(meant.submission.urdf, Read):
-        left = {(it.kind, it.location.line) for it in meant.submission.urdf.problems}
+    urdf = meant.submission.urdf
+    problems_left = urdf.problems if isinstance(urdf, Read) else ()
+    left = {(problem.kind, problem.location.line) for problem in problems_left}
     lines = {paid.slip.location.file_and_line for paid in meant.paid}
     for problem in problems:
         at = problem.location
@@ -183,10 +181,7 @@ def _corrected(submission: Submission, slips: Iterable[Slip]) -> Submission:
     urdf = submission.urdf
     if isinstance(urdf, Read) and all(path.endswith((".urdf", ".xacro")) for path in files):
         return with_urdf(submission, files)
-    try:
-        return with_files(submission, files)
-    except InputError:
-        return submission
+    return with_files(submission, files)
 
 
 def _is_changed(before: Result, after: Result) -> bool:

@@ -34,12 +34,10 @@ _CAUSED = frozenset(
 
 
 def robot_slips(reading: Reading) -> list[Slip]:
-    """Return the slips of a URDF in the order of its elements, each place once; nothing of one that
-    ROS 2 rejects for what cannot be read.
+    """Return the slips of a URDF in the order of its elements, each place once. The words for which
+    ROS 2 rejects a file are not among them.
     """
     if not any(map(_may_be_slip, reading.problems)) or reading.elements is None:
-        return []
-    if reading.verdict == "rejected" and not reading.is_meant:
         return []
     slips: dict[Edits, Slip] = {}
     for slip in _Slips(reading).found():
@@ -104,11 +102,9 @@ class _Slips:
         return Slip(edits, reaction, assumption, location._replace(calls=()))
 
     def _tag_slip(self, element: Element, written: str, meant: str, parent: str) -> Iterator[Slip]:
-        source, start = self._place(element)
-        edits = tag_edits(source, start, written, meant)
-        if edits:
-            reaction = f"ROS 2 ignores <{written}> in <{parent}>"
-            yield self._slip(element, edits, reaction, f"<{written}> is read as <{meant}>")
+        edits = tag_edits(*self._place(element), written, meant)
+        reaction = f"ROS 2 ignores <{written}> in <{parent}>"
+        yield self._slip(element, edits, reaction, f"<{written}> is read as <{meant}>")
 
     def _attribute_slips(self, element: Element, tag: str) -> Iterator[Slip]:
         if tag not in ATTRIBUTES or len(element.attrib) > _MAX_ATTRIBUTES:
