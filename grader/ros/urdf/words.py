@@ -36,16 +36,31 @@ def meant_attribute(name: str, tag: str, values: Mapping[str, str]) -> str | Non
     if name in ATTRIBUTES[tag] or name.startswith("{"):
         return None
     absent = [other for other in TAGS[tag].attributes if other not in values]
-    alias = TAGS[tag].aliases.get(name)
-    if alias is not None:
-        return alias if alias in absent else None
-    if name in OWNERS:
-        # Another vector's name: the element has one attribute for a vector, as <axis> has xyz.
-        count = len(PARTS[name])
-        vectors = [other for other in TAGS[tag].attributes if len(PARTS[other]) == count]
-        is_of_vector = count > 1 and len(numbers_in(values[name])) == count
-        return vectors[0] if is_of_vector and vectors == absent else None
-    return _surely_meant(name, absent)
+    meant = TAGS[tag].aliases.get(name)
+    if meant is None and name in OWNERS:
+        return _other_vector(name, values[name], tag, absent)
+    if meant is None:
+        meant = _surely_meant(name, absent)
+    if meant in absent and _may_have(meant, values[name]):
+        return meant
+    return None
+
+
+def _other_vector(name: str, value: str, tag: str, absent: list[str]) -> str | None:
+    """Return the one vector of an element whose name is written as that of another vector, as in
+    <axis rpy="0 0 1"/>.
+    """
+    count = len(PARTS[name])
+    vectors = [other for other in TAGS[tag].attributes if len(PARTS[other]) == count]
+    if count > 1 and len(numbers_in(value)) == count and vectors == absent:
+        return vectors[0]
+    return None
+
+
+def _may_have(attribute: str, value: str) -> bool:
+    """Return whether a value has the numbers of an attribute, or surely stands for such numbers."""
+    count = len(PARTS.get(attribute, ()))
+    return not count or _is_read(value, count) or meant_value(value, attribute) is not None
 
 
 def meant_value(text: str, attribute: str) -> str | None:

@@ -15,6 +15,4 @@ DOCTYPE = warns("URDF010", "A DOCTYPE")
 IGNORED_REST = warns("URDF011", "Content after the end of the robot is ignored")
 SEVERAL_ROOTS = warns("URDF012", "More than one element at the top level")
 MERGE_CONFLICT = rejects("URDF016", "An unresolved merge conflict of git")
-RECOVERED = Kind(
-    "URDF015", "An assumption about what is meant", severity="warning", effect="other"
-)
+RECOVERED = Kind("URDF015", "An assumption about what is meant", severity="warning", effect="other")
