@@ -70,9 +70,9 @@ def rolls_forward(
     off = degrees_between(travel, ahead)
     fine = off <= tolerance + SLACK
     message = f"a small positive rotation of {link!r} {_describe_heading(off, travel, base)}"
-    message += (
-        "" if fine else f"; it should drive it {'straight ahead' if off <= 45.0 else 'forward'}"
-    )
+    if not fine:
+        way = "straight ahead" if off <= _MAX_SLANT else "forward"
+        message += f"; it should drive it {way}"
     return judged(fine, message, travel, ahead, tolerance, "deg", at=at, detail=detail)
 
 

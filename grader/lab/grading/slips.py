@@ -8,13 +8,14 @@ from grader.base.problems import Problem
 from grader.base.slips import Slip
 from grader.base.text import enumerated, sentence_end
 from grader.lab.checks.loading import urdf_loads
+from grader.lab.checks.outcome import Outcome
 from grader.lab.grading.deciding import decide
 from grader.lab.grading.report import Meant, PaidSlip, Result
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.edited import edited_files, with_files, with_urdf
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
-from grader.ros.xml.xml_problems import RECOVERED
+from grader.ros.xml import xml_problems
 
 _MAX_SLIPS = 12  # because each is graded without the others
 _MAX_NAMED = 3  # in a message
@@ -31,13 +32,13 @@ def judge_as_meant(
     A slip in a file that ROS 2 loads counts only if no criterion fails with the meant word that
     passes with the written one: what ROS 2 ignores without harm is a comment.
     """
-    slips = [] if submission.is_costly else slips_of(submission)
+    slips = [] if submission.is_costly else _slips_of(submission)
     if not slips:
         return written, None
     return _Readings(rubric, submission, written).judged(slips[:_MAX_SLIPS])
 
 
-def slips_of(submission: Submission) -> list[Slip]:
+def _slips_of(submission: Submission) -> list[Slip]:
     """Return the slips in the files of a submission that may explain points that are not given."""
     slips = submission.urdf.slips if isinstance(submission.urdf, Read) else []
     packages = [submission.package, *submission.lab_packages.values()]
@@ -130,32 +131,28 @@ class _Readings:
     def _paid(self, name: str, paid: Sequence[Slip], slips: Sequence[Slip]) -> Result:
         """Return the failure of a criterion that pays for slips."""
         others = [other for other in slips if other not in paid]
-        _, before = self._read(others)
-        _, after = self._read(slips)
-        outcome = before[name].outcome
+        written, meant = self._read(others)[1][name], self._read(slips)[1][name]
+        outcome, first = written.outcome, paid[0]
         message = enumerated(list(dict.fromkeys(slip.reaction for slip in paid)), _MAX_NAMED)
-        mistake = outcome.mistake
+        failure = Outcome(
+            "failed", message, location=first.location, mistake=first.reaction, problem=message
+        )
         if outcome.status == "failed":
-            mistake = mistake or outcome.message
-            is_explained = outcome.problem or any(slip.is_refused for slip in paid)
-            message = outcome.message if is_explained else f"{message}: {outcome.message}"
-        assumed = enumerated(
-            [f"{slip.assumption} (line {slip.location.line})" for slip in paid], _MAX_NAMED
-        )
-        message = f"{sentence_end(message)} The rest is graded with this correction: {assumed}"
-        meant = after[name]
+            failure = outcome._replace(absent=(), mistake=outcome.mistake or outcome.message)
+            if not first.is_refused:
+                problem = outcome.problem or first.reaction
+                failure = failure._replace(location=first.location, problem=problem)
+            if not (outcome.problem or first.is_refused):
+                failure = failure._replace(message=f"{message}: {outcome.message}")
+        text = f"{sentence_end(failure.message)} {_correction_text(paid)}"
         if meant.is_lost and meant.outcome.status == "failed":
-            message += f". Even so, {meant.outcome.message}"
-        is_refused = outcome.status == "failed" and paid[0].is_refused
-        changed = outcome._replace(
-            status="failed",
-            message=message,
-            location=outcome.location if is_refused else paid[0].location,
-            mistake=mistake or paid[0].reaction,
-            problem=outcome.problem if is_refused else outcome.problem or paid[0].reaction,
-            absent=(),
-        )
-        return Result(before[name].criterion, changed)
+            text += f". Even so, {meant.outcome.message}"
+        return Result(written.criterion, failure._replace(message=text))
+
+
+def _correction_text(slips: Iterable[Slip]) -> str:
+    assumed = [f"{slip.assumption} (line {slip.location.line})" for slip in slips]
+    return f"The rest is graded with this correction: {enumerated(assumed, _MAX_NAMED)}"
 
 
 def problems_as_meant(problems: Iterable[Problem], meant: Meant) -> Iterator[Problem]:
@@ -171,7 +168,7 @@ def problems_as_meant(problems: Iterable[Problem], meant: Meant) -> Iterator[Pro
         if at.file_and_line in lines or (problem.kind, at.line) in left:
             yield problem
     for paid in meant.paid:
-        yield Problem(RECOVERED, paid.slip.assumption, paid.slip.location)
+        yield Problem(xml_problems.RECOVERED, paid.slip.assumption, paid.slip.location)
 
 
 def _corrected(submission: Submission, slips: Iterable[Slip]) -> Submission:
