@@ -97,6 +97,17 @@ def compared_programs(package: str) -> Sequence[str] | None:
     return known()["programs"].get(package)
 
 
+def messages() -> Mapping[str, Mapping[str, str]]:
+    """Return the fields of well-known messages, with the types of those that have fields."""
+    return cast("Mapping[str, Mapping[str, str]]", _read("rclpy")["messages"])
+
+
+@cache
+def node_attributes() -> frozenset[str]:
+    """Return the public attributes of rclpy's nodes."""
+    return frozenset(_read("rclpy")["node_attributes"].split())
+
+
 def is_imported_by_launch(module: str) -> bool:
     """Return whether `ros2 launch` imports a Python package of this name."""
     return module in _machine()["imported_by_launch"]

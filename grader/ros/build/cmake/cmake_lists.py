@@ -84,11 +84,13 @@ class _Evaluation:
         if self.values.is_opaque or self.build.doubts or command.name in self.own:
             return
         default = "ament_cmake" if command.name.startswith("ament_") else None
-        provider = cmake_table("providers").get(command.name, default)
+        provider = str(cmake_table("providers").get(command.name, default) or "")
         reached = self.values.reached_packages()
-        if provider is None or reached is None or provider in reached:
+        if not provider or reached is None or provider in reached:
             return
-        needed = "ament_cmake" if provider in cmake_table("exports")["ament_cmake"] else provider
+        needed = provider
+        if provider in str(cmake_table("exports")["ament_cmake"]).split():
+            needed = "ament_cmake"
         if provider == "rosidl_cmake":
             needed = "rosidl_default_generators"
         self.build.stop(

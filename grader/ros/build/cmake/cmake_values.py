@@ -52,7 +52,7 @@ class Values:
             package = pending.pop()
             if package not in reached:
                 reached.add(package)
-                pending += exports.get(package, "").split()
+                pending += str(exports.get(package, "")).split()
         return reached
 
     def texts(self, arguments: Sequence[Argument]) -> list[Text]:
