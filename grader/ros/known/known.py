@@ -20,6 +20,7 @@ class _Known(TypedDict):
     without_commands: list[str]
     topics_of_others: list[str]
     written: list[str]
+    read_by: list[str]
     metapackages: dict[str, list[str]]
     node_names: dict[str, str]
     compared: list[str]
