@@ -91,12 +91,11 @@ class _NodeSlips:
                 self._bound.add(name)
             case ast.Import(names=names):
                 for alias in names:
-                    self._imports[alias.asname or alias.name.partition(".")[0]] = (
-                        alias.name if alias.asname else alias.name.partition(".")[0]
-                    )
+                    top = alias.name.partition(".")[0]
+                    self._imports[alias.asname or top] = alias.name if alias.asname else top
             case ast.ImportFrom(module=module, names=names):
+                self._has_star |= names[0].name == "*"
                 for alias in names:
-                    self._has_star |= alias.name == "*"
                     self._imports[alias.asname or alias.name] = f"{module}.{alias.name}"
 
     def _full_name(self, node: ast.expr) -> str:
