@@ -188,6 +188,7 @@ def cmake_lists(seed: int) -> str:
         f"project({name})",
         "find_package(ament_cmake REQUIRED)",
         "find_package(rclcpp REQUIRED)",
+        "find_package(rosidl_default_generators REQUIRED)",
     ]
     lines += ["add_executable(node src/node.cpp)"] if random.random() < 0.9 else []
     lines += [_statement(random) for _ in range(random.randint(1, 7))]

@@ -55,7 +55,7 @@ def read(text: str, *, ending: str = "\nament_package()\n") -> Installation:
         ),
         ("add_executable(node src/node.cpp)\ninstall(TARGETS node)", {"bin/node"}),
         (
-            "add_library(parts SHARED src/node.cpp)\nrclcpp_components_register_node(parts PLUGIN bot::Node EXECUTABLE part)",
+            "find_package(rclcpp_components)\nadd_library(parts SHARED src/node.cpp)\nrclcpp_components_register_node(parts PLUGIN bot::Node EXECUTABLE part)",
             {"lib/bot/part"},
         ),
         (
@@ -64,10 +64,25 @@ def read(text: str, *, ending: str = "\nament_package()\n") -> Installation:
         ),
         ("install(PROGRAMS scripts/run.py DESTINATION lib/bot)", {"lib/bot/run.py"}),
         (
-            "rosidl_generate_interfaces(bot msg/Reading.msg DEPENDENCIES ${known})",
+            "find_package(rosidl_default_generators)\nrosidl_generate_interfaces(bot msg/Reading.msg DEPENDENCIES ${known})",
             {f"{SHARE}/msg/Reading.msg"},
         ),
-        ("pluginlib_export_plugin_description_file(nav README.md)", {f"{SHARE}/README.md"}),
+        (
+            "find_package(pluginlib)\npluginlib_export_plugin_description_file(nav README.md)",
+            {f"{SHARE}/README.md"},
+        ),
+        # Another package may export it.
+        (
+            (
+                "find_package(hardware_interface REQUIRED)\nadd_library(a src/node.cpp)\n"
+                "ament_target_dependencies(a rclcpp_lifecycle)"
+            ),
+            set[str](),
+        ),
+        (
+            "find_package(rclcpp)\nadd_library(a src/node.cpp)\nament_target_dependencies(a rcutils)",
+            set[str](),
+        ),
     ],
 )
 def test_what_is_installed(text: str, installed: set[str]) -> None:
@@ -110,6 +125,34 @@ def test_what_is_installed(text: str, installed: set[str]) -> None:
             "ament_target_dependencies() names the package 'rclcpp', without find_package(rclcpp)",
         ),
         (
+            (
+                "find_package(rclcpp)\nadd_library(a src/node.cpp)\n"
+                "ament_target_dependencies(a std_msgs)"
+            ),
+            (
+                "ament_target_dependencies() names the package 'std_msgs', without "
+                "find_package(std_msgs)"
+            ),
+        ),
+        (
+            (
+                "find_package(hardware_interface)\nadd_library(a src/node.cpp)\n"
+                "ament_target_dependencies(a hardware_interfce)"
+            ),
+            (
+                "ament_target_dependencies() names the package 'hardware_interfce', without "
+                "find_package(hardware_interfce)"
+            ),
+        ),
+        ("find_package(rclcp REQUIRED)", "there is no package 'rclcp'"),
+        (
+            "rosidl_generate_interfaces(bot msg/Reading.msg)",
+            (
+                "CMake knows no command rosidl_generate_interfaces(), because nothing finds the package "
+                "rosidl_default_generators"
+            ),
+        ),
+        (
             "ament_python_install_package(urdf)",
             "ament_python_install_package() needs the folder 'urdf', which has no __init__.py",
         ),
@@ -123,6 +166,36 @@ def test_what_is_installed(text: str, installed: set[str]) -> None:
 def test_what_stops_a_build(text: str, message: str) -> None:
     """CMake stops at it, and it is named."""
     assert [stop.message for stop in read(text).stops] == [message]
+
+
+@pytest.mark.parametrize(
+    ("found", "is_known"),
+    [
+        ("", False),
+        ("find_package(ament_cmke)", False),
+        ("find_package(Eigen3 REQUIRED)", False),
+        ("find_package(ament_cmake_auto REQUIRED)", True),
+        ("find_package(rclcpp REQUIRED)", True),  # finds ament_cmake_core
+        ("find_package(${build_tool})", True),
+    ],
+)
+def test_a_command_that_nothing_defines(found: str, is_known: bool) -> None:
+    """ament_package() is of ament_cmake; what it would install is known all the same."""
+    text = f"project(bot)\n{found}\ninstall(FILES README.md DESTINATION s)\nament_package()\n"
+    tree = Submitted({**FILES}).submission.whole_tree
+    build = read_cmake(text, "CMakeLists.txt", tree, "bot")
+    message = (
+        "CMake knows no command ament_package(), because nothing finds the package ament_cmake"
+    )
+    assert [stop.message for stop in build.stops] == ([] if is_known else [message])
+    assert "s/README.md" in build.installed()
+
+
+def test_a_byte_order_mark() -> None:
+    """CMake ignores it."""
+    tree = Submitted({**FILES}).submission.whole_tree
+    build = read_cmake(f"\ufeff{START}ament_package()\n", "CMakeLists.txt", tree, "bot")
+    assert (build.fault, build.stops) == (None, ())
 
 
 @pytest.mark.parametrize(

@@ -117,3 +117,30 @@ def test_the_python_package_of_the_entry_point_may_be_missing_as_a_whole() -> No
     [renamed] = read_packages(tree, "urdf/hub.urdf")
     fault = entry_fault(renamed, "talk")
     assert fault is not None and fault[0] == "there is no module hub.talker"
+
+
+@pytest.mark.parametrize(
+    ("module", "fault"),
+    [
+        ("robot_moitor.talker", "there is no package robot_moitor; did you mean 'robot_monitor'?"),
+        ("robot_tools.talker", None),  # another package may have it
+        ("robot_monitors.talker", None),  # package.xml depends on it
+        ("robot_monitorr.talker", None),  # there is a folder
+    ],
+)
+def test_the_top_package_of_an_entry_point_is_one_that_is_installed(
+    module: str, fault: str | None
+) -> None:
+    """A name that is like one of those that this setup.py installs, and is nowhere, is misspelt."""
+    setup = _SETUP.replace("name='hub'", "name='hub', packages=['robot_monitor']")
+    files = {
+        "package.xml": "<package format='3'><name>hub</name><depend>robot_monitors</depend></package>",
+        "setup.py": setup % f"'talk = {module}:main'",
+        "robot_monitor/__init__.py": "",
+        "robot_monitor/talker.py": "def main(): pass",
+        "test/robot_monitorr/talker.py": "",
+    }
+    tree = overlaid(make_tree("hub", (), ()), {path: it.encode() for path, it in files.items()})
+    [package] = read_packages(tree, "urdf/hub.urdf")
+    found = entry_fault(package, "talk")
+    assert (found.message if found is not None else None) == fault

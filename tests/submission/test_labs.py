@@ -79,6 +79,16 @@ def test_the_nearest_folder_decides() -> None:
     assert LabFolders([], ["Lab6/a"]).belonging("Lab6/a") is Belonging.NO_LAB
 
 
+@pytest.mark.parametrize("name", ["lab6_robot", "lab6_nodes", "my_lab6", "lab_6_bot", "Lab5"])
+@pytest.mark.parametrize("above", ["", "Lab6/"])
+def test_a_folder_in_a_package_names_no_lab(name: str, above: str) -> None:
+    """Such as a module of setup.py; the folders above a package do."""
+    found = submission({**package(f"{above}my_robot"), f"{above}my_robot/{name}/__init__.py": b""})
+    assert found.package is not None
+    assert f"{name}/__init__.py" in found.package.tree.files
+    assert found.notes == ()
+
+
 @pytest.mark.parametrize(
     ("files", "urdf", "folder", "reasons"),
     [

@@ -93,6 +93,8 @@ class Trials:
         edited = self.edited(edits, whole=whole)
         if edited is None or _has_new_problems(self.submission, edited):
             return {}
+        if _has_new_build_errors(self.submission, edited):
+            return {}
         self.is_assumed = _is_assumed(edited) and not _is_assumed(self.submission)
         found: dict[str, Result] = {}
         for result in decide(self.rubric, edited, wanted):
@@ -160,6 +162,21 @@ def _has_new_problems(before: Submission, after: Submission) -> bool:
         if problem.kind.effect in _HARMFUL and problem.kind not in known:
             return True
     return False
+
+
+def _has_new_build_errors(before: Submission, after: Submission) -> bool:
+    """Return whether a build of the package stops for another reason than before, also where it
+    fails in both: an edit of a name must not leave the folder of its module.
+    """
+    if before.package is None or after.package is None:
+        return False
+    was, now = before.package.installation, after.package.installation
+    if was is None or now is None:
+        return False
+    if was.fault is not None or was.faults or not was.is_called:
+        return False  # what is wrong after that line shows only now
+    known = {(stop.path, stop.reason) for stop in was.stops}
+    return any((stop.path, stop.reason) not in known for stop in now.stops)
 
 
 def _repeated(urdf: Read) -> set[tuple[str, str]]:

@@ -130,6 +130,8 @@ class Rubric:
     transforms: tuple[str, ...] = ()  # launch files whose static transforms are part of the robot
     solution: ReferenceSolution | None = field(default=None, compare=False, repr=False)
     links: frozenset[str] = frozenset()  # that criteria name
+    # the packages of other people whose programs criteria name
+    installed: frozenset[str] = frozenset()
     _launch_cache: LaunchCache = field(
         default_factory=LaunchCache, init=False, compare=False, repr=False
     )  # of its submissions
@@ -138,7 +140,13 @@ class Rubric:
     def lab(self) -> Lab:
         """What is searched in a submission."""
         return Lab(
-            self.urdf, self.package, self.folders, self.links, self.packages, self._launch_cache
+            self.urdf,
+            self.package,
+            self.folders,
+            self.links,
+            self.packages,
+            self._launch_cache,
+            self.installed,
         )
 
     @property
@@ -284,6 +292,9 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         transforms=rubric.get("transforms", ()),
         solution=_reference_solution(rubric, path, data),
         links=frozenset(_links_named(valid.bound)),
+        installed=frozenset(_packages_named(valid.bound)).difference(
+            [rubric.get("package", ""), *rubric.get("packages", ())]
+        ),
     )
 
 
@@ -304,6 +315,15 @@ def _links_named(bound: Iterable[BoundCheck]) -> Iterator[str]:
         for name in texts_in([value for key, value in given.items() if key in arguments]):
             if name and not is_selector(name):
                 yield name
+
+
+def _packages_named(bound: Iterable[BoundCheck]) -> Iterator[str]:
+    """Yield the packages in the arguments of checks: that of controller_manager/spawner."""
+    for check, given in bound:
+        if check.name == "node_runs":
+            for text in texts_in(given.get("nodes", ())):
+                for name in text.split(" or "):
+                    yield name.partition("/")[0]
 
 
 def _reference_solution(rubric: TomlRow, path: Path, data: bytes) -> ReferenceSolution | None:

@@ -100,7 +100,8 @@ class LabFolders:
     Case, spaces, hyphens, underscores and leading zeros do not matter. Another lab has the same
     name with another number, or is a final project. A name that contains more, such as Lab6_Ash,
     counts if no folder of this lab has exactly its name, and if it has a number; the folder of a
-    package never counts by such a name.
+    package never counts by such a name. Folders inside a package, such as the module lab6_robot,
+    name no lab.
     """
 
     def __init__(self, names: Sequence[str], paths: Iterable[str] = ()) -> None:
@@ -109,16 +110,20 @@ class LabFolders:
         self._known: dict[str, Belonging] = {}
         self._packages: set[str] = set()
         self._folders: set[str] = set()
-        names_of_folders: set[str] = set()
         if not self._own:
             paths = ()
         for path in paths:
             folder, _, name = path.rpartition("/")
             self._folders.add(folder)
-            names_of_folders.update(folder.split("/"))
             if name in PACKAGE_FILES:
                 self._packages.add(folder)
-        self._has_exact = any(map(self.is_lab, names_of_folders))
+        # A package may be above others: the folders between them are not its own.
+        self._above_packages = {above for folder in self._packages for above in parents(folder)}
+        every_folder = {above for folder in self._folders for above in (folder, *parents(folder))}
+        self._has_exact = any(
+            self.is_lab(folder.rpartition("/")[2]) and not self._is_inside_package(folder)
+            for folder in every_folder
+        )
 
     def is_lab(self, name: str) -> bool:
         """Return whether a folder has exactly the name of this lab."""
@@ -182,7 +187,14 @@ class LabFolders:
             )
         return self._known[folder]
 
+    def _is_inside_package(self, folder: str) -> bool:
+        if folder in self._packages or folder in self._above_packages:
+            return False
+        return not self._packages.isdisjoint([*parents(folder), ""])
+
     def _own_belonging(self, folder: str) -> Belonging:
+        if self._is_inside_package(folder):
+            return Belonging.NO_LAB
         words = lab_words(_without_archive(folder.rpartition("/")[2]))
         name = _join_words(words)
         if name in self._own:

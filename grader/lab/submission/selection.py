@@ -231,7 +231,7 @@ def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     """
     labs = LabFolders(lab.folders, tree.files)
     has_own_folder = any(labs.belonging(path) is Belonging.THIS_LAB for path in tree.files)
-    every_package = read_packages(tree, lab.urdf, lab.package, lab.packages, lab.launch_cache)
+    every_package = _packages_in(tree, lab)
 
     every_robot = find_robots(tree, lab.urdf.rpartition("/")[2], opening.max_size)
     project_robots = _project_robots(every_robot, labs)
@@ -258,12 +258,8 @@ def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     packages: tuple[Package, ...] = ()
     if package_place is not None:
         package_tree = places.only(tree, (package_place,))
-        if package_tree is tree:
-            packages = every_package
-        else:
-            packages = read_packages(
-                package_tree, lab.urdf, lab.package, lab.packages, lab.launch_cache
-            )
+        is_whole = package_tree is tree
+        packages = every_package if is_whole else _packages_in(package_tree, lab)
     paths_elsewhere = sorted(project_robots)
     paths_elsewhere += [path for path in files_elsewhere if path.rpartition("/")[2] == MANIFEST]
     others = [
@@ -281,6 +277,10 @@ def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
         own_folder=next(map(labs.around, own_tree.files), "") if has_own_folder else "",
         other_lab=other_lab,
     )
+
+
+def _packages_in(tree: Tree, lab: Lab) -> tuple[Package, ...]:
+    return read_packages(tree, lab.urdf, lab.package, lab.packages, lab.launch_cache, lab.installed)
 
 
 def _project_robots(robots: Sequence[RobotFile], labs: LabFolders) -> set[str]:

@@ -45,6 +45,8 @@ class Lab(NamedTuple):
     links: frozenset[str] = frozenset()  # the names of the robot's links
     packages: tuple[str, ...] = ()  # the names of all packages, if there are several
     launch_cache: LaunchCache | None = None  # of its submissions, where several are read
+    # the packages of other people whose programs the lab asks for: they are on its machines
+    installed: frozenset[str] = frozenset()
 
     @property
     def package_names(self) -> tuple[str, ...]:

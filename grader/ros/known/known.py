@@ -20,6 +20,7 @@ class _Known(TypedDict):
     without_commands: list[str]
     topics_of_others: list[str]
     written: list[str]
+    read_by: list[str]
     metapackages: dict[str, list[str]]
     node_names: dict[str, str]
     compared: list[str]
@@ -95,6 +96,17 @@ def compared_programs(package: str) -> Sequence[str] | None:
     if package in known()["compared"]:
         return programs_of(package)
     return known()["programs"].get(package)
+
+
+def messages() -> Mapping[str, Mapping[str, str]]:
+    """Return the fields of well-known messages, with the types of those that have fields."""
+    return cast("Mapping[str, Mapping[str, str]]", _read("rclpy")["messages"])
+
+
+@cache
+def node_attributes() -> frozenset[str]:
+    """Return the public attributes of rclpy's nodes."""
+    return frozenset(_read("rclpy")["node_attributes"].split())
 
 
 def is_imported_by_launch(module: str) -> bool:

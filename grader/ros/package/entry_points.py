@@ -7,7 +7,7 @@ import re
 from collections.abc import Collection
 from typing import NamedTuple
 
-from grader.base.names import closest
+from grader.base.names import closest, near
 from grader.base.source import Location
 from grader.base.text import (
     MAX_NAMED,
@@ -96,11 +96,11 @@ def entry_fault(package: Package, name: str) -> _EntryFault | None:
     if setup is None or len(named) != 1 or package.tree.links or setup.unknown:
         return None
     [entry] = named
-    path = _module_path(package, entry.module)
+    path = module_path(package, entry.module)
     if path is None:
         if _lacks_module(package, entry.module):
             return _missing_module(package, entry)
-        return None
+        return _misspelt_package(package, entry)
     code = read_module(package, path)
     names = _certain_names(code) if code is not None else None
     if not entry.function or names is None or entry.function in names:
@@ -129,7 +129,7 @@ def read_module(package: Package, path: str) -> Code | None:
     return code if isinstance(code, Code) else None
 
 
-def _module_path(package: Package, module: str) -> str | None:
+def module_path(package: Package, module: str) -> str | None:
     """Return the file of a module by its full name; None where the package has none."""
     stem = module.replace(".", "/")
     return next(
@@ -163,6 +163,22 @@ def _lacks_module(package: Package, module: str) -> bool:
             if code is None or _certain_names(code) is None:
                 return False
     return True
+
+
+def _misspelt_package(package: Package, entry: _EntryPoint) -> _EntryFault | None:
+    """Return that the top package of an entry point is not one that setup.py installs, but like
+    one; None where another package may have it.
+    """
+    setup, top = package.installation, entry.module.partition(".")[0]
+    names = setup.packages if setup is not None else ()
+    installed = {name.partition(".")[0] for name in names}
+    meant = near(top, installed)
+    paths = (*package.tree.files, *package.tree.folders, *package.tree.unseen)
+    is_there = any(top in path.removesuffix(".py").split("/") for path in paths)
+    is_other = package.find(top) is not None or package.depends_on(top)
+    if top in installed or meant is None or is_there or is_other:
+        return None
+    return _fault(entry, f"there is no package {top}", top, [meant])
 
 
 def _missing_module(package: Package, entry: _EntryPoint) -> _EntryFault:

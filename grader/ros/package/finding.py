@@ -83,6 +83,7 @@ def read_packages(
     name: str = "",
     names: tuple[str, ...] = (),
     launch_cache: LaunchCache | None = None,
+    installed: frozenset[str] = frozenset(),
 ) -> tuple[Package, ...]:
     """Return the packages in a file tree, the one that matches best first.
 
@@ -96,6 +97,7 @@ def read_packages(
         name: The name that the package should have.
         names: The names of all packages, if there are several.
         launch_cache: The launch files that were read for the same lab.
+        installed: The packages that are on the lab's machines.
     """
     known: dict[str, Package] = {}
     cache = launch_cache if launch_cache is not None else LaunchCache()
@@ -112,6 +114,7 @@ def read_packages(
             generated=tree.generated,
             lab_name=name,
             lab_packages=names,
+            installed_besides=installed,
             ignored_by=_find_marker(tree, folder),
             launch_cache=cache,
         )

@@ -73,6 +73,7 @@ class Package:
     generated: tuple[str, ...] = ()  # paths in the submission that a build has copied
     lab_name: str = ""  # the name that the lab gives it
     lab_packages: tuple[str, ...] = ()  # the names of all packages of the lab, if there are several
+    installed_besides: frozenset[str] = frozenset()  # packages that are on the lab's machines
     ignored_by: str = ""  # the path of a file for which colcon ignores it
     launch_cache: LaunchCache = field(default_factory=LaunchCache)
     arguments: "Mapping[str, str]" = field(default_factory=dict)  # that its launch files are given
@@ -451,8 +452,8 @@ class Package:
         return self, *self.packages.values()
 
     def has_package(self, name: str) -> bool:
-        """Return whether a package certainly is on the machine: submitted, declared as needed, or
-        part of ROS 2.
+        """Return whether a package certainly is on the machine: submitted, declared as needed,
+        named by the lab, or part of ROS 2.
         """
         from grader.ros.launch.started_nodes import (
             is_of_ros,  # late: as the readers of launch files
@@ -462,6 +463,7 @@ class Package:
         return (
             self.find(name) is not None
             or any(it.depends_on(name) for it in self._all)
+            or name in self.installed_besides
             or is_of_ros(name)
         )
 

@@ -1,5 +1,5 @@
 """The slips in the files of a package: what its build, its launch files, or what reads its YAML
-refuses.
+refuses, and what keeps its programs from running.
 """
 
 import ast
@@ -11,6 +11,7 @@ from grader.ros.build.installation import Installation
 from grader.ros.config.yaml_slips import yaml_slips
 from grader.ros.launch.launch_slips import launch_slips, name_slips
 from grader.ros.package.package import SETUP, Package
+from grader.ros.package.python_nodes import program_slips
 from grader.ros.python.budget import PYTHON_LIMIT
 from grader.ros.python.parse import Code, location_in, parse, position_of
 from grader.ros.python.python_slips import python_slips
@@ -27,6 +28,7 @@ def package_slips(package: Package) -> Iterator[Slip]:
     for path in package.launch_files[:_MAX_FILES]:
         if not path.endswith((".xml", ".yaml", ".yml")):
             yield from _python_file(package, path, is_launch_file=True)
+    yield from program_slips(package)
     paths = [path for path in package.tree.files if path.lower().endswith(_YAML)]
     for path in paths[:_MAX_FILES]:
         data = package.tree.read(path, _YAML_LIMIT)

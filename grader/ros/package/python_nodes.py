@@ -12,13 +12,18 @@ from functools import partial
 from typing import Literal, NamedTuple
 
 from grader.base.errors import InputError
-from grader.base.source import Location
+from grader.base.slips import Slip
+from grader.base.source import Edits, Location
 from grader.ros.build.installation import InstalledFile
-from grader.ros.package.entry_points import entry_points, read_module
+from grader.ros.package.entry_points import entry_points, module_path, read_module
+from grader.ros.package.node_slips import Program as StartedProgram
+from grader.ros.package.node_slips import node_slips
 from grader.ros.package.package import Package
+from grader.ros.python.budget import PYTHON_LIMIT
 from grader.ros.python.constants import Constants, constant_in, dotted, offset_of
 from grader.ros.python.evaluation import record
-from grader.ros.python.parse import START, Code, location_in, own_nodes, position_of
+from grader.ros.python.parse import START, Code, location_in, own_nodes, parse, position_of
+from grader.ros.python.python_slips import python_slips
 from grader.ros.python.values import SCALARS, Call, QualifiedName, Scope, Unknown, Value
 
 _MAX_MODULES = 100
@@ -168,6 +173,8 @@ class _Program(NamedTuple):
     name: str
     nodes: tuple[PythonNode, ...]
     location: Location
+    path: str  # of its file in the package
+    function: str  # that setup.py names; empty for a file that is a program
 
 
 class PythonNodes(NamedTuple):
@@ -198,7 +205,29 @@ def read_nodes(package: Package) -> PythonNodes:
         kinds |= more
     nodes = [node for module in modules.values() for node in module.read_nodes(kinds)]
     doubts += (doubt for module in modules.values() for doubt in module.doubts)
-    return PythonNodes(tuple(nodes), tuple(_programs(package, modules, nodes)), tuple(doubts))
+    programs = []
+    for program in _programs(package, modules, nodes):
+        slips = _slips_of(package, program)
+        doubts += [_Doubt(slip.reaction, slip.location) for slip in slips]
+        programs.append(program._replace(nodes=()) if slips else program)
+    return PythonNodes(tuple(nodes), tuple(programs), tuple(doubts))
+
+
+def program_slips(package: Package) -> Iterator[Slip]:
+    """Yield the slips for which a program in Python stops, or does nothing."""
+    found: dict[Edits, Slip] = {}
+    for program in _programs(package, {}, ()):
+        for slip in _slips_of(package, program):
+            found.setdefault(slip.edits, slip)
+    yield from found.values()
+
+
+def _slips_of(package: Package, program: "_Program") -> list[Slip]:
+    data = package.tree.read(program.path, PYTHON_LIMIT)
+    code = parse(data or b"", package.path(program.path))
+    if isinstance(code, Code):
+        return node_slips(code, StartedProgram(program.name, program.function))
+    return python_slips(data or b"", package.path(program.path))
 
 
 def _module_paths(package: Package) -> dict[str, str]:
@@ -246,14 +275,14 @@ def _programs(
 ) -> Iterator[_Program]:
     """Yield the entry points, and the files that are programs, with the nodes that they create."""
     for entry in entry_points(package):
-        yield _Program(
-            entry.name, _created_by(modules, nodes, entry.module, entry.function), entry.location
-        )
+        created = _created_by(modules, nodes, entry.module, entry.function)
+        path = module_path(package, entry.module) or ""
+        yield _Program(entry.name, created, entry.location, path, entry.function)
     for copy in _scripts(package):
         at = Location(package.path(copy.source), 1, 1)
-        yield _Program(
-            copy.target.rpartition("/")[2], _created_by(modules, nodes, copy.source, ""), at
-        )
+        name = copy.target.rpartition("/")[2]
+        created = _created_by(modules, nodes, copy.source, "")
+        yield _Program(name, created, at, copy.source, "")
 
 
 def _created_by(

@@ -9,8 +9,9 @@ from typing import NamedTuple
 
 from grader.base.names import closest, near
 from grader.base.source import Location
+from grader.files.tree import parents
 from grader.ros.build.installation import Installation
-from grader.ros.build.places import PREFIX, SHARE, share_parts
+from grader.ros.build.places import PREFIX, SHARE, is_launch_file, share_parts
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.installed_files import (
@@ -29,17 +30,22 @@ _FIND = re.compile(
     r"\$\(find(?:-pkg-share)? ([\w-]+)\)/?((?:[^\"'<>\s$,()[\]{}]|,(?=\w))*)(?=[\"'<\s,)\]}])"
 )
 _PACKAGE = re.compile(r"package://([\w-]+)/([\w./-]+)(?=[\"'<\s,\]}])")
+# Files of text that are read, which no download leaves out for their size; and programs.
+_TEXTS = (".yaml", ".yml", ".urdf", ".xacro", ".srdf", ".sdf", ".world", ".rviz", ".py", ".xml")
+_OWN_FOLDERS = frozenset({"config", "launch", "maps", "params", "rviz", "urdf", "worlds"})
+_PROGRAMS = (".py", ".cpp", ".cc", ".hpp", ".sh", "CMakeLists.txt")
 _PATH = re.compile(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
 
 
 def file_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the paths at which a build of the workspace installs no file."""
-    seen: set[tuple[str, Location]] = set()
+    found: dict[tuple[str, Location], _NamedPath] = {}
     for named in _named_paths(workspace):
         yield Compared("files", posixpath.normpath(named.path).removeprefix(f"{PREFIX}/"))
-        if (named.path, named.location) in seen:
-            continue
-        seen.add((named.path, named.location))
+        first = found.setdefault((named.path, named.location), named)
+        if named.is_needed:
+            found[named.path, named.location] = first._replace(is_needed=True)
+    for named in found.values():
         for fact in _fault_of(workspace, named):
             if isinstance(fact, Mismatch) and not named.is_read:
                 yield fact._replace(is_certain=False)
@@ -53,7 +59,8 @@ class _NamedPath(NamedTuple):
     """A path below the prefix, with the package whose file names it, and whether it is certainly
     looked for.
 
-    `is_output`: whether an own node, which is given the path, may write the file.
+    `is_needed`: whether a program certainly reads the file and never writes it; `is_output`:
+    whether an own node, which is given the path, may write it.
     """
 
     package: Package
@@ -61,6 +68,7 @@ class _NamedPath(NamedTuple):
     location: Location
     is_read: bool
     is_output: bool = False
+    is_needed: bool = False
 
 
 def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
@@ -74,7 +82,9 @@ def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
             for path in _PATH.findall(text.text or ""):
                 is_beside = beside is not None and path.startswith(beside)
                 is_read = text.is_read and not is_beside
-                yield _NamedPath(package, path, text.location, is_read, text.is_output)
+                yield _NamedPath(
+                    package, path, text.location, is_read, text.is_output, text.is_needed
+                )
     for package in workspace.packages:
         for source in workspace.sources_of(package, (".xacro", ".urdf", ".yaml")):
             is_read = (
@@ -94,13 +104,16 @@ class _Text(NamedTuple):
     location: Location
     is_read: bool = True
     is_output: bool = False  # whether an own node gets it, which may write the file
+    is_needed: bool = False  # whether a program reads the file, and never writes it
 
 
 def _texts_of(workspace: Workspace, launch: Launch) -> Iterator[_Text]:
     """Yield the texts of a launch file that may name files."""
     for passed in launch.passed:
-        for _, value in passed.values:
-            yield _Text(value, passed.location)
+        is_own = any(passed.path.startswith(own.share) for own in workspace.packages)
+        for name, value in passed.values:
+            is_needed = bool(passed.when) and not is_own and name in known()["read_by"]
+            yield _Text(value, passed.location, is_needed=is_needed)
     for node in launch.nodes:
         # The launch file that includes it may never start it, whatever the arguments.
         is_read = node.when is not False or not node.included_by
@@ -108,12 +121,13 @@ def _texts_of(workspace: Workspace, launch: Launch) -> Iterator[_Text]:
         for word in node.arguments or ():
             yield _Text(word, node.location, is_read, is_own)
         for given in node.parameters or ():
-            yield _Text(given.path, given.location, is_read)
-            for parameter in given.values.values():
+            yield _Text(given.path, given.location, is_read, is_needed=is_read)
+            for name, parameter in given.values.items():
                 if isinstance(parameter.value, str):
-                    yield _Text(parameter.value, parameter.location, is_read, is_own)
+                    is_needed = is_read and not is_own and name in known()["read_by"]
+                    yield _Text(parameter.value, parameter.location, is_read, is_own, is_needed)
     for reference in launch.references:
-        yield _Text(reference.path, reference.location)
+        yield _Text(reference.path, reference.location, is_needed=True)
 
 
 def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
@@ -142,10 +156,34 @@ def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
     if inside in owner.tree.folders:
         yield from _no_folder(owner, inside, f"a build installs no {target}", at)
     else:
-        yield _not_there(owner, target, at, is_output=named.is_output)
+        is_absent = named.is_needed and _is_nowhere(workspace, owner, target)
+        yield _not_there(owner, target, at, is_output=named.is_output, is_absent=is_absent)
 
 
-def _not_there(owner: Package, target: str, at: Location, *, is_output: bool) -> Mismatch:
+def _is_nowhere(workspace: Workspace, owner: Package, target: str) -> bool:
+    """Return whether a file of text that the package does not have is surely nowhere.
+
+    What the limits of reading, a submodule or a link leave out may be there, and an own program may
+    write a file that it names.
+    """
+    if not target.endswith(_TEXTS) or workspace.tree.ignored or owner.tree.links:
+        return False
+    for folder in parents(target.removeprefix(owner.share)):
+        is_empty = not any(path.startswith(f"{folder}/") for path in owner.tree.files)
+        is_submodule = is_empty and posixpath.basename(folder) not in _OWN_FOLDERS
+        if folder in owner.tree.folders and is_submodule:
+            return False
+    name = posixpath.basename(target)
+    for package in workspace.packages:
+        for source in workspace.sources_of(package, _PROGRAMS):
+            if name in source.text and not is_launch_file(source.path):
+                return False
+    return True
+
+
+def _not_there(
+    owner: Package, target: str, at: Location, *, is_output: bool, is_absent: bool
+) -> Mismatch:
     """Return where else a build installs a file, or what the package has instead of it."""
     setup, name = owner.installation, posixpath.basename(target)
     assert setup is not None
@@ -163,7 +201,7 @@ def _not_there(owner: Package, target: str, at: Location, *, is_output: bool) ->
     meant = similar_file(owner, name)
     guess = f"; did you mean {meant!r}?" if meant else ""
     message = f"{missing}: the package has no file {name!r}{guess}"
-    is_certain = is_surely_absent(owner, target) and not is_output
+    is_certain = (is_absent or is_surely_absent(owner, target)) and not is_output
     return Mismatch("files", message, at, None, is_certain, corrections(name, at, meant))
 
 

@@ -7,7 +7,7 @@ from contextlib import suppress
 from fnmatch import translate
 from itertools import pairwise, takewhile
 
-from grader.base.names import did_you_mean
+from grader.base.names import did_you_mean, near
 from grader.base.source import Source
 from grader.files.limits import ignored_part
 from grader.ros.build.cmake.cmake_values import ROOT, Text, Values
@@ -177,8 +177,13 @@ class Build:
             return
         if name not in self.targets:
             self._stop_target(command, name)
+        found = self.values.packages
+        reached = self.values.reached_packages()
         for text in rest if command.name == "ament_target_dependencies" else ():
-            if isinstance(text, str) and text.islower() and text not in self.values.packages:
+            if not isinstance(text, str) or not text.islower() or text in (reached or found):
+                continue
+            # What is found may export the package, unless it is surely misspelt.
+            if reached is not None or near(text, found) is not None:
                 self.stop(
                     f"{command.name}() names the package {text!r}, without find_package({text})",
                     command.at,

@@ -7,6 +7,7 @@ undecided what they could touch.
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 
+from grader.base.names import near
 from grader.base.source import Source
 from grader.files.tree import Tree
 from grader.ros.build.cmake.cmake_build import BUILD_COMMANDS, Build
@@ -66,6 +67,7 @@ class _Evaluation:
         for command in commands:
             self.values.budget.charge(1 + len(command.arguments))
             self.build.last = command.at
+            self._require_provider(command)
             if command.name in _COMMANDS:
                 _COMMANDS[command.name](self, command)
             elif command.name in BUILD_COMMANDS:
@@ -76,6 +78,27 @@ class _Evaluation:
                 self._forget_outputs(command)
             else:
                 self.build.give_up(f"{command.name}() is not evaluated", command.at)
+
+    def _require_provider(self, command: Command) -> None:
+        """Stop the build at a command that no package defines which was found."""
+        if self.values.is_opaque or self.build.doubts or command.name in self.own:
+            return
+        default = "ament_cmake" if command.name.startswith("ament_") else None
+        provider = str(cmake_table("providers").get(command.name, default) or "")
+        reached = self.values.reached_packages()
+        if not provider or reached is None or provider in reached:
+            return
+        needed = provider
+        if provider in str(cmake_table("exports")["ament_cmake"]).split():
+            needed = "ament_cmake"
+        if provider == "rosidl_cmake":
+            needed = "rosidl_default_generators"
+        self.build.stop(
+            f"CMake knows no command {command.name}(), because nothing finds the package {needed}",
+            command.at,
+            hint=f"; write find_package({needed} REQUIRED)",
+        )
+        self.values.packages.add(needed)
 
     def _forget_outputs(self, command: Command) -> None:
         """Forget the variables that a harmless command sets; message() may stop."""
@@ -239,11 +262,21 @@ class _Evaluation:
             self.build.give_up("include() is not evaluated", command.at)
 
     def find_package(self, command: Command) -> None:
-        """Remember a package, whose variables are not known."""
-        name = self.values.first(command)
+        """Remember a package, whose variables are not known. One that is surely misspelt stops the
+        build, if it is required, and is not found.
+        """
+        name, *words = self.values.texts(command.arguments) or [""]
         if isinstance(name, Unknown):
             self.values.is_opaque = True
             return
+        known = cmake_table("exports")
+        meant = near(name, known) if name.lower() not in known else None
+        if meant is not None:
+            if "REQUIRED" not in words:
+                return
+            hint = f"; did you mean {meant!r}?"
+            self.build.stop(f"there is no package {name!r}", command.at, hint=hint)
+            name = meant
         self.values.packages.add(name.lower())
         self.values.assign(f"{name}_FOUND", "1")
 

@@ -39,6 +39,22 @@ class Values:
         self.uncertain: Unknown | None = None
         self.is_opaque = False  # whether something that is not evaluated may have set any variable
 
+    def reached_packages(self) -> set[str] | None:
+        """Return the packages that were found, with those that they export; None where it is not
+        known which these are.
+        """
+        exports = cmake_table("exports")
+        found = self.packages - {str(self.variables.get("PROJECT_NAME")).lower()}
+        if self.is_opaque or not found.issubset(exports):
+            return None
+        pending, reached = [*found], set[str]()
+        while pending:
+            package = pending.pop()
+            if package not in reached:
+                reached.add(package)
+                pending += str(exports.get(package, "")).split()
+        return reached
+
     def texts(self, arguments: Sequence[Argument]) -> list[Text]:
         """Return what arguments stand for; a list is several texts."""
         return [text for argument in arguments for text in self.expanded(argument)]

@@ -105,7 +105,8 @@ def _opened(commands: list[Command], start: int, depth: int) -> tuple[Command, i
 
 def _commands(source: Source) -> Iterator[Command]:
     """Yield the commands of a file, without blocks. Raises CMakeFault."""
-    text, offset = source.text, 0
+    text = source.text
+    offset = len("\ufeff") if text.startswith("\ufeff") else 0  # CMake takes a byte order mark
     while (offset := _skip(text, offset)) < len(text):
         name = _NAME.match(text, offset)
         if name is None:

@@ -1,0 +1,105 @@
+"""What keeps a node in Python from running: it is found where it is certain, and nowhere else."""
+
+import pytest
+
+from grader.ros.package.node_slips import Program, node_slips
+from grader.ros.python.parse import Code, parse
+from tests.samples import ROOT
+
+SCRIPT = (ROOT / "rubrics/diffdrive/diffdrive_robot/scripts/drive_circle.py").read_text()
+SEND = "        command = TwistStamped()\n"
+CREATE = "        self.publisher = self.create_publisher("
+
+
+def reactions(text: str, function: str = "") -> list[str]:
+    """Return what is found in a program, whose corrections leave nothing to be found."""
+    code = parse(text.encode(), "drive_circle.py")
+    assert isinstance(code, Code)
+    slips = node_slips(code, Program("drive_circle.py", function))
+    return [slip.reaction for slip in slips]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reaction"),
+    [
+        (
+            '        super().__init__("drive_circle")\n',
+            "",
+            "super().__init__() is missing in the class DriveCircle",
+        ),
+        ("command.twist.linear", "command.linear", "geometry_msgs/msg/TwistStamped has no field"),
+        ("command.header.stamp", "command.headr.stamp", "geometry_msgs/msg/TwistStamped has no"),
+        ("self.publisher.publish", "self.publisher_.publish", "DriveCircle has no attribute pub"),
+        ("self.create_publisher", "self.create_publishr", "DriveCircle has no attribute create_p"),
+        ("0.1, self.send", "0.1, self.send()", "create_timer() is given what self.send() returns"),
+        ("    rclpy.init()\n", "", "rclpy.init() is missing, so that rclpy makes no node"),
+        ("rclpy.spin(DriveCircle())", "DriveCircle()", "rclpy.spin() is missing, so that"),
+        ("rclpy.spin(DriveCircle())", "node = DriveCircle()", "rclpy.spin() is missing, so that"),
+        ("import rclpy\n", "", "the name rclpy is not defined"),
+        ("from rclpy.node import Node\n", "", "the name Node is not defined"),
+        (
+            "from geometry_msgs.msg import TwistStamped\n",
+            "",
+            "the name TwistStamped is not defined",
+        ),
+        ("= TwistStamped()", "= TwistStampd()", "the name TwistStampd is not defined"),
+        (SEND, f"{SEND}        command.twist.linear.y = math.sin(0)\n", "the name math is not"),
+        ("    main()\n", "    pass\n", "main() is never called, so that the program does nothing"),
+        ('== "__main__"', '== "main"', "main() is never called, so that the program does nothing"),
+    ],
+)
+def test_what_keeps_a_node_from_running(old: str, new: str, reaction: str) -> None:
+    """It is named, and nothing else."""
+    assert old in SCRIPT
+    [found] = reactions(SCRIPT.replace(old, new))
+    assert found.startswith(reaction)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("", ""),
+        # Under a condition, or caught.
+        (SEND, f"{SEND}        if self.speed:\n            math.sin(0)\n"),
+        (
+            SEND,
+            f"{SEND}        try:\n            math.sin(0)\n        except NameError:\n            pass\n",
+        ),
+        # After the node was stopped.
+        ("rclpy.spin(DriveCircle())", "rclpy.spin(DriveCircle())\n    math.sin(0)"),
+        # Other functions call rclpy, or keep the program alive.
+        ("    rclpy.init()\n", "    rclpy.init(args=None)\n"),
+        ("    rclpy.init()\n", "    with rclpy.init():\n        pass\n"),
+        ("import rclpy\n", "import rclpy\nfrom own.tools import begin\n"),
+        (
+            "    rclpy.spin(DriveCircle())",
+            "    node = DriveCircle()\n    while rclpy.ok():\n        rclpy.spin_once(node)",
+        ),
+        # What a node has itself, and what is set from outside.
+        ("self.get_parameter(", "self.get_parameters("),
+        (CREATE, f"        list(self.publishers)\n{CREATE}"),
+        ("    main()\n", "    import sys\n    sys.exit(main())\n"),
+        (
+            "def send(self):\n",
+            "def send(self, command=None):\n        command = command or TwistStamped()\n        command.linear\n",
+        ),
+        ("from geometry_msgs.msg import TwistStamped\n", "from geometry_msgs.msg import *\n"),
+        ("import rclpy\n", "import rclpy\nexec('math = 1')\n"),
+    ],
+)
+def test_what_may_run(old: str, new: str) -> None:
+    """Nothing is said of it."""
+    assert old in SCRIPT
+    assert reactions(SCRIPT.replace(old, new)) == []
+
+
+def test_an_entry_point_calls_its_function() -> None:
+    """Then the end of the file does not count, and names in other functions do not."""
+    text = SCRIPT.replace("    main()\n", "    pass\n") + "\n\ndef other():\n    math.sin(0)\n"
+    assert reactions(text, "main") == []
+
+
+def test_a_long_expression_takes_no_stack() -> None:
+    """What a student writes is read in any depth that Python parses."""
+    text = SCRIPT.replace("def main():\n", f"def main():\n    a = {'1+' * 900}1\n")
+    assert reactions(text) == []
