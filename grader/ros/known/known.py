@@ -52,6 +52,7 @@ class _Machine(TypedDict):
     in_cpp: list[str]
     in_python: list[str]
     spawner_options: list[str]
+    ending_commands: dict[str, list[str]]
     packages: dict[str, list[str]]
 
 
@@ -113,6 +114,11 @@ def is_written_in_cpp(package: str) -> bool:
 def spawner_options() -> Sequence[str]:
     """Return the options of the spawner of ros2_control that a value follows."""
     return _machine()["spawner_options"]
+
+
+def ending_commands() -> Mapping[str, Sequence[str]]:
+    """Return the commands that end by themselves, each with the options with which it does not."""
+    return _machine()["ending_commands"]
 
 
 def started_by_launch_files() -> Mapping[str, Mapping[str, Sequence[str]]]:
