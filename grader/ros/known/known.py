@@ -8,7 +8,14 @@ from pathlib import Path
 from typing import Any, Literal, TypedDict, cast
 
 _FOLDER = Path(__file__).parent
-_OF_WORKSPACES = ("packages", "programs", "nav2", "controllers", "gazebo")
+_OF_WORKSPACES = (
+    "packages",
+    "programs",
+    "nav2",
+    "controllers",
+    "controller_parameters",
+    "gazebo",
+)
 
 
 class _Known(TypedDict):
@@ -32,6 +39,7 @@ class _Known(TypedDict):
     controllers: Mapping[Any, dict[str, str]]  # by the type that a file may give
     controller_topics: Mapping[Any, dict[Literal["subscription", "publisher"], dict[str, str]]]
     controller_actions: dict[str, list[str]]
+    parameter_types: Mapping[Any, dict[str, list[str]]]  # by the type of a controller
     moveit_actions: dict[str, str]
     frame_elements: list[str]
     joint_elements: list[str]
