@@ -381,7 +381,10 @@ def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr:
         raise EvaluationFails("the quotes in this command are not closed", at) from None
     if not words:
         raise EvaluationFails("this command is empty", at)
-    contents = _printed_file(words[3:] if words[:3] == ["ros2", "run", "xacro"] else words)
+    if words[:3] == ["ros2", "run", "xacro"]:
+        words = words[3:]
+    _check_xacro_words(words, at)
+    contents = _printed_file(words)
     if contents is None:
         unknown = next((text.reason for text in texts if isinstance(text, Unknown)), "")
         raise Undetermined(
@@ -392,6 +395,33 @@ def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr:
     return replace(
         contents, stops_at_stderr=True, is_deprecated=not {"-i", "--inorder"}.isdisjoint(words)
     )
+
+
+def _check_xacro_words(words: Sequence[str], at: Position) -> None:
+    """Raise EvaluationFails for a command of xacro that certainly has not one file, or an argument
+    that is none.
+    """
+    program = posixpath.basename(words[0]).removesuffix(".py") if words else ""
+    if program != "xacro" or any(word.startswith("-") for word in words):
+        return
+    for word in words[1:]:
+        name, _, value = word.partition(":=")
+        path = re.match(r".*/.*\.(?:xacro|urdf)", name) if ":=" in word else None
+        if path is not None:
+            before, after = posixpath.basename(path[0]), f"{name[path.end() :]}:="
+            raise EvaluationFails(f"a space is missing between {before} and {after}", at)
+        if ":=" in value:
+            raise EvaluationFails(f"a space is missing between the arguments in {word[:60]!r}", at)
+    if any(PART_UNKNOWN in word for word in words):
+        return
+    files = [word for word in words[1:] if ":=" not in word]
+    if not files:
+        raise EvaluationFails("xacro is given no file", at)
+    if len(files) > 1:
+        raise EvaluationFails(
+            f"xacro takes one file, and is given {enumerated([*map(posixpath.basename, files)])}",
+            at,
+        )
 
 
 def _printed_file(words: list[str]) -> Contents | None:
