@@ -89,6 +89,17 @@ def is_on_every_machine(package: str) -> bool:
     return package in _machine()["packages"] or package in _machine()["other_packages"]
 
 
+def is_known_package(name: str) -> bool:
+    """Return whether a table names a package."""
+    packages = {*known()["without_frames"], *known()["programs"], *known()["metapackages"]}
+    for members in known()["metapackages"].values():
+        packages.update(members)
+    for names in (known()["node_names"], known()["controllers"]):
+        packages.update(each.partition("/")[0] for each in names)
+    packages.update(path.split("/")[1] for path in known()["launch_arguments"])
+    return name in packages or is_on_every_machine(name) or name in started_by_launch_files()
+
+
 def programs_of(package: str) -> Sequence[str]:
     """Return the programs of a package that is on every machine, if all are known."""
     return _machine()["packages"].get(package, ())

@@ -181,7 +181,7 @@ class ActionVisitor:
 
     def _execute(self, call: Call, context: Context, when: bool | None) -> None:
         kind = call.short
-        start = len(context.reads)
+        start, first_fault = len(context.reads), len(context.faults)
         self._evaluate_fields(call, context, when)
         try:
             if when is not False or kind not in _EFFECTS:
@@ -198,6 +198,9 @@ class ActionVisitor:
             for contents, at in context.reads[start:]:
                 self.findings.refer("read", contents, Call("", [], {}, at))
         del context.reads[start:]
+        for message, at in context.faults[first_fault:]:
+            self.findings.add(EvaluationFails(message, at), call.at, when)
+        del context.faults[first_fault:]
 
     def _evaluate_fields(self, call: Call, context: Context, when: bool | None) -> None:
         """Evaluate the arguments of an action that may contain substitutions."""
@@ -492,6 +495,7 @@ def _include_file(visitor: ActionVisitor, call: Call, context: Context, when: bo
         arguments={**context.arguments, **given},
         when=when,
         reads=[],
+        faults=[],
         given=frozenset(given),
     )
     inner.included_by = (*context.included_by, context.path.removeprefix(f"{PREFIX}/"))

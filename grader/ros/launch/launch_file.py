@@ -39,7 +39,7 @@ from grader.ros.launch.launch_model import (
     UnknownText,
     texts_by_name,
 )
-from grader.ros.launch.substitutions import resolve
+from grader.ros.launch.substitutions import no_package, resolve
 from grader.ros.python.evaluation import Evaluation, record
 from grader.ros.python.interpreter import Interpreter
 from grader.ros.python.library import standard_functions
@@ -399,6 +399,10 @@ class _PythonLaunchFile:
         name = known(call.argument(0, "package_name", "package"))
         if not isinstance(name, str):
             raise EvaluationFails("the name of a package is a string")
+        meant = self.context.machine.misspelt_package(name)
+        if meant is not None:
+            evaluation.error(no_package(name, meant), call.at)
+            return meant
         if not self.context.machine.has_package(name):
             evaluation.doubted(
                 Unknown(f"whether the package {name!r} is installed is not evaluated", call.at)

@@ -210,6 +210,10 @@ class _Substitution:
         package = self.argument("package")
         if isinstance(package, Unknown):
             return package
+        meant = self.context.machine.misspelt_package(package) if isinstance(package, str) else None
+        if meant is not None:
+            self.context.faults.append((no_package(str(package), meant), self.at))
+            return f"{SHARE}/{meant}"
         if not isinstance(package, str) or not self.context.machine.has_package(package):
             shown = repr(package) if isinstance(package, str) else "that is read from a file"
             raise Undetermined(
@@ -290,6 +294,11 @@ class _Substitution:
         package, name = self.known_argument("package"), self.known_argument("executable")
         check_program(package, name, self.context, self.at)
         return f"{PREFIX}/lib/{package}/{name}"
+
+
+def no_package(name: str, meant: str) -> str:
+    """Return the error of a package that is not there."""
+    return f"there is no package {name!r}; did you mean {meant!r}?"
 
 
 def check_program(package: str, name: str, context: Context, at: Position) -> None:
