@@ -490,6 +490,17 @@ WRONG: list[tuple[Family, str, list[Edit]]] = [
     ),
     (
         "arguments",
+        "Command of xacro: there is no xacro argument 'sim'",
+        [
+            (
+                _ROBOT_LAUNCH,
+                '" controllers_file:=", controllers]',
+                '" sim:=1 controllers_file:=", controllers]',
+            )
+        ],
+    ),
+    (
+        "arguments",
         (
             "Command of xacro: there is no xacro argument 'controller_file'; did you mean 'controllers_file'"
             " (cart_description/urdf/cart.urdf.xacro:3)?"
@@ -694,6 +705,41 @@ CORRECT: list[tuple[str, list[Edit]]] = [
     update_rate: 50
     pose_covariance_diagonal: []
     base_frame_id""",
+            ),
+        ],
+    ),
+    (
+        "a xacro argument that is used, and only passed",
+        [
+            (
+                _ROBOT_LAUNCH,
+                '" controllers_file:=", controllers]',
+                '" rate:=1 controllers_file:=", controllers]',
+            ),
+            (
+                "urdf/cart.urdf.xacro",
+                "</robot>",
+                '<xacro:property name="rate" value="$(arg rate)"/></robot>',
+            ),
+        ],
+    ),
+    (
+        "a xacro argument that another file may declare",
+        [
+            (
+                _ROBOT_LAUNCH,
+                '" controllers_file:=", controllers]',
+                '" rate:=1 controllers_file:=", controllers]',
+            ),
+            (
+                "urdf/cart.urdf.xacro",
+                "</robot>",
+                '<xacro:include filename="$(find other_description)/other.xacro"/></robot>',
+            ),
+            (
+                "cart_description/package.xml",
+                "</package>",
+                "<exec_depend>other_description</exec_depend></package>",
             ),
         ],
     ),
