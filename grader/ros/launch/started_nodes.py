@@ -419,6 +419,13 @@ def _find_configuration(findings: Findings, call: Call, context: Context) -> Non
     if isinstance(arguments, Unknown):
         findings.refer("rviz", arguments, call)
         return
+    if isinstance(arguments, str):
+        at = call.places.get("arguments", call.at)
+        message = (
+            "arguments is a string, of which each letter is an argument; write a list: ['-d', path]"
+        )
+        findings.refer("rviz", None, Call("", [], {}, at), wrong=message)
+        return
     words = _resolve_words(arguments, context, call.at)
     path = _display_config(words)
     if path is None and PART_UNKNOWN not in words:
@@ -454,7 +461,8 @@ def _display_config(words: list[str]) -> str | None:
         elif word.startswith("--display-config="):
             path = word.removeprefix("--display-config=")
         elif word.startswith("-d"):
-            path = word.removeprefix("-d") if word[2:3].isspace() else PART_UNKNOWN
+            is_path = word[2:3].isspace() or word[2:3] == "/"
+            path = word.removeprefix("-d") if is_path else PART_UNKNOWN
     return path
 
 

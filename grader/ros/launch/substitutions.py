@@ -221,6 +221,10 @@ class _Substitution:
             )
         return f"{SHARE}/{package}"
 
+    def package_prefix(self) -> Resolved:
+        folder = self.package_folder()
+        return PREFIX if isinstance(folder, str) else folder
+
     def program(self) -> Resolved:
         name = self.argument("name")
         if isinstance(name, str) and name not in _PROGRAMS:
@@ -335,6 +339,7 @@ PERFORMS: Mapping[str, Callable[[_Substitution], Resolved]] = {
     "Command": _Substitution.command,
     "PythonExpression": _Substitution.expression,
     "FindPackageShare": _Substitution.package_folder,
+    "FindPackagePrefix": _Substitution.package_prefix,
     "FindExecutable": _Substitution.program,
     "EnvironmentVariable": _Substitution.variable,
     "ThisLaunchFileDir": lambda it: posixpath.dirname(it.context.path),
@@ -392,8 +397,8 @@ def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr:
         raise EvaluationFails("this command is empty", at)
     if words[:3] == ["ros2", "run", "xacro"]:
         words = words[3:]
-    _check_xacro_words(words, at)
-    contents = _printed_file(words)
+    check_xacro_words(words, at)
+    contents = printed_file(words)
     if contents is None:
         unknown = next((text.reason for text in texts if isinstance(text, Unknown)), "")
         raise Undetermined(
@@ -406,7 +411,7 @@ def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr:
     )
 
 
-def _check_xacro_words(words: Sequence[str], at: Position) -> None:
+def check_xacro_words(words: Sequence[str], at: Position) -> None:
     """Raise EvaluationFails for a command of xacro that certainly has not one file, or an argument
     that is none.
     """
@@ -433,7 +438,7 @@ def _check_xacro_words(words: Sequence[str], at: Position) -> None:
         )
 
 
-def _printed_file(words: list[str]) -> Contents | None:
+def printed_file(words: list[str]) -> Contents | None:
     """Return the contents of the one file that xacro or cat prints; None for any other command."""
     program = words[0].rpartition("/")[2].removesuffix(".py") if words else ""
     files = [word for word in words[1:] if not word.startswith("-") and ":=" not in word]
