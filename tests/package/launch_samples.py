@@ -56,6 +56,9 @@ class Installed(NamedTuple):
         """Return whether a package is there."""
         return name != ""
 
+    def misspelt_package(self, name: str) -> str | None:
+        """Return the package that a name stands for."""
+
     def files_in(self, folder: str) -> tuple[str, ...]:
         """Return the names of the files in a folder."""
         return tuple(

@@ -89,6 +89,9 @@ class _Installed(Installed):
     def has_package(self, name: str) -> bool:
         return name in _INSTALLED
 
+    def misspelt_package(self, name: str) -> str | None:
+        """Return the package that a name stands for."""
+
     def files_in(self, folder: str) -> tuple[str, ...]:
         """Return the names of the files in a folder."""
         return tuple(

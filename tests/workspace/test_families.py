@@ -319,6 +319,81 @@ WRONG: list[tuple[Family, str, list[Edit]]] = [
     ),
     (
         "parameters",
+        (
+            "the parameter 'threshold' is given an integer; its node declares a double"
+            " (cart_nodes/cart_nodes/detector.py:10), and stops"
+        ),
+        [(_LAUNCH, "parameters=[detector]", 'parameters=[{"threshold": 1}]')],
+    ),
+    (
+        "parameters",
+        (
+            "the parameter 'threshold' is given an integer; its node declares a double"
+            " (cart_nodes/cart_nodes/detector.py:10), and stops"
+        ),
+        [
+            (_LAUNCH, "import PathJoin", "import LaunchConfiguration, PathJoin"),
+            (
+                _LAUNCH,
+                "parameters=[detector]",
+                'parameters=[{"threshold": LaunchConfiguration("level", default="1")}]',
+            ),
+        ],
+    ),
+    (
+        "parameters",
+        (
+            "the parameter 'threshold' is given an integer; its node declares a double"
+            " (cart_nodes/cart_nodes/detector.py:10), and stops"
+        ),
+        [
+            (
+                _LAUNCH,
+                "parameters=[detector]",
+                'parameters=[], ros_arguments=["-p", "threshold:=1"]',
+            )
+        ],
+    ),
+    (
+        "parameters",
+        (
+            "the parameter 'wheel_separation' is given an integer; 'wheel_controller' declares a"
+            " double, and stops"
+        ),
+        [(_CONTROLLERS, "    base_frame_id", "    wheel_separation: 1\n    base_frame_id")],
+    ),
+    (
+        "parameters",
+        (
+            "the parameter 'enable_odom_tf' is given a string; 'wheel_controller' declares a"
+            " boolean, and stops"
+        ),
+        [(_CONTROLLERS, "    base_frame_id", "    enable_odom_tf: 'yes'\n    base_frame_id")],
+    ),
+    (
+        "parameters",
+        (
+            "the parameter 'pose_covariance_diagonal' is given a list of integers;"
+            " 'wheel_controller' declares a list of doubles, and stops"
+        ),
+        [
+            (
+                _CONTROLLERS,
+                "    base_frame_id",
+                "    pose_covariance_diagonal: [0, 0, 0, 0, 0, 1]\n    base_frame_id",
+            )
+        ],
+    ),
+    (
+        "parameters",
+        (
+            "the parameter 'update_rate' is given a double; 'controller_manager' declares an"
+            " integer, and stops"
+        ),
+        [(_CONTROLLERS, "update_rate: 100", "update_rate: 100.0"), *_WITH_MANAGER],
+    ),
+    (
+        "parameters",
         "the parameter 'use_sim_time' is given a string; its node declares a boolean, and stops",
         [("config/detector.yaml", "threshold: 0.5", "threshold: 0.5\n    use_sim_time: 'true'")],
     ),
@@ -412,6 +487,17 @@ WRONG: list[tuple[Family, str, list[Edit]]] = [
             " (cart_bringup/launch/robot.launch.py:1)?"
         ),
         [(_LAUNCH, '"sim_time"', '"use_sim_time"')],
+    ),
+    (
+        "arguments",
+        "Command of xacro: there is no xacro argument 'sim'",
+        [
+            (
+                _ROBOT_LAUNCH,
+                '" controllers_file:=", controllers]',
+                '" sim:=1 controllers_file:=", controllers]',
+            )
+        ],
     ),
     (
         "arguments",
@@ -590,6 +676,71 @@ CORRECT: list[tuple[str, list[Edit]]] = [
                 'self.declare_parameter("threshold", 0.5, ANY)',
             ),
             ("config/detector.yaml", "threshold: 0.5", "threshold: 1"),
+        ],
+    ),
+    (
+        "parameters of the declared types",
+        [
+            (_LAUNCH, "import PathJoin", "import LaunchConfiguration, PathJoin"),
+            (
+                _LAUNCH,
+                "import Node\n",
+                "import Node\nfrom launch_ros.parameter_descriptions import ParameterValue\n",
+            ),
+            (
+                _LAUNCH,
+                "parameters=[detector]",
+                """parameters=[
+                {"threshold": ParameterValue(LaunchConfiguration("a", default="1"), value_type=float)},
+                {"threshold": LaunchConfiguration("b", default="1.0")},
+                {"threshold": 1.0, "use_sim_time": LaunchConfiguration("c", default="True")},
+            ]""",
+            ),
+            (
+                _CONTROLLERS,
+                "    base_frame_id",
+                """    wheel_separation: 1.0
+    cmd_vel_timeout: 5e-1
+    enable_odom_tf: yes
+    update_rate: 50
+    pose_covariance_diagonal: []
+    base_frame_id""",
+            ),
+        ],
+    ),
+    (
+        "a xacro argument that is used, and only passed",
+        [
+            (
+                _ROBOT_LAUNCH,
+                '" controllers_file:=", controllers]',
+                '" rate:=1 controllers_file:=", controllers]',
+            ),
+            (
+                "urdf/cart.urdf.xacro",
+                "</robot>",
+                '<xacro:property name="rate" value="$(arg rate)"/></robot>',
+            ),
+        ],
+    ),
+    (
+        "a xacro argument that another file may declare",
+        [
+            (
+                _ROBOT_LAUNCH,
+                '" controllers_file:=", controllers]',
+                '" rate:=1 controllers_file:=", controllers]',
+            ),
+            (
+                "urdf/cart.urdf.xacro",
+                "</robot>",
+                '<xacro:include filename="$(find other_description)/other.xacro"/></robot>',
+            ),
+            (
+                "cart_description/package.xml",
+                "</package>",
+                "<exec_depend>other_description</exec_depend></package>",
+            ),
         ],
     ),
     (

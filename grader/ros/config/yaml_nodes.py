@@ -127,7 +127,9 @@ def yaml_value(text: str) -> Any:
     none.
     """
     try:
-        return yaml.load(text, Loader=_LOADER)  # noqa: S506  a safe loader
+        loaded = yaml.load(text, Loader=_LOADER)  # noqa: S506  a safe loader
+        # libyaml takes tabs that yaml.safe_load refuses.
+        return yaml.safe_load(text) if "\t" in text else loaded
     except (yaml.YAMLError, RecursionError) as error:
         raise ValueError(str(error)) from None
 

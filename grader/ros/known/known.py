@@ -8,7 +8,14 @@ from pathlib import Path
 from typing import Any, Literal, TypedDict, cast
 
 _FOLDER = Path(__file__).parent
-_OF_WORKSPACES = ("packages", "programs", "nav2", "controllers", "gazebo")
+_OF_WORKSPACES = (
+    "packages",
+    "programs",
+    "nav2",
+    "controllers",
+    "controller_parameters",
+    "gazebo",
+)
 
 
 class _Known(TypedDict):
@@ -33,6 +40,7 @@ class _Known(TypedDict):
     controllers: Mapping[Any, dict[str, str]]  # by the type that a file may give
     controller_topics: Mapping[Any, dict[Literal["subscription", "publisher"], dict[str, str]]]
     controller_actions: dict[str, list[str]]
+    parameter_types: Mapping[Any, dict[str, list[str]]]  # by the type of a controller
     moveit_actions: dict[str, str]
     frame_elements: list[str]
     joint_elements: list[str]
@@ -53,6 +61,7 @@ class _Machine(TypedDict):
     in_cpp: list[str]
     in_python: list[str]
     spawner_options: list[str]
+    ending_commands: dict[str, list[str]]
     packages: dict[str, list[str]]
 
 
@@ -79,6 +88,17 @@ def is_on_every_machine(package: str) -> bool:
     not.
     """
     return package in _machine()["packages"] or package in _machine()["other_packages"]
+
+
+def is_known_package(name: str) -> bool:
+    """Return whether a table names a package."""
+    packages = {*known()["without_frames"], *known()["programs"], *known()["metapackages"]}
+    for members in known()["metapackages"].values():
+        packages.update(members)
+    for names in (known()["node_names"], known()["controllers"]):
+        packages.update(each.partition("/")[0] for each in names)
+    packages.update(path.split("/")[1] for path in known()["launch_arguments"])
+    return name in packages or is_on_every_machine(name) or name in started_by_launch_files()
 
 
 def programs_of(package: str) -> Sequence[str]:
@@ -125,6 +145,11 @@ def is_written_in_cpp(package: str) -> bool:
 def spawner_options() -> Sequence[str]:
     """Return the options of the spawner of ros2_control that a value follows."""
     return _machine()["spawner_options"]
+
+
+def ending_commands() -> Mapping[str, Sequence[str]]:
+    """Return the commands that end by themselves, each with the options with which it does not."""
+    return _machine()["ending_commands"]
 
 
 def started_by_launch_files() -> Mapping[str, Mapping[str, Sequence[str]]]:

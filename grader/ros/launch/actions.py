@@ -28,6 +28,7 @@ from grader.ros.launch.node_parameters import (
 )
 from grader.ros.launch.started_nodes import (
     REMAPS,
+    ends_by_itself,
     evaluate_node,
     evaluate_process,
     namespace_below,
@@ -92,7 +93,9 @@ class ActionVisitor:
     executed: dict[Call, bool | None] = field(
         default_factory=dict
     )  # the processes: each is executed once
-    # What timers and events execute, and the process whose start does.
+    # the processes that are executed when an event happens which may not happen
+    perhaps_executed: set[Call] = field(default_factory=set)
+    # What timers and events execute, and the process whose start or end does.
     later: list[tuple[Value, Call, Context, bool | None, Value]] = field(default_factory=list)
     # what the current node is given, evaluated up to the first error or doubt
     parameters: dict[Call, Iterator[GivenParameters]] = field(default_factory=dict)
@@ -100,16 +103,31 @@ class ActionVisitor:
     depth: int = 0
 
     def launch(self, description: Value, context: Context, at: Position) -> None:
-        """Execute a description, and then what its timers and the start of its processes
+        """Execute a description, and then what its timers and the start and end of its processes
         execute.
         """
         self.visit(description, context, context.when, at)
         for _ in range(_MAX_DEPTH):
             later, self.later = self.later, []
-            for actions, call, own, when, target in later:
-                is_started = self.executed.get(target, False) if isinstance(target, Call) else when
+            started = [self._is_started(target) for *_, target in later]
+            for (actions, call, own, when, target), is_started in zip(later, started, strict=True):
+                if is_started is False and any(started):
+                    # Another event may start the process.
+                    self.later.append((actions, call, own, when, target))
+                    continue
                 inner = replace(own, arguments=context.arguments, has_others=context.has_others)
                 self.visit_all(actions, call, inner, is_started if when else None)
+
+    def _is_started(self, target: Value) -> bool | None:
+        """Return whether the process is started on which an action waits; True if it waits on
+        none.
+        """
+        if not isinstance(target, Call):
+            return True
+        if target in self.executed:
+            return self.executed[target]
+        is_open = target in self.perhaps_executed or bool(self.findings.unknown)
+        return None if is_open else False
 
     def visit(self, value: Value, context: Context, when: bool | None, at: Position) -> None:
         """Visit an action."""
@@ -163,7 +181,7 @@ class ActionVisitor:
 
     def _execute(self, call: Call, context: Context, when: bool | None) -> None:
         kind = call.short
-        start = len(context.reads)
+        start, first_fault = len(context.reads), len(context.faults)
         self._evaluate_fields(call, context, when)
         try:
             if when is not False or kind not in _EFFECTS:
@@ -180,6 +198,9 @@ class ActionVisitor:
             for contents, at in context.reads[start:]:
                 self.findings.refer("read", contents, Call("", [], {}, at))
         del context.reads[start:]
+        for message, at in context.faults[first_fault:]:
+            self.findings.add(EvaluationFails(message, at), call.at, when)
+        del context.faults[first_fault:]
 
     def _evaluate_fields(self, call: Call, context: Context, when: bool | None) -> None:
         """Evaluate the arguments of an action that may contain substitutions."""
@@ -220,6 +241,7 @@ class ActionVisitor:
         inner = context.copy()
         inner.to_all = {name: [*given] for name, given in context.to_all.items()}
         self.visit_all(listed(actions), call, inner, False if when is False else None)
+        self.perhaps_executed.update(self.executed)
         self.findings.is_silent, self.executed = was_silent, executed
 
 
@@ -429,8 +451,9 @@ def _register_handler(
         actions = visitor.call_function(value, handler.at, None, context)
     else:
         actions = value
-    if kind == "OnProcessStart" and value is actions and when is not False:
-        target = handler.kwargs.get("target_action")
+    target = handler.kwargs.get("target_action")
+    happens = kind == "OnProcessStart" or ends_by_itself(target, context)
+    if happens and value is actions and when is not False:
         executed = actions if isinstance(actions, list) else [actions]
         visitor.later.append((executed, handler, context, when, target))
     elif not isinstance(actions, QualifiedName | None):
@@ -472,6 +495,7 @@ def _include_file(visitor: ActionVisitor, call: Call, context: Context, when: bo
         arguments={**context.arguments, **given},
         when=when,
         reads=[],
+        faults=[],
         given=frozenset(given),
     )
     inner.included_by = (*context.included_by, context.path.removeprefix(f"{PREFIX}/"))
@@ -523,7 +547,9 @@ def _execute_process(
     if when is not False:
         evaluate(call, context)
     on_exit = call.kwargs.get("on_exit")
-    if isinstance(on_exit, list):
+    if isinstance(on_exit, list) and when and ends_by_itself(call, context):
+        visitor.later.append((on_exit, call, context, when, call))
+    elif isinstance(on_exit, list):
         visitor.perhaps(on_exit, call, context, when)
     elif not isinstance(on_exit, Function | Call | Unknown | QualifiedName | None):
         raise Undetermined("this value of on_exit is not evaluated", call.at)

@@ -37,6 +37,12 @@ class MachineRecorder:
         self._answers.append((methodcaller("has_package", name), has_package))
         return has_package
 
+    def misspelt_package(self, name: str) -> str | None:
+        """Return the submitted package that a name stands for."""
+        meant = self._machine.misspelt_package(name)
+        self._answers.append((methodcaller("misspelt_package", name), meant))
+        return meant
+
     def files_in(self, folder: str) -> "Sequence[str] | None":
         """Return the names of the installed files in a folder."""
         names = self._machine.files_in(folder)

@@ -6,7 +6,9 @@ calls return.
 
 import posixpath
 import re
+import shlex
 from collections.abc import Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from operator import attrgetter
 from pathlib import PurePosixPath
@@ -39,7 +41,13 @@ from grader.ros.launch.launch_model import (
     UnknownText,
     texts_by_name,
 )
-from grader.ros.launch.substitutions import resolve
+from grader.ros.launch.substitutions import (
+    PART_UNKNOWN,
+    check_xacro_words,
+    no_package,
+    printed_file,
+    resolve,
+)
 from grader.ros.python.evaluation import Evaluation, record
 from grader.ros.python.interpreter import Interpreter
 from grader.ros.python.library import standard_functions
@@ -64,6 +72,9 @@ _TEXTS = [
     for name in ("xacro.process_file", "xacro.parse")
     for method in ("toxml", "toprettyxml")
 ]
+# A file that is opened to be written, and the modes of open for it.
+_WRITTEN = "io.TextIOWrapper"
+_WRITES = ("w", "wt", "a", "at", "x", "xt")
 _ENTRY = "generate_launch_description"
 _NODE = "launch_ros.actions.node.Node"
 _MOVEIT = "moveit_configs_utils"
@@ -346,6 +357,7 @@ class _PythonLaunchFile:
         for module in _AMENT_INDEX:
             functions[f"{module}.get_package_share_directory"] = self._share
             functions[f"{module}.get_package_share_path"] = self._share_path
+            functions[f"{module}.get_package_prefix"] = self._prefix
         functions |= {
             "launch_ros.substitutions.find_package.FindPackageShare.find": self._share,
             "builtins.open": self._open,
@@ -365,6 +377,10 @@ class _PythonLaunchFile:
             "xacro.process": self._xacro,
             "xacro.parse": self._xacro,
             **dict.fromkeys(_TEXTS, self._text),
+            "subprocess.check_output": self._check_output,
+            "subprocess.check_output.decode": lambda _, call: _printed_text(call.owner),
+            f"{_WRITTEN}.__enter__": record,
+            f"{_WRITTEN}.read": _fail_to_read,
         }
         return LaunchFunctions(functions)
 
@@ -399,6 +415,10 @@ class _PythonLaunchFile:
         name = known(call.argument(0, "package_name", "package"))
         if not isinstance(name, str):
             raise EvaluationFails("the name of a package is a string")
+        meant = self.context.machine.misspelt_package(name)
+        if meant is not None:
+            evaluation.error(no_package(name, meant), call.at)
+            return meant
         if not self.context.machine.has_package(name):
             evaluation.doubted(
                 Unknown(f"whether the package {name!r} is installed is not evaluated", call.at)
@@ -407,6 +427,10 @@ class _PythonLaunchFile:
 
     def _share(self, evaluation: Evaluation, call: Call) -> Value:
         return f"{SHARE}/{self._package(evaluation, call)}"
+
+    def _prefix(self, evaluation: Evaluation, call: Call) -> Value:
+        self._package(evaluation, call)
+        return PREFIX
 
     def _share_path(self, evaluation: Evaluation, call: Call) -> Value:
         return PurePosixPath(self._share(evaluation, call))
@@ -423,6 +447,9 @@ class _PythonLaunchFile:
         encoding = known(call.argument(3, "encoding"))
         others = call.kwargs.keys() - {"file", "mode", "encoding"}
         is_utf8 = encoding is None or str(encoding).lower().replace("_", "-") in ("utf-8", "utf8")
+        if mode in _WRITES:
+            call.name, call.args, call.kwargs = _WRITTEN, [], {}
+            return record(evaluation, call)
         if mode not in (None, "r", "rt") or not is_utf8 or others or len(call.args) > 2:
             raise Undetermined("this use of open is not evaluated", call.at, is_final=True)
         if evaluation.attempts and self.context.text_of(path) is None:
@@ -440,6 +467,25 @@ class _PythonLaunchFile:
             evaluation, Call("", [call.args[0], "r", *call.args[1:]], call.kwargs, call.at)
         )
         return self._text(evaluation, Call("builtins.open.read", [], {}, call.at, opened))
+
+    def _check_output(self, evaluation: Evaluation, call: Call) -> Value:
+        """Return what a command prints that prints a file: as bytes, or as a text."""
+        given, is_text = known(call.argument(0, "args")), False
+        for name in ("text", "universal_newlines", "encoding"):
+            is_text |= bool(known(call.kwargs.get(name)))
+        others = call.kwargs.keys() - {"args", "text", "universal_newlines", "encoding", "shell"}
+        if isinstance(given, str) and known(call.kwargs.get("shell")) is True:
+            with suppress(ValueError):
+                given = shlex.split(given)
+        items = given if isinstance(given, list | tuple) else []
+        words = [path_text(known(item)) or PART_UNKNOWN for item in items]
+        check_xacro_words(words, call.at)
+        contents = printed_file(words)
+        if contents is None or others or len(call.args) > 1:
+            raise Undetermined("this use of subprocess is not evaluated", call.at, is_final=True)
+        self.reads.append((contents, call.at))
+        call.args, call.kwargs = [words], {}
+        return _printed_text(call) if is_text else record(evaluation, call)
 
     def _exists(self, _: Evaluation, call: Call) -> Value:
         path = path_text(known(call.args[0])) or ""
@@ -468,6 +514,23 @@ class _PythonLaunchFile:
                 contents=_contents_read(call),
             )
         return record(evaluation, call)
+
+
+def _printed_text(call: Call | None) -> FileText:
+    """Return the text that a recorded command prints."""
+    contents = printed_file(call.args[0]) if call is not None else None
+    assert call is not None
+    assert contents is not None
+    return FileText(
+        reason="the output of a command is not evaluated", at=call.at, contents=contents
+    )
+
+
+def _fail_to_read(_: Evaluation, call: Call) -> Value:
+    raise EvaluationFails(
+        "a file that is opened to be written is emptied, and cannot be read: leave out the mode",
+        call.at,
+    )
 
 
 def _contents_read(call: Call) -> Contents:

@@ -79,6 +79,11 @@ class Machine(Protocol):
     def has_package(self, name: str) -> bool:
         """Return whether a package certainly is on the machine."""
 
+    def misspelt_package(self, name: str) -> str | None:
+        """Return the submitted package that the name of one that certainly is not there stands
+        for.
+        """
+
     def files_in(self, folder: str) -> "Sequence[str] | None":
         """Return the names of the installed files in a folder below the prefix; None where they are
         not all known.
@@ -107,6 +112,8 @@ class Context:
     included_by: tuple[
         str, ...
     ] = ()  # the paths of the launch files that include this one, the first one first
+    # errors in the current action, after which it is evaluated as it is meant
+    faults: list[tuple[str, Position]] = field(default_factory=list)
     given: frozenset[str] = frozenset()  # the launch arguments that the file is included with
     reads: list[tuple[Contents, Position]] = field(
         default_factory=list

@@ -53,6 +53,8 @@ TO_ALL = "global_params"
 _MAX_YAML = 200_000  # characters
 _MAX_DEPTH = 40
 _HEAD = '<?xml version="1.0" ?>\n<!-- by xacro -->\n'  # of what xacro writes
+# xacro writes blanks in place of tabs, but for those in comments.
+_COMMENT_OR_TAB = re.compile(r"<!--.*?(?:-->|\Z)|\t", re.DOTALL)
 _KEY = "ros__parameters"
 _SUBSTITUTION = "$("
 # As rcl reads a scalar of YAML, which is not what PyYAML makes of it.
@@ -281,6 +283,8 @@ def _value_as_yaml(name: str, value: Value, context: Context, at: Position) -> A
     try:
         if len(text) > _MAX_YAML:
             raise Undetermined(f"the parameter {name!r} is too long to be read as YAML", at)
+        if isinstance(resolved, Contents) and resolved.by == "xacro":
+            text = _COMMENT_OR_TAB.sub(lambda it: " " if it[0] == "\t" else it[0], text)
         return yaml_value(text) if text else text
     except ValueError:
         if isinstance(resolved, Contents) and resolved.by == "xacro" and not _is_never_yaml(text):

@@ -14,7 +14,11 @@ from dataclasses import replace
 from typing import Any
 
 from grader.ros.build.places import PREFIX, ROS, SHARE
-from grader.ros.known.known import is_on_every_machine, started_by_launch_files
+from grader.ros.known.known import (
+    ending_commands,
+    is_on_every_machine,
+    started_by_launch_files,
+)
 from grader.ros.launch.call_arguments import OPENED, TYPED, items_in
 from grader.ros.launch.launch_model import (
     NAMESPACE,
@@ -200,15 +204,40 @@ def start_process(findings: Findings, call: Call, context: Context, when: bool |
     """Add the node that a command starts, if it does."""
     if when is False:
         return
-    words = _resolve_words(call.kwargs["cmd"], context, call.at)
-    if call.kwargs.get("shell"):
-        with suppress(ValueError):
-            words = shlex.split(" ".join(words))
+    words = _words_of_command(call, context)
     node = _node_of_command(words, call)
     if node is not None:
         start_node(findings, node, context, when)
     elif _STARTS.search(" ".join(words)):
         findings.add_unknown("the nodes that a command starts are not evaluated", call.at)
+
+
+def _words_of_command(call: Call, context: Context) -> list[str]:
+    words = _resolve_words(call.kwargs["cmd"], context, call.at)
+    if call.kwargs.get("shell"):
+        with suppress(ValueError):
+            return shlex.split(" ".join(words))
+    return words
+
+
+def ends_by_itself(action: Value, context: Context) -> bool:
+    """Return whether an action starts a program that certainly ends by itself."""
+    if not isinstance(action, Call):
+        return False
+    if "cmd" in action.kwargs:
+        words = _words_of_command(action, context)
+    elif "executable" in action.kwargs:
+        program = [action.kwargs.get("package"), action.kwargs["executable"]]
+        arguments = action.kwargs.get("arguments")
+        words = ["ros2", "run", *_resolve_words(program, context, action.at)]
+        words += _resolve_words(arguments, context, action.at)
+    else:
+        return False
+    for command, options in ending_commands().items():
+        first = command.split()
+        if words[: len(first)] == first:
+            return not options or {PART_UNKNOWN, *options}.isdisjoint(words)
+    return False
 
 
 def _node_of_command(words: list[str], call: Call) -> Call | None:
@@ -390,6 +419,13 @@ def _find_configuration(findings: Findings, call: Call, context: Context) -> Non
     if isinstance(arguments, Unknown):
         findings.refer("rviz", arguments, call)
         return
+    if isinstance(arguments, str):
+        at = call.places.get("arguments", call.at)
+        message = (
+            "arguments is a string, of which each letter is an argument; write a list: ['-d', path]"
+        )
+        findings.refer("rviz", None, Call("", [], {}, at), wrong=message)
+        return
     words = _resolve_words(arguments, context, call.at)
     path = _display_config(words)
     if path is None and PART_UNKNOWN not in words:
@@ -425,7 +461,8 @@ def _display_config(words: list[str]) -> str | None:
         elif word.startswith("--display-config="):
             path = word.removeprefix("--display-config=")
         elif word.startswith("-d"):
-            path = word.removeprefix("-d") if word[2:3].isspace() else PART_UNKNOWN
+            is_path = word[2:3].isspace() or word[2:3] == "/"
+            path = word.removeprefix("-d") if is_path else PART_UNKNOWN
     return path
 
 

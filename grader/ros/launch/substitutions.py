@@ -210,12 +210,20 @@ class _Substitution:
         package = self.argument("package")
         if isinstance(package, Unknown):
             return package
+        meant = self.context.machine.misspelt_package(package) if isinstance(package, str) else None
+        if meant is not None:
+            self.context.faults.append((no_package(str(package), meant), self.at))
+            return f"{SHARE}/{meant}"
         if not isinstance(package, str) or not self.context.machine.has_package(package):
             shown = repr(package) if isinstance(package, str) else "that is read from a file"
             raise Undetermined(
                 f"whether the package {shown} is installed is not evaluated", self.at
             )
         return f"{SHARE}/{package}"
+
+    def package_prefix(self) -> Resolved:
+        folder = self.package_folder()
+        return PREFIX if isinstance(folder, str) else folder
 
     def program(self) -> Resolved:
         name = self.argument("name")
@@ -292,6 +300,11 @@ class _Substitution:
         return f"{PREFIX}/lib/{package}/{name}"
 
 
+def no_package(name: str, meant: str) -> str:
+    """Return the error of a package that is not there."""
+    return f"there is no package {name!r}; did you mean {meant!r}?"
+
+
 def check_program(package: str, name: str, context: Context, at: Position) -> None:
     """Raise EvaluationFails if a package certainly has no such program, Undetermined if this is not
     known.
@@ -326,6 +339,7 @@ PERFORMS: Mapping[str, Callable[[_Substitution], Resolved]] = {
     "Command": _Substitution.command,
     "PythonExpression": _Substitution.expression,
     "FindPackageShare": _Substitution.package_folder,
+    "FindPackagePrefix": _Substitution.package_prefix,
     "FindExecutable": _Substitution.program,
     "EnvironmentVariable": _Substitution.variable,
     "ThisLaunchFileDir": lambda it: posixpath.dirname(it.context.path),
@@ -381,7 +395,10 @@ def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr:
         raise EvaluationFails("the quotes in this command are not closed", at) from None
     if not words:
         raise EvaluationFails("this command is empty", at)
-    contents = _printed_file(words[3:] if words[:3] == ["ros2", "run", "xacro"] else words)
+    if words[:3] == ["ros2", "run", "xacro"]:
+        words = words[3:]
+    check_xacro_words(words, at)
+    contents = printed_file(words)
     if contents is None:
         unknown = next((text.reason for text in texts if isinstance(text, Unknown)), "")
         raise Undetermined(
@@ -394,7 +411,34 @@ def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr:
     )
 
 
-def _printed_file(words: list[str]) -> Contents | None:
+def check_xacro_words(words: Sequence[str], at: Position) -> None:
+    """Raise EvaluationFails for a command of xacro that certainly has not one file, or an argument
+    that is none.
+    """
+    program = posixpath.basename(words[0]).removesuffix(".py") if words else ""
+    if program != "xacro" or any(word.startswith("-") for word in words):
+        return
+    for word in words[1:]:
+        name, _, value = word.partition(":=")
+        path = re.match(r".*/.*\.(?:xacro|urdf)", name) if ":=" in word else None
+        if path is not None:
+            before, after = posixpath.basename(path[0]), f"{name[path.end() :]}:="
+            raise EvaluationFails(f"a space is missing between {before} and {after}", at)
+        if ":=" in value:
+            raise EvaluationFails(f"a space is missing between the arguments in {word[:60]!r}", at)
+    if any(PART_UNKNOWN in word for word in words):
+        return
+    files = [word for word in words[1:] if ":=" not in word]
+    if not files:
+        raise EvaluationFails("xacro is given no file", at)
+    if len(files) > 1:
+        raise EvaluationFails(
+            f"xacro takes one file, and is given {enumerated([*map(posixpath.basename, files)])}",
+            at,
+        )
+
+
+def printed_file(words: list[str]) -> Contents | None:
     """Return the contents of the one file that xacro or cat prints; None for any other command."""
     program = words[0].rpartition("/")[2].removesuffix(".py") if words else ""
     files = [word for word in words[1:] if not word.startswith("-") and ":=" not in word]

@@ -9,7 +9,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from grader.base.errors import InputError, MissingElement, NotDecided
-from grader.base.names import closest
+from grader.base.names import closest, near
 from grader.base.source import Location, Source
 from grader.base.text import enumerated, was_not_committed
 from grader.files.tree import IS_LINK, Tree
@@ -466,6 +466,17 @@ class Package:
             or name in self.installed_besides
             or is_of_ros(name)
         )
+
+    def misspelt_package(self, name: str) -> str | None:
+        """Return the submitted package that the name of one that certainly is not on the machine
+        stands for, if there is one.
+        """
+        from grader.ros.known.known import is_known_package  # late: as above
+
+        # Where a package does not have the lab's name, that of the package is wrong.
+        if name == self.lab_name or self.has_package(name) or is_known_package(name):
+            return None
+        return near(name, [package.name for package in self._all])
 
     def has_program(self, package: str, name: str) -> bool | None:
         """Return whether a package has a program, as far as its setup.py tells; one that is not

@@ -186,7 +186,10 @@ class Evaluation(Expressions):
         self, function: py.Value, args: list[py.Value], kwargs: dict[str, py.Value], node: ast.expr
     ) -> py.Value:
         """Return the value of a call of any value."""
-        return self.call_value(function, py.Call("", args, kwargs, position_of(node)))
+        made = py.Call("", args, kwargs, position_of(node))
+        for keyword in node.keywords if isinstance(node, ast.Call) else ():
+            made.places[keyword.arg or ""] = position_of(keyword.value)
+        return self.call_value(function, made)
 
     def call_value(self, function: py.Value, made: py.Call) -> py.Value:
         """Return the value of a call; the call gets its name here."""

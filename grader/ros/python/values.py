@@ -139,6 +139,8 @@ class Call:
     ) -> None:
         """`owner` is the call whose result it is a method of."""
         self.name, self.args, self.kwargs, self.at, self.owner = name, args, kwargs, at, owner
+        # where the arguments with names are written, of a call in the file
+        self.places: dict[str, Position] = {}
         self.is_object = False  # whether it makes an object without operators and a text of its own
         self.method_calls: list[Call] = []  # the recorded ones, of its own result
 

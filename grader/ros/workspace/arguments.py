@@ -13,7 +13,13 @@ from grader.ros.workspace.workspace import Workspace
 _CONFIGURATION = re.compile(r"LaunchConfiguration\(\s*[\"'](\w+)[\"']|\$\(var (\w+)")
 _MAX_LAUNCH = 128 * 1024  # bytes, as launch files are read
 _FIND = re.compile(r"\$\(find ([\w-]+)\)")
-_XACRO_ARGUMENT = re.compile(r"<xacro:arg\b[^>]*?\bname\s*=\s*[\"']([^\"']+)[\"']")
+_OTHER_INCLUDE = re.compile(
+    r"<xacro:include\b[^>]*?\bfilename\s*=\s*[\"'](?![^\"']*\.(?:xacro|urdf)[\"'])"
+)
+# xacro takes an argument also where it is only used, if it is passed.
+_XACRO_ARGUMENT = re.compile(
+    r"<xacro:arg\b[^>]*?\bname\s*=\s*[\"']([^\"']+)[\"']|\$\(arg\s+([^\s)]+)|\barg\(\s*[\"'](\w+)"
+)
 
 
 def argument_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -69,13 +75,20 @@ def _xacro_arguments(workspace: Workspace) -> Iterator[Fact]:
     """Yield the arguments that xacro files declare, and those that launch files pass to xacro."""
     for source in workspace.xacro_sources:
         for match in _XACRO_ARGUMENT.finditer(source.text):
-            yield Definition("xacro argument", match[1], source.at(match.start(1)))
+            number = match.lastindex or 0
+            yield Definition("xacro argument", match[number], source.at(match.start(number)))
+            if "$" in match[number]:
+                yield Open("xacro argument")
         if any(workspace.packages[0].find(name) is None for name in _FIND.findall(source.text)):
             yield Open("xacro argument")  # of files that are included from other packages
+        elif _OTHER_INCLUDE.search(source.text):
+            yield Open("xacro argument")  # of files that are not read here
     for _, _, launch in workspace.launches:
         for file in launch.named("urdf", "read"):
             path = (file.path or "").removeprefix(f"{PREFIX}/")
             if file.by == "xacro" and workspace.has_file(path):
                 said = "Command of xacro"
+                # What includes the file declare is known where all of it was expanded.
+                is_expanded = workspace.source_of(file.path or "") in (workspace.robot_files or ())
                 for name, _ in file.arguments:
-                    yield Use("xacro argument", name, file.location, said, optional=True)
+                    yield Use("xacro argument", name, file.location, said, optional=not is_expanded)

@@ -26,6 +26,7 @@ from grader.ros.package.installed_files import open_meant
 from grader.ros.package.package import Package
 from grader.ros.package.python_nodes import PythonNode
 from grader.ros.workspace.bridges import bridge_files
+from grader.ros.workspace.controllers import defined_controllers
 from grader.ros.workspace.names import (
     Compared,
     Correction,
@@ -37,7 +38,7 @@ from grader.ros.workspace.names import (
     Use,
     corrections,
 )
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.workspace import MANAGER, Workspace
 
 _TYPES = {
     bool: "a boolean",
@@ -45,6 +46,17 @@ _TYPES = {
     float: "a double",
     str: "a string",
 }  # as ROS 2 calls them
+# The same, as generate_parameter_library calls them.
+_GENERATED_TYPES = {
+    "bool": "a boolean",
+    "int": "an integer",
+    "double": "a double",
+    "string": "a string",
+    "bool_array": "a list of booleans",
+    "int_array": "a list of integers",
+    "double_array": "a list of doubles",
+    "string_array": "a list of strings",
+}
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
 _INPUT = re.compile(r"(odom|imu|pose|twist)\d+_config")  # of robot_localization
 _SEPARATORS = re.compile(r"[:/]+")
@@ -71,6 +83,7 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
         if python_node is not None:
             yield from _declared(workspace, package, node, python_node)
     yield from _without_time(workspace)
+    yield from _types_of_controllers(workspace)
     for path in workspace.parameter_files:
         yield from _filters(workspace.yaml_files.get(path))
     for package, node in workspace.nodes:
@@ -272,36 +285,88 @@ def _types_given(node: PythonNode, values: Mapping[str, ParameterValue]) -> Iter
             yield from _other_type(
                 name,
                 values[name],
-                parameter.default,
+                _type_of(parameter.default),
                 parameter.location,
                 is_certain=not node.doubts,
             )
 
 
 def _without_time(workspace: Workspace) -> Iterator[Mismatch]:
-    """Yield that a parameter file gives `use_sim_time`, which every node declares, no boolean."""
+    """Yield that `use_sim_time`, which every node declares, is given no boolean."""
     for given in chain.from_iterable(workspace.parameter_owners.values()):
         value = given.values.get("use_sim_time")
         if value is not None:
-            yield from _other_type("use_sim_time", value, default=True, at=None)
+            yield from _other_type("use_sim_time", value, _TYPES[bool], at=None)
+
+
+def _types_of_controllers(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield the values of other types than controllers and the controller manager declare."""
+    kinds = {it.name: it.type.text or "" for it in defined_controllers(workspace)}
+    for owner, gifts in workspace.parameter_owners.items():
+        if owner == MANAGER:
+            tables = [known()["parameter_types"][MANAGER]]
+        elif owner in kinds:
+            every = known()["parameter_types"]
+            tables = [every["every controller"], every.get(kinds[owner], {})]
+        else:
+            continue
+        # A string in place of a list of joints is a mistake of controllers.
+        joints = known()["controllers"].get(kinds.get(owner), {})
+        for values in [given.values for given in gifts]:
+            for name, value in values.items():
+                declared = _declared_type(name, tables, values)
+                if name not in joints or not isinstance(value.value, str):
+                    yield from _other_type(name, value, declared, at=None, reader=repr(owner))
+
+
+def _declared_type(
+    name: str,
+    tables: Iterable[Mapping[str, Sequence[str]]],
+    values: Mapping[str, ParameterValue],
+) -> str:
+    """Return the type that a controller declares for a parameter, in words; empty where it is not
+    known.
+    """
+    parts = name.split(".")
+    for table in tables:
+        for kind, patterns in table.items():
+            if any(_is_declared(parts, pattern.split("."), values) for pattern in patterns):
+                return _GENERATED_TYPES[kind]
+    return ""
+
+
+def _is_declared(
+    parts: Sequence[str], pattern: Sequence[str], values: Mapping[str, ParameterValue]
+) -> bool:
+    """Return whether a name is a declared one, in which * is an entry of a list that is given."""
+    if len(parts) != len(pattern):
+        return False
+    for part, wanted in zip(parts, pattern, strict=True):
+        lists = [it.value for it in values.values() if isinstance(it.value, list)]
+        is_listed = wanted == "*" and any(part in it for it in lists)
+        if part != wanted and not is_listed:
+            return False
+    return True
 
 
 def _other_type(
-    name: str, given: ParameterValue, default: Any, at: Location | None, *, is_certain: bool = True
+    name: str,
+    given: ParameterValue,
+    declared: str,
+    at: Location | None,
+    *,
+    is_certain: bool = True,
+    reader: str = "its node",
 ) -> Iterator[Mismatch]:
-    """Yield that a parameter file gives a parameter a value of another type than the node
-    declares.
-    """
-    declared, actual = _type_of(default), _type_of(given.value)
+    """Yield that a parameter is given a value of another type than the node declares."""
+    actual = _type_of(given.value)
     if not declared or not actual or declared == actual:
         return
-    if given.location.path.endswith((".yaml", ".yml")):
-        there = f" ({at.file_and_line})" if at is not None else ""
-        message = (
-            f"the parameter {name!r} is given {actual}; its node declares {declared}{there}, "
-            "and stops"
-        )
-        yield Mismatch("parameters", message, given.location, at, is_certain)
+    there = f" ({at.file_and_line})" if at is not None else ""
+    message = (
+        f"the parameter {name!r} is given {actual}; {reader} declares {declared}{there}, and stops"
+    )
+    yield Mismatch("parameters", message, given.location, at, is_certain)
 
 
 def _type_of(value: Any) -> str:
