@@ -29,6 +29,7 @@ def _shown(shape: str, material: str = "") -> str:
         (_shown('<cylinder radius="O.1" lenght="1"/>'), ["radius is read as '0.1'", "the attribute lenght of <cylinder> is read as length"]),
         (_shown('<sphere diameter="0.1"/>'), []),
         (_shown('<box sise="1 2"/>'), []),
+        (_shown('<sphere size="1 2 3"/>'), []),
         (_shown('<box size="0.22.5 1 1"/>'), []),
         (_shown('<box size="1 2"/>'), []),
         (_shown('<box x="1" y="2" z="3"/>'), []),

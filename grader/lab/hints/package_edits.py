@@ -25,7 +25,7 @@ from grader.ros.build.places import HOME, PREFIX, WORKING_FOLDER
 from grader.ros.launch.launch_model import Launch, NamedFile
 from grader.ros.package.package import SETUP, Package
 from grader.ros.python.library import USUAL_NAMES
-from grader.ros.python.python_file import PythonFile, argument, called
+from grader.ros.python.python_file import PythonFile, argument
 
 _WORD = re.compile(r"[^\W\d]\w*")
 _MAX_WORDS, _MAX_SUSPECTS = 8, 60
@@ -545,11 +545,7 @@ def _missing_entries(own: PythonFile, like: PythonFile, what: str) -> Iterator[P
 
     A node of a package of which the file has one is not added: that one is wrong.
     """
-    unused = []
-    for name, value in own.values.items():
-        is_made = isinstance(value, ast.Call) and called(value)[:1].isupper()
-        if is_made and name not in own.used:
-            unused.append(name)
+    unused = [name for name in own.made if name not in own.used]
     known: set[str] = set()
     for item in _items(own):
         known |= _codes_of_entry(own, item)

@@ -113,6 +113,15 @@ class PythonFile:
                     found[name] = value
         return found
 
+    @property
+    def made(self) -> list[str]:
+        """The names of what calls of classes make."""
+        made = []
+        for name, value in self.values.items():
+            if isinstance(value, ast.Call) and called(value)[:1].isupper():
+                made.append(name)
+        return made
+
     def meant(self, node: ast.expr) -> ast.expr:
         """Return the expression that a name is bound to; any other expression itself."""
         for _ in range(_MAX_DEPTH):
