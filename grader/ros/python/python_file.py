@@ -118,7 +118,7 @@ class PythonFile:
         """The names of what calls of classes make."""
         made = []
         for name, value in self.values.items():
-            if isinstance(value, ast.Call) and called(value)[:1].isupper():
+            if isinstance(value, ast.Call) and _called(value)[:1].isupper():
                 made.append(name)
         return made
 
@@ -188,7 +188,9 @@ class PythonFile:
 
     def calls(self, name: str) -> list[ast.Call]:
         """Return the calls of a function or class of this name, in order."""
-        found = (node for node in self.nodes if isinstance(node, ast.Call) and called(node) == name)
+        found = (
+            node for node in self.nodes if isinstance(node, ast.Call) and _called(node) == name
+        )
         return sorted(found, key=lambda node: (node.lineno, node.col_offset))
 
     def with_imports(self, names: Iterable[str]) -> list[Edit]:
@@ -221,7 +223,7 @@ def _expression(code: str) -> ast.Expression | None:
         return None
 
 
-def called(call: ast.Call) -> str:
+def _called(call: ast.Call) -> str:
     """Return the last part of the name of the function that is called."""
     if isinstance(call.func, ast.Attribute):
         return call.func.attr
@@ -246,9 +248,9 @@ def with_xacro(source: Source) -> Iterator[Edits]:
             owner = file.meant(call.func.value)
         if isinstance(owner, ast.Name):
             owner = file.values.get(owner.id, owner)
-        if isinstance(owner, ast.Call) and called(owner) == "open" and owner.args:
+        if isinstance(owner, ast.Call) and _called(owner) == "open" and owner.args:
             path = owner.args[0]
-        elif called(call) == "read_text":
+        elif _called(call) == "read_text":
             path = owner
         else:
             continue
