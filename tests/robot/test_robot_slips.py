@@ -45,6 +45,14 @@ def test_what_is_meant(body: str, expected: list[str]) -> None:
     assert _assumed(body) == expected
 
 
+def test_another_vector() -> None:
+    """An element with one vector is read with it, whatever other vector's name is written."""
+    joint = _JOINT.replace("fixed", "continuous").replace("</joint>", '<axis rpy="0 0 1"/></joint>')
+    text = f'<robot name="r"><link name="a"/>{joint}</robot>'
+    assumed = [slip.assumption for slip in read_as_ros(text.encode(), "r.urdf").slips]
+    assert assumed == ["the attribute rpy of <axis> is read as xyz"]
+
+
 def test_materials() -> None:
     """A misspelt material is read as the defined one, or its definition as the name that is used."""
     red = '<material name="{}"><color rgba="1 0 0 1"/></material>'
