@@ -12,11 +12,10 @@ from grader.ros.config.yaml_slips import yaml_slips
 from grader.ros.launch.launch_slips import launch_slips, name_slips
 from grader.ros.package.package import SETUP, Package
 from grader.ros.package.python_nodes import program_slips
-from grader.ros.python.budget import PYTHON_LIMIT
 from grader.ros.python.parse import Code, location_in, parse, position_of
 from grader.ros.python.python_slips import python_slips
 
-_YAML_LIMIT = 512 * 1024  # bytes
+_LIMIT = 32 * 1024  # bytes of a file, because what may be meant is tried by reading it again
 _MAX_FILES = 20
 _YAML = (".yaml", ".yml", ".rviz")
 
@@ -31,13 +30,13 @@ def package_slips(package: Package) -> Iterator[Slip]:
     yield from program_slips(package)
     paths = [path for path in package.tree.files if path.lower().endswith(_YAML)]
     for path in paths[:_MAX_FILES]:
-        data = package.tree.read(path, _YAML_LIMIT)
+        data = package.tree.read(path, _LIMIT)
         if data is not None:
             yield from yaml_slips(data, package.path(path))
 
 
 def _python_file(package: Package, path: str, *, is_launch_file: bool) -> Iterator[Slip]:
-    data = package.tree.read(path, PYTHON_LIMIT)
+    data = package.tree.read(path, _LIMIT)
     if data is None:
         return
     parsed = parse(data, package.path(path))
@@ -51,11 +50,13 @@ def _build_slips(package: Package, installation: Installation) -> Iterator[Slip]
     manifest = package.manifest
     name = (manifest.name if manifest is not None else None) or ""
     if package.is_cmake:
+        if len(installation.source.text) > _LIMIT:
+            return
         needed = manifest.dependencies if manifest is not None else ()
         yield from cmake_slips(installation.source, package.tree, name, needed)
         return
     yield from _python_file(package, SETUP, is_launch_file=False)
-    data = package.tree.read(SETUP, PYTHON_LIMIT)
+    data = package.tree.read(SETUP, _LIMIT)
     code = parse(data or b"", package.path(SETUP))
     if isinstance(code, Code):
         yield from _argument_slips(installation, code)

@@ -19,13 +19,13 @@ from grader.ros.package.entry_points import entry_points, module_path, read_modu
 from grader.ros.package.node_slips import Program as StartedProgram
 from grader.ros.package.node_slips import node_slips
 from grader.ros.package.package import Package
-from grader.ros.python.budget import PYTHON_LIMIT
 from grader.ros.python.constants import Constants, constant_in, dotted, offset_of
 from grader.ros.python.evaluation import record
 from grader.ros.python.parse import START, Code, location_in, own_nodes, parse, position_of
 from grader.ros.python.python_slips import python_slips
 from grader.ros.python.values import SCALARS, Call, QualifiedName, Scope, Unknown, Value
 
+_MAX_SEARCHED = 32 * 1024  # bytes of a program in which slips are searched
 _MAX_MODULES = 100
 _MAX_FIRST_LINE = 100  # bytes
 _NODES = frozenset(
@@ -223,7 +223,7 @@ def program_slips(package: Package) -> Iterator[Slip]:
 
 
 def _slips_of(package: Package, program: "_Program") -> list[Slip]:
-    data = package.tree.read(program.path, PYTHON_LIMIT)
+    data = package.tree.read(program.path, _MAX_SEARCHED)
     code = parse(data or b"", package.path(program.path))
     if isinstance(code, Code):
         return node_slips(code, StartedProgram(program.name, program.function))
