@@ -52,26 +52,36 @@ class Rubric:
                 opinion = (
                     Opinion("failed") if first == row["id"] else Opinion("skipped", because=first)
                 )
-            given = row.get("carried", [])
-            for carried in [given] if isinstance(given, dict) else given:
-                if opinion.status not in ("failed", "skipped"):
-                    break
-                mistakes = [found[name].because or name for name in carried["from"]]
-                reasons = (
-                    {opinion.because, found[opinion.because].cause}
-                    if opinion.because
-                    else set(mistakes)
-                )
-                causes = [
-                    name
-                    for name in mistakes
-                    if name in reasons and found[name].status in ("failed", "carried")
-                ]
-                opinion = (
-                    self._carried(robot, row, carried, opinion, causes[0]) if causes else opinion
-                )
-            found[row["id"]] = opinion
+            found[row["id"]] = self._after_mistakes(robot, row, opinion, found)
+            # A mistake may also explain a failure above it.
+            for above in self.rows:
+                if above["id"] != row["id"] and above["id"] in found and _is_from(above, row["id"]):
+                    earlier = found[above["id"]]
+                    found[above["id"]] = self._after_mistakes(robot, above, earlier, found)
         return found
+
+    def _after_mistakes(
+        self, robot: Robot, row: dict[str, Any], opinion: Opinion, found: dict[str, Opinion]
+    ) -> Opinion:
+        """Return an opinion as carried if what counts after one of the mistakes so far holds."""
+        for carried in _carried_rows(row):
+            if opinion.status not in ("failed", "skipped"):
+                break
+            known = [name for name in carried["from"] if name in found]
+            mistakes = [found[name].because or name for name in known]
+            reasons = (
+                {opinion.because, found[opinion.because].cause}
+                if opinion.because
+                else set(mistakes)
+            )
+            causes = [
+                name
+                for name in mistakes
+                if name in reasons and found[name].status in ("failed", "carried")
+            ]
+            if causes:
+                opinion = self._carried(robot, row, carried, opinion, causes[0])
+        return opinion
 
     def _at(self, robot: Robot, positions: dict[str, float]) -> Posed:
         key = tuple(positions.items())
@@ -88,7 +98,7 @@ class Rubric:
         cause: str,
     ) -> Opinion:
         try:
-            other = self._decide(robot, carried, row.get("at", {}))
+            other = self._decide(robot, carried, carried.get("at") or row.get("at", {}))
         except Missing:
             return opinion
         statuses = {"passed": "carried", "pending": "pending", "unsure": "unsure"}
@@ -160,3 +170,12 @@ def _resolved(robot: Robot, value: Any, *, is_joint: bool = False) -> Any:
         raise Undecided(value)
     joint = next(iter(ends.values()))
     return joint.name if is_joint else joint.child
+
+
+def _carried_rows(row: dict[str, Any]) -> list[dict[str, Any]]:
+    given = row.get("carried", [])
+    return [given] if isinstance(given, dict) else given
+
+
+def _is_from(row: dict[str, Any], name: str) -> bool:
+    return any(name in carried["from"] for carried in _carried_rows(row))
