@@ -9,8 +9,9 @@ class Slip(NamedTuple):
     """What is written, what it surely stands for, and what ROS 2 does with it as it is written.
 
     Readers find slips in the file alone. A slip changes how something is written, a tag, a name, a
-    separator, a letter in a number, and never a value: no number, no sign, no axis, no unit. The
-    edits add and remove no line.
+    separator, a letter in a number, and never a value: no number, no sign, no axis, no unit. In a
+    node, what keeps it from running is one as well: an edit that adds something is assumed for the
+    grade alone, and no hint writes it.
     """
 
     edits: Edits  # that write what is meant

@@ -84,7 +84,7 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
             named = [it for it in earlier if results[it].outcome.status == "failed"]
             in_order = _first_at(found, results[entry].outcome.location)
             text = message(in_order, level, submission, named)
-            keeps_edits = level == "edit"
+            keeps_edits = level == "edit" and not found.words
             if keeps_edits and any(map(_loses_expression, in_order.edits)):
                 # The student writes an expression, which no program has graded.
                 keeps_edits = False
@@ -112,7 +112,8 @@ def _written(found: Sequence[FoundHint]) -> list[FoundHint]:
     kept: list[FoundHint] = []
     is_cut = False
     for one in found:
-        if any(map(_loses_expression, one.edits)) or (one.is_late and is_cut):
+        is_left_to_words = bool(one.words) or any(map(_loses_expression, one.edits))
+        if is_left_to_words or (one.is_late and is_cut):
             is_cut = True
         else:
             kept.append(one)

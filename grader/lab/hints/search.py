@@ -262,7 +262,9 @@ def hints_on_slips(meant: Meant | None) -> list[FoundHint]:
         cause = enumerated(list(dict.fromkeys(slip.reaction for slip in slips)), _MAX_REACTIONS)
         is_passed = judged[payer].outcome.status == "passed"
         gains = {payer: judged[payer].criterion.points} if is_passed else {}
-        hints.append(FoundHint(Proposal(edits, cause), gains))
+        # A hint never writes a part that is missing, such as a call of rclpy.init().
+        words = "" if all(edit.old for edit in edits) else cause
+        hints.append(FoundHint(Proposal(edits, cause), gains, words=words))
     return hints
 
 
