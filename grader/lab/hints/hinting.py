@@ -74,6 +74,8 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
     entries = {found.edits: _entry(found, shown, results, costs) for found in showing}
     hints: dict[str, Hint] = {}
     for name, found in {**search.missing, **shown}.items():
+        if found in slips and found.words:
+            continue  # the message says what is missing, and the student writes it
         with trials.isolated():
             entry = entries.get(found.edits, name)
             earlier: tuple[str, ...] = ()
@@ -92,9 +94,12 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
             hint = _hint(in_order, text, entry, results[name], keeps_edits=keeps_edits)
             hints[name] = hint._replace(after=earlier)
     if level == "edit":
-        others = enumerated(list(dict.fromkeys(entries.values())), MAX_IN_HINT)
+        edited = list(dict.fromkeys(entries.values()))
+        others = enumerated(edited, MAX_IN_HINT)
         for name in costs:
-            if name not in hints and name in search.results and not search.results[name].is_lost:
+            if name in hints or name in edited:
+                continue
+            if name in search.results and not search.results[name].is_lost:
                 at = results[name].outcome.location or Location("", 1, 1)
                 hints[name] = Hint(f"Make the edits for {others}.", at, {})
     with_hints = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
