@@ -29,7 +29,7 @@ def _use(name: str, *, optional: bool = False, at: Location = _HERE) -> Use:
 def test_a_name_that_is_defined_agrees() -> None:
     """A use of a defined name is no mismatch, and its family is compared."""
     assert agreement([_WHEEL, _use("left_wheel_joint")]) == Agreement(
-        (), {}, frozenset({"frames"}), frozenset()
+        (), {}, frozenset({"frames"}), frozenset(), {}
     )
 
 

@@ -29,7 +29,8 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
     submission.needed_package()
     workspace = submission.workspace
     wrong = wrong_names(workspace, of, submission.lab_packages.values())
-    undecided = read_agreement(workspace).undecided
+    agreement = read_agreement(workspace)
+    undecided = agreement.undecided
     if wrong:
         places: dict[str, dict[str, None]] = {}
         for it in wrong:
@@ -42,7 +43,9 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
         reason = undecided[of]
         cause = f"cannot determine statically whether the names of {of} agree"
         raise NotDecided(f"{cause}: {reason}", cause)
-    return passed(f"the names of {of} agree")
+    count = agreement.counts.get(of)
+    words = f" ({count.words})" if count is not None and count.words else ""
+    return passed(f"the names of {of} agree{words}")
 
 
 def _also(places: list[str]) -> str:

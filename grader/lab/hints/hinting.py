@@ -1,6 +1,6 @@
 """Reports with hints, in the words of each level, and submissions with the edits of all hints."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from decimal import Decimal
 from functools import partial
@@ -96,18 +96,21 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
     if level == "edit":
         edited = list(dict.fromkeys(entries.values()))
         others = enumerated(edited, MAX_IN_HINT)
-        for name in costs:
-            if name in hints or name in edited:
-                continue
-            if name in search.results and not search.results[name].is_lost:
-                at = results[name].outcome.location or Location("", 1, 1)
-                hints[name] = Hint(f"Make the edits for {others}.", at, {})
+        for name in _passing(search, [it for it in costs if it not in {*hints, *edited}]):
+            at = results[name].outcome.location or Location("", 1, 1)
+            hints[name] = Hint(f"Make the edits for {others}.", at, {})
     with_hints = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
     report = report._replace(results=tuple(with_hints), hints_complete=search.is_complete)
     edits: list[Edit] = []
     for found in _written(search.found):
         edits += found.edits
     return _HintedReport(report, tuple(edits), trials.faults)
+
+
+def _passing(search: HintSearch, names: Iterable[str]) -> list[str]:
+    """Return the criteria of these names that pass with all edits that were found."""
+    results = search.results
+    return [name for name in names if name in results and not results[name].is_lost]
 
 
 def _written(found: Sequence[FoundHint]) -> list[FoundHint]:

@@ -2,12 +2,12 @@
 somewhere.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Literal, NamedTuple, get_args
 
 from grader.base.names import are_of_one_side, closest, near
 from grader.base.source import Location
-from grader.base.text import quoted
+from grader.base.text import counted, quoted
 
 Family = Literal[
     "files",
@@ -118,7 +118,25 @@ class Undecided(NamedTuple):
     reason: str
 
 
-Fact = Definition | Use | Open | Mismatch | Compared | Undecided
+class Counted(NamedTuple):
+    """How many names of a family have a counterpart with which they are compared, and why not all
+    names are known.
+    """
+
+    family: Family
+    compared: int
+    total: int
+    reason: str = ""  # empty where all names are known
+
+    @property
+    def words(self) -> str:
+        """Return the count, where some names are not known; else an empty text."""
+        if not self.reason:
+            return ""
+        return f"{self.compared} of {counted(self.total, 'name')} compared: {self.reason}"
+
+
+Fact = Definition | Use | Open | Mismatch | Compared | Undecided | Counted
 
 
 class Agreement(NamedTuple):
@@ -126,12 +144,13 @@ class Agreement(NamedTuple):
 
     mismatches: tuple[Mismatch, ...]
     undecided: Mapping[Family, str]
-    families: frozenset[Family]  # of which something is there
+    families: frozenset[Family]  # of which something is compared
     files: frozenset[str]  # the paths below the prefix at which files are looked for
+    counts: Mapping[Family, Counted]
     unused: tuple[Location, ...] = ()  # the files that no other one names
 
     def holds(self, family: Family) -> bool:
-        """Return whether something of a family is there, and all of it certainly agrees."""
+        """Return whether something of a family is compared, and all of it certainly agrees."""
         is_wrong = any(it.family == family and it.is_certain for it in self.mismatches)
         return family in self.families and family not in self.undecided and not is_wrong
 
@@ -148,13 +167,15 @@ def agreement(facts: Iterable[Fact]) -> Agreement:
         if isinstance(fact, Open):
             opened[fact.kind, fact.owner] = opened.get((fact.kind, fact.owner)) or fact.reason
     found = [fact for fact in every if isinstance(fact, Mismatch)]
-    undecided: dict[Family, str] = {
-        fact.family: fact.reason for fact in reversed(every) if isinstance(fact, Undecided)
-    }
-    uses = [fact for fact in every if isinstance(fact, Use)]
-    for use in uses:
+    counts = {fact.family: fact for fact in every if isinstance(fact, Counted)}
+    undecided = _undecided(every, counts.values())
+    compared: set[Family] = set()
+    for use in [fact for fact in every if isinstance(fact, Use)]:
         key = use.kind, use.owner
-        if use.name in known.get(key, {}):
+        is_defined = use.name in known.get(key, {})
+        if is_defined or not (use.optional or key in opened):
+            compared.add(FAMILY_OF[use.kind])
+        if is_defined:
             continue
         mismatch = _mismatch(use, known.get(key, {}), is_open=key in opened)
         if mismatch is not None:
@@ -165,10 +186,20 @@ def agreement(facts: Iterable[Fact]) -> Agreement:
         dict.fromkeys(found),
         key=lambda it: (it.location.path, it.location.line, it.location.column),
     )
-    families = {FAMILY_OF[it.kind] for it in uses}
-    families |= {fact.family for fact in every if isinstance(fact, Compared | Mismatch)}
+    compared |= {fact.family for fact in every if isinstance(fact, Compared | Mismatch)}
     files = frozenset(fact.name for fact in every if isinstance(fact, Compared) and fact.name)
-    return Agreement(tuple(order), undecided, frozenset(families), files)
+    return Agreement(tuple(order), undecided, frozenset(compared), files, counts)
+
+
+def _undecided(facts: Sequence[Fact], counts: Iterable[Counted]) -> dict[Family, str]:
+    """Return the families whose names are not compared, and why: the first reason of each."""
+    undecided: dict[Family, str] = {
+        fact.family: fact.reason for fact in reversed(facts) if isinstance(fact, Undecided)
+    }
+    for count in counts:
+        if count.reason and not count.compared:
+            undecided.setdefault(count.family, count.words)
+    return undecided
 
 
 def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mismatch | None:

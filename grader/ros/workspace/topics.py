@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from grader.base.names import closest
 from grader.base.source import Location
+from grader.base.text import enumerated
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.python_nodes import Endpoint
@@ -15,6 +16,7 @@ from grader.ros.workspace.controllers import controller_endpoints
 from grader.ros.workspace.gazebo import BRIDGE
 from grader.ros.workspace.names import (
     Compared,
+    Counted,
     Definition,
     Fact,
     Mismatch,
@@ -24,6 +26,9 @@ from grader.ros.workspace.names import (
 )
 from grader.ros.workspace.publishers import may_be_published
 from grader.ros.workspace.workspace import Workspace
+
+_ENDS = ("publisher", "subscription")
+_MAX_NAMED = 3  # programs
 
 
 class _OpenedTopic(NamedTuple):
@@ -56,7 +61,6 @@ def topic_facts(workspace: Workspace) -> Iterator[Fact]:
         for topic, endpoint in controller_endpoints(workspace, launch, node):
             opened.append(_OpenedTopic(topic, endpoint, launch, node))
         for topic, endpoint in _endpoints(workspace, node):
-            yield Compared("topics")
             opened.append(_OpenedTopic(topic, endpoint, launch, node))
         yield from _remappings(workspace, node)
     publishers = _opened_as("publisher", opened)
@@ -64,6 +68,7 @@ def topic_facts(workspace: Workspace) -> Iterator[Fact]:
         for publisher in publishers:
             if publisher.topic != subscription.topic:
                 continue
+            yield Compared("topics")
             are_started = subscription.is_started and publisher.is_started
             is_certain = are_started and subscription.launch == publisher.launch
             for mismatch in _differences(subscription, publisher):
@@ -71,6 +76,40 @@ def topic_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _bridged_types(workspace, opened)
     yield from _unconnected(workspace, opened)
     yield from _unheard(workspace, opened)
+    yield _count(workspace, opened)
+
+
+def _count(workspace: Workspace, opened: Iterable[_OpenedTopic]) -> Counted:
+    """Return how many topics of own nodes have another end, which a node, a controller or a bridge
+    of the workspace opens.
+    """
+    rows = list(bridge_rows(workspace))
+    published = {f"/{row.ros}" for row in rows if row.is_published}
+    subscribed = {f"/{row.ros}" for row in rows if row.is_read}
+    published |= {each.topic for each in _opened_as("publisher", opened)}
+    subscribed |= {each.topic for each in _opened_as("subscription", opened)}
+    own = [each for each in opened if not each.is_of_controller]
+    compared = [
+        each
+        for each in own
+        if each.topic in (subscribed if each.endpoint.kind == "publisher" else published)
+    ]
+    unread, computed = set[str](), -len(own)
+    for _, node in workspace.launched:
+        owner = workspace.package_of(node)
+        if node.when is False or owner is None:
+            continue
+        python_node = workspace.python_node(node)
+        if python_node is None and owner.has_program(node.package, node.executable):
+            unread.add(node.executable)
+        elif python_node is not None:
+            computed += sum(each.kind in _ENDS for each in python_node.endpoints)
+    reasons = []
+    if computed:
+        reasons.append(f"{computed} {'is' if computed == 1 else 'are'} computed")
+    if unread:
+        reasons.append(f"the source of {enumerated(sorted(unread), _MAX_NAMED)} is not read")
+    return Counted("topics", len(compared), len(own) + computed, ", and ".join(reasons))
 
 
 def _endpoints(workspace: Workspace, node: StartedNode) -> Iterator[tuple[str, Endpoint]]:
@@ -80,7 +119,7 @@ def _endpoints(workspace: Workspace, node: StartedNode) -> Iterator[tuple[str, E
         # What begins with ~ is below the name of the node.
         is_plain = endpoint.name is not None and not endpoint.name.startswith("~")
         topic = node.topic(endpoint.name or "") if is_plain else None
-        if topic is not None and endpoint.kind in ("publisher", "subscription"):
+        if topic is not None and endpoint.kind in _ENDS:
             yield topic, endpoint
 
 
