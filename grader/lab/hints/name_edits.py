@@ -64,9 +64,9 @@ def _spelling(
     """Return where the names of a family are counted."""
     workspace = submission.workspace
     texts = [source.text for source in sources]
-    if workspace.robot is not None:
-        texts += [link.name for link in workspace.robot.links]
-        texts += [joint.name for joint in workspace.robot.joints]
+    for found in workspace.robots:
+        texts += [link.name for link in found.robot.links]
+        texts += [joint.name for joint in found.robot.joints]
     texts_of_reference: list[str] = []
     for package in reference.packages.values() if reference is not None else ():
         texts_of_reference += [source.text for source in workspace.sources_of(package, _TEXTS)]

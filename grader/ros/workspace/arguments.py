@@ -89,6 +89,6 @@ def _xacro_arguments(workspace: Workspace) -> Iterator[Fact]:
             if file.by == "xacro" and workspace.has_file(path):
                 said = "Command of xacro"
                 # What includes the file declare is known where all of it was expanded.
-                is_expanded = workspace.source_of(file.path or "") in (workspace.robot_files or ())
+                is_expanded = workspace.source_of(file.path or "") in workspace.robot_files
                 for name, _ in file.arguments:
                     yield Use("xacro argument", name, file.location, said, optional=not is_expanded)

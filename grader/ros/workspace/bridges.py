@@ -292,7 +292,7 @@ def _named_topics(workspace: Workspace) -> set[str]:
 
 def _is_open(workspace: Workspace) -> bool:
     """Return whether there may be other sensors and bridges than those that were read."""
-    if workspace.robot is None or workspace.has_other_robots:
+    if not workspace.robots or workspace.has_other_robots:
         return True
     if any(launch.more for _, _, launch in workspace.launches):
         return True

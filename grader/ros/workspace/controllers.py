@@ -253,10 +253,11 @@ def _interface_facts(
                 text = f"{message}/{missing}; {there}"
                 yield Mismatch("controllers", text, joint.location, at, corrections=either)
         return
-    if not interfaces or workspace.robot is None or not workspace.has_all_interfaces:
+    if not interfaces or not workspace.has_all_interfaces:
         return
-    # Names that are no joints of the robot are mistakes of frames.
-    if needed and all(map(workspace.robot.has_joint, [name, *interfaces])):
+    # Names that are no joints of a robot are mistakes of frames.
+    joints = {each.name for found in workspace.robots for each in found.robot.joints}
+    if needed and joints.issuperset([name, *interfaces]):
         text = f"{message}/{needed[0]}; <ros2_control> has no joint {name!r}"
         yield Mismatch("controllers", text, joint.location)
 

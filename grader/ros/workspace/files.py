@@ -89,7 +89,7 @@ def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
         for source in workspace.sources_of(package, (".xacro", ".urdf", ".yaml")):
             is_read = (
                 source.path.endswith(".yaml")
-                or not workspace.robot_files
+                or not workspace.robots
                 or source.path in workspace.robot_files
             )
             for match in (*_FIND.finditer(source.text), *_PACKAGE.finditer(source.text)):

@@ -3,7 +3,7 @@ them.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from grader.base.source import LazyLocation, Location
@@ -13,7 +13,7 @@ from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
 from grader.ros.urdf.model import Robot
 from grader.ros.workspace.gazebo import roots, system_of
 from grader.ros.workspace.names import Definition, Fact, Mismatch, Open, Use
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.workspace import KnownRobot, Workspace
 from grader.ros.xml.parsing import Element
 
 _JOINTS = re.compile(r"(^|_)joints?$|(wheels?|joints?)_names?$")
@@ -28,24 +28,27 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the frames and joints that are defined, and those that YAML, SRDF, Gazebo and
     transforms name.
     """
-    robot = workspace.robot
-    if robot is None or not robot.links:
+    robots = [found.robot for found in workspace.robots if found.robot.links]
+    if not robots:
         return
-    for link in robot.links:
-        yield Definition("frame", link.name, _place(link.location))
-        yield Definition("link", link.name, _place(link.location))
-    yield from (Definition("joint", joint.name, _place(joint.location)) for joint in robot.joints)
-    start = _place(robot.links[0].location)
+    for robot in robots:
+        for link in robot.links:
+            yield Definition("frame", link.name, _place(link.location))
+            yield Definition("link", link.name, _place(link.location))
+        for joint in robot.joints:
+            yield Definition("joint", joint.name, _place(joint.location))
+    start = _place(robots[0].links[0].location)
     yield from (Definition("frame", name, start) for name in known()["frames"])
     yield from _openings(workspace)
-    yield from _static_transforms(workspace, robot)
+    yield from _static_transforms(workspace, robots)
     controllers = workspace.typed_sections
     for _, tree in workspace.trees:
         if is_parameters(tree):
             for value in values_in(tree):
                 yield from _in_yaml(value, is_of_controller=not controllers.isdisjoint(value.keys))
-    yield from _in_robot(workspace)
-    yield from _odometry_frames(workspace, robot)
+    for found in workspace.robots:
+        yield from _in_robot(found)
+    yield from _odometry_frames(workspace, robots)
 
 
 def _place(location: LazyLocation | None) -> Location:
@@ -76,8 +79,8 @@ def _openings(workspace: Workspace) -> Iterator[Fact]:
         yield Open("frame")
 
 
-def _static_transforms(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
-    children = {joint.child: joint for joint in robot.joints}
+def _static_transforms(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:
+    children = {joint.child: joint for robot in robots for joint in robot.joints}
     for _, node in workspace.nodes:
         if (node.package, node.executable) != STATIC_PUBLISHER:
             continue
@@ -93,7 +96,8 @@ def _static_transforms(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
         if own != parent:
             at = _place(children[child].location)
             message = f"the frame {child!r} has two parents: {own!r} in the robot, {parent!r} here"
-            yield Mismatch("frames", message, node.location, at, is_certain=node.when is True)
+            is_certain = node.when is True and len(robots) == 1
+            yield Mismatch("frames", message, node.location, at, is_certain=is_certain)
 
 
 def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:
@@ -111,31 +115,28 @@ def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:
                 yield Use("frame", text.removeprefix("/"), node.location, value.said)
 
 
-def _in_robot(workspace: Workspace) -> Iterator[Fact]:
+def _in_robot(robot: KnownRobot) -> Iterator[Fact]:
     """Yield what the elements for Gazebo and ros2_control name."""
-    root, robot = workspace.robot_root, workspace.robot
-    if root is None or robot is None:
-        return
-    joints = {joint.name for joint in robot.joints}
+    joints = {joint.name for joint in robot.robot.joints}
     joint_elements = known()["joint_elements"]
-    for element in root.iterchildren("gazebo"):
-        at = workspace.place(element)
+    for element in robot.root.iterchildren("gazebo"):
+        at = robot.place(element)
         reference = element.get("reference")
         if reference and reference not in joints:
             yield Use("link", reference, at, "<gazebo reference>")
         for inner in element.iter(*known()["frame_elements"], *joint_elements):
             text, parent = (inner.text or "").strip(), inner.getparent()
             if text and inner.tag in joint_elements:
-                yield Use("joint", text, workspace.place(inner), f"<{inner.tag}>")
+                yield Use("joint", text, robot.place(inner), f"<{inner.tag}>")
             elif text and inner.tag == "frame_id" and parent is not None and parent.tag == "plugin":
-                yield Definition("frame", text, workspace.place(inner))  # that the plugin publishes
+                yield Definition("frame", text, robot.place(inner))  # that the plugin publishes
             elif text:
-                yield Use("frame", text, workspace.place(inner), f"<{inner.tag}>")
-    for system in root.iterchildren("ros2_control"):
-        yield from _in_system(workspace, system)
+                yield Use("frame", text, robot.place(inner), f"<{inner.tag}>")
+    for system in robot.systems:
+        yield from _in_system(robot, system)
 
 
-def _odometry_frames(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
+def _odometry_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:
     """Yield the frames that systems of Gazebo publish: those that they name, and by default those
     below the model's.
     """
@@ -144,7 +145,8 @@ def _odometry_frames(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
         if node.executable == "create":
             options = pairwise(node.arguments or ())
             created |= {name for option, name in options if option == "-name" and name}
-    defaults = [*known()["odometry_frames"], *(link.name for link in robot.links)]
+    defaults = [*known()["odometry_frames"]]
+    defaults += [link.name for robot in robots for link in robot.links]
     for root, place in roots(workspace):
         for plugin in root.iter("plugin"):
             if system_of(plugin) not in known()["odometry_systems"]:
@@ -158,11 +160,11 @@ def _odometry_frames(workspace: Workspace, robot: Robot) -> Iterator[Fact]:
                     yield Definition("frame", f"{model}/{frame}", at)
 
 
-def _in_system(workspace: Workspace, system: Element) -> Iterator[Fact]:
+def _in_system(robot: KnownRobot, system: Element) -> Iterator[Fact]:
     """Yield the joints that a system of ros2_control names."""
     for element in system.iterchildren("joint"):
-        yield Use("joint", element.get("name", ""), workspace.place(element), "<ros2_control>")
+        yield Use("joint", element.get("name", ""), robot.place(element), "<ros2_control>")
         for param in element.iterchildren("param"):
             text = (param.text or "").strip()
             if param.get("name") == "mimic" and text:
-                yield Use("joint", text, workspace.place(param), "the parameter mimic")
+                yield Use("joint", text, robot.place(param), "the parameter mimic")

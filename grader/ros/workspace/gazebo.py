@@ -63,11 +63,10 @@ def system_of(plugin: Element) -> str:
 
 
 def roots(workspace: Workspace) -> Iterator[tuple[Element, Callable[[Element], Location]]]:
-    """Yield the roots of the robot and of the models and worlds, each with where its elements
+    """Yield the roots of the robots and of the models and worlds, each with where its elements
     are written.
     """
-    if workspace.robot_root is not None:
-        yield workspace.robot_root, workspace.place
+    yield from ((robot.root, robot.place) for robot in workspace.robots)
     yield from ((file.root, file.location) for file in workspace.sdf_files)
 
 
@@ -95,14 +94,17 @@ def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Ite
     """Yield the systems that a world of its own systems lacks for sensors in it and in the
     robot.
     """
-    if next(world.iterchildren("plugin"), None) is None or workspace.robot is None:
+    if next(world.iterchildren("plugin"), None) is None or not workspace.robots:
         return  # Gazebo loads its default systems
     systems = set()
     for root, _ in roots(workspace):
         systems |= {system_of(plugin) for plugin in root.iter("plugin")}
-    is_created = any(_is_creator(node) for _, node in workspace.nodes)
+    seen = [file.root]
+    # Which one of several robots is created in it is not evaluated.
+    if len(workspace.robots) == 1 and any(_is_creator(node) for _, node in workspace.nodes):
+        seen.append(workspace.robots[0].root)
     for root, place in roots(workspace):
-        if root is not file.root and not (root is workspace.robot_root and is_created):
+        if not any(root is it for it in seen):
             continue
         for sensor in root.iter("sensor"):
             system = known()["sensor_systems"].get(sensor.get("type", ""))

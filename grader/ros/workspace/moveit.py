@@ -16,8 +16,8 @@ _TABLES_OF_JOINTS = ("joint_limits", "initial_positions")
 
 
 def moveit_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield what the YAML files of a configuration for MoveIt name, if the robot is known."""
-    if workspace.robot is None:
+    """Yield what the YAML files of a configuration for MoveIt name, if a robot is known."""
+    if not workspace.robots:
         return
     for _, tree in workspace.trees:
         for key in _TABLES_OF_JOINTS:
@@ -76,7 +76,7 @@ def _other_joints(workspace: Workspace, name: str, joints: YamlNode | None) -> I
     sections: list[YamlNode] = []
     for _, tree in workspace.trees:
         sections += [section for keys, section in sections_in(tree) if keys[-1:] == (name,)]
-    if joints is None or len(sections) != 1 or workspace.robot is None:
+    if joints is None or len(sections) != 1:
         return
     types = [each.type.text or "" for each in defined_controllers(workspace) if each.name == name]
     is_gripper = any(kind.endswith("/GripperActionController") for kind in types)
@@ -85,11 +85,12 @@ def _other_joints(workspace: Workspace, name: str, joints: YamlNode | None) -> I
         return
     by_moveit, by_controller = _joint_names(joints), _joint_names(controlled)
     # MoveIt sends no goals for joints that follow others.
-    following = {joint.name for joint in workspace.robot.joints if joint.mimic is not None}
+    every = [joint for found in workspace.robots for joint in found.robot.joints]
+    following = {joint.name for joint in every if joint.mimic is not None}
     differing = sorted((by_moveit ^ by_controller) - following)
     if not by_moveit or not by_controller or not differing:
         return
-    if all(map(workspace.robot.has_joint, differing)):
+    if {joint.name for joint in every}.issuperset(differing):
         message = (
             f"{name}.joints: MoveIt and the controller ({controlled.location.file_and_line}) have "
             f"other joints: {', '.join(differing)}"

@@ -38,7 +38,8 @@ class OpenedWorkspace:
         has_other_robots = any(
             not it.is_part for it in self.unused_candidates if not it.path.endswith(MANIFEST)
         )
-        return Workspace(self.packages, self.urdf, self.whole_tree, has_other_robots)
+        urdfs = (self.urdf,) if isinstance(self.urdf, Read) else ()
+        return Workspace(self.packages, urdfs, self.whole_tree, has_other_robots)
 
     @property
     def path(self) -> str | None:

@@ -21,10 +21,9 @@ def may_be_published(workspace: Workspace, topic: str) -> bool:
     # A parameter, or a remapping of a plugin, may name what something publishes.
     if any(name in tree.source.text for _, tree in workspace.trees):
         return True
-    if workspace.robot_root is not None:
-        for element in workspace.robot_root.iter("remapping", "ros_topic"):
-            if name in (element.text or ""):
-                return True
+    for robot in workspace.robots:
+        if any(name in (it.text or "") for it in robot.root.iter("remapping", "ros_topic")):
+            return True
     return any(_may_publish(workspace, node, topic) for _, node in workspace.nodes)
 
 

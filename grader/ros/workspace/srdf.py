@@ -16,17 +16,18 @@ _ROUNDING = 1e-6
 
 
 def srdf_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield what SRDF files define and name, if the robot is known."""
-    robot, files = workspace.robot, workspace.srdf_files
-    if robot is None:
+    """Yield what SRDF files define and name, if a robot is known."""
+    robots, files = [found.robot for found in workspace.robots], workspace.srdf_files
+    if not robots:
         return
-    may_be_of_others = workspace.has_other_robots or any(
-        file.root.get("name") == robot.name for file in files
-    )
+    names = {file.root.get("name") for file in files}
+    is_only = len(robots) == 1 and not workspace.has_other_robots and robots[0].name not in names
     for file in files:
         for group in file.root.iterchildren("group"):
             yield Definition("group", group.get("name", ""), file.location(group))
-        if file.root.get("name") != robot.name and may_be_of_others:
+        described = [robot for robot in robots if robot.name == file.root.get("name")]
+        robot = next(iter(described or robots))
+        if not described and not is_only:
             continue  # it describes another robot
         yield from _names(file)
         yield from _states(robot, file)

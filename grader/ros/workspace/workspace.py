@@ -27,7 +27,7 @@ from grader.ros.package.finding import is_backup
 from grader.ros.package.installed_files import open_meant
 from grader.ros.package.package import Package
 from grader.ros.package.python_nodes import PythonNode, PythonNodes, read_nodes
-from grader.ros.package.robot_file import Read, Urdf
+from grader.ros.package.robot_file import Read
 from grader.ros.urdf.model import Robot
 from grader.ros.xml.elements import readable
 from grader.ros.xml.parsing import Element, XmlFault, XmlFile
@@ -45,15 +45,47 @@ _XML_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 
 
 @dataclass(frozen=True, eq=False)
+class KnownRobot:
+    """A robot as ROS 2 loads it, expanded, of which everything is known."""
+
+    path: str
+    robot: Robot
+    root: Element  # the <robot>
+    source: Source
+
+    @property
+    def systems(self) -> list[Element]:
+        """The <ros2_control> elements."""
+        return list(self.root.iterchildren("ros2_control"))
+
+    def place(self, element: Element) -> Location:
+        """Return where an element is written."""
+        return LazyLocation(self.source, self._positions[element]).resolve()
+
+    @cached_property
+    def _positions(self) -> Mapping[Element, int]:
+        """The position of each element in document order."""
+        return {element: tag for tag, element in enumerate(self.root.iter("*"))}
+
+
+def _known_robot(urdf: Read) -> KnownRobot | None:
+    loaded = urdf.loaded
+    is_known = not loaded.undetermined and loaded.verdict != "rejected"
+    if is_known and loaded.robot is not None and loaded.root is not None:
+        return KnownRobot(urdf.path, loaded.robot, loaded.root, loaded.source)
+    return None
+
+
+@dataclass(frozen=True, eq=False)
 class Workspace:
-    """The packages of a folder with their robot, as the readers of names see them. Each file is
+    """The packages of a folder with their robots, as the readers of names see them. Each file is
     read once.
     """
 
     found_packages: tuple[Package, ...]  # the one that matches best first
-    urdf: Urdf  # the file of the robot
+    urdfs: tuple[Read, ...]  # the files of robots that are read
     tree: Tree  # all files, also those outside of packages
-    has_other_robots: bool  # whether there may be other robots, which names may belong to
+    has_unread_robots: bool  # whether other files may be robots
 
     @property
     def packages(self) -> tuple[Package, ...]:
@@ -155,67 +187,40 @@ class Workspace:
                     yield XmlFile(data, Source(package.path(path), data.decode("utf-8", "replace")))
 
     @cached_property
-    def robot(self) -> Robot | None:
-        """The robot; None without one, or where not all of it is known."""
-        urdf = self.urdf
-        is_known = (
-            isinstance(urdf, Read)
-            and not urdf.loaded.undetermined
-            and urdf.loaded.verdict != "rejected"
-        )
-        if isinstance(urdf, Read) and is_known:
-            return urdf.loaded.robot
-        return None
+    def robots(self) -> tuple[KnownRobot, ...]:
+        """The robots of which everything is known."""
+        return tuple(found for urdf in self.urdfs if (found := _known_robot(urdf)) is not None)
+
+    @property
+    def has_other_robots(self) -> bool:
+        """Whether there may be other robots than `robots`, which names may belong to."""
+        return self.has_unread_robots or len(self.robots) < len(self.urdfs)
 
     @property
     def has_controller_manager(self) -> bool:
         """Return whether a launch file starts a controller manager, or the robot has one in
         Gazebo.
         """
-        plugins = self.robot_root.iter("plugin") if self.robot_root is not None else ()
-        is_simulated = any("ros2_control" in element.get("filename", "") for element in plugins)
-        return is_simulated or any(node.executable == "ros2_control_node" for _, node in self.nodes)
-
-    @cached_property
-    def robot_root(self) -> Element | None:
-        """The <robot> of the expanded robot."""
-        urdf = self.urdf
-        if isinstance(urdf, Read) and self.robot is not None:
-            return urdf.loaded.root
-        return None
+        for robot in self.robots:
+            if any("ros2_control" in it.get("filename", "") for it in robot.root.iter("plugin")):
+                return True
+        return any(node.executable == "ros2_control_node" for _, node in self.nodes)
 
     @cached_property
     def python_nodes(self) -> Mapping[str, PythonNodes]:
         """The nodes of the installed Python modules, by the names of packages."""
         return {package.name: read_nodes(package) for package in self.packages}
 
-    def place(self, element: Element) -> Location:
-        """Return where an element of the expanded robot is written."""
-        urdf, root = self.urdf, self.robot_root
-        assert isinstance(urdf, Read)
-        assert root is not None
-        return LazyLocation(urdf.loaded.source, self._positions[element]).resolve()
-
-    @cached_property
-    def _positions(self) -> Mapping[Element, int]:
-        """The position of each element of the robot in document order."""
-        root = self.robot_root
-        if root is not None:
-            return {element: tag for tag, element in enumerate(root.iter("*"))}
-        return {}
-
     @cached_property
     def command_interfaces(self) -> Mapping[str, tuple[frozenset[str], Location]] | None:
-        """The command interfaces of joints in <ros2_control>; None without one."""
-        root = self.robot_root
-        systems = list(root.iterchildren("ros2_control")) if root is not None else []
-        if not systems:
+        """The command interfaces of joints in <ros2_control>, of all robots; None without one."""
+        if not any(robot.systems for robot in self.robots):
             return None
         interfaces: dict[str, tuple[frozenset[str], Location]] = {}
-        for system in systems:
-            for joint in system.iterchildren("joint"):
+        for robot in self.robots:
+            for joint in [it for system in robot.systems for it in system.iterchildren("joint")]:
                 name, added = joint.get("name", ""), joint.iterchildren("command_interface")
-                before, at = interfaces.get(name, (frozenset[str](), self.place(joint)))
+                before, at = interfaces.get(name, (frozenset[str](), robot.place(joint)))
                 interfaces[name] = (before.union(each.get("name", "") for each in added), at)
         return interfaces
 
@@ -224,7 +229,7 @@ class Workspace:
         """Return whether `command_interfaces` are those of every robot, also under other
         arguments of xacro.
         """
-        if self.robot_root is None or self.has_other_robots:
+        if not self.robots or self.has_other_robots:
             return False
         text = "".join(source.text for source in self.xacro_sources)
         called = {*_CALLED.findall(text)}
@@ -232,7 +237,7 @@ class Workspace:
             *macros, rest = text.split("</xacro:macro>")
             text = "".join(_without_macro(macro, called) for macro in macros) + rest
         written = len(_SYSTEM.findall(text))
-        return written <= len(list(self.robot_root.iterchildren("ros2_control")))
+        return written <= sum(len(robot.systems) for robot in self.robots)
 
     def python_node(self, node: StartedNode) -> PythonNode | None:
         """Return the Python node of the workspace that a program starts, if it starts one that
@@ -354,11 +359,12 @@ class Workspace:
 
     @property
     def _simulated(self) -> Iterator[GivenParameters]:
-        """The files that the robot gives to the controller manager in Gazebo."""
-        for element in self.robot_root.iter("parameters") if self.robot_root is not None else ():
-            path = _FOUND.sub(rf"{SHARE}/\1/", readable((element.text or "").strip()))
-            if path.startswith(SHARE):
-                yield GivenParameters(self.place(element), path)
+        """The files that the robots give to the controller manager in Gazebo."""
+        for robot in self.robots:
+            for element in robot.root.iter("parameters"):
+                path = _FOUND.sub(rf"{SHARE}/\1/", readable((element.text or "").strip()))
+                if path.startswith(SHARE):
+                    yield GivenParameters(robot.place(element), path)
 
     @cached_property
     def controller_files(self) -> frozenset[str]:
@@ -430,12 +436,12 @@ class Workspace:
                 yield Source(package.path(path), comment.sub(_blank, text))
 
     @cached_property
-    def robot_files(self) -> frozenset[str] | None:
-        """The files that the robot is made of, by their paths; None where it is not known."""
-        root, urdf = self.robot_root, self.urdf
-        if root is None or not isinstance(urdf, Read):
-            return None
-        return frozenset({urdf.path, *(self.place(element).path for element in root.iter("*"))})
+    def robot_files(self) -> frozenset[str]:
+        """The files that the robots are made of, by their paths; empty where none is known."""
+        files: set[str] = set()
+        for robot in self.robots:
+            files |= {robot.path, *(robot.place(it).path for it in robot.root.iter("*"))}
+        return frozenset(files)
 
     @cached_property
     def xacro_sources(self) -> tuple[Source, ...]:
