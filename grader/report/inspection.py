@@ -1,5 +1,5 @@
-"""A URDF as `grader inspect` shows it: problems, tree, joints, poses; and the names in packages
-that do not agree.
+"""Robots as `grader inspect` shows them: problems, tree, joints, poses; and what is wrong in
+packages.
 """
 
 from collections.abc import Callable, Iterator
@@ -17,6 +17,7 @@ from grader.report.criteria import alike
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Joint
 from grader.ros.urdf.reader import Reading
+from grader.ros.workspace.extent import Extent
 
 MAX_LISTED = 500  # links, or problems on a page
 _MAX_INDENT = 60
@@ -30,59 +31,86 @@ _NO_BASE = Base(is_outside=True)
 
 
 @dataclass(frozen=True, slots=True)
-class Inspection:
-    """A URDF as read, with its joints at given positions; `robot` is None if ROS 2 reads nothing.
-
-    Packages without a URDF have no `reading`. `names` are the problems of names in packages.
+class InspectedRobot:
+    """A URDF as read, with its joints at given positions; without `configuration`, ROS 2 reads
+    nothing.
     """
 
     path: str
-    reading: Reading | None
-    robot: Configuration | None = None
+    reading: Reading
+    configuration: Configuration | None = None
     relative_to: str | None = None
-    names: tuple[Problem, ...] = ()
-    source_of: Callable[[str], Source | None] | None = None
-    base: Base = _NO_BASE  # its place in a repository
 
     @property
-    def verdict(self) -> str | None:
-        """ROS 2's verdict; `undecided` where it cannot be determined statically; None without a
-        URDF.
-        """
-        if self.reading is None:
-            return None
+    def verdict(self) -> str:
+        """ROS 2's verdict; `undecided` where it cannot be determined statically."""
         return self.reading.verdict if self.reading.is_certain else "undecided"
 
     @property
-    def is_passed(self) -> bool:
-        """Return whether ROS 2 loads the URDF, and no name is certainly wrong."""
-        return self.verdict not in ("rejected", "undecided") and all(
-            it.severity != "error" for it in self.names
-        )
+    def problems(self) -> tuple[Problem, ...]:
+        """What is wrong with it."""
+        return self.reading.problems
 
     @property
-    def problems(self) -> tuple[Problem, ...]:
-        """The problems of the URDF, then those of names."""
-        return (*(self.reading.problems if self.reading is not None else ()), *self.names)
-
-    def source(self, path: str) -> Source | None:
-        """Return the text of a file, for quoting."""
-        own = self.reading.source if self.reading is not None else None
-        if own is not None and own.path == path:
-            return own
-        return self.source_of(path) if self.source_of is not None else None
+    def name(self) -> str:
+        """The name of the robot in words."""
+        if self.configuration is None:
+            return "no robot"
+        return f"robot {self.configuration.robot.name!r}"
 
     def poses(self) -> Iterator[tuple[str, Transform | str]]:
         """Yield the pose of every link in the frame `relative_to`, in file order, or the reason why
         it has none.
         """
-        if self.robot is None or self.relative_to is None:
+        robot = self.configuration
+        if robot is None or self.relative_to is None:
             return
-        for link in self.robot.robot.links:
+        for link in robot.robot.links:
             try:
-                yield link.name, self.robot.pose(link.name, relative_to=self.relative_to)
+                yield link.name, robot.pose(link.name, relative_to=self.relative_to)
             except (MissingElement, NotDecided) as reason:
                 yield link.name, str(reason)
+
+
+@dataclass(frozen=True, slots=True)
+class Inspection:
+    """The robots at a path, and what is wrong with the files and names of its packages.
+
+    `extent` is what was read of a workspace; None for a URDF on its own.
+    """
+
+    path: str
+    robots: tuple[InspectedRobot, ...] = ()
+    package_problems: tuple[Problem, ...] = ()
+    extent: Extent | None = None
+    source_of: Callable[[str], Source | None] | None = None
+    base: Base = _NO_BASE  # its place in a repository
+
+    @property
+    def robot(self) -> InspectedRobot | None:
+        """The robot that is shown whole: the only one."""
+        return self.robots[0] if len(self.robots) == 1 else None
+
+    @property
+    def is_passed(self) -> bool:
+        """Return whether ROS 2 loads all robots, and nothing else is certainly wrong."""
+        verdicts = {robot.verdict for robot in self.robots}
+        return verdicts.isdisjoint(("rejected", "undecided")) and all(
+            problem.severity != "error" for problem in self.package_problems
+        )
+
+    @property
+    def problems(self) -> tuple[Problem, ...]:
+        """The problems of the robots, then those of packages."""
+        found = [problem for robot in self.robots for problem in robot.problems]
+        return (*dict.fromkeys(found), *self.package_problems)
+
+    def source(self, path: str) -> Source | None:
+        """Return the text of a file, for quoting."""
+        for robot in self.robots:
+            if robot.reading.source.path == path:
+                return robot.reading.source
+        return self.source_of(path) if self.source_of is not None else None
 
 
 def main_root(robot: Configuration) -> str | None:
@@ -90,29 +118,24 @@ def main_root(robot: Configuration) -> str | None:
     return next(iter(robot.main_tree), None)
 
 
-def lists(inspection: Inspection) -> Iterator[tuple[str, list[tuple[str, str]]]]:
-    """Yield the links as a tree with their joints, and their poses: a title, and names with words
-    about each.
+def lists(robot: InspectedRobot | None) -> Iterator[tuple[str, list[tuple[str, str]]]]:
+    """Yield the links of a robot as a tree with their joints, and their poses: a title, and names
+    with words about each.
     """
-    if (
-        inspection.robot is not None and inspection.relative_to is not None
-    ):  # else there is neither a tree nor a frame
-        links = _tree(inspection.robot)
-        yield (
-            "Tree",
-            _first_rows(
-                (indent + printable(link), _joint_text(joint)) for indent, link, joint in links
-            ),
-        )
-        title = (
-            f"Poses in {printable(inspection.relative_to)!r} (x y z in m, roll pitch yaw in rad)"
-        )
-        yield (
-            title,
-            _first_rows(
-                (printable(link), f"  {_pose_text(pose)}") for link, pose in inspection.poses()
-            ),
-        )
+    if robot is None or robot.configuration is None or robot.relative_to is None:
+        return  # there is neither a tree nor a frame
+    links = _tree(robot.configuration)
+    yield (
+        "Tree",
+        _first_rows(
+            (indent + printable(link), _joint_text(joint)) for indent, link, joint in links
+        ),
+    )
+    title = f"Poses in {printable(robot.relative_to)!r} (x y z in m, roll pitch yaw in rad)"
+    yield (
+        title,
+        _first_rows((printable(link), f"  {_pose_text(pose)}") for link, pose in robot.poses()),
+    )
 
 
 def _first_rows(rows: Iterator[tuple[str, str]]) -> list[tuple[str, str]]:
@@ -123,12 +146,32 @@ def _first_rows(rows: Iterator[tuple[str, str]]) -> list[tuple[str, str]]:
 
 
 def effect(inspection: Inspection) -> str:
-    """Return what ROS 2 does with a URDF; without one, how many names are wrong."""
-    if inspection.verdict is not None:
-        return EFFECTS[inspection.verdict]
-    if inspection.names:
-        return f"{counted(len(inspection.names), 'problem')} of names"
+    """Return what ROS 2 does with the only robot; else how many problems there are."""
+    if inspection.robot is not None:
+        return EFFECTS[inspection.robot.verdict]
+    count = len(inspection.problems)
+    if count:
+        return counted(count, "problem")
     return "the names agree"
+
+
+def look_of(inspection: Inspection) -> str:
+    """Return the verdict whose look the whole has: that of the only robot; else the worst of
+    all.
+    """
+    found = {robot.verdict for robot in inspection.robots}
+    if inspection.robot is None and not inspection.is_passed:
+        return "rejected"
+    return next((it for it in reversed(EFFECTS) if it in found), "clean")
+
+
+def robot_line(robot: InspectedRobot) -> str:
+    """Return a robot of several in a line: its name, and how many links and joints it has."""
+    words = [EFFECTS[robot.verdict], printable(robot.name)]
+    if robot.configuration is not None:
+        model = robot.configuration.robot
+        words += [counted(len(model.links), "link"), counted(len(model.joints), "joint")]
+    return ", ".join(words)
 
 
 def _tree(robot: Configuration) -> Iterator[tuple[str, str, Joint | None]]:

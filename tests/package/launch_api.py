@@ -30,6 +30,8 @@ LATER_CLASSES = {
         "methods": [],
     }
 }
+# Of later patches: since https://github.com/ros2/launch/pull/838 a part of a path may be a list.
+LATER_CHECKS = {(f"{_PATHS}.PathJoinSubstitution", "substitutions"): "texts"}
 # What the constructors require of arguments with these annotations: each stands for the check of this name.
 CHECKS = {
     "SomeSubstitutionsType": "text",
@@ -192,6 +194,8 @@ def table(*roots: Path) -> dict[str, Any]:
         }
         for name, (_, _, methods) in classes.items()
     }
+    for (name, parameter), check in LATER_CHECKS.items():
+        rows[name]["positional"][parameter]["check"] = check
     return {"source": SOURCE, "exports": exports, "classes": rows, **found}
 
 

@@ -1,4 +1,4 @@
-"""grader inspect: a URDF as ROS 2 reads it, and the names in packages."""
+"""grader inspect: robots as ROS 2 reads them, and what is wrong in packages."""
 
 from typing import Annotated
 
@@ -12,12 +12,14 @@ from grader.report.invocation import ExitCode
 from grader.report.writing import write_stdout
 
 _PATH = "A .urdf file, a package, workspace or archive, or - for standard input."
+_ROBOT = "Show this robot of several whole: its name, or the end of its path."
 _JOINT = "Position of a joint, in radians or metres; repeatable."
 _RELATIVE = "The frame of the poses; default: the root."
 
 
 def inspect(
     path: Annotated[str, typer.Argument(metavar="PATH", help=_PATH)],
+    robot: Annotated[str, typer.Option(metavar="NAME", help=_ROBOT, show_default=False)] = "",
     joint: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE", help=_JOINT)] = None,
     relative_to: Annotated[str | None, typer.Option(metavar="LINK", help=_RELATIVE)] = None,
     output_format: Annotated[
@@ -26,12 +28,13 @@ def inspect(
     max_size: MaxSizeOption = URDF_LIMIT,
     arg: ArgOption = None,
 ) -> int:
-    """Show a URDF as ROS 2 reads it: problems, tree, joints, poses.
+    """Show robots as ROS 2 reads them, with tree, joints and poses, and what is wrong in packages.
 
-    A xacro file is expanded as xacro does, without running it. Of packages it also lists the names
-    that files use and nothing defines: files, frames, controllers, parameters, arguments, programs,
-    topics, dependencies. Exits 1 if ROS 2 or xacro rejects the file, if this cannot be determined
-    statically, or if a name is certainly wrong.
+    A xacro file is expanded as xacro does, without running it. Of several robots each has a line.
+    Of packages it lists what stops a build or a launch file, and the names that files use and
+    nothing defines: files, frames, controllers, parameters, arguments, programs, topics,
+    dependencies; and how much it read. Exits 1 if ROS 2 or xacro rejects a robot, if this cannot be
+    determined statically, or if something else is certainly wrong.
 
     Examples:
 
@@ -43,12 +46,14 @@ def inspect(
 
       grader inspect my_workspace
 
+      grader inspect my_workspace --robot my_robot
+
       grader inspect my_robot.urdf --format svg > my_robot.svg
 
       grader inspect my_robot.urdf --format html > my_robot.html
     """
     from grader.app.commands.inspect_urdf import inspect as read
 
-    inspection = read(path, joint or [], relative_to, max_size, arg or [], warn)
+    inspection = read(path, joint or [], relative_to, max_size, arg or [], warn, robot)
     write_stdout(render_inspection(inspection, output_format, screen()))
     return ExitCode.PASSED if inspection.is_passed else ExitCode.FAILED

@@ -1,20 +1,20 @@
-"""Read a URDF as ROS 2 does, with its joints at given positions, and the names in the packages
-around it.
+"""Read the robots at a path as ROS 2 does, with joints at given positions, and what is wrong in the
+packages around them.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import isfinite, nan
 
 from grader.base.errors import GraderError, InputError, MissingElement, NotDecided
 from grader.base.problems import Problem, in_order
-from grader.base.text import printable_path
+from grader.base.text import MAX_NAMED, enumerated, printable_path
 from grader.lab.submission.opening import open_workspace
-from grader.report.inspection import Inspection, main_root
+from grader.report.inspection import InspectedRobot, Inspection, main_root
 from grader.report.invocation import read_arguments
 from grader.report.repository import base_of, folder_of
 from grader.report.writing import Warn
 from grader.ros.package.mesh_files import mesh_problems
-from grader.ros.package.robot_file import Absent, Unreadable
+from grader.ros.package.robot_file import Absent, Read, Unreadable
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import Reading
 from grader.ros.workspace.opened import OpenedWorkspace
@@ -29,58 +29,112 @@ def inspect(
     max_size: int,
     arguments: Sequence[str],
     warn: Warn,
+    robot: str = "",
 ) -> Inspection:
-    """Return the inspection of the URDF and the packages at a path. Raises GraderError."""
+    """Return the inspection of the robots and the packages at a path; of one robot, if it is named.
+    Raises GraderError.
+    """
     given = read_arguments(arguments)
-    opened = open_workspace(path, max_size, given).without_part()
-    base = base_of(path, folder_of(path, opened.path) if opened.is_single else None)
-    match urdf := opened.urdf:
-        case Unreadable(reason=reason):
-            raise InputError(reason)
-        case Absent() if opened.packages and (joints or relative_to is not None):
-            raise GraderError(
-                f"{printable_path(path)} has no URDF: there are no joints and no frames"
-            )
-        case Absent() if opened.packages:
-            names = _name_problems(opened)
-            return Inspection(opened.id, None, names=names, source_of=opened.source, base=base)
-        case Absent():
-            raise InputError(
-                f"{printable_path(path)} has neither a URDF nor a package: no file in it "
-                "has a <robot>"
-            )
-    if opened.other_candidates:
-        others = ", ".join(file.path for file in opened.other_candidates)
-        warn(f"inspecting {urdf.path}; other candidates: {others}")
+    opened = open_workspace(path, max_size, given)
+    if opened.is_single:
+        return _inspect_file(opened, path, joints, relative_to, warn)
+    read = [it for it in opened.robots if isinstance(it, Read)]
+    unread = [it for it in opened.robots if isinstance(it, Unreadable)]
+    if not opened.robots and not (opened.packages or opened.ros1_packages):
+        raise InputError(
+            f"{printable_path(path)} has neither a URDF nor a package: no file in it has a <robot>"
+        )
+    for reason in [it.reason for it in unread]:
+        warn(reason)
+    base = base_of(path, None)
+    if robot:
+        chosen = _named(robot, read)
+        shown = _inspected(opened, chosen, joints, relative_to)
+        return Inspection(chosen.path, (shown,), source_of=opened.source, base=base)
+    if (joints or relative_to is not None) and len(read) != 1:
+        raise GraderError(_which_one(path, read))
+    robots = tuple(_inspected(opened, it, joints, relative_to) for it in read)
+    from grader.ros.workspace.extent import extent_of  # late: most inspections are of a URDF
+
+    extent = extent_of(opened.workspace, len(unread))
+    found = tuple(_package_problems(opened))
+    return Inspection(opened.id, robots, found, extent, opened.source, base)
+
+
+def _inspect_file(
+    opened: OpenedWorkspace, path: str, joints: Sequence[str], relative_to: str | None, warn: Warn
+) -> Inspection:
+    """Return the inspection of a URDF on its own. Raises InputError if it cannot be read."""
+    urdf = opened.urdf
+    if isinstance(urdf, Unreadable):
+        raise InputError(urdf.reason)
+    assert not isinstance(urdf, Absent)
+    for note in (*_notes(urdf), *opened.notes):
+        warn(note)
+    robot = _inspected(opened, urdf, joints, relative_to)
+    base = base_of(path, folder_of(path, opened.path))
+    return Inspection(urdf.path, (robot,), source_of=opened.source, base=base)
+
+
+def _notes(urdf: Read) -> Iterator[str]:
+    """Yield that a robot was expanded."""
     if urdf.is_expanded and urdf.as_it_stands is None:
         extent = "" if urdf.loaded.is_certain else "the part that can be determined of "
-        warn(f"{urdf.path} is xacro: this is {extent}what xacro expands it to")
-    for note in opened.notes if opened.is_single else ():
-        warn(note)
+        yield f"{urdf.path} is xacro: this is {extent}what xacro expands it to"
+
+
+def _named(name: str, robots: Sequence[Read]) -> Read:
+    """Return the robot with a name, or whose path ends so. Raises GraderError if it is not one."""
+    found = [it for it in robots if f"/{it.path}".endswith(f"/{name.strip('/')}")]
+    if not found:
+        models = [(it, it.loaded.robot) for it in robots]
+        found = [it for it, model in models if model is not None and model.name == name]
+    if len(found) == 1:
+        return found[0]
+    paths = enumerated([it.path for it in found or robots], MAX_NAMED)
+    if found:
+        raise GraderError(f"--robot: {name!r} means several: {paths}")
+    raise GraderError(f"--robot: there is no robot {name!r}; there are: {paths or 'none'}")
+
+
+def _which_one(path: str, robots: Sequence[Read]) -> str:
+    """Return that joints and frames are those of one robot."""
+    if not robots:
+        return f"{printable_path(path)} has no URDF: there are no joints and no frames"
+    paths = enumerated([it.path for it in robots], MAX_NAMED)
+    return f"name the robot whose joints and frames are meant with --robot: {paths}"
+
+
+def _inspected(
+    opened: OpenedWorkspace, urdf: Read, joints: Sequence[str], relative_to: str | None
+) -> InspectedRobot:
+    """Return a robot with its joints at given positions. Raises GraderError for other joints and
+    frames.
+    """
     robot = _configuration(urdf.loaded, joints)
     if robot is not None and relative_to is None:
         relative_to = main_root(robot)
     elif robot is not None and relative_to is not None and not robot.robot.has_link(relative_to):
         known = ", ".join(repr(link.name) for link in robot.robot.links[:_MAX_NAMED])
         raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
-    meshes = mesh_problems(urdf, opened.packages, opened.whole_tree)
+    packages = (*opened.packages, *opened.ros1_packages)
+    meshes = mesh_problems(urdf, packages, opened.whole_tree)
     problems = in_order((*urdf.loaded.problems, *meshes))
     reading = urdf.loaded._replace(problems=problems)
-    return Inspection(
-        urdf.path, reading, robot, relative_to, _name_problems(opened), opened.source, base
-    )
+    return InspectedRobot(urdf.path, reading, robot, relative_to)
 
 
-def _name_problems(opened: OpenedWorkspace) -> tuple[Problem, ...]:
-    """Return the names in packages that do not agree; none of a URDF on its own."""
-    if not opened.packages:
-        return ()
-    from grader.ros.workspace.name_problems import (
-        name_problems,  # late: most inspections are of a URDF
-    )
+def _package_problems(opened: OpenedWorkspace) -> Iterator[Problem]:
+    """Yield what is wrong in packages: their files, then the names that do not agree."""
+    # Late: most inspections are of a URDF.
+    from grader.ros.workspace.file_problems import listed_problems, ros1_problem
+    from grader.ros.workspace.name_problems import name_problems
     from grader.ros.workspace.reading import read_agreement
 
-    return name_problems(read_agreement(opened.workspace))
+    for package in opened.ros1_packages:
+        yield ros1_problem(package)
+    yield from listed_problems(opened.workspace)
+    yield from name_problems(read_agreement(opened.workspace))
 
 
 def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None:

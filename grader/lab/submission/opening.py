@@ -94,8 +94,17 @@ def open_submission(
 
 
 def open_workspace(path: str, max_size: int, arguments: Mapping[str, str]) -> OpenedWorkspace:
-    """Read the packages and the robot at a path, whatever they are for. Raises InputError."""
-    return open_submission(path, _NO_LAB, Opening(max_size, arguments), with_neighbours=True)
+    """Read the packages and all robots at a path, whatever they are for. Raises InputError."""
+    place = Path(path)
+    tree = open_tree(place) if path not in ("", STANDARD_INPUT) else None
+    if tree is None:
+        return open_submission(path, _NO_LAB, Opening(max_size, arguments), with_neighbours=True)
+    # Late: a URDF on its own needs no search.
+    from grader.ros.workspace.all_robots import read_workspace
+
+    _refuse_empty(tree, printable_path(place))
+    identity = tree.name if place.is_dir() else tree_name(place)
+    return read_workspace(tree, identity, max_size, arguments)
 
 
 def open_with_packages(path: str) -> Submission:
@@ -204,6 +213,16 @@ def _with_files_around(
     )
 
 
+def _refuse_empty(tree: Tree, shown: str) -> None:
+    """Raise InputError if a tree has no files."""
+    if not tree.files and not tree.generated:
+        if tree.ignored:
+            reason = f": {tree.ignored[0]}"
+        else:
+            reason = " (hidden files and build folders are ignored)"
+        raise InputError(f"{shown} is empty{reason}")
+
+
 def _is_lab(lab: Lab, name: str) -> bool:
     """Return whether an archive is named like the lab's folder."""
     from grader.lab.submission.labs import LabFolders  # late: a URDF on its own needs no search
@@ -217,12 +236,7 @@ def submission_of(
     """Return the submission that a file tree makes; raises InputError, which names it `shown`, if
     it has no files.
     """
-    if not tree.files and not tree.generated:
-        if tree.ignored:
-            reason = f": {tree.ignored[0]}"
-        else:
-            reason = " (hidden files and build folders are ignored)"
-        raise InputError(f"{shown or identity} is empty{reason}")
+    _refuse_empty(tree, shown or identity)
     # Late: a URDF on its own needs no search.
     from grader.lab.submission.selection import select
 

@@ -27,7 +27,14 @@ from grader.report.criteria import (
     status_of,
 )
 from grader.report.drawing.picture import Picture, picture_of, plain_picture
-from grader.report.inspection import MAX_LISTED, Inspection, effect, lists
+from grader.report.inspection import (
+    MAX_LISTED,
+    Inspection,
+    effect,
+    lists,
+    look_of,
+    robot_line,
+)
 from grader.report.locations import diff_lines, location_text, source_lines
 from grader.report.pages.shell import Assets, render_page
 from grader.report.writers.svg import NO_PICTURE, STYLE, callout_lines, drawing_element
@@ -118,12 +125,16 @@ def _part_cards(report: Report) -> list[tuple[str, str, list[CriteriaGroup]]]:
 def inspection_html(inspection: Inspection) -> str:
     """Return the inspection as an HTML page, with the joints at the given positions."""
     robot = inspection.robot
+    configuration = robot.configuration if robot is not None else None
+    path = robot.path if robot is not None else inspection.path
+    lines = [(each.path, f": {robot_line(each)}") for each in inspection.robots]
     values = {
         "version": __version__,
-        "title": printable(robot.robot.name if robot is not None else inspection.path),
-        "path": inspection.path,
+        "title": printable(configuration.robot.name if configuration is not None else path),
+        "path": path,
         "effect": effect(inspection),
-        "verdict": _CLASSES.get(inspection.verdict or "clean", "failed"),
+        "extent": inspection.extent.words if inspection.extent is not None else "",
+        "verdict": _CLASSES.get(look_of(inspection), "failed"),
         "problems": [
             (
                 problem.severity,
@@ -132,9 +143,10 @@ def inspection_html(inspection: Inspection) -> str:
             )
             for problem in inspection.problems[:MAX_LISTED]
         ],
-        "lists": lists(inspection),
+        "lists": [("Robots", lines)] if robot is None and lines else lists(robot),
     }
-    return _render("inspection.html", values, plain_picture(robot, inspection.relative_to))
+    relative_to = robot.relative_to if robot is not None else None
+    return _render("inspection.html", values, plain_picture(configuration, relative_to))
 
 
 def _render(

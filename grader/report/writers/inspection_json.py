@@ -1,10 +1,11 @@
-"""An inspection as JSON, schema grader/inspect/v1."""
+"""An inspection as JSON, schema grader/inspect/v2."""
 
 from grader.base.transforms import Transform
-from grader.report.inspection import EFFECTS, Inspection, main_root
+from grader.report.inspection import EFFECTS, InspectedRobot, Inspection, main_root
 from grader.report.json_data import (
     NUMBER,
     TEXT,
+    TOTAL,
     JsonObject,
     Many,
     Maybe,
@@ -19,12 +20,12 @@ from grader.report.json_data import (
 from grader.report.writers.as_json import PROBLEM
 
 
-def _poses(inspection: Inspection) -> dict[str, list[list[float]] | None]:
+def _poses(robot: InspectedRobot) -> dict[str, list[list[float]] | None]:
     """Return the poses of links as rows of numbers, rounded to 1e-12, because machines differ
     beyond that.
     """
     rows: dict[str, list[list[float]] | None] = {}
-    for link, pose in inspection.poses():
+    for link, pose in robot.poses():
         rows[link] = None
         if isinstance(pose, Transform):
             rows[link] = [list(map(_rounded, row)) for row in pose.matrix]
@@ -40,7 +41,7 @@ def _vector(items: Schema, length: int) -> Schema:
 
 
 _JOINT = JsonObject({**each(TEXT, "name type parent child"), "axis": nullable(_vector(NUMBER, 3))})
-_ROBOT = JsonObject(
+_MODEL = JsonObject(
     {
         "name": (TEXT, "robot.name"),
         "root": (nullable(TEXT), main_root),
@@ -48,15 +49,30 @@ _ROBOT = JsonObject(
         "joints": (Many(_JOINT), "robot.joints"),
     }
 )
-INSPECTION = JsonObject(
+_ROBOT = JsonObject(
     {
-        **schema_key("grader/inspect/v1"),
         "path": TEXT,
-        "verdict": (nullable({"enum": list(EFFECTS)}), "verdict"),
+        "verdict": {"enum": list(EFFECTS)},
         "problems": Many(PROBLEM),
-        "robot": Maybe(_ROBOT),
+        "robot": (Maybe(_MODEL), "configuration"),
         "relative_to": nullable(TEXT),
         "poses": (mapping(nullable(_vector(_vector(NUMBER, 4), 4))), _poses),
+    }
+)
+_EXTENT = JsonObject(
+    each(
+        TOTAL,
+        "packages robots launch_files nodes all_nodes unread_robots cpp_files computed_names "
+        "expressions",
+    )
+)
+INSPECTION = JsonObject(
+    {
+        **schema_key("grader/inspect/v2"),
+        "path": TEXT,
+        "robots": Many(_ROBOT),
+        "problems": (Many(PROBLEM), "package_problems"),
+        "read": (Maybe(_EXTENT), "extent"),
     }
 )
 

@@ -6,7 +6,14 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.base.text import printable
-from grader.report.inspection import EFFECTS, Inspection, effect, lists
+from grader.report.inspection import (
+    EFFECTS,
+    Inspection,
+    effect,
+    lists,
+    look_of,
+    robot_line,
+)
 from grader.report.locations import calls_text
 from grader.report.writers.terminal import INDENT, LOOKS, Page, block, excerpt_block
 
@@ -17,17 +24,22 @@ _STYLES = dict(zip(EFFECTS, ("green", "yellow", "bold red", "bold red"), strict=
 def inspection_terminal(inspection: Inspection, console: Console) -> None:
     """Print the inspection."""
     page = Page(console, [])
-    robot = inspection.robot
-    name = f"robot {robot.robot.name!r}" if robot is not None else "no robot"
-    verdict = (effect(inspection), _STYLES[inspection.verdict or "clean"])
-    page.inset(
-        Text.assemble((printable(inspection.path), "bold"), ": ", verdict, f", {printable(name)}"),
-        indent=0,
-    )
+    shown = inspection.robot
+    name = f", {printable(shown.name)}" if shown is not None else ""
+    verdict = (effect(inspection), _STYLES[look_of(inspection)])
+    path = shown.path if shown is not None else inspection.path
+    page.inset(Text.assemble((printable(path), "bold"), ": ", verdict, name), indent=0)
+    if inspection.extent is not None:
+        page.inset(Text(inspection.extent.words, "dim"), indent=0)
+    if len(inspection.robots) > 1:
+        page.title("Robots")
+        for robot in inspection.robots:
+            line = (robot_line(robot), _STYLES[robot.verdict])
+            page.inset(Text.assemble(printable(robot.path), ": ", line))
     if inspection.problems:
         page.title("Problems")
         page.rows.extend(_problem_rows(console, inspection))
-    for title, rows in lists(inspection):
+    for title, rows in lists(shown):
         page.title(title)
         for name, words in rows:
             page.inset(Text.assemble(name, (words, "dim")))
@@ -36,7 +48,8 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
 
 def _problem_rows(console: Console, inspection: Inspection) -> Iterator[Text]:
     """Yield problems with their code and location, errors with their source line."""
-    urdf = inspection.reading.source.path if inspection.reading is not None else ""
+    shown = inspection.robot
+    urdf = shown.reading.source.path if shown is not None else ""
     for problem in inspection.problems[:_MAX_PROBLEMS]:
         where = problem.location
         name = f"{problem.code} {problem.severity:<7} "

@@ -35,6 +35,7 @@ _LETTER_WIDTH = 6.8  # pixels, on average, of a font that is wider than most
 _WIDTH = WIDTH - 2.0 * _LEFT
 _MAX_TITLE, _MAX_TEXT, _MAX_LINES = 200, 1000, 6
 NO_PICTURE = "No picture: no robot can be read."
+_SEVERAL = "No picture: there are several robots; name one with --robot."
 _NO_SHAPES = "No visual can be drawn: only frames of links are shown."
 _FONT = "12px system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif"
 _LOOKS = {
@@ -156,14 +157,18 @@ def inspection_svg(inspection: Inspection) -> str:
     """Return the drawing of an inspected robot as a file, with its joints at the given
     positions.
     """
-    robot = inspection.robot
-    picture = plain_picture(robot, inspection.relative_to)
     title, words = inspection.path, f"{inspection.path}: {effect(inspection)}"
-    if robot is not None:
-        title = robot.robot.name or title
-        if robot.positions:
-            positions = [f"{joint} = {position}" for joint, position in robot.positions.items()]
-            words += f"; {', '.join(positions)}"
+    reason = NO_PICTURE if not inspection.robots else _SEVERAL
+    robot = inspection.robot
+    if robot is None:
+        return _file(None, title, (words,), reason)
+    words = f"{robot.path}: {effect(inspection)}"
+    configuration = robot.configuration
+    if configuration is not None and configuration.positions:
+        positions = configuration.positions.items()
+        words += f"; {', '.join(f'{joint} = {position}' for joint, position in positions)}"
+    title = (configuration.robot.name if configuration is not None else "") or robot.path
+    picture = plain_picture(configuration, robot.relative_to)
     return _file(picture, title, (words,), NO_PICTURE)
 
 

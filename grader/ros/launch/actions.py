@@ -50,6 +50,7 @@ from grader.ros.python.values import (
     EvaluationFails,
     EvaluationSignal,
     Function,
+    MissingValue,
     QualifiedName,
     Undetermined,
     Unknown,
@@ -316,7 +317,8 @@ def _declare_argument(
         name in context.arguments and call.kwargs.get("condition") is not None
     )
     if default is None and not is_given:
-        raise EvaluationFails(
+        context.arguments[name] = Unknown(f"the launch argument {name!r} is given", call.at)
+        raise MissingValue(
             f"the launch argument {name!r} has no default, and no value is given", call.at
         )
     if name not in context.arguments:

@@ -12,7 +12,14 @@ from grader.base.source import Location, Source
 from grader.ros.build.places import PREFIX
 from grader.ros.python.budget import Budget
 from grader.ros.python.parse import Position
-from grader.ros.python.values import Call, EvaluationFails, EvaluationSignal, Unknown, Value
+from grader.ros.python.values import (
+    Call,
+    EvaluationFails,
+    EvaluationSignal,
+    Lacking,
+    Unknown,
+    Value,
+)
 
 _MAX_STEPS = 50_000
 # the launch configuration that has the namespace of what follows, as in launch_ros
@@ -259,6 +266,7 @@ class LaunchFault:
 
     message: str
     location: Location
+    lacks: Lacking = ""  # what another launch file, or the user, may give
 
 
 @dataclass(frozen=True, slots=True)
@@ -331,9 +339,9 @@ class Findings:
     sets_parameters: bool = False
     is_silent: bool = False  # while what may never be executed is visited
 
-    def add_fault(self, message: str, at: Position) -> None:
+    def add_fault(self, message: str, at: Position, lacks: Lacking = "") -> None:
         """Add an error that stops the launch."""
-        self.faults.append(LaunchFault(message, self.locate(at)))
+        self.faults.append(LaunchFault(message, self.locate(at), lacks))
 
     def add_unknown(self, reason: str, at: Position) -> None:
         """Add what may start more than is found."""
@@ -358,7 +366,7 @@ class Findings:
         if not isinstance(signal, EvaluationFails):
             self.add_doubt(str(signal), at)
         elif when:
-            self.add_fault(str(signal), at)
+            self.add_fault(str(signal), at, signal.lacks)
         else:
             self.add_doubt(f"whether this is executed is not evaluated: {signal}", at)
 

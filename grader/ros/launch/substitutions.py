@@ -22,6 +22,7 @@ from grader.ros.python.values import (
     MAX_TEXT,
     Call,
     EvaluationFails,
+    MissingDeclaration,
     Namespace,
     Undetermined,
     Unknown,
@@ -181,7 +182,7 @@ class _Substitution:
             f"the launch argument {name!r} is used, but DeclareLaunchArgument does not declare "
             "it before"
         )
-        raise EvaluationFails(message, self.at)
+        raise MissingDeclaration(message, self.at)
 
     def variable(self) -> Resolved:
         name, default = self.argument("name"), self.call.kwargs.get("default_value")

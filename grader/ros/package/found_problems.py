@@ -23,19 +23,31 @@ def package_problems(package: Package) -> tuple[Problem, ...]:
     """Return the problems of package.xml, setup.py, launch files and RViz files, each file's sorted
     by location.
     """
-    found: list[Problem] = []
-    if package.manifest is not None:
-        found += _sort(package.manifest.problems)
-    if package.installation is not None:
-        found += _sort(_setup_problems(package, package.installation))
+    found = build_problems(package)
     for path in package.launch_files[:_MAX_FILES]:
-        found += _sort(_launch_problems(package.launch(path)))
+        found += launch_problems(package.launch(path))
     for path in package.rviz_files[:_MAX_FILES]:
-        found += _sort(package.rviz(path).problems)
+        found += sorted_problems(package.rviz(path).problems)
     return tuple(found)
 
 
-def _sort(problems: Iterable[Problem]) -> list[Problem]:
+def build_problems(package: Package) -> list[Problem]:
+    """Return the problems of package.xml, and of setup.py or CMakeLists.txt."""
+    found: list[Problem] = []
+    if package.manifest is not None:
+        found += sorted_problems(package.manifest.problems)
+    if package.installation is not None:
+        found += sorted_problems(_setup_problems(package, package.installation))
+    return found
+
+
+def launch_problems(launch: Launch) -> list[Problem]:
+    """Return the problems of a launch file, and of those that it includes."""
+    return sorted_problems(_launch_problems(launch))
+
+
+def sorted_problems(problems: Iterable[Problem]) -> list[Problem]:
+    """Return the problems of one file in the order of their places."""
     return sorted(
         problems, key=lambda it: (it.location.line, it.location.column, it.code, it.message)
     )

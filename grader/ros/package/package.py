@@ -127,6 +127,11 @@ class Package:
         """Return whether its package.xml depends on a package of this name."""
         return self.manifest is not None and name in self.manifest.dependencies
 
+    @property
+    def is_of_ros1(self) -> bool:
+        """Whether its package.xml says that catkin of ROS 1 builds it."""
+        return self._build_type == "catkin" and self.depends_on("catkin")
+
     @cached_property
     def names(self) -> tuple[str, ...]:
         """The names that ROS 2 finds it by: its own, and those that setup.py installs in the

@@ -9,7 +9,7 @@ import ast
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from io import StringIO
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 if TYPE_CHECKING:
     from grader.ros.python.parse import Position
@@ -60,10 +60,27 @@ class EvaluationSignal(Exception):
         return Unknown(str(self), self.at or at, follows_error=self.follows_error)
 
 
+Lacking = Literal["", "value", "declaration"]
+
+
 class EvaluationFails(EvaluationSignal):
     """Python, xacro or launch certainly raises an error here; the text is a sentence without its
     end.
     """
+
+    lacks: Lacking = ""  # what another launch file, or the user, may give
+
+
+class MissingValue(EvaluationFails):
+    """A launch argument without default is given no value."""
+
+    lacks = "value"
+
+
+class MissingDeclaration(EvaluationFails):
+    """A launch configuration is used that nothing sets."""
+
+    lacks = "declaration"
 
 
 class Undetermined(EvaluationSignal):

@@ -1,7 +1,7 @@
-"""Opened files: their packages, and their robot."""
+"""Opened files: their packages, and their robots."""
 
 from collections.abc import Collection
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -9,8 +9,7 @@ from grader.base.source import Source
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree
 from grader.ros.package.package import MANIFEST, Package
-from grader.ros.package.robot_file import Absent, OtherCandidate, Read, Urdf
-from grader.ros.urdf.urdf_problems import NO_LINKS, ROBOT_WITHOUT_NAME
+from grader.ros.package.robot_file import Absent, OtherCandidate, Read, Unreadable, Urdf
 
 if TYPE_CHECKING:
     from grader.ros.workspace.workspace import Workspace
@@ -20,26 +19,29 @@ _NO_FILES = make_tree("", (), ())
 
 @dataclass(frozen=True, eq=False, repr=False)
 class OpenedWorkspace:
-    """The packages and the robot of opened files: a URDF on its own, a folder or an archive."""
+    """The packages and the robots of opened files: a URDF on its own, a folder or an archive."""
 
     id: str  # the name of the file or folder; of a submission, the student
-    urdf: Urdf
+    urdf: Urdf  # of a workspace, all of whose robots are read, absent
     other_candidates: tuple[OtherCandidate, ...] = ()  # other robots and packages
     packages: tuple[Package, ...] = ()  # the one that matches best first
     whole_tree: Tree = _NO_FILES  # every file, also outside of packages
     notes: tuple[str, ...] = ()  # on how it was read
     is_single: bool = True  # whether it is a URDF on its own, not a folder or archive
+    robots: tuple[Read | Unreadable, ...] = ()  # of a workspace, all of whose robots are read
+    ros1_packages: tuple[Package, ...] = ()  # whose names are not compared
 
     @cached_property
     def workspace(self) -> "Workspace":
-        """Its packages and its robot, whose names are compared."""
+        """Its packages and its robots, whose names are compared."""
         from grader.ros.workspace.workspace import Workspace  # late: few rubrics ask for names
 
         has_other_robots = any(
             not it.is_part for it in self.unused_candidates if not it.path.endswith(MANIFEST)
         )
-        urdfs = (self.urdf,) if isinstance(self.urdf, Read) else ()
-        return Workspace(self.packages, urdfs, self.whole_tree, has_other_robots)
+        urdfs = tuple(it for it in (*self.robots, self.urdf) if isinstance(it, Read))
+        has_unread = any(isinstance(it, Unreadable) for it in self.robots)
+        return Workspace(self.packages, urdfs, self.whole_tree, has_other_robots or has_unread)
 
     @property
     def path(self) -> str | None:
@@ -58,23 +60,6 @@ class OpenedWorkspace:
         """The files that the URDF is expanded from, itself among them."""
         source = self.urdf.reading.source if isinstance(self.urdf, Read) else None
         return getattr(source, "documents", ())
-
-    def without_part(self) -> "OpenedWorkspace":
-        """Return packages as such without a robot, where the best candidate is xacro without links
-        that nothing loads.
-        """
-        urdf = self.urdf
-        if self.is_single or not self.packages:
-            return self
-        if not isinstance(urdf, Read) or not urdf.is_expanded:
-            return self
-        errors = {problem.kind for problem in urdf.problems if problem.severity == "error"}
-        name = urdf.path.rpartition("/")[2]
-        is_part = NO_LINKS in errors and errors <= {NO_LINKS, ROBOT_WITHOUT_NAME}
-        is_loaded = any(package.robot_references(name) for package in self.packages)
-        if is_part and not is_loaded:
-            return replace(self, urdf=Absent())
-        return self
 
     def source(self, path: str) -> Source | None:
         """Return the text of one of its files, for quoting; None if it cannot be read."""

@@ -87,7 +87,7 @@ class Workspace:
     tree: Tree  # all files, also those outside of packages
     has_unread_robots: bool  # whether other files may be robots
 
-    @property
+    @cached_property
     def packages(self) -> tuple[Package, ...]:
         """The packages that a build of the workspace has: the best of each name, without those
         that colcon ignores.

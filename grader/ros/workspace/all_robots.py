@@ -1,0 +1,102 @@
+"""Read a workspace with all of its robots: every file that is one, and not a part of another."""
+
+from collections.abc import Mapping, Sequence
+
+from grader.base.errors import InputError, NotDecided
+from grader.files.tree import Tree
+from grader.ros.package.finding import (
+    is_backup,
+    launched_paths,
+    package_around,
+    read_packages,
+)
+from grader.ros.package.package import Package
+from grader.ros.package.robot_file import Absent, Read, Surroundings, Unreadable, read_as_ros
+from grader.ros.package.robots import RobotFile, find_robots, parts_of
+from grader.ros.python.budget import READING, Budget
+from grader.ros.urdf.urdf_problems import NO_LINKS, ROBOT_WITHOUT_NAME
+from grader.ros.workspace.opened import OpenedWorkspace
+
+_MAX_PACKAGES, _MAX_ROBOTS = 1000, 200
+_MAX_PARTS = 20 * READING  # that all robots together may take
+
+
+def read_workspace(
+    tree: Tree, identity: str, max_size: int, arguments: Mapping[str, str]
+) -> OpenedWorkspace:
+    """Return the packages in a file tree, and their robots in the order of their paths.
+
+    Args:
+        tree: The files.
+        identity: The name of the folder or archive.
+        max_size: The largest size of a robot, in bytes.
+        arguments: The arguments of xacro that the user gives.
+    """
+    packages = read_packages(tree, "", most=_MAX_PACKAGES)
+    ros1_packages = tuple(package for package in packages if package.is_of_ros1)
+    return OpenedWorkspace(
+        identity,
+        Absent(),
+        packages=tuple(package for package in packages if package not in ros1_packages),
+        whole_tree=tree,
+        is_single=False,
+        robots=tuple(_read_robots(tree, packages, max_size, arguments)),
+        ros1_packages=ros1_packages,
+    )
+
+
+def _read_robots(
+    tree: Tree, packages: tuple[Package, ...], max_size: int, arguments: Mapping[str, str]
+) -> list[Read | Unreadable]:
+    found = find_robots(tree, max_size=max_size)
+    launched = launched_paths(tree, packages, found)
+    left = _MAX_PARTS
+    robots: list[Read | Unreadable] = []
+    parts: list[Read | Unreadable] = []
+    for file in _whole(found, launched)[:_MAX_ROBOTS]:
+        budget = Budget(min(READING, left))
+        around = package_around(packages, file.path)
+        surroundings = Surroundings(budget, tree, around, packages, arguments)
+        robot = _read(tree, file, max_size, surroundings)
+        left = max(0, left - budget.used)
+        is_whole = file.path in launched or not _is_part(robot)
+        (robots if is_whole else parts).append(robot)
+    return robots or [part for part in parts if not _is_empty(part)]
+
+
+def _whole(found: Sequence[RobotFile], launched: set[str]) -> list[RobotFile]:
+    """Return the files that launch files load, or that are no backup and that no other one
+    includes.
+    """
+    parts = parts_of(found)
+    return [
+        file
+        for file in found
+        if file.path in launched or not (file.path in parts or is_backup(file.path))
+    ]
+
+
+def _read(
+    tree: Tree, file: RobotFile, max_size: int, surroundings: Surroundings
+) -> Read | Unreadable:
+    try:
+        data = tree.files[file.path].read(max_size)
+        return read_as_ros(data, file.path, surroundings)
+    except (InputError, NotDecided) as error:
+        return Unreadable(file.path, str(error))
+
+
+def _is_part(robot: Read | Unreadable) -> bool:
+    """Return whether a file of xacro has no name or no links, as one that others include."""
+    if not isinstance(robot, Read) or not robot.is_expanded:
+        return False
+    model = robot.reading.robot
+    return _is_empty(robot) or (model is not None and not model.name)
+
+
+def _is_empty(robot: Read | Unreadable) -> bool:
+    """Return whether a file of xacro has no links, as one that only defines macros."""
+    if not isinstance(robot, Read) or not robot.is_expanded:
+        return False
+    errors = {problem.kind for problem in robot.problems if problem.severity == "error"}
+    return NO_LINKS in errors and errors <= {NO_LINKS, ROBOT_WITHOUT_NAME}

@@ -1,0 +1,76 @@
+"""What of a workspace was read, and what was not: without it, silence would be praise."""
+
+from typing import NamedTuple
+
+from grader.base.text import counted
+from grader.ros.workspace.workspace import Workspace
+
+_CPP = (".cpp", ".cc", ".cxx")
+
+
+class Extent(NamedTuple):
+    """How many things of a workspace were read, and how many were not."""
+
+    packages: int
+    robots: int
+    launch_files: int
+    nodes: int  # of which the source was read
+    all_nodes: int
+    unread_robots: int
+    cpp_files: int
+    computed_names: int  # of topics, services and actions
+    expressions: int  # of launch files, setup.py and CMakeLists.txt that are not evaluated
+
+    @property
+    def words(self) -> str:
+        """Return what was read and what was not, in one line."""
+        nodes = counted(self.nodes, "node")
+        if self.nodes < self.all_nodes:
+            nodes = f"{self.nodes} of {counted(self.all_nodes, 'node')}"
+        counts = [
+            counted(self.packages, "package"),
+            counted(self.robots, "robot"),
+            counted(self.launch_files, "launch file"),
+            nodes,
+        ]
+        text = f"read: {', '.join(it for it in counts if not it.startswith('0 '))}"
+        unread = [
+            counted(self.unread_robots, "robot"),
+            counted(self.cpp_files, "C++ file"),
+            counted(self.computed_names, "computed name"),
+            counted(self.expressions, "expression"),
+        ]
+        unread = [it for it in unread if not it.startswith("0 ")]
+        return f"{text}; not read: {', '.join(unread)}" if unread else text
+
+
+def extent_of(workspace: Workspace, unread_robots: int) -> Extent:
+    """Return what of a workspace was read; `unread_robots` are not even opened."""
+    nodes = [node for found in workspace.python_nodes.values() for node in found.nodes]
+    unread = set()
+    for _, node in workspace.nodes:
+        owner = workspace.package_of(node)
+        if owner is None or workspace.python_node(node) is not None:
+            continue
+        if owner.has_program(node.package, node.executable) is not False:
+            unread.add((node.package, node.executable))
+    cpp_files = expressions = 0
+    for package in workspace.packages:
+        names = [path for path in package.tree.files if not path.startswith("test/")]
+        cpp_files += sum(name.endswith(_CPP) for name in names)
+        if package.installation is not None:
+            expressions += len(package.installation.unknown)
+    for _, _, launch in workspace.launches:
+        expressions += len(launch.unknown)
+    endpoints = [endpoint for node in nodes for endpoint in node.endpoints]
+    return Extent(
+        packages=len(workspace.packages),
+        robots=len(workspace.urdfs),
+        launch_files=len(workspace.launches),
+        nodes=len(nodes),
+        all_nodes=len(nodes) + len(unread),
+        unread_robots=unread_robots,
+        cpp_files=cpp_files,
+        computed_names=sum(endpoint.name is None for endpoint in endpoints),
+        expressions=expressions,
+    )

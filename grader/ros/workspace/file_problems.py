@@ -1,0 +1,67 @@
+"""What is wrong in the files of a workspace's packages, each on its own: what stops a build or a
+launch file, and RViz files.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from grader.base.problems import Problem
+from grader.base.source import Location
+from grader.ros.build import package_problems as kinds
+from grader.ros.launch.launch_model import Launch
+from grader.ros.package.found_problems import build_problems, launch_problems, sorted_problems
+from grader.ros.package.package import MANIFEST, Package
+from grader.ros.workspace.workspace import Workspace
+
+_COUNTED = (kinds.SETUP_UNKNOWN, kinds.LAUNCH_UNKNOWN)  # and not listed
+
+
+def file_problems(workspace: Workspace) -> Iterator[Problem]:
+    """Yield what is wrong in package.xml, setup.py, CMakeLists.txt, launch and RViz files."""
+    for package in workspace.packages:
+        yield from build_problems(package)
+    roots = {id(launch) for _, launch in workspace.roots}
+    for _, path, launch in workspace.launches:
+        if launch.syntax is not None:
+            yield Problem(kinds.LAUNCH_SYNTAX, launch.syntax.message, launch.syntax.location)
+        if id(launch) in roots:
+            yield from launch_problems(_started(workspace, path, launch))
+    for package in workspace.packages:
+        for path in package.rviz_files:
+            yield from _rviz_problems(package, path)
+
+
+def listed_problems(workspace: Workspace) -> list[Problem]:
+    """Return what is wrong in the files, each once, without what is not evaluated, which is only
+    counted.
+    """
+    return [it for it in dict.fromkeys(file_problems(workspace)) if it.kind not in _COUNTED]
+
+
+def ros1_problem(package: Package) -> Problem:
+    """Return the note that a package is not one of ROS 2."""
+    message = f"the package {package.name!r} is one of ROS 1, and is not compared with others"
+    return Problem(kinds.ROS1_PACKAGE, message, Location(package.path(MANIFEST), 1, 1))
+
+
+def _started(workspace: Workspace, path: str, launch: Launch) -> Launch:
+    """Return a launch file that no other one surely includes, without the faults that its caller
+    may correct: who starts it gives it values, and a file that may include it declares arguments.
+    """
+    name = path.rpartition("/")[2]
+    is_named = sum(name in text for text in workspace.launch_texts) > (name in launch.source.text)
+    is_closed = not is_named and not any(it.unknown for _, _, it in workspace.launches)
+    faults = []
+    for fault in launch.faults:
+        if fault.lacks == "" or (fault.lacks == "declaration" and is_closed):
+            faults.append(fault)
+    return replace(launch, faults=tuple(faults), syntax=None)
+
+
+def _rviz_problems(package: Package, path: str) -> Iterator[Problem]:
+    """Yield the problems of an RViz file; of one of another release only the first display."""
+    seen = set()
+    for problem in sorted_problems(package.rviz(path).problems):
+        if problem.kind is not kinds.ROS1_CLASS or problem.kind not in seen:
+            seen.add(problem.kind)
+            yield problem
