@@ -177,8 +177,10 @@ def _add_remaps(
     try:
         below = call.kwargs.get("namespace") or ""
         namespace: str | None = namespace_below(below, context, call.at)
-        for rule in call.kwargs.get("remappings") or ():
-            remaps.append(tuple(known_text(name, context, call.at) for name in rule))
+        for rule in items_in(call.kwargs.get("remappings") or ()) or ():
+            remaps.append(
+                tuple(known_text(name, context, call.at) for name in items_in(rule) or ())
+            )
     except EvaluationSignal:
         return replace(node, namespace=None, remaps=None)
     for name, _, value in reversed(rules):

@@ -1,6 +1,7 @@
 """Read a workspace with all of its robots: every file that is one, and not a part of another."""
 
 from collections.abc import Mapping, Sequence
+from typing import TypeGuard
 
 from grader.base.errors import InputError, NotDecided
 from grader.files.tree import Tree
@@ -59,7 +60,7 @@ def _read_robots(
         surroundings = Surroundings(budget, tree, around, packages, arguments)
         robot = _read(tree, file, max_size, surroundings)
         left = max(0, left - budget.used)
-        is_whole = file.path in launched or not _is_part(robot)
+        is_whole = not _is_empty(robot) and (file.path in launched or not _is_part(robot))
         (robots if is_whole else parts).append(robot)
     return robots or [part for part in parts if not _is_empty(part)]
 
@@ -88,7 +89,7 @@ def _read(
 
 def _is_part(robot: Read | Unreadable) -> bool:
     """Return whether a file of xacro has no name or no links, as one that others include."""
-    if not isinstance(robot, Read) or not robot.is_expanded:
+    if not _is_xacro(robot):
         return False
     model = robot.reading.robot
     return _is_empty(robot) or (model is not None and not model.name)
@@ -96,7 +97,11 @@ def _is_part(robot: Read | Unreadable) -> bool:
 
 def _is_empty(robot: Read | Unreadable) -> bool:
     """Return whether a file of xacro has no links, as one that only defines macros."""
-    if not isinstance(robot, Read) or not robot.is_expanded:
+    if not _is_xacro(robot):
         return False
     errors = {problem.kind for problem in robot.problems if problem.severity == "error"}
     return NO_LINKS in errors and errors <= {NO_LINKS, ROBOT_WITHOUT_NAME}
+
+
+def _is_xacro(robot: Read | Unreadable) -> TypeGuard[Read]:
+    return isinstance(robot, Read) and (robot.is_expanded or robot.path.endswith(".xacro"))

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from grader.base.problems import Problem
 from grader.base.source import Location
+from grader.base.text import counted
 from grader.ros.build import package_problems as kinds
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.found_problems import build_problems, launch_problems, sorted_problems
@@ -26,6 +27,10 @@ def file_problems(workspace: Workspace) -> Iterator[Problem]:
             yield Problem(kinds.LAUNCH_SYNTAX, launch.syntax.message, launch.syntax.location)
         if id(launch) in roots:
             yield from launch_problems(_started(workspace, path, launch))
+    for package, paths in workspace.ros1_launches:
+        files = counted(len(paths), "launch file")
+        message = f"the package has {files} of ROS 1, which ros2 launch does not read"
+        yield Problem(kinds.OF_ROS1, message, Location(package.path(paths[0]), 1, 1))
     for package in workspace.packages:
         for path in package.rviz_files:
             yield from _rviz_problems(package, path)
@@ -41,7 +46,7 @@ def listed_problems(workspace: Workspace) -> list[Problem]:
 def ros1_problem(package: Package) -> Problem:
     """Return the note that a package is not one of ROS 2."""
     message = f"the package {package.name!r} is one of ROS 1, and is not compared with others"
-    return Problem(kinds.ROS1_PACKAGE, message, Location(package.path(MANIFEST), 1, 1))
+    return Problem(kinds.OF_ROS1, message, Location(package.path(MANIFEST), 1, 1))
 
 
 def _started(workspace: Workspace, path: str, launch: Launch) -> Launch:

@@ -12,7 +12,7 @@ from functools import cached_property, partial
 from grader.base.errors import InputError
 from grader.base.source import LazyLocation, Location, Source
 from grader.files.tree import Tree
-from grader.ros.build.places import PREFIX, SHARE
+from grader.ros.build.places import PREFIX, SHARE, LaunchKind, launch_kind
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.ros.config.yaml_values import sections_in, values_in
 from grader.ros.known.known import known
@@ -110,12 +110,31 @@ class Workspace:
 
     @cached_property
     def launches(self) -> tuple[tuple[Package, str, Launch], ...]:
-        """The launch files, each with its package and its path in it; without those of tests."""
+        """The launch files, each with its package and its path in it; without those of tests and of
+        ROS 1.
+        """
         launches: list[tuple[Package, str, Launch]] = []
         for package in self.packages:
             paths = _without_tests(package.launch_files)
+            kinds = {path: self._kind_of_launch(package, path) for path in paths}
+            paths = [path for path, kind in kinds.items() if kind == "launch"]
             launches += [(package, path, package.launch(path)) for path in paths]
         return tuple(launches)
+
+    def _kind_of_launch(self, package: Package, path: str) -> LaunchKind:
+        data = package.tree.read(path, _MAX_YAML)
+        if data is None:
+            return "launch"  # that it cannot be read is said
+        return launch_kind(path, data.decode("utf-8", "replace"))
+
+    @property
+    def ros1_launches(self) -> Iterator[tuple[Package, list[str]]]:
+        """The packages with launch files of ROS 1, and the paths of these."""
+        for package in self.packages:
+            paths = _without_tests(package.launch_files)
+            of_ros1 = [it for it in paths if self._kind_of_launch(package, it) == "ROS 1"]
+            if of_ros1:
+                yield package, of_ros1
 
     @cached_property
     def nodes(self) -> tuple[tuple[Package, StartedNode], ...]:
@@ -152,7 +171,8 @@ class Workspace:
         files: dict[str, YamlNode | YamlFault] = {}
         for package in self.packages:
             paths = [path for path in package.tree.files if path.endswith((".yaml", ".yml"))]
-            for path in _without_tests(path for path in paths if path not in package.launch_files):
+            launched = {path for owner, path, _ in self.launches if owner is package}
+            for path in _without_tests(path for path in paths if path not in launched):
                 whole_path, data = package.path(path), package.tree.read(path, _MAX_YAML)
                 if data is None:
                     continue
