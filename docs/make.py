@@ -54,6 +54,7 @@ KEYS = {
     "[[test.ignore]]": IGNORE,
 }
 LANGUAGES = {
+    ".launch": "xml",
     ".yaml": "yaml",
     ".md": "markdown",
     ".py": "python",

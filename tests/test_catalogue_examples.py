@@ -20,6 +20,7 @@ from grader.report.explanations import example_blocks, explanation
 from grader.ros.package.found_problems import package_problems
 from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Read
+from grader.ros.workspace.file_problems import listed_problems
 from grader.ros.workspace.name_problems import name_problems
 from grader.ros.workspace.problem_kinds import EVERY_KIND
 from grader.ros.workspace.reading import read_agreement
@@ -56,7 +57,13 @@ ALSO = {
     "URDF095": "URDF009",
     "URDF099": "URDF031",
 }
-FOLDERS = {".urdf": "urdf", ".xacro": "urdf", ".rviz": "rviz", ".yaml": "config"}
+FOLDERS = {
+    ".launch": "launch",
+    ".urdf": "urdf",
+    ".xacro": "urdf",
+    ".rviz": "rviz",
+    ".yaml": "config",
+}
 WHEEL = """\
 <robot xmlns:xacro="http://www.ros.org/wiki/xacro">
 <xacro:macro name="wheel" params="name"><link name="${name}"/></xacro:macro>
@@ -163,6 +170,8 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(code: str, tmp_pa
             found += submission.urdf.problems
             found += mesh_problems(submission.urdf, submission.packages, submission.tree)
         found += package_problems(submission.package) if submission.package else []
+        if code == "PKG018":
+            found = listed_problems(submission.workspace)
         if code.startswith("REF"):
             names = name_problems(read_agreement(submission.workspace))
             found = [
@@ -173,9 +182,7 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(code: str, tmp_pa
         if side == "right":
             assert found == []
         else:
-            lines = (
-                range(1, 2) if code == "REF010" else lines
-            )  # of the file that no other one names
+            lines = range(1, 2) if code in ("REF010", "PKG018") else lines  # of the file as a whole
             assert any(it.code == code and it.location.line in lines for it in found), (
                 found,
                 lines,

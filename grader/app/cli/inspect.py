@@ -28,7 +28,7 @@ def inspect(
     max_size: MaxSizeOption = URDF_LIMIT,
     arg: ArgOption = None,
 ) -> int:
-    """Show robots as ROS 2 reads them, with tree, joints and poses, and what is wrong in packages.
+    """Show robots as ROS 2 reads them, and what is wrong in packages.
 
     A xacro file is expanded as xacro does, without running it. Of several robots each has a line.
     Of packages it lists what stops a build or a launch file, and the names that files use and

@@ -1,7 +1,7 @@
 """Opens a submission: a URDF, a folder, an archive or standard input."""
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -40,6 +40,7 @@ _NO_URDFS = frozenset(
 _TABLES = frozenset({".csv", ".tsv", ".xlsx", ".xls", ".ods"})
 _NO_LAB = Lab("robot.urdf")  # any robot, and any package
 _MAX_NAMED = 6  # files in a note
+_MAX_LEVELS = 4  # above a package, at which its workspace may be
 _EXPECTED = "give a .urdf file, or the folder or archive that was submitted"
 
 
@@ -149,12 +150,7 @@ def _read_with_neighbours(place: Path, data: bytes, identity: str, opening: Open
         root = next(
             (above for above in (folder, *folder.parents) if (above / MANIFEST).is_file()), folder
         )
-        if any(
-            (root.parent / name / MANIFEST).is_file()
-            for name in _packages_in(asked)
-            if name != root.name
-        ):
-            root = root.parent  # of a workspace, in which another package is beside this one
+        root = _workspace_around(root, _packages_in(asked) - {root.name})
         path = printable((folder / place.name).relative_to(root).as_posix())
         found = read_folder(root)
         tree = overlaid(found, {path: data}) if path in found.files or place.is_symlink() else None
@@ -164,6 +160,20 @@ def _read_with_neighbours(place: Path, data: bytes, identity: str, opening: Open
     if tree is not None:
         return _with_files_around(submission, tree, path, alone)
     return submission
+
+
+def _workspace_around(package: Path, names: Collection[str]) -> Path:
+    """Return the folder of a workspace in which packages of these names are: that of a package, one
+    in which another one is beside it, or the nearest src or repository above; without any the
+    package.
+    """
+    if any((package.parent / name / MANIFEST).is_file() for name in names):
+        return package.parent
+    if names and (package / MANIFEST).is_file():
+        for above in (*package.parents,)[:_MAX_LEVELS]:
+            if above.name == "src" or (above / ".git").exists():
+                return above
+    return package
 
 
 def _packages_in(asked: Iterable[str]) -> set[str]:

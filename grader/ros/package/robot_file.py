@@ -312,9 +312,7 @@ def _says_xacro(name: str) -> bool:
     """Return whether xacro in a file of this name, in lower case, is meant to be expanded; standard
     input is a URDF.
     """
-    if ".xacro" in name:
-        return not name.endswith(".urdf")
-    return ".urdf" not in name and name != "-"
+    return ".xacro" in name or (".urdf" not in name and name != "-")
 
 
 def _loaded_model(reading: Reading) -> tuple[object, ...]:
