@@ -71,7 +71,7 @@ def _used(workspace: Workspace, package: Package) -> Iterator[tuple[str, Locatio
         for match in _FIND.finditer(source.text):
             name = match[1] or match[2]
             # A misspelt own package is a mistake of files.
-            if near(name, names) is None or package.depends_on(name):
+            if name in names or package.depends_on(name) or near(name, names) is None:
                 yield name, source.at(match.start())
     yield from _imported(workspace, package, names)
     for path, tree in workspace.trees:

@@ -449,11 +449,17 @@ class Workspace:
 
     def _sources(self, package: Package, paths: Iterable[str]) -> Iterator[Source]:
         for path in _without_tests(paths):
-            data = package.tree.read(path, _MAX_YAML)
-            if data is not None:
-                text = data.decode("utf-8", "replace")
-                comment = _COMMENT_LINE if path.endswith(_WITH_LINES) else _XML_COMMENT
-                yield Source(package.path(path), comment.sub(_blank, text))
+            whole_path = package.path(path)
+            if whole_path not in self._texts:
+                self._texts[whole_path] = _without_comments(package, path)
+            source = self._texts[whole_path]
+            if source is not None:
+                yield source
+
+    @cached_property
+    def _texts(self) -> dict[str, Source | None]:
+        """The texts that were read, without comments, by their paths: each is read once."""
+        return {}
 
     @cached_property
     def robot_files(self) -> frozenset[str]:
@@ -488,6 +494,16 @@ class Workspace:
         for package in self.packages:
             sources += self.sources_of(package, (".py",))
         return tuple(source.text for source in sources)
+
+
+def _without_comments(package: Package, path: str) -> Source | None:
+    """Return the text of a file with blanks in place of comments; None if it cannot be read."""
+    data = package.tree.read(path, _MAX_YAML)
+    if data is None:
+        return None
+    text = data.decode("utf-8", "replace")
+    comment = _COMMENT_LINE if path.endswith(_WITH_LINES) else _XML_COMMENT
+    return Source(package.path(path), comment.sub(_blank, text))
 
 
 def _without_tests(paths: Iterable[str]) -> list[str]:
