@@ -265,7 +265,7 @@ def _given(
     """Yield the parameters that a node of the workspace is given."""
     owner = f"{node.package}/{node.executable}"
     opened = partial(open_meant, package, absent_are_empty=True)
-    given = parameters_of(node, opened, python_node.name or "", is_python=True)
+    given = parameters_of(node, opened, python_node.name or "")
     if given.unknown:
         yield Undecided("parameters", given.unknown)
     # What a file gives to every node need not be declared by this one.

@@ -342,13 +342,12 @@ class Workspace:
             for node in launch.nodes:
                 name = self.name_of(node)
                 if name == MANAGER or (name is not None and node.package != MANAGER):
-                    is_python = True if self.python_node(node) is not None else None
-                    given = parameters_of(node, opened, name, is_python=is_python)
+                    given = parameters_of(node, opened, name)
                     owners.setdefault(name, []).append(given)
                 for controller in _spawned_by(node):
                     files = (*shared, *(controller.parameters or ()))
                     started = replace(controller, parameters=files)
-                    given = parameters_of(started, opened, is_python=False)
+                    given = parameters_of(started, opened)
                     owners.setdefault(controller.node_name or "", []).append(given)
         return owners
 
@@ -386,12 +385,10 @@ class Workspace:
                 return "the arguments of a spawner are not evaluated"
         return ""
 
-    def parameters_given(
-        self, package: Package, node: StartedNode, *, is_python: bool | None = False
-    ) -> NodeParameters:
+    def parameters_given(self, package: Package, node: StartedNode) -> NodeParameters:
         """Return the parameters that a node gets, whose launch file is in a package."""
         opened = partial(open_meant, package)
-        return parameters_of(node, opened, self.name_of(node) or "", is_python=is_python)
+        return parameters_of(node, opened, self.name_of(node) or "")
 
     def written_values(self, parameter: str) -> Iterator[ParameterValue]:
         """Yield the values that files have for a parameter, of whatever node."""
