@@ -379,6 +379,7 @@ class _PythonLaunchFile:
             **dict.fromkeys(_TEXTS, self._text),
             "subprocess.check_output": self._check_output,
             "subprocess.check_output.decode": lambda _, call: _printed_text(call.owner),
+            **dict.fromkeys(("sys.exit", "builtins.exit", "builtins.quit"), _leave),
             f"{_WRITTEN}.__enter__": record,
             f"{_WRITTEN}.read": _fail_to_read,
         }
@@ -530,6 +531,12 @@ def _fail_to_read(_: Evaluation, call: Call) -> Value:
     raise EvaluationFails(
         "a file that is opened to be written is emptied, and cannot be read: leave out the mode",
         call.at,
+    )
+
+
+def _leave(_: Evaluation, call: Call) -> Value:
+    raise EvaluationFails(
+        f"{call.name.removeprefix('builtins.')}() ends ros2 launch here", call.at, SystemExit
     )
 
 

@@ -368,6 +368,10 @@ def _no_print(
 
 
 _FUNCTIONS: py.FunctionTable = {
+    **{
+        f"builtins.{name}": py.PlainFunction(name, lambda function: function, "holds")
+        for name in ("staticmethod", "classmethod", "property")
+    },
     "builtins.print": py.PlainFunction("print", _no_print, "holds"),
     "itertools.chain": py.PlainFunction(
         "chain", lambda *lists: py.Items(chain(*map(iterate, lists))), "holds"
