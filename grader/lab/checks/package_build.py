@@ -214,6 +214,8 @@ def _require_installed(
         raise package.without_data_files(setup.misspelt.message)
     if inside:
         return passed(f"a build installs {inside[0].source} as {inside[0].target}")
+    if despite_errors and setup.is_unknown_after_error:
+        return passed(f"what {setup.file} installs is not known because of an error in it")
     if setup.unknown:
         reason = f"{setup.unknown[0].reason} (line {setup.unknown[0].at.line} of {setup.file})"
         message = f"cannot determine statically whether a build installs {files[0]}: {reason}"

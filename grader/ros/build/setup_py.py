@@ -414,9 +414,9 @@ class _DataFiles:
                 "the files of an entry are a string, not a list: write [...] around it", at, files
             )
             files = [files] if files in self.listing.files else []
-        elif isinstance(files, Items | tuple):
+        elif isinstance(files, Items | tuple | set):
             self._not_list(files, at)
-            files = list(iterate(files))
+            files = sorted(files, key=str) if isinstance(files, set) else list(iterate(files))
         if not isinstance(files, list):
             self._not_list(files, at)
             return
@@ -432,7 +432,7 @@ class _DataFiles:
             self.stop(
                 "the files of an entry are an iterator, not a list: write list(...) around it", at
             )
-        elif isinstance(files, (*PLAIN, QualifiedName, Function)):
+        elif isinstance(files, (*PLAIN, set, QualifiedName, Function)):
             kind = type(files).__name__
             self.stop(
                 (

@@ -22,6 +22,7 @@ from grader.ros.launch.launch_model import (
     NAMESPACE,
     Contents,
     Context,
+    FileText,
     GivenParameters,
     ParameterValue,
     Resolved,
@@ -126,6 +127,8 @@ def _read_item(item: Value, place: _Place) -> _Read:
         raise Undetermined("a parameter of this kind is not evaluated", item.at)
     elif isinstance(item, PurePosixPath):
         yield GivenParameters(place.location, str(item))
+    elif isinstance(item, set) and any(isinstance(it, FileText) for it in item):
+        yield GivenParameters(place.location, values={})  # launch_ros looks for a file of this name
     else:
         yield _make_file(resolve(item, place.context, place.at), place)
 

@@ -435,6 +435,9 @@ class Interpreter(Evaluation):
                     return [*before, ast.copy_location(ast.Tuple(elts=args, ctx=ast.Load()), start)]
         return [node]
 
+    def _set(self, node: ast.Set, scope: py.Scope) -> py.Value:
+        return call_plain(set, self.elements(node.elts, scope))
+
     def _dict(self, node: ast.Dict, scope: py.Scope) -> py.Value:
         table: dict[Any, py.Value] = {}
         for key, value in zip(node.keys, node.values, strict=True):
@@ -541,6 +544,7 @@ class Interpreter(Evaluation):
         **Evaluation.KINDS,
         ast.Attribute: _attribute,
         ast.Dict: _dict,
+        ast.Set: _set,
         ast.JoinedStr: _joinedstr,
         ast.FormattedValue: _formattedvalue,
         ast.GeneratorExp: _generatorexp,

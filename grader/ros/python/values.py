@@ -281,7 +281,7 @@ def parts_of(part: Value) -> Collection[Value]:
     """Return what a value contains."""
     if isinstance(part, dict):
         return [*part.keys(), *part.values()]
-    if isinstance(part, list | tuple | range):
+    if isinstance(part, list | tuple | range | set):
         return part
     if isinstance(part, VIEWS):
         return [*part]
