@@ -549,11 +549,10 @@ def _read_parameter_value(entity: _Entity, given: Mapping[str, Any]) -> Value:
             entity.at,
         )
     has_separator = "value-sep" in given
-    if kind in _SCALARS and not entity.is_yaml and not has_separator:
-        text = str(entity.attributes["value"])
-        return _checked_call(
-            Call(TYPED[0], [], _converted(text, _SCALARS[kind], entity), entity.at)
-        )
+    scalar = _SCALARS.get(kind or "")
+    if scalar is not None and not entity.is_yaml and not has_separator:
+        converted = _converted(str(entity.attributes["value"]), scalar, entity)
+        return _checked_call(Call(TYPED[0], [], converted, entity.at))
     if kind not in (None, "str", "yaml"):
         raise Undetermined(f"a <param> of the type {kind} is not evaluated", entity.at)
     kwargs: dict[str, Value] = {}

@@ -56,6 +56,10 @@ class _ReturnFlow(py.EvaluationSignal):
         self.value = value
 
 
+class _ClassScope(py.Scope):
+    """The names in the body of a class."""
+
+
 def _stop_at(node: ast.FunctionDef) -> Iterator[py.Value]:
     """Raise Undetermined where the first item of a generator function is needed."""
     yield from ()
@@ -193,7 +197,7 @@ class Interpreter(Evaluation):
         if not is_plain or not all(isinstance(base, py.QualifiedName) for base in bases):
             raise py.Undetermined("a class of this kind is not evaluated", self.at, is_final=True)
         at = self.at
-        self._block(node.body, py.Scope({}, scope))
+        self._block(node.body, _ClassScope({}, scope))
         scope.names[node.name] = py.Unknown("a class is not evaluated", at)
 
     def _delete(self, node: ast.Delete, scope: py.Scope) -> None:
@@ -269,7 +273,7 @@ class Interpreter(Evaluation):
     def _annassign(self, node: ast.AnnAssign, scope: py.Scope) -> None:
         if node.value is not None:
             self.bind(node.target, self.evaluate(node.value, scope), scope)
-        if scope is self.module:
+        if scope is self.module or isinstance(scope, _ClassScope):
             self._annotation(node.annotation, scope)
 
     def _expr(self, node: ast.Expr, scope: py.Scope) -> None:
