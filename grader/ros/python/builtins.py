@@ -171,7 +171,6 @@ def _taking_known_items(function: Callable[..., py.Value]) -> Callable[..., py.V
 _HOLDING: dict[str, Callable[..., Any]] = {
     "list": _taking_items(list),
     "tuple": _taking_items(tuple),
-    "set": _taking_items(set),
     "dict": make_dict,
     "next": _next,
     "len": lambda value: len(_sized(value)),
@@ -205,6 +204,7 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
             "isinstance",
             "issubclass",
             "repr",
+            "set",
             "slice",
             "type",
             "vars",
