@@ -121,15 +121,18 @@ def installs_files(package: Package, *, files: list[str], despite_errors: bool =
     return _require_installed(package, matching, None, despite_errors=despite_errors)
 
 
-def setup_imports(package: Package) -> Outcome:
+def setup_imports(package: Package, *, where_there: bool = False) -> Outcome:
     """A build of the package succeeds: Python runs `setup.py`, or CMake `CMakeLists.txt`,
     without an error.
+
+    Args:
+        where_there: Whether what is to be installed and does not exist is no error, for `carried`.
     """
     setup = package.needed_installation()
-    return _build_error(package) or passed(f"{setup.file} builds")
+    return _build_error(package, where_there=where_there) or passed(f"{setup.file} builds")
 
 
-def _build_error(package: Package) -> Outcome | None:
+def _build_error(package: Package, *, where_there: bool = False) -> Outcome | None:
     """Return why a build of the package fails; None if it succeeds. Raises NotDecided."""
     setup = package.needed_installation()
     if package.ignored_by:
@@ -137,7 +140,12 @@ def _build_error(package: Package) -> Outcome | None:
         return failed(message, problem=message)
     stops = [stop for stop in setup.stops if stop.path != MANIFEST or package.manifest is not None]
     errors = [(fault.message, "", fault.at) for fault in setup.faults]
-    errors += [(stop.message, stop.hint, stop.at) for stop in stops]
+    there = package.tree.files.keys() | package.tree.folders
+    errors += [
+        (stop.message, stop.hint, stop.at)
+        for stop in stops
+        if not where_there or not stop.path or stop.path.rstrip("/") in there
+    ]
     if errors:
         messages = list(dict.fromkeys(message for message, _, _ in errors))
         _, hint, at = errors[0]
@@ -206,6 +214,8 @@ def _require_installed(
         raise package.without_data_files(setup.misspelt.message)
     if inside:
         return passed(f"a build installs {inside[0].source} as {inside[0].target}")
+    if despite_errors and setup.is_unknown_after_error:
+        return passed(f"what {setup.file} installs is not known because of an error in it")
     if setup.unknown:
         reason = f"{setup.unknown[0].reason} (line {setup.unknown[0].at.line} of {setup.file})"
         message = f"cannot determine statically whether a build installs {files[0]}: {reason}"

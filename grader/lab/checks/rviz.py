@@ -25,6 +25,7 @@ ABOUT = {
 }
 
 _PLUGINS = "rviz_default_plugins"
+_NO_FILE = "the package has no RViz file"
 _UNKNOWN_PREFIX = "the frame_prefix of robot_state_publisher is known only at run time"
 
 
@@ -53,7 +54,9 @@ def rviz_found(package: Package, *, name: str, launch: str = "") -> Outcome:
     )
 
 
-def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: str = "") -> Outcome:
+def rviz_fixed_frame(
+    submission: Submission, *, name: str, frame: str, launch: str = "", where_there: bool = False
+) -> Outcome:
     """The RViz file's Fixed Frame is this link, after the launch file's `frame_prefix` for
     robot_state_publisher.
 
@@ -62,8 +65,11 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
         frame: The link in whose frame RViz should draw.
         launch: The name of a launch file whose RViz file is examined, under any name; by default,
             only `name` decides.
+        where_there: Whether a package without an RViz file passes, for `carried`.
     """
     package = submission.needed_package()
+    if where_there and not package.rviz_files:
+        return passed(_NO_FILE)
     rviz = _read_rviz(package, name, launch)
     if rviz.conflict is not None:
         return failed(rviz.conflict.message, rviz.conflict.location)
@@ -95,7 +101,12 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
 
 
 def rviz_shows_robot(
-    package: Package, *, name: str, topic: str = "/robot_description", launch: str = ""
+    package: Package,
+    *,
+    name: str,
+    topic: str = "/robot_description",
+    launch: str = "",
+    where_there: bool = False,
 ) -> Outcome:
     """A RobotModel display of the RViz file is on, reads the robot from this topic, and has the
     prefix of its frames.
@@ -108,7 +119,10 @@ def rviz_shows_robot(
         topic: The topic from which the display should read the robot.
         launch: The name of a launch file whose RViz file is examined, under any name; by default,
             only `name` decides.
+        where_there: Whether a package without an RViz file passes, for `carried`.
     """
+    if where_there and not package.rviz_files:
+        return passed(_NO_FILE)
     rviz = _read_rviz(package, name, launch)
     models = [display for display in rviz.displays if display.kind == "RobotModel"]
     if not models:

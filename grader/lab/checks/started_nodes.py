@@ -192,16 +192,24 @@ class _NodeTopics:
     def __init__(self, launch: "Launch", workspace: "Workspace") -> None:
         self._topics: list[_NodeTopic] = []
         self._is_open = bool(launch.unknown)
+        self._unread: list[Fault] = []  # programs that Python cannot read publish nothing
         for node in launch.nodes:
             package, python_node = workspace.package_of(node), workspace.python_node(node)
-            if package is not None and (
-                python_node is None
-                or python_node.doubts
-                or workspace.python_nodes[package.name].doubts
-            ):
+            if package is None:
+                continue
+            own = workspace.python_nodes.get(package.name)
+            programs = own.programs if own is not None else ()
+            started = [it.syntax for it in programs if it.name == node.executable]
+            syntax = next(filter(None, started), None)
+            doubts = list(own.doubts) if own is not None else []
+            if syntax is not None:
+                message = f"Python cannot read the file: {syntax.message}"
+                self._unread.append(Fault(message, syntax.location))
+                doubts = [it for it in doubts if it.location.path != syntax.location.path]
+            elif python_node is None or python_node.doubts:
                 self._is_open = True
-            if python_node is not None:
-                self._add(node, python_node.endpoints)
+            self._is_open = self._is_open or bool(doubts)
+            self._add(node, python_node.endpoints if python_node is not None else ())
 
     def _add(self, node: "StartedNode", endpoints: "Iterable[Endpoint]") -> None:
         for endpoint in [endpoint for endpoint in endpoints if endpoint.kind in _VERBS]:
@@ -230,6 +238,8 @@ class _NodeTopics:
             shown = (endpoint.type or "").replace(".", "/")
             message = f"a node {verb} {full_name} with {shown}; it should be {message_type}"
             return Fault(message, endpoint.location)
+        if self._unread:
+            return self._unread[0]
         message = f"no node {verb} {full_name}"
         meant = closest(full_name, [topic.name for topic in of_kind])
         for topic in of_kind:

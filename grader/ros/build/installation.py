@@ -145,6 +145,11 @@ class Installation:
         return self.file != "setup.py"
 
     @property
+    def is_unknown_after_error(self) -> bool:
+        """Whether what is installed is unknown only because of an error that stops Python."""
+        return bool(self.unknown and self.faults) and all(it.follows_error for it in self.unknown)
+
+    @property
     def fault_text(self) -> str:
         """Why the file is not read, as part of a sentence; empty if it is."""
         if self.fault is None:

@@ -64,6 +64,7 @@ _NAMES = {
     Function: "a function",
     BoundMethod: "a method that is not called",
     UnknownText: "a text",
+    Items: "an iterator",
 }
 _WANTED = {
     bool: "True, False",

@@ -45,9 +45,13 @@ class Contents:
 class UnknownText(Unknown):
     """A value that is not known, but certainly is a text."""
 
+    is_text = True
+
 
 class UnknownTable(UnknownText):
     """A table of parameters that is not known, whose names are not known either."""
+
+    is_text = False
 
 
 class FileText(UnknownText):

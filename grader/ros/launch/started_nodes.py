@@ -25,6 +25,7 @@ from grader.ros.launch.launch_model import (
     STATE_PUBLISHER,
     Contents,
     Context,
+    FileText,
     Findings,
     GivenParameters,
     NamedFile,
@@ -356,14 +357,18 @@ def _find_description(findings: Findings, call: Call, context: Context) -> None:
     elif words or not is_clear or "ros_arguments" in call.kwargs or findings.sets_parameters:
         findings.refer("urdf", Unknown("its parameters are known only at run time", call.at), call)
     else:
-        message = (
-            "robot_state_publisher is started without robot_description: it has no robot to publish"
-        )
+        message = "robot_state_publisher is started without robot_description"
+        if any(isinstance(it, set) for it in parameters):
+            message += ": { , } is a set, and a table has a colon: {'robot_description': ...}"
+        else:
+            message += ": it has no robot to publish"
         findings.refer("urdf", None, call, wrong=message)
 
 
 def _is_flat(parameter: Value) -> bool:
-    """Return whether parameters are a dict that contains no other."""
+    """Return whether parameters are a dict that contains no other, or no table at all."""
+    if isinstance(parameter, set) and any(isinstance(it, FileText) for it in parameter):
+        return True
     if not isinstance(parameter, dict):
         return False
     return not any(isinstance(value, dict) for value in parameter.values())

@@ -247,7 +247,8 @@ class _Substitution:
         texts = self.texts(self.call.kwargs["expression"])
         if isinstance(texts, Unknown):
             raise Undetermined(f"this expression is not evaluated: {texts.reason}", self.at)
-        if "python_modules" in self.call.kwargs:
+        modules = self.texts(*listed(self.call.kwargs.get("python_modules", ["math"])))
+        if modules != ["math"]:
             raise Undetermined("the modules of this expression are not evaluated", self.at)
         return _expression_text(texts[0], self.at, self.context)
 

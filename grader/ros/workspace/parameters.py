@@ -22,7 +22,6 @@ from grader.ros.config.yaml_values import (
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.launch.node_parameters import parameters_of
-from grader.ros.package.installed_files import open_meant
 from grader.ros.package.package import Package
 from grader.ros.package.python_nodes import PythonNode
 from grader.ros.workspace.bridges import bridge_files
@@ -264,8 +263,8 @@ def _given(
 ) -> Iterator[Fact]:
     """Yield the parameters that a node of the workspace is given."""
     owner = f"{node.package}/{node.executable}"
-    opened = partial(open_meant, package, absent_are_empty=True)
-    given = parameters_of(node, opened, python_node.name or "", is_python=True)
+    opened = partial(workspace.open_given, package)
+    given = parameters_of(node, opened, python_node.name or "")
     if given.unknown:
         yield Undecided("parameters", given.unknown)
     # What a file gives to every node need not be declared by this one.

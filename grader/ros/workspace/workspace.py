@@ -11,8 +11,15 @@ from functools import cached_property, partial
 
 from grader.base.errors import InputError
 from grader.base.source import LazyLocation, Location, Source
-from grader.files.tree import Tree
-from grader.ros.build.places import PREFIX, SHARE, LaunchKind, launch_kind
+from grader.files.tree import Tree, parents
+from grader.ros.build.places import (
+    PREFIX,
+    SHARE,
+    LaunchKind,
+    is_launch_file,
+    launch_kind,
+    share_parts,
+)
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.ros.config.yaml_values import sections_in, values_in
 from grader.ros.known.known import known
@@ -24,7 +31,7 @@ from grader.ros.launch.node_parameters import (
     value_in_file,
 )
 from grader.ros.package.finding import is_backup
-from grader.ros.package.installed_files import open_meant
+from grader.ros.package.installed_files import are_installs_known, open_meant
 from grader.ros.package.package import Package
 from grader.ros.package.python_nodes import PythonNode, PythonNodes, read_nodes
 from grader.ros.package.robot_file import Read
@@ -39,6 +46,9 @@ _CALLED = re.compile(r"<xacro:(?:[\w-]+\.)*([\w-]+)")
 _FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
 _MAX_FILES = 60  # of one kind in a package
 _MAX_YAML = 512 * 1024  # bytes
+_TEXTS = (".yaml", ".yml", ".urdf", ".xacro", ".srdf", ".sdf", ".world", ".rviz", ".py", ".xml")
+_OWN_FOLDERS = frozenset({"config", "launch", "maps", "params", "rviz", "urdf", "worlds"})
+_PROGRAMS = (".py", ".cpp", ".cc", ".hpp", ".sh", "CMakeLists.txt")
 _WITH_LINES = (".yaml", ".yml", ".py")  # files whose comments begin with #
 _COMMENT_LINE = re.compile(r"(?:^|(?<=\s))#[^\n]*")
 _XML_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
@@ -357,7 +367,7 @@ class Workspace:
         """
         owners: dict[str, list[NodeParameters]] = {}
         for package, launch in self.roots:
-            opened = partial(open_meant, package, absent_are_empty=True)
+            opened = partial(self.open_given, package)
             # What a controller manager and Gazebo are given, its controllers get too.
             shared: list[GivenParameters] = []
             for node in launch.nodes:
@@ -367,13 +377,12 @@ class Workspace:
             for node in launch.nodes:
                 name = self.name_of(node)
                 if name == MANAGER or (name is not None and node.package != MANAGER):
-                    is_python = True if self.python_node(node) is not None else None
-                    given = parameters_of(node, opened, name, is_python=is_python)
+                    given = parameters_of(node, opened, name)
                     owners.setdefault(name, []).append(given)
                 for controller in _spawned_by(node):
                     files = (*shared, *(controller.parameters or ()))
                     started = replace(controller, parameters=files)
-                    given = parameters_of(started, opened, is_python=False)
+                    given = parameters_of(started, opened)
                     owners.setdefault(controller.node_name or "", []).append(given)
         return owners
 
@@ -412,12 +421,40 @@ class Workspace:
                 return "the arguments of a spawner are not evaluated"
         return ""
 
-    def parameters_given(
-        self, package: Package, node: StartedNode, *, is_python: bool | None = False
-    ) -> NodeParameters:
+    def parameters_given(self, package: Package, node: StartedNode) -> NodeParameters:
         """Return the parameters that a node gets, whose launch file is in a package."""
         opened = partial(open_meant, package)
-        return parameters_of(node, opened, self.name_of(node) or "", is_python=is_python)
+        return parameters_of(node, opened, self.name_of(node) or "")
+
+    def open_given(self, package: Package, path: str) -> tuple[bytes, str] | None:
+        """Return a parameter file that a launch file of a package gives, as `open_meant` does, and
+        nothing in one that surely is nowhere.
+        """
+        found = open_meant(package, path, absent_are_empty=True)
+        owner = package.find(share_parts(f"{PREFIX}/{path}")[0])
+        if found is None and owner is not None and are_installs_known(owner):
+            return (b"", path) if self.is_nowhere(owner, path) else None
+        return found
+
+    def is_nowhere(self, owner: Package, target: str) -> bool:
+        """Return whether a file of text that the package does not have is surely nowhere.
+
+        What the limits of reading, a submodule or a link leave out may be there, and an own program
+        may write a file that it names.
+        """
+        if not target.endswith(_TEXTS) or self.tree.ignored or owner.tree.links:
+            return False
+        for folder in parents(target.removeprefix(owner.share)):
+            is_empty = not any(path.startswith(f"{folder}/") for path in owner.tree.files)
+            is_submodule = is_empty and posixpath.basename(folder) not in _OWN_FOLDERS
+            if folder in owner.tree.folders and is_submodule:
+                return False
+        name = posixpath.basename(target)
+        for package in self.packages:
+            for source in self.sources_of(package, _PROGRAMS):
+                if name in source.text and not is_launch_file(source.path):
+                    return False
+        return True
 
     def written_values(self, parameter: str) -> Iterator[ParameterValue]:
         """Yield the values that files have for a parameter, of whatever node."""
