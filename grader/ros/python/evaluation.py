@@ -27,6 +27,7 @@ class PythonError(NamedTuple):
 
     message: str
     at: Position
+    name: str = ""  # that is undefined
 
 
 NOT_EVALUATED = "is not evaluated"
@@ -86,12 +87,12 @@ class Evaluation(Expressions):
         self.doubt = self.doubt or unknown
         return unknown
 
-    def error(self, message: str, at: Position) -> None:
-        """Record once an error that certainly stops Python."""
+    def error(self, message: str, at: Position, name: str = "") -> None:
+        """Record once an error that certainly stops Python, such as an undefined name."""
         if len(self.errors) < _MAX_ERRORS and all(
             message != error.message for error in self.errors
         ):
-            self.errors.append(PythonError(message, at))
+            self.errors.append(PythonError(message, at, name))
 
     def evaluate(self, node: ast.expr, scope: py.Scope) -> py.Value:
         """Return the value of an expression; Unknown, with the reason, where it cannot be
@@ -128,7 +129,8 @@ class Evaluation(Expressions):
             return self._builtin(node.id)
         if node.id.startswith("__"):
             raise py.Undetermined(f"the name {node.id!r} {NOT_EVALUATED}")
-        self.error(f"the name {node.id!r} is not defined or imported", position_of(node))
+        message = f"the name {node.id!r} is not defined or imported"
+        self.error(message, position_of(node), name=node.id)
         texts = (name for name, value in self.module.names.items() if isinstance(value, str))
         meant = closest(node.id, texts) if node.id not in USUAL_NAMES else None
         if meant is not None:

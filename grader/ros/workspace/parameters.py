@@ -366,7 +366,7 @@ def _other_type(
     message = (
         f"the parameter {name!r} is given {actual}; {reader} declares {declared}{there}, and stops"
     )
-    yield Mismatch("parameters", message, given.location, at, is_certain)
+    yield Mismatch("parameters", message, given.location, at, is_certain, is_of_type=True)
 
 
 def _type_of(value: Any) -> str:
