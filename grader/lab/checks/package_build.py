@@ -266,7 +266,7 @@ def _why_not_installed(
             what,
             package.folder,
             message=message,
-            location=setup.location(setup.called_at),
+            location=setup.location(setup.files_at),
             cause="",
         )
     problem = f"the pattern {empty.pattern!r} in {setup.file} matches no file"
