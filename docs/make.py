@@ -32,6 +32,7 @@ from grader.lab.rubric.keys import (
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import open_submission
 from grader.report.explanations import (
+    CAUSES_OF_CHECK,
     EFFECTS,
     default_text,
     example_blocks,
@@ -123,6 +124,11 @@ def checks() -> Iterator[str]:
             meaning = escaped(check.documentation.arguments[name])
             yield f"| `{name}` | {meaning} | {parameter.type.name} | {default} |"
         if check.parameters:
+            yield ""
+        if check.about.causes:
+            yield from (f"{CAUSES_OF_CHECK}:", "")
+            for cause, meaning in check.about.causes.items():
+                yield f"- `{cause}`: {escaped(meaning)}"
             yield ""
         yield from example(check.name)
 

@@ -24,6 +24,7 @@ from grader.ros.workspace.problem_kinds import EVERY_KIND
 _WIDTH = 80
 _MAX_SIMILAR = 6  # criteria that are named
 _CHECKS = "checks"
+CAUSES_OF_CHECK = "Causes of a failure, besides `wrong`, `missing` and `slip`, for `feedback`"
 EFFECTS = {
     "rejects": "ROS 2 rejects the file.",
     "undetermined": "The criteria that depend on it need manual grading.",
@@ -111,7 +112,9 @@ def explanation(name: str, rubric: Rubric) -> str:
             f"{check.name}: a check for rubrics{source}",
             *map(_fill, check.documentation.paragraphs),
         ]
-        return _paragraphs([*texts, _arguments(check).rstrip("\n"), *_examples(check.name)])
+        return _paragraphs(
+            [*texts, _arguments(check).rstrip("\n"), _causes(check), *_examples(check.name)]
+        )
     known = (
         [kind.code for kind in EVERY_KIND]
         + [criterion.id for criterion in rubric.criteria]
@@ -123,7 +126,8 @@ def explanation(name: str, rubric: Rubric) -> str:
     )
     begun = [criterion.id for criterion in rubric.criteria if criterion.id.startswith(name)]
     if begun:
-        similar = f"; there are {enumerated(begun, _MAX_SIMILAR)}: `grader explain {begun[0]}`"
+        verb = "is" if len(begun) == 1 else "are"
+        similar = f"; there {verb} {enumerated(begun, _MAX_SIMILAR)}: `grader explain {begun[0]}`"
     else:
         similar = ""
     guess = similar or did_you_mean(name, known) or f"; {lists}"
@@ -139,7 +143,7 @@ def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
     yield _fill(f"Passes when: {criterion.title}.")
     if criterion.adjustment is not None:
         yield _fill(sentence(criterion.adjustment.message))
-    yield _fill(criterion.feedback)
+    yield from map(_fill, criterion.feedback.values())
     if criterion.requires:
         yield _fill(f"Skipped unless these passed: {', '.join(criterion.requires)}.")
     pose = _pose_text(criterion.at) if criterion.at else ""
@@ -182,6 +186,14 @@ def _arguments(check: Check) -> str:
             textwrap.indent(f"{meaning}\n", " " * 6),
         ]
     return "".join(line for line in lines if line.strip())
+
+
+def _causes(check: Check) -> str:
+    if not check.about.causes:
+        return ""
+    lines = [f"{CAUSES_OF_CHECK}:", ""]
+    lines += [f"    {cause}: {meaning}" for cause, meaning in check.about.causes.items()]
+    return "\n".join(lines)
 
 
 def _fill(text: str, width: int = _WIDTH) -> str:

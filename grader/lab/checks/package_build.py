@@ -16,12 +16,25 @@ from grader.lab.submission.submission import Submission
 from grader.ros.package.package import MANIFEST, RESOURCE_INDEX, SETUP, Package
 
 _FileKind = Literal["urdf", "launch", "rviz"]
+_INSTALLS = {
+    "fails": "a build fails",
+    "pattern": "a pattern matches no file",
+    "elsewhere": "a build installs the file elsewhere",
+}
 ABOUT = {
-    "package_found": About((MANIFEST, SETUP)),
+    "package_found": About(
+        (MANIFEST, SETUP), causes={"refused": "the tools of ROS 2 refuse package.xml"}
+    ),
     "package_type": About((MANIFEST,)),
-    "build_installs": About((SETUP, "file")),
-    "setup_imports": About((SETUP,)),
-    "installs_files": About((SETUP, "file")),
+    "build_installs": About((SETUP, "file"), causes=_INSTALLS),
+    "setup_imports": About(
+        (SETUP,),
+        causes={
+            "name": "a name in setup.py is not defined or imported",
+            "files": "a file or folder that is listed does not exist, or is of another kind",
+        },
+    ),
+    "installs_files": About((SETUP, "file"), causes=_INSTALLS),
 }
 _ENDINGS: dict[_FileKind, tuple[str, ...]] = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
 
@@ -38,7 +51,9 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
     if manifest.refusals and (fine or manifest.name is None):
         problem, count = manifest.refusals[0], len(manifest.refusals)
         more = f" (and {count - 1} more)" if count > 1 else ""
-        return failed(problem.message + more, problem.location, problem=problem.message)
+        return failed(
+            problem.message + more, problem.location, problem=problem.message, cause="refused"
+        )
     message = (
         f"the package is named {manifest.name!r}{'' if fine else f'; it should be named {name!r}'}"
     )
@@ -150,8 +165,15 @@ def _build_error(package: Package, *, where_there: bool = False) -> Outcome | No
         messages = list(dict.fromkeys(message for message, _, _ in errors))
         _, hint, at = errors[0]
         message, problem = "; ".join(first_lines(messages, 3)), messages[0] + hint
+        cause = "files"
+        if setup.faults:
+            cause = "name" if setup.faults[0].name else ""
         return failed(
-            message, setup.location(at), detail=hint if len(messages) == 1 else "", problem=problem
+            message,
+            setup.location(at),
+            detail=hint if len(messages) == 1 else "",
+            problem=problem,
+            cause=cause,
         )
     if not setup.is_called:
         message = "setup.py does not call setup()"
@@ -190,7 +212,7 @@ def _require_installed(
     setup = package.needed_installation()
     error = _build_error(package)
     if error is not None and not despite_errors:
-        return error._replace(message=f"a build fails: {error.message}")
+        return error._replace(message=f"a build fails: {error.message}", cause="fails")
     if error is not None and _stops_at(package, files, kind):
         return passed(f"{setup.file} has an entry for {files[0]}")
     copies = [copy for copy in setup.copies if copy.source in files]
@@ -224,7 +246,7 @@ def _require_installed(
         message = f"a build installs {copies[0].source} as {copies[0].target}"
         message += f"; ROS 2 looks for the package's files below {package.share}"
         mistake = f"a build installs the file outside of {package.share}"
-        return failed(message, setup.location(copies[0].at), mistake=mistake)
+        return failed(message, setup.location(copies[0].at), mistake=mistake, cause="elsewhere")
     raise _why_not_installed(package, files, kind)
 
 
@@ -251,7 +273,11 @@ def _why_not_installed(
     if empty is None:
         message += f": {'no' if setup.is_cmake else 'no entry of'} {setup.entries} names it"
         return MissingElement(
-            what, package.folder, message=message, location=setup.location(setup.called_at)
+            what,
+            package.folder,
+            message=message,
+            location=setup.location(setup.files_at),
+            cause="",
         )
     problem = f"the pattern {empty.pattern!r} in {setup.file} matches no file"
     # Late: a URDF on its own needs none of what reads a package.
@@ -260,7 +286,13 @@ def _why_not_installed(
     detail, at = why_no_match(package, empty.pattern), setup.location(empty.at)
     message += f": {problem}"
     return MissingElement(
-        what, package.folder, message=message, detail=detail, location=at, problem=problem + detail
+        what,
+        package.folder,
+        message=message,
+        detail=detail,
+        location=at,
+        problem=problem + detail,
+        cause="pattern",
     )
 
 

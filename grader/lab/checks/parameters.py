@@ -9,7 +9,7 @@ from math import dist
 from typing import Any, Literal
 
 from grader.base.errors import MissingElement, NotDecided, RubricError
-from grader.base.names import did_you_mean
+from grader.base.names import closest, similar_there
 from grader.base.text import enumerated, quoted
 from grader.base.transforms import Vector
 from grader.lab.checks.outcome import Outcome, failed, passed
@@ -147,14 +147,14 @@ def value_of(submission: Submission, node: str, parameter: str) -> ParameterValu
         cause = "the name of a node is only in its program"
         raise NotDecided(f"{cause}: {other.package}/{other.executable}", cause)
     if not given:
-        guess = did_you_mean(node, workspace.parameter_owners)
-        message = f"nothing gives parameters to a node {quoted(node)}{guess}"
+        there = similar_there(node, workspace.parameter_owners)
+        message = f"nothing gives parameters to a node {quoted(node)}{there}"
         raise MissingElement("parameters of the node", node, message=message)
-    names = [name for found in given for name in found.values]
+    written = {name: it.location for found in given for name, it in found.values.items()}
     message = (
-        f"{node} does not get the parameter {quoted(parameter)}{did_you_mean(parameter, names)}"
+        f"{node} does not get the parameter {quoted(parameter)}{similar_there(parameter, written)}"
     )
-    at = next((it.location for found in given for it in found.values.values()), None)
+    at = written.get(closest(parameter, written) or "", next(iter(written.values()), None))
     raise MissingElement("parameter", f"{node} {parameter}", message=message, location=at)
 
 

@@ -47,6 +47,7 @@ class Fault(NamedTuple):
     at: Location | None = None
     detail: str = ""
     is_certain: bool = True
+    cause: str = "given"  # one of those of the check node_runs
 
 
 def find_faults(
@@ -87,7 +88,8 @@ def _started_although(launch: "Launch", names: Iterable[str]) -> Iterator[Fault]
         nodes = [node for node in launch.nodes if node.name == name]
         certain = next((node for node in nodes if node.when), None)
         if certain is not None:
-            yield Fault(f"the launch file starts {name}; it should not", certain.location)
+            message = f"the launch file starts {name}; it should not"
+            yield Fault(message, certain.location, cause="")
         elif nodes or launch.unknown:
             yield Fault(f"{name} is started", is_certain=False)
 
@@ -237,12 +239,13 @@ class _NodeTopics:
             endpoint = same[0].endpoint
             shown = (endpoint.type or "").replace(".", "/")
             message = f"a node {verb} {full_name} with {shown}; it should be {message_type}"
-            return Fault(message, endpoint.location)
+            return Fault(message, endpoint.location, cause="type")
         if self._unread:
             return self._unread[0]
         message = f"no node {verb} {full_name}"
         meant = closest(full_name, [topic.name for topic in of_kind])
         for topic in of_kind:
             if topic.name == meant:
-                return Fault(message, topic.endpoint.location, f"; did you mean {quoted(meant)}?")
-        return Fault(message)
+                guess = f"; there is {quoted(meant)}"
+                return Fault(message, topic.endpoint.location, guess, cause="topic")
+        return Fault(message, cause="topic")

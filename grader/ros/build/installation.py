@@ -82,6 +82,7 @@ class Installation:
     doubt: Unknown | None = None
     is_called: bool = True
     called_at: Position = START
+    files_at: Position = START  # of the argument data_files; of the call without it
     entry_points: Value = None  # what setup() is given
     ignored: tuple[IgnoredArgument, ...] = ()  # arguments that setup() does not have
     scripts_folder: str = "bin"  # below the prefix, for console_scripts

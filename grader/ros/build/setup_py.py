@@ -16,6 +16,7 @@ from pathlib import PurePosixPath
 
 from grader.base.errors import InputError
 from grader.base.names import closest, did_you_mean
+from grader.base.source import Source
 from grader.base.text import enumerated
 from grader.files.limits import ignored_part
 from grader.files.tree import Tree
@@ -270,11 +271,21 @@ def _evaluate_setup(
         doubt=doubts[0] if doubts else None,
         is_called=bool(calls) or interpreter.doubt is not None,
         called_at=calls[0].at if calls else START,
+        files_at=_files_at(calls[0], code.source) if calls else START,
         entry_points=given.get("entry_points"),
         ignored=tuple(data_files.ignored),
         scripts_folder=_scripts_folder(listing),
         packages=_packages_in(given.get("packages")),
     )
+
+
+def _files_at(call: Call, source: Source) -> Position:
+    """Return the position of the argument data_files; without it, of the call."""
+    at = call.places.get("data_files")
+    if at is None:
+        return call.at
+    name = source.line(at.line).find("data_files")
+    return at._replace(column=name + 1) if 0 <= name < at.column else at
 
 
 def _read_call(data_files: "_DataFiles", call: Call) -> None:

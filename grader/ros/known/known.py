@@ -37,6 +37,7 @@ class _Known(TypedDict):
     slash_before_jazzy: list[str]
     plugins: list[str]
     controllers: Mapping[Any, dict[str, str]]  # by the type that a file may give
+    controller_packages: Mapping[Any, str]
     controller_topics: Mapping[Any, dict[Literal["subscription", "publisher"], dict[str, str]]]
     controller_actions: dict[str, list[str]]
     parameter_types: Mapping[Any, dict[str, list[str]]]  # by the type of a controller

@@ -27,6 +27,7 @@ class PythonError(NamedTuple):
 
     message: str
     at: Position
+    name: str = ""  # that is undefined
 
 
 NOT_EVALUATED = "is not evaluated"
@@ -86,14 +87,23 @@ class Evaluation(Expressions):
         self.doubt = self.doubt or unknown
         return unknown
 
-    def error(self, message: str, at: Position, kind: type[BaseException] | None = None) -> None:
-        """Record once an error that certainly stops Python; raise it where a try may catch it."""
+    def error(
+        self,
+        message: str,
+        at: Position,
+        kind: type[BaseException] | None = None,
+        *,
+        name: str = "",
+    ) -> None:
+        """Record once an error that certainly stops Python, such as an undefined name; raise it
+        where a try may catch it.
+        """
         if self.attempts:
             raise py.EvaluationFails(message, at, kind)
         if len(self.errors) < _MAX_ERRORS and all(
             message != error.message for error in self.errors
         ):
-            self.errors.append(PythonError(message, at))
+            self.errors.append(PythonError(message, at, name))
 
     def evaluate(self, node: ast.expr, scope: py.Scope) -> py.Value:
         """Return the value of an expression; Unknown, with the reason, where it cannot be
@@ -131,7 +141,7 @@ class Evaluation(Expressions):
         if node.id.startswith("__"):
             raise py.Undetermined(f"the name {node.id!r} {NOT_EVALUATED}")
         message = f"the name {node.id!r} is not defined or imported"
-        self.error(message, position_of(node), NameError)
+        self.error(message, position_of(node), NameError, name=node.id)
         texts = (name for name, value in self.module.names.items() if isinstance(value, str))
         meant = closest(node.id, texts) if node.id not in USUAL_NAMES else None
         if meant is not None:

@@ -111,4 +111,5 @@ def _controller_packages(section: YamlNode) -> Iterator[tuple[str, Location]]:
     for inner in section.value.values() if isinstance(section.value, dict) else ():
         kind = inner.get("type")
         if kind is not None and kind.text in known()["controllers"]:
-            yield str(kind.text).partition("/")[0], kind.location
+            own_package = str(kind.text).partition("/")[0]
+            yield known()["controller_packages"].get(kind.text, own_package), kind.location

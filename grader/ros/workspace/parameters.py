@@ -271,7 +271,7 @@ def _given(
     for_all = workspace.wildcard_places(node)
     for name, value in given.values.items():
         if value.location not in for_all and not name.startswith("qos_overrides."):
-            said = f"the node {workspace.name_of(node)!r}"
+            said = f"the node {workspace.name_of(node) or node.executable!r}"
             yield Use("parameter", name, value.location, said, owner)
     yield from _types_given(python_node, given.values)
 
@@ -365,7 +365,7 @@ def _other_type(
     message = (
         f"the parameter {name!r} is given {actual}; {reader} declares {declared}{there}, and stops"
     )
-    yield Mismatch("parameters", message, given.location, at, is_certain)
+    yield Mismatch("parameters", message, given.location, at, is_certain, is_of_type=True)
 
 
 def _type_of(value: Any) -> str:

@@ -61,6 +61,7 @@ class Build:
             unknown=tuple(dict.fromkeys([*self.doubts, *self.unknown])),
             doubt=self.doubts[0] if self.doubts else None,
             called_at=self._package_at or self.last,
+            files_at=self._package_at or self.last,
             packages=tuple(self.modules),
         )
 
