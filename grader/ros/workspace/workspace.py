@@ -486,16 +486,17 @@ class Workspace:
 
     def _sources(self, package: Package, paths: Iterable[str]) -> Iterator[Source]:
         for path in _without_tests(paths):
-            whole_path = package.path(path)
-            if whole_path not in self._texts:
-                self._texts[whole_path] = _without_comments(package, path)
-            source = self._texts[whole_path]
+            if (package, path) not in self._texts:
+                self._texts[package, path] = _without_comments(package, path)
+            source = self._texts[package, path]
             if source is not None:
                 yield source
 
     @cached_property
-    def _texts(self) -> dict[str, Source | None]:
-        """The texts that were read, without comments, by their paths: each is read once."""
+    def _texts(self) -> dict[tuple[Package, str], Source | None]:
+        """The texts that were read, without comments, by package and path, of others too: each is
+        read once.
+        """
         return {}
 
     @cached_property
