@@ -387,7 +387,7 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
         return
     match found := _text_if_known(value, context, call.at):
         case Contents(path=path, by=by) if (
-            by != "xacro" and path.endswith(".xacro") and _may_be_xacro(path, context)
+            by != "xacro" and path.endswith(".xacro") and context.text_of(path) is None
         ):
             name = path.rpartition("/")[2]
             message = (
@@ -412,12 +412,6 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
             findings.refer("urdf", None, call, value, wrong=message)
         case _:
             findings.refer("urdf", found, call, value)
-
-
-def _may_be_xacro(path: str, context: Context) -> bool:
-    """Return whether a file may use xacro: it has a tag or an expression of it, or is not known."""
-    text = context.text_of(path)
-    return text is None or "xacro:" in text or "$" in text
 
 
 def _find_configuration(findings: Findings, call: Call, context: Context) -> None:
