@@ -38,6 +38,7 @@ class _Known(TypedDict):
     slash_before_jazzy: list[str]
     plugins: list[str]
     controllers: Mapping[Any, dict[str, str]]  # by the type that a file may give
+    packages_of_controllers: dict[str, str]  # by the types that do not begin with them
     controller_topics: Mapping[Any, dict[Literal["subscription", "publisher"], dict[str, str]]]
     controller_actions: dict[str, list[str]]
     parameter_types: Mapping[Any, dict[str, list[str]]]  # by the type of a controller

@@ -48,7 +48,8 @@ _KINDS: dict[str, _Kind] = {
     "create_client": "client",
 }
 _READS = ("get_parameter", "get_parameter_or", "has_parameter")
-_METHODS = frozenset({*_KINDS, *_READS, "declare_parameter", "declare_parameters", "create_timer"})
+_DECLARES = ("declare_parameter", "declare_parameters")
+_METHODS = frozenset({*_KINDS, *_READS, *_DECLARES, "create_timer"})
 # What may be given a node, and declares and opens nothing but actions and the topics of tf2.
 _HARMLESS = frozenset(
     {
@@ -185,6 +186,7 @@ class PythonNodes(NamedTuple):
     nodes: tuple[PythonNode, ...]
     programs: tuple[_Program, ...]
     doubts: tuple[_Doubt, ...]
+    has_loose_declarations: bool = False  # of parameters, of a node that is not known
 
 
 def read_nodes(package: Package) -> PythonNodes:
@@ -210,7 +212,8 @@ def read_nodes(package: Package) -> PythonNodes:
         slips = _slips_of(package, program)
         doubts += [_Doubt(slip.reaction, slip.location) for slip in slips]
         programs.append(program._replace(nodes=()) if slips else program)
-    return PythonNodes(tuple(nodes), tuple(programs), tuple(doubts))
+    is_loose = any(module.has_loose_declarations for module in modules.values())
+    return PythonNodes(tuple(nodes), tuple(programs), tuple(doubts), is_loose)
 
 
 def program_slips(package: Package) -> Iterator[Slip]:
@@ -334,6 +337,7 @@ class _Module:
         # Of the classes, by full names; None for a base that is not known.
         self.bases: dict[str, list[str | None]] = {}
         self.doubts: list[_Doubt] = []
+        self.has_loose_declarations = _has_alias(code.tree)
         self._classes: dict[Location, str] = {}
         self._facts: dict[Location, list[_Fact]] = {}  # of each node
         self._parts: list[_ModulePart] = []
@@ -490,6 +494,7 @@ class _Module:
                 at = self._receiver(part, owner)
                 facts = self._facts.get(at) if at is not None else None
                 if facts is None:
+                    self.has_loose_declarations |= method in _DECLARES
                     reason = f"the node of this {method}() is not known"
                     self.doubts.append(_Doubt(reason, self._at(call)))
                 else:
@@ -554,6 +559,17 @@ class _Module:
             yield NodeParameter(
                 _text(argument(0, "name")), _default(default), at, is_declared, is_plain
             )
+
+
+def _has_alias(tree: ast.AST) -> bool:
+    """Return whether a method that declares parameters is named and not called, so that another
+    name may call it.
+    """
+    called = {node.func for node in ast.walk(tree) if isinstance(node, ast.Call)}
+    return any(
+        isinstance(node, ast.Attribute) and node.attr in _DECLARES and node not in called
+        for node in ast.walk(tree)
+    )
 
 
 def _text(value: Value) -> str | None:

@@ -50,6 +50,7 @@ def _read_robots(
 ) -> list[Read | Unreadable]:
     found = find_robots(tree, max_size=max_size)
     launched = launched_paths(tree, packages, found)
+    included = parts_of(found)
     left = _MAX_PARTS
     robots: list[Read | Unreadable] = []
     parts: list[Read | Unreadable] = []
@@ -59,7 +60,8 @@ def _read_robots(
         surroundings = Surroundings(budget, tree, around, packages, arguments)
         robot = _read(tree, file, max_size, surroundings)
         left = max(0, left - budget.used)
-        is_whole = file.path in launched or not _is_part(robot)
+        is_loaded = file.path in launched and file.path not in included
+        is_whole = is_loaded or not _is_part(robot)
         (robots if is_whole else parts).append(robot)
     return robots or [part for part in parts if not _is_empty(part)]
 
@@ -88,7 +90,7 @@ def _read(
 
 def _is_part(robot: Read | Unreadable) -> bool:
     """Return whether a file of xacro has no name or no links, as one that others include."""
-    if not isinstance(robot, Read) or not robot.is_expanded:
+    if not isinstance(robot, Read) or not _is_of_xacro(robot):
         return False
     model = robot.reading.robot
     return _is_empty(robot) or (model is not None and not model.name)
@@ -96,7 +98,12 @@ def _is_part(robot: Read | Unreadable) -> bool:
 
 def _is_empty(robot: Read | Unreadable) -> bool:
     """Return whether a file of xacro has no links, as one that only defines macros."""
-    if not isinstance(robot, Read) or not robot.is_expanded:
+    if not isinstance(robot, Read) or not _is_of_xacro(robot):
         return False
     errors = {problem.kind for problem in robot.problems if problem.severity == "error"}
     return NO_LINKS in errors and errors <= {NO_LINKS, ROBOT_WITHOUT_NAME}
+
+
+def _is_of_xacro(robot: Read) -> bool:
+    """Return whether a file is xacro, or its name says so."""
+    return robot.is_expanded or robot.path.endswith(".xacro")

@@ -28,7 +28,8 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
         declared = _declared(package)
         used: dict[str, Location] = {}
         for name, at in _used(workspace, package):
-            if name not in used:
+            # What a launch file of another package starts, that package has to declare.
+            if name not in used and package.holds(at.path):
                 used[name] = at
                 yield Compared("dependencies")
         brought: set[str] = set()  # by the packages of the workspace that are declared
@@ -111,4 +112,6 @@ def _controller_packages(section: YamlNode) -> Iterator[tuple[str, Location]]:
     for inner in section.value.values() if isinstance(section.value, dict) else ():
         kind = inner.get("type")
         if kind is not None and kind.text in known()["controllers"]:
-            yield str(kind.text).partition("/")[0], kind.location
+            written = str(kind.text)
+            packages = known()["packages_of_controllers"]
+            yield packages.get(written, written.partition("/")[0]), kind.location

@@ -121,6 +121,8 @@ def _in_robot(robot: KnownRobot) -> Iterator[Fact]:
     joint_elements = known()["joint_elements"]
     for element in robot.root.iterchildren("gazebo"):
         at = robot.place(element)
+        for joint in element.iter("joint"):  # of Gazebo alone, for what URDF does not have
+            yield Definition("joint", joint.get("name", ""), at)
         reference = element.get("reference")
         if reference and reference not in joints:
             yield Use("link", reference, at, "<gazebo reference>")

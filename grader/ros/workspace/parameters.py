@@ -57,6 +57,7 @@ _GENERATED_TYPES = {
     "double_array": "a list of doubles",
     "string_array": "a list of strings",
 }
+_OF_OPENCV = b"%YAML:"  # its FileStorage reads another YAML
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
 _INPUT = re.compile(r"(odom|imu|pose|twist)\d+_config")  # of robot_localization
 _SEPARATORS = re.compile(r"[:/]+")
@@ -71,6 +72,8 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     for path, tree in workspace.yaml_files.items():
         if isinstance(tree, YamlFault) and path not in files_of_bridges:
             is_certain = path in workspace.parameter_files
+            if not is_certain and workspace.begins_with(path, _OF_OPENCV):
+                continue
             yield Mismatch(
                 "parameters", f"this is not YAML: {tree}", tree.location, is_certain=is_certain
             )
@@ -251,7 +254,7 @@ def _declared(
             yield Definition("parameter", parameter.name, parameter.location, owner)
     for name in _OF_EVERY_NODE:
         yield Definition("parameter", name, python_node.location, owner)
-    if python_node.doubts:
+    if python_node.doubts or workspace.python_nodes[node.package].has_loose_declarations:
         yield Open("parameter", owner)
     for parameter in python_node.parameters:
         if parameter.name is not None and not parameter.is_declared:
