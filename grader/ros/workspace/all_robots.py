@@ -57,7 +57,9 @@ def _read_robots(
     for file in _whole(found, launched)[:_MAX_ROBOTS]:
         budget = Budget(min(READING, left))
         around = package_around(packages, file.path)
-        surroundings = Surroundings(budget, tree, around, packages, arguments)
+        surroundings = Surroundings(
+            budget, tree, around, packages, arguments, assumes_defaults=True
+        )
         robot = _read(tree, file, max_size, surroundings)
         left = max(0, left - budget.used)
         is_loaded = file.path in launched and file.path not in included

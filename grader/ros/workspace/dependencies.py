@@ -83,8 +83,9 @@ def _used(workspace: Workspace, package: Package) -> Iterator[tuple[str, Locatio
 
 def _launched(launch: Launch) -> Iterator[tuple[str, Location]]:
     """Yield the packages whose programs or launch files a launch file starts."""
+    included = {passed.location for passed in launch.passed}  # of whose nodes these are the places
     for node in launch.nodes:
-        if not node.included_by:
+        if not node.included_by and node.location not in included:
             yield node.package, node.location
     for passed in launch.passed:
         folder, _, inside = passed.path.partition("/")
