@@ -22,7 +22,8 @@ _ARGUMENT = re.compile(r"(?P<topic>[^@\s]+)@(?P<ros>[\w/]+)(?P<direction>[@\[\]]
 _OLDER_FORM = re.compile("^ignition[.]msgs(?=[.])")
 _COMPUTED = re.compile("^(world|model)/|[${<%]")  # names that Gazebo or a program makes
 _EXPANDED = "expand_gz_topic_names"  # the parameter that puts the namespace before the names
-_DERIVED = ("points", "image", "depth_image", "camera_info")  # below the topic, or beside it
+# Below the topic, or beside it: also of cameras that segment (gz-sensors).
+_DERIVED = ("points", "image", "depth_image", "camera_info", "labels_map", "colored_map")
 # Models in worlds that have no sensors.
 _WITHOUT_SENSORS = ("sun", "ground_plane", "ground plane")
 
@@ -289,7 +290,7 @@ def _named_topics(workspace: Workspace) -> set[str]:
         for element in root.iter("*"):
             text = (element.text or "").strip().strip("/")
             if str(element.tag).endswith("topic") and text:
-                topics.add(text)
+                topics |= {text, f"{text}_image"}  # the latter of cameras that draw boxes
                 for name in _DERIVED:
                     topics.add(posixpath.join(posixpath.dirname(text), name))
                     topics.add(f"{text}/{name}")

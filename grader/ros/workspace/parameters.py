@@ -23,6 +23,7 @@ from grader.ros.known.known import known
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.launch.node_parameters import parameters_of
 from grader.ros.package.installed_files import open_meant
+from grader.ros.package.mesh_content import LFS_POINTER
 from grader.ros.package.package import Package
 from grader.ros.package.python_nodes import PythonNode
 from grader.ros.workspace.bridges import bridge_files
@@ -72,7 +73,8 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     for path, tree in workspace.yaml_files.items():
         if isinstance(tree, YamlFault) and path not in files_of_bridges:
             is_certain = path in workspace.parameter_files
-            if not is_certain and workspace.begins_with(path, _OF_OPENCV):
+            is_of_opencv = not is_certain and workspace.begins_with(path, _OF_OPENCV)
+            if is_of_opencv or workspace.begins_with(path, LFS_POINTER):
                 continue
             yield Mismatch(
                 "parameters", f"this is not YAML: {tree}", tree.location, is_certain=is_certain

@@ -11,7 +11,7 @@ from functools import cached_property, partial
 
 from grader.base.errors import InputError
 from grader.base.source import LazyLocation, Location, Source
-from grader.files.tree import Tree
+from grader.files.tree import Tree, parents
 from grader.ros.build.places import PREFIX, SHARE, share_parts
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.ros.config.yaml_values import sections_in, values_in
@@ -41,6 +41,11 @@ _INCLUDED = re.compile(r"<xacro:include\b[^>]*?\bfilename\s*=\s*[\"']([^\"']+)[\
 _FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
 _MAX_FILES = 60  # of one kind in a package
 _MAX_YAML = 512 * 1024  # bytes
+# Of a package, which may be empty.
+_USUAL_FOLDERS = (
+    *("action", "config", "include", "launch", "maps", "meshes", "models", "msg", "params"),
+    *("resource", "rviz", "scripts", "src", "srv", "test", "urdf", "worlds"),
+)
 _WITH_LINES = (".yaml", ".yml", ".py")  # files whose comments begin with #
 _COMMENT_LINE = re.compile(r"(?:^|(?<=\s))#[^\n]*")
 _XML_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
@@ -429,6 +434,18 @@ class Workspace:
                 if not keys or any(key.strip("/") in ("*", "**") for key in keys):
                     places |= {value.node.location for value in values_in(section)}
         return frozenset(places)
+
+    @cached_property
+    def absent_submodules(self) -> tuple[str, ...]:
+        """The empty folders that git may fetch: those of submodules, as their names say."""
+        filled = {folder for path in self.tree.files for folder in parents(path)}
+        empty = []
+        for folder in self.tree.folders:
+            above, _, name = folder.rpartition("/")
+            is_usual = name in _USUAL_FOLDERS or above.endswith("include")
+            if folder not in filled and not is_usual:
+                empty.append(folder)
+        return tuple(empty)
 
     def begins_with(self, path: str, start: bytes) -> bool:
         """Return whether a file of the submission begins with some bytes."""
