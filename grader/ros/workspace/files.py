@@ -105,8 +105,8 @@ def _is_unused_property(workspace: Workspace, source: Source, at: int) -> bool:
     name = _PROPERTY.match(tag)
     if name is None:
         return False
-    word = re.compile(rf"\b{re.escape(name[1])}\b")
-    return sum(len(word.findall(other.text)) for other in workspace.xacro_sources) < 2
+    used = re.compile(rf"\$\{{[^{{}}]*\b{re.escape(name[1])}\b")
+    return not any(used.search(other.text) for other in workspace.xacro_sources)
 
 
 class _Text(NamedTuple):

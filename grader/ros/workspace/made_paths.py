@@ -10,7 +10,7 @@ from grader.ros.python.parse import Code, parse
 
 _SUBSTITUTION = re.compile(r"\$\((?:[^()]|\([^()]*\))*\)|\$\{[^{}]*\}|\$ENV\{\w+\}|\$\w+")
 _MADE = re.compile(r"[^\s\"'<>,;:=()\[\]{}]*\0[^\s\"'<>,;=()\[\]{}]*")
-_END_IN_CPP = re.compile(r"\"([^\w\s\"/][\w.-]*|[\w.-]*/)\"")
+_END_IN_CPP = re.compile(r"\"([_.-][\w.-]*)\"")
 _CPP = (".cpp", ".hpp", ".cc", ".h")
 _QUOTE = re.compile("[\"']")
 
