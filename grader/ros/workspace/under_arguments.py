@@ -92,9 +92,9 @@ def _chosen_files(sources: tuple[Source, ...], robot_files: frozenset[str]) -> s
             for match, depth in _matches(source.text)
             if depth and match["file"]
         }
-    others = [source.path for source in sources if source.path not in robot_files]
-    return {
-        path
-        for path in others
-        if posixpath.basename(path) in named or any(it.fullmatch(path) for it in patterns)
-    }
+    chosen = set()
+    for path in [source.path for source in sources if source.path not in robot_files]:
+        is_named = posixpath.basename(path) in named
+        if is_named or any(pattern.fullmatch(path) for pattern in patterns):
+            chosen.add(path)
+    return chosen
