@@ -6,14 +6,13 @@ from collections.abc import Iterator, Sequence
 from math import isfinite, nan
 
 from grader.base.errors import GraderError, InputError, MissingElement, NotDecided
-from grader.base.problems import Problem, in_order
+from grader.base.problems import Problem
 from grader.base.text import MAX_NAMED, enumerated, printable_path
 from grader.lab.submission.opening import open_workspace
 from grader.report.inspection import InspectedRobot, Inspection, main_root
 from grader.report.invocation import read_arguments
 from grader.report.repository import base_of, folder_of
 from grader.report.writing import Warn
-from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Absent, Read, Unreadable
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import Reading
@@ -117,10 +116,7 @@ def _inspected(
     elif robot is not None and relative_to is not None and not robot.robot.has_link(relative_to):
         known = ", ".join(repr(link.name) for link in robot.robot.links[:_MAX_NAMED])
         raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
-    packages = (*opened.packages, *opened.ros1_packages)
-    meshes = mesh_problems(urdf, packages, opened.whole_tree)
-    problems = in_order((*urdf.loaded.problems, *meshes))
-    reading = urdf.loaded._replace(problems=problems)
+    reading = urdf.loaded._replace(problems=opened.problems_of(urdf))
     return InspectedRobot(urdf.path, reading, robot, relative_to)
 
 

@@ -6,7 +6,7 @@ import struct
 from grader.base.errors import InputError, NotDecided
 from grader.files.tree import File
 
-_LFS_POINTER = b"version https://git-lfs.github.com/spec/"
+LFS_POINTER = b"version https://git-lfs.github.com/spec/"
 _START = 64 * 1024  # bytes that are read
 _HEAD, _TRIANGLE = (
     84,
@@ -29,7 +29,7 @@ def content_fault(file: File, path: str) -> str:
         start = file.read(_START, first=True)
     except InputError as error:
         raise NotDecided(str(error), "a mesh cannot be read") from None
-    if start.startswith(_LFS_POINTER):
+    if start.startswith(LFS_POINTER):
         raise NotDecided(
             "this download holds only the pointer of Git LFS, not the mesh",
             "a mesh is a Git LFS pointer",

@@ -61,7 +61,8 @@ _KINDS: dict[str, _Kind] = {
     "create_client": "client",
 }
 _READS = ("get_parameter", "get_parameter_or", "has_parameter")
-_METHODS = frozenset({*_KINDS, *_READS, "declare_parameter", "declare_parameters", "create_timer"})
+_DECLARES = ("declare_parameter", "declare_parameters")
+_METHODS = frozenset({*_KINDS, *_READS, *_DECLARES, "create_timer"})
 # What may be given a node, and declares and opens nothing but actions and the topics of tf2.
 _HARMLESS = frozenset(
     {
@@ -199,6 +200,7 @@ class PythonNodes(NamedTuple):
     nodes: tuple[PythonNode, ...]
     programs: tuple[_Program, ...]
     doubts: tuple[_Doubt, ...]
+    has_loose_declarations: bool = False  # of parameters, of a node that is not known
 
 
 def read_nodes(package: Package) -> PythonNodes:
@@ -227,7 +229,8 @@ def read_nodes(package: Package) -> PythonNodes:
         doubts += [_Doubt(slip.reaction, slip.location) for slip in slips]
         syntax = unreadable_module(package, program.path) if program.path in unread else None
         programs.append(program._replace(nodes=() if slips else program.nodes, syntax=syntax))
-    return PythonNodes(tuple(nodes), tuple(programs), tuple(doubts))
+    is_loose = any(module.has_loose_declarations for module in modules.values())
+    return PythonNodes(tuple(nodes), tuple(programs), tuple(doubts), is_loose)
 
 
 def program_slips(package: Package) -> Iterator[Slip]:
@@ -351,6 +354,7 @@ class _Module:
         # Of the classes, by full names; None for a base that is not known.
         self.bases: dict[str, list[str | None]] = {}
         self.doubts: list[_Doubt] = []
+        self.has_loose_declarations = _has_alias(code.tree)
         self._classes: dict[Location, str] = {}
         self._facts: dict[Location, list[_Fact]] = {}  # of each node
         self._parts: list[_ModulePart] = []
@@ -507,6 +511,7 @@ class _Module:
                 at = self._receiver(part, owner)
                 facts = self._facts.get(at) if at is not None else None
                 if facts is None:
+                    self.has_loose_declarations |= method in _DECLARES
                     reason = f"the node of this {method}() is not known"
                     self.doubts.append(_Doubt(reason, self._at(call)))
                 else:
@@ -571,6 +576,17 @@ class _Module:
             yield NodeParameter(
                 _text(argument(0, "name")), _default(default), at, is_declared, is_plain
             )
+
+
+def _has_alias(tree: ast.AST) -> bool:
+    """Return whether a method that declares parameters is named and not called, so that another
+    name may call it.
+    """
+    called = {node.func for node in ast.walk(tree) if isinstance(node, ast.Call)}
+    return any(
+        isinstance(node, ast.Attribute) and node.attr in _DECLARES and node not in called
+        for node in ast.walk(tree)
+    )
 
 
 def _text(value: Value) -> str | None:

@@ -122,6 +122,7 @@ class Surroundings(NamedTuple):
         str, str
     ] = {}  # that a criterion gives launch files, and xacro if these do not
     is_single: bool = False  # whether the files are those around a single file
+    assumes_defaults: bool = False  # whether arguments whose values are not evaluated have those
     ask: Callable[[str], object] = lambda _: (
         None
     )  # is called with the name of each other file that xacro reads
@@ -144,6 +145,8 @@ class Surroundings(NamedTuple):
         launches = [
             launch for package in self._launched_packages(path) for launch in package.launches
         ]
+        if self.assumes_defaults:
+            return "default"
         if any(launch.unknown or launch.syntax for launch in launches):
             return "default" if references else "unknown"
         return "none" if references and not self.arguments else "default"
@@ -346,6 +349,8 @@ def _expand_xacro(
     from grader.ros.xacro.texts import INSTALLED
 
     launched = dict(references[0].arguments) if references else {}
+    if surroundings.assumes_defaults:
+        launched = {name: text for name, text in launched.items() if text is not None}
     given = dict(launched)
     for name, text in launched.items():
         shared = re.fullmatch(rf"{SHARE}/([^/]+)/?(.*)", text or "")

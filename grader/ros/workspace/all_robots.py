@@ -51,16 +51,20 @@ def _read_robots(
 ) -> list[Read | Unreadable]:
     found = find_robots(tree, max_size=max_size)
     launched = launched_paths(tree, packages, found)
+    included = parts_of(found)
     left = _MAX_PARTS
     robots: list[Read | Unreadable] = []
     parts: list[Read | Unreadable] = []
     for file in _whole(found, launched)[:_MAX_ROBOTS]:
         budget = Budget(min(READING, left))
         around = package_around(packages, file.path)
-        surroundings = Surroundings(budget, tree, around, packages, arguments)
+        surroundings = Surroundings(
+            budget, tree, around, packages, arguments, assumes_defaults=True
+        )
         robot = _read(tree, file, max_size, surroundings)
         left = max(0, left - budget.used)
-        is_whole = not _is_empty(robot) and (file.path in launched or not _is_part(robot))
+        is_loaded = file.path in launched and file.path not in included
+        is_whole = not _is_empty(robot) and (is_loaded or not _is_part(robot))
         (robots if is_whole else parts).append(robot)
     return robots or [part for part in parts if not _is_empty(part)]
 

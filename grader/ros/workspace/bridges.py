@@ -20,7 +20,10 @@ _TO_ROS, _TO_GAZEBO, _BOTH = "GZ_TO_ROS", "ROS_TO_GZ", "BIDIRECTIONAL"
 _DIRECTIONS = {"[": _TO_ROS, "]": _TO_GAZEBO, "@": _BOTH}
 _ARGUMENT = re.compile(r"(?P<topic>[^@\s]+)@(?P<ros>[\w/]+)(?P<direction>[@\[\]])(?P<gz>[\w.]+)")
 _OLDER_FORM = re.compile("^ignition[.]msgs(?=[.])")
-_DERIVED = ("points", "image", "depth_image", "camera_info")  # below the topic, or beside it
+_COMPUTED = re.compile("^(world|model)/|[${<%]")  # names that Gazebo or a program makes
+_EXPANDED = "expand_gz_topic_names"  # the parameter that puts the namespace before the names
+# Below the topic, or beside it: also of cameras that segment (gz-sensors).
+_DERIVED = ("points", "image", "depth_image", "camera_info", "labels_map", "colored_map")
 # Models in worlds that have no sensors.
 _WITHOUT_SENSORS = ("sun", "ground_plane", "ground plane")
 
@@ -128,13 +131,14 @@ def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
             bridged |= {(word or "").strip("/") for word in node.arguments or ()}
     unused = [topic for topic in topics if topic.name not in bridged]
     is_known = not _is_open(workspace)
+    are_expanded = any(_EXPANDED in text for text in workspace.launch_texts)
     for row in rows:
         yield Compared("topics")
         same = [topic for topic in topics if topic.name == row.gz]
         yield from _conversions(row, {f"gz.msgs.{topic.type}" for topic in same})
         if row.gz in named:
             yield from _contradictions(row, same)
-        elif not row.gz.startswith(("world/", "model/")) and "$" not in row.gz:
+        elif not are_expanded and not _COMPUTED.search(row.gz):
             yield from _not_there(row, unused, is_known=is_known)
     yield from _clocks(workspace, rows)
 
@@ -240,7 +244,10 @@ def _not_there(row: _BridgeRow, unused: list[GazeboTopic], *, is_known: bool) ->
         if f"gz.msgs.{topic.type}" == row.gz_type and topic.is_input != row.is_published:
             fitting[topic.name] = topic.location
     if fitting:
-        meant = closest(row.gz, fitting) or min(fitting)
+        meant = closest(row.gz, fitting)
+        if meant is None and not is_known:
+            return  # a sensor that is not read may publish it
+        meant = meant or min(fitting)
         at = fitting[meant]
         what = "no sensor publishes" if row.is_published else "nothing reads"
         message = (
@@ -283,7 +290,7 @@ def _named_topics(workspace: Workspace) -> set[str]:
         for element in root.iter("*"):
             text = (element.text or "").strip().strip("/")
             if str(element.tag).endswith("topic") and text:
-                topics.add(text)
+                topics |= {text, f"{text}_image"}  # the latter of cameras that draw boxes
                 for name in _DERIVED:
                     topics.add(posixpath.join(posixpath.dirname(text), name))
                     topics.add(f"{text}/{name}")

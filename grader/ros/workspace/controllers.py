@@ -23,8 +23,10 @@ from grader.ros.workspace.names import (
     Use,
     corrections,
 )
+from grader.ros.workspace.under_arguments import may_be_offered
 from grader.ros.workspace.workspace import MANAGER, SPAWNERS, Workspace
 
+_LIKENESS_IN_PACKAGE, _LIKENESS = 0.7, 0.85  # of a type to one of its package, and of another one
 _MAX_KEYS = 2  # of joints; steering controllers have those of an older release as well
 
 
@@ -139,11 +141,22 @@ def _type_facts(workspace: Workspace, controller: Controller) -> Iterator[Fact]:
         return
     if any(own.name == package for own in workspace.packages):
         return
+    is_known = any(kind.startswith(f"{package}/") for kind in types)
+    is_declared = any(own.depends_on(package) for own in workspace.packages)
+    if (
+        is_declared
+        and not is_known
+        and near(package, [kind.partition("/")[0] for kind in types]) is None
+    ):
+        return
     same_class = [kind for kind in types if kind.partition("/")[2] == class_name]
     similar = closest(written, same_class)
-    if similar is None:
-        similar = same_class[0] if len(same_class) == 1 else closest(written, types)
-    is_known = any(kind.startswith(f"{package}/") for kind in types)
+    if similar is None and len(same_class) == 1:
+        similar = same_class[0]
+    elif similar is None:
+        similar = (
+            closest(written, types) if is_known else closest(written, types, likeness=_LIKENESS)
+        )
     if is_known or similar is not None:
         guess = f"; did you mean {similar!r}?" if similar is not None else ""
         message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
@@ -254,7 +267,7 @@ def _interface_facts(
         offered, at = interfaces[name]
         there = f"<ros2_control> has {', '.join(sorted(offered)) or 'none'} ({at.file_and_line})"
         for missing in needed:
-            if missing not in offered:
+            if missing not in offered and not may_be_offered(workspace, missing):
                 either = corrections(missing, joint.location, near(missing, offered), at)
                 text = f"{message}/{missing}; {there}"
                 yield Mismatch("controllers", text, joint.location, at, corrections=either)
@@ -270,10 +283,22 @@ def _interface_facts(
 
 def _action_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the controllers whose actions own nodes ask for."""
+    namespaces = _namespaces(workspace)
     for _, node in workspace.nodes:
         python_node = workspace.python_node(node)
         for endpoint in python_node.endpoints if python_node is not None else ():
             topic = node.topic(endpoint.name or "") if endpoint.kind == "action client" else None
             controller, _, action = (topic or "").rpartition("/")
+            namespace, _, name = controller.strip("/").rpartition("/")
             if action in known()["controller_actions"]:
-                yield Use("controller", controller.strip("/"), endpoint.location, "ActionClient")
+                written = name if namespace in namespaces else controller.strip("/")
+                yield Use("controller", written, endpoint.location, "ActionClient")
+
+
+def _namespaces(workspace: Workspace) -> set[str]:
+    """Return the namespaces of controllers: those of keys, of controller managers and of Gazebo."""
+    names = {"/".join(keys).rpartition("/")[0] for keys, _ in _sections(workspace)}
+    names |= {node.namespace or "" for _, node in workspace.nodes if node.package == MANAGER}
+    for robot in workspace.robots:
+        names |= {element.text or "" for element in robot.root.iter("namespace")}
+    return {name.strip("/ ") for name in names}

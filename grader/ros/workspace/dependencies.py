@@ -28,7 +28,8 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
         declared = _declared(package)
         used: dict[str, Location] = {}
         for name, at in _used(workspace, package):
-            if name not in used:
+            # What a launch file of another package starts, that package has to declare.
+            if name not in used and package.holds(at.path):
                 used[name] = at
                 yield Compared("dependencies")
         brought: set[str] = set()  # by the packages of the workspace that are declared
@@ -82,8 +83,9 @@ def _used(workspace: Workspace, package: Package) -> Iterator[tuple[str, Locatio
 
 def _launched(launch: Launch) -> Iterator[tuple[str, Location]]:
     """Yield the packages whose programs or launch files a launch file starts."""
+    included = {passed.location for passed in launch.passed}  # of whose nodes these are the places
     for node in launch.nodes:
-        if not node.included_by:
+        if not node.included_by and node.location not in included:
             yield node.package, node.location
     for passed in launch.passed:
         folder, _, inside = passed.path.partition("/")

@@ -20,7 +20,11 @@ _COUNTED = (kinds.SETUP_UNKNOWN, kinds.LAUNCH_UNKNOWN)  # and not listed
 def file_problems(workspace: Workspace) -> Iterator[Problem]:
     """Yield what is wrong in package.xml, setup.py, CMakeLists.txt, launch and RViz files."""
     for package in workspace.packages:
-        yield from build_problems(package)
+        lacks_submodule = any(map(package.holds, workspace.absent_submodules))
+        for problem in build_problems(package):
+            # A build needs what git has not fetched.
+            if not (lacks_submodule and problem.kind is kinds.SETUP_STOPS):
+                yield problem
     roots = {id(launch) for _, launch in workspace.roots}
     for _, path, launch in workspace.launches:
         if launch.syntax is not None:

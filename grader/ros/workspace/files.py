@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from grader.base.names import closest, near
-from grader.base.source import Location
+from grader.base.source import Location, Source
 from grader.ros.build.installation import Installation
 from grader.ros.build.places import PREFIX, SHARE, share_parts
 from grader.ros.known.known import known
@@ -29,6 +29,7 @@ _FIND = re.compile(
     r"\$\(find(?:-pkg-share)? ([\w-]+)\)/?((?:[^\"'<>\s$,()[\]{}]|,(?=\w))*)(?=[\"'<\s,)\]}])"
 )
 _PACKAGE = re.compile(r"package://([\w-]+)/([\w./-]+)(?=[\"'<\s,\]}])")
+_PROPERTY = re.compile(r"<xacro:property\b[^>]*?\bname\s*=\s*[\"'](\w+)[\"']")
 # Files of text that are read, which no download leaves out for their size; and programs.
 _PATH = re.compile(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
 
@@ -90,7 +91,18 @@ def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
             )
             for match in (*_FIND.finditer(source.text), *_PACKAGE.finditer(source.text)):
                 path = f"{SHARE}/{match[1]}/{match[2]}"
-                yield _NamedPath(package, path, source.at(match.start()), is_read)
+                is_used = is_read and not _is_unused_property(workspace, source, match.start())
+                yield _NamedPath(package, path, source.at(match.start()), is_used)
+
+
+def _is_unused_property(workspace: Workspace, source: Source, at: int) -> bool:
+    """Return whether a place is in the value of a property of xacro that no other place names."""
+    tag = source.text[source.text.rfind("<", 0, at) : at]
+    name = _PROPERTY.match(tag)
+    if name is None:
+        return False
+    used = re.compile(rf"\$\{{[^{{}}]*\b{re.escape(name[1])}\b")
+    return not any(used.search(other.text) for other in workspace.xacro_sources)
 
 
 class _Text(NamedTuple):
@@ -235,7 +247,7 @@ def _map_images(workspace: Workspace) -> Iterator[Fact]:
         if image.text.startswith("/") or wanted in files:
             continue
         folder, name = posixpath.split(wanted)
-        beside = [file for file in files if posixpath.dirname(file) == folder]
+        beside = [it for it in files if posixpath.dirname(it) == folder and it != path]
         meant = closest(name, map(posixpath.basename, beside))
         guess = f"; did you mean {meant!r}?" if meant else ""
         message = f"the image of the map, {image.text!r}, does not exist{guess}"

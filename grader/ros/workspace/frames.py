@@ -12,7 +12,8 @@ from grader.ros.known.known import known
 from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
 from grader.ros.urdf.model import Robot
 from grader.ros.workspace.gazebo import roots, system_of
-from grader.ros.workspace.names import Definition, Fact, Mismatch, Open, Use
+from grader.ros.workspace.names import Definition, Fact, Mismatch, Open, Pattern, Use
+from grader.ros.workspace.under_arguments import names_under_arguments
 from grader.ros.workspace.workspace import KnownRobot, Workspace
 from grader.ros.xml.parsing import Element
 
@@ -58,11 +59,15 @@ def _place(location: LazyLocation | None) -> Location:
 
 
 def _openings(workspace: Workspace) -> Iterator[Fact]:
-    """Yield that there may be other names: of other robots, and of programs that may publish
-    frames.
+    """Yield that there may be other names: of other robots, under other arguments, and of programs
+    that may publish frames.
     """
     if workspace.has_other_robots:
         yield from (Open("frame"), Open("link"), Open("joint"), Open("group"))
+    for name in names_under_arguments(workspace, "joint"):
+        yield Pattern("joint", name)
+    for name in names_under_arguments(workspace, "link"):
+        yield from (Pattern("link", name), Pattern("frame", name))
     for _, _, launch in workspace.launches:
         if launch.more:
             yield Open("frame", reason=launch.more)
@@ -121,6 +126,8 @@ def _in_robot(robot: KnownRobot) -> Iterator[Fact]:
     joint_elements = known()["joint_elements"]
     for element in robot.root.iterchildren("gazebo"):
         at = robot.place(element)
+        for joint in element.iter("joint"):  # of Gazebo alone, for what URDF does not have
+            yield Definition("joint", joint.get("name", ""), at)
         reference = element.get("reference")
         if reference and reference not in joints:
             yield Use("link", reference, at, "<gazebo reference>")

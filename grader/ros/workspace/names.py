@@ -3,6 +3,7 @@ somewhere.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
+from fnmatch import fnmatchcase
 from typing import Literal, NamedTuple, get_args
 
 from grader.base.names import are_of_one_side, closest, near
@@ -79,6 +80,13 @@ class Open(NamedTuple):
     reason: str = ""
 
 
+class Pattern(NamedTuple):
+    """That names of a kind may be defined that are not known; * stands for a part of them."""
+
+    kind: _Kind
+    pattern: str
+
+
 class Correction(NamedTuple):
     """Another name in a file: the old one is at a place, behind it in the same element, or the key
     before it.
@@ -137,7 +145,7 @@ class Counted(NamedTuple):
         return f"{self.compared} of {counted(self.total, 'name')} compared: {self.reason}"
 
 
-Fact = Definition | Use | Open | Mismatch | Compared | Undecided | Counted
+Fact = Definition | Use | Open | Pattern | Mismatch | Compared | Undecided | Counted
 
 
 class Agreement(NamedTuple):
@@ -167,6 +175,7 @@ def agreement(facts: Iterable[Fact]) -> Agreement:
     for fact in every:
         if isinstance(fact, Open):
             opened[fact.kind, fact.owner] = opened.get((fact.kind, fact.owner)) or fact.reason
+    patterns = [fact for fact in every if isinstance(fact, Pattern)]
     found = [fact for fact in every if isinstance(fact, Mismatch)]
     counts = {fact.family: fact for fact in every if isinstance(fact, Counted)}
     undecided = _undecided(every, counts.values())
@@ -176,7 +185,7 @@ def agreement(facts: Iterable[Fact]) -> Agreement:
         is_defined = use.name in known.get(key, {})
         if is_defined or not (use.optional or key in opened):
             compared.add(FAMILY_OF[use.kind])
-        if is_defined:
+        if is_defined or _may_be_defined(use, patterns):
             continue
         mismatch = _mismatch(use, known.get(key, {}), is_open=key in opened)
         if mismatch is not None:
@@ -190,6 +199,12 @@ def agreement(facts: Iterable[Fact]) -> Agreement:
     compared |= {fact.family for fact in every if isinstance(fact, Compared | Mismatch)}
     files = frozenset(fact.name for fact in every if isinstance(fact, Compared) and fact.name)
     return Agreement(tuple(order), undecided, frozenset(compared), files, counts)
+
+
+def _may_be_defined(use: Use, patterns: Sequence[Pattern]) -> bool:
+    """Return whether a name is computed, or one that may be defined."""
+    possible = (it.pattern for it in patterns if it.kind == use.kind)
+    return "$" in use.name or any(fnmatchcase(use.name, pattern) for pattern in possible)
 
 
 def _undecided(facts: Sequence[Fact], counts: Iterable[Counted]) -> dict[Family, str]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from grader.base.problems import Problem
 from grader.base.source import Source
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree
@@ -60,6 +61,12 @@ class OpenedWorkspace:
         """The files that the URDF is expanded from, itself among them."""
         source = self.urdf.reading.source if isinstance(self.urdf, Read) else None
         return getattr(source, "documents", ())
+
+    def problems_of(self, robot: Read) -> tuple[Problem, ...]:
+        """Return the problems of one of its robots and of its meshes."""
+        from grader.ros.package.incomplete import problems_of_robot  # late: few commands list them
+
+        return problems_of_robot(robot, (*self.packages, *self.ros1_packages), self.whole_tree)
 
     def source(self, path: str) -> Source | None:
         """Return the text of one of its files, for quoting; None if it cannot be read."""

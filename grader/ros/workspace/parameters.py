@@ -22,6 +22,7 @@ from grader.ros.config.yaml_values import (
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.launch.node_parameters import parameters_of
+from grader.ros.package.mesh_content import LFS_POINTER
 from grader.ros.package.package import Package
 from grader.ros.package.python_nodes import PythonNode
 from grader.ros.workspace.bridges import bridge_files
@@ -56,6 +57,7 @@ _GENERATED_TYPES = {
     "double_array": "a list of doubles",
     "string_array": "a list of strings",
 }
+_OF_OPENCV = b"%YAML:"  # its FileStorage reads another YAML
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
 _INPUT = re.compile(r"(odom|imu|pose|twist)\d+_config")  # of robot_localization
 _SEPARATORS = re.compile(r"[:/]+")
@@ -70,6 +72,9 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     for path, tree in workspace.yaml_files.items():
         if isinstance(tree, YamlFault) and path not in files_of_bridges:
             is_certain = path in workspace.parameter_files
+            is_of_opencv = not is_certain and workspace.begins_with(path, _OF_OPENCV)
+            if is_of_opencv or workspace.begins_with(path, LFS_POINTER):
+                continue
             yield Mismatch(
                 "parameters", f"this is not YAML: {tree}", tree.location, is_certain=is_certain
             )
@@ -250,7 +255,7 @@ def _declared(
             yield Definition("parameter", parameter.name, parameter.location, owner)
     for name in _OF_EVERY_NODE:
         yield Definition("parameter", name, python_node.location, owner)
-    if python_node.doubts:
+    if python_node.doubts or workspace.python_nodes[node.package].has_loose_declarations:
         yield Open("parameter", owner)
     for parameter in python_node.parameters:
         if parameter.name is not None and not parameter.is_declared:

@@ -7,12 +7,13 @@ from contextlib import suppress
 
 from grader.base.text import quoted
 from grader.ros.urdf.model import Robot
-from grader.ros.workspace.names import Definition, Fact, Mismatch, Use
+from grader.ros.workspace.names import Definition, Fact, Mismatch, Open, Use
 from grader.ros.workspace.workspace import Workspace
 from grader.ros.xml.parsing import XmlFile
 
 _LINKS = ("link1", "link2", "parent_link", "child_link", "base_link", "tip_link")
 _ROUNDING = 1e-6
+_COMPUTED = (".srdf.xacro", ".srdf.xml.xacro")
 
 
 def srdf_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -22,6 +23,9 @@ def srdf_facts(workspace: Workspace) -> Iterator[Fact]:
         return
     names = {file.root.get("name") for file in files}
     is_only = len(robots) == 1 and not workspace.has_other_robots and robots[0].name not in names
+    computed = [path for path in workspace.tree.files if path.endswith(_COMPUTED)]
+    if computed or any("<xacro:" in file.source.text for file in files):
+        yield Open("group")
     for file in files:
         for group in file.root.iterchildren("group"):
             yield Definition("group", group.get("name", ""), file.location(group))

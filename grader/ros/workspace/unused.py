@@ -8,7 +8,8 @@ from collections import Counter
 from collections.abc import Iterator
 
 from grader.base.source import Location
-from grader.ros.package.package import Package
+from grader.files.tree import Tree
+from grader.ros.workspace.made_paths import made_paths
 from grader.ros.workspace.workspace import Workspace
 
 _KINDS = (".yaml", ".yml", ".xacro", ".urdf", ".rviz", ".srdf")
@@ -28,6 +29,9 @@ _TEXTS = (
     ".sdf",
     ".world",
 )
+_TEXTS_BY_NAME = ("Dockerfile", "Makefile", "justfile", "CMakeLists.txt")
+# Those that may make a path of variables.
+_MAKERS = (*(kind for kind in _TEXTS if kind not in (".md", ".rviz", ".json")), "CMakeLists.txt")
 _MAX_TEXT = 512 * 1024  # bytes
 _WORD = re.compile(rb"[\w-]+")
 _BY_USUAL_NAMES = b"moveit_configs_utils"  # it finds the files of a package by their usual names
@@ -38,11 +42,18 @@ _OF_MAP = frozenset(
 
 def unused_files(workspace: Workspace) -> Iterator[Location]:
     """Yield the installed files whose names no other file of the workspace has, with or without the
-    ending.
+    ending, or makes of variables.
     """
-    words: dict[str, frozenset[bytes]] = {}
-    for package in workspace.packages:
-        words.update(_words(package))
+    unnamed = [*_unnamed(workspace)]
+    made = {*_made(workspace)} if unnamed else set()
+    for path in unnamed:
+        if not any(pattern.fullmatch(path) for pattern in made):
+            yield Location(path, 1, 1)
+
+
+def _unnamed(workspace: Workspace) -> Iterator[str]:
+    """Yield the paths of the installed files whose names no other file has."""
+    words = _words_of_files(workspace)
     counts: Counter[bytes] = Counter()
     for words_of_file in words.values():
         counts.update(words_of_file)
@@ -57,12 +68,31 @@ def unused_files(workspace: Workspace) -> Iterator[Location]:
             stem = posixpath.basename(path).partition(".")[0].encode()
             is_named = counts[stem] > (stem in own_words)
             if not is_named and not own_words >= _OF_MAP:
-                yield Location(package.path(path), 1, 1)
+                yield package.path(path)
 
 
-def _words(package: Package) -> Iterator[tuple[str, frozenset[bytes]]]:
-    """Yield the words of each text of a package."""
-    for path in package.tree.files:
-        data = package.tree.read(path, _MAX_TEXT) if path.endswith(_TEXTS) else None
-        if data is not None:
-            yield package.path(path), frozenset(_WORD.findall(data))
+def _made(workspace: Workspace) -> Iterator[re.Pattern[str]]:
+    """Yield patterns for the paths that texts of the workspace make of variables."""
+    for package in workspace.packages:
+        for source in workspace.sources_of(package, _MAKERS):
+            yield from made_paths(source)
+
+
+def _words_of_files(workspace: Workspace) -> dict[str, frozenset[bytes]]:
+    """Return the words of each text, also of those outside of packages."""
+    words: dict[str, frozenset[bytes]] = {}
+    for package in workspace.packages:
+        for path in package.tree.files:
+            words.update(_words(package.tree, path, package.path(path)))
+    for path in workspace.tree.files:
+        if path not in words:
+            words.update(_words(workspace.tree, path, path))
+    return words
+
+
+def _words(tree: Tree, path: str, whole_path: str) -> Iterator[tuple[str, frozenset[bytes]]]:
+    """Yield the words of a file that is a text, with its path in the submission."""
+    is_text = path.endswith(_TEXTS) or posixpath.basename(path) in _TEXTS_BY_NAME
+    data = tree.read(path, _MAX_TEXT) if is_text else None
+    if data is not None:
+        yield whole_path, frozenset(_WORD.findall(data))

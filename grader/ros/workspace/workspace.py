@@ -43,12 +43,19 @@ _SYSTEM = re.compile(r"<ros2_control\b")
 MANAGER, SPAWNERS = "controller_manager", ("spawner", "spawner.py")
 _NAME = re.compile(r"\bname=[\"'](?:xacro:)?([\w.-]+)[\"']")
 _CALLED = re.compile(r"<xacro:(?:[\w-]+\.)*([\w-]+)")
+_PACKAGE_IN = re.compile("the package '([\\w-]+)'")  # in the reason why a path is not known
+_INCLUDED = re.compile(r"<xacro:include\b[^>]*?\bfilename\s*=\s*[\"']([^\"']+)[\"']")
 _FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
 _MAX_FILES = 60  # of one kind in a package
 _MAX_YAML = 512 * 1024  # bytes
 _TEXTS = (".yaml", ".yml", ".urdf", ".xacro", ".srdf", ".sdf", ".world", ".rviz", ".py", ".xml")
 _OWN_FOLDERS = frozenset({"config", "launch", "maps", "params", "rviz", "urdf", "worlds"})
 _PROGRAMS = (".py", ".cpp", ".cc", ".hpp", ".sh", "CMakeLists.txt")
+# Of a package, which may be empty.
+_USUAL_FOLDERS = (
+    *("action", "config", "include", "launch", "maps", "meshes", "models", "msg", "params"),
+    *("resource", "rviz", "scripts", "src", "srv", "test", "urdf", "worlds"),
+)
 _WITH_LINES = (".yaml", ".yml", ".py")  # files whose comments begin with #
 _COMMENT_LINE = re.compile(r"(?:^|(?<=\s))#[^\n]*")
 _XML_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
@@ -224,7 +231,18 @@ class Workspace:
     @property
     def has_other_robots(self) -> bool:
         """Whether there may be other robots than `robots`, which names may belong to."""
-        return self.has_unread_robots or len(self.robots) < len(self.urdfs)
+        is_unknown = len(self.robots) < len(self.urdfs)
+        return self.has_unread_robots or is_unknown or self._loads_others
+
+    @cached_property
+    def _loads_others(self) -> bool:
+        """Whether a launch file loads a robot of a package that is not there."""
+        for package, _, launch in self.launches:
+            for named in launch.named("urdf"):
+                names = {share_parts(named.path or "")[0], *_PACKAGE_IN.findall(named.reason)}
+                if any(name and package.find(name) is None for name in names):
+                    return True
+        return False
 
     @property
     def has_controller_manager(self) -> bool:
@@ -474,6 +492,23 @@ class Workspace:
                     places |= {value.node.location for value in values_in(section)}
         return frozenset(places)
 
+    @cached_property
+    def absent_submodules(self) -> tuple[str, ...]:
+        """The empty folders that git may fetch: those of submodules, as their names say."""
+        filled = {folder for path in self.tree.files for folder in parents(path)}
+        empty = []
+        for folder in self.tree.folders:
+            above, _, name = folder.rpartition("/")
+            is_usual = name in _USUAL_FOLDERS or above.endswith("include")
+            if folder not in filled and not is_usual:
+                empty.append(folder)
+        return tuple(empty)
+
+    def begins_with(self, path: str, start: bytes) -> bool:
+        """Return whether a file of the submission begins with some bytes."""
+        file = self.tree.files.get(path)
+        return file is not None and file.read(len(start), first=True) == start
+
     def has_plugin(self, name: str) -> bool:
         """Return whether a package describes a plugin of this name for pluginlib."""
         sources = (it for package in self.packages for it in self.sources_of(package, (".xml",)))
@@ -509,10 +544,18 @@ class Workspace:
 
     @cached_property
     def xacro_sources(self) -> tuple[Source, ...]:
-        """The texts of the xacro files and URDFs."""
+        """The texts of the xacro files and URDFs, and of the files of other endings that these
+        include.
+        """
         sources: list[Source] = []
         for package in self.packages:
             sources += self.sources_of(package, (".xacro", ".urdf"))
+        names: set[str] = set()
+        for source in sources:
+            names |= {posixpath.basename(path) for path in _INCLUDED.findall(source.text)}
+        others = tuple(name for name in names if name and not name.endswith((".xacro", ".urdf")))
+        for package in self.packages:
+            sources += self.sources_of(package, others)
         return tuple(sources)
 
     @cached_property

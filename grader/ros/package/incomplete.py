@@ -1,0 +1,51 @@
+"""The problems of a robot, which may not be read completely: what may be in the rest is not
+missing.
+"""
+
+from collections.abc import Iterator, Sequence
+
+from grader.base.problems import Problem, in_order
+from grader.files.tree import Tree
+from grader.ros.package.mesh_files import mesh_problems
+from grader.ros.package.package import Package
+from grader.ros.package.robot_file import Read
+from grader.ros.urdf import urdf_problems as kinds
+
+# That something is not there, or is there twice.
+_OF_THE_WHOLE = frozenset(
+    {
+        kinds.NO_LINKS,
+        kinds.UNDEFINED_MATERIAL,
+        kinds.UNKNOWN_LINK,
+        kinds.MIMIC_TARGET,
+        kinds.TWO_ROOTS,
+        kinds.NO_ROOT,
+        kinds.TWO_PARENTS,
+        kinds.CONTROLLED_JOINT,
+    }
+)
+
+
+def problems_of_robot(
+    robot: Read, packages: tuple[Package, ...], tree: Tree
+) -> tuple[Problem, ...]:
+    """Return the problems of a robot and of its meshes, in the order of their places."""
+    meshes = mesh_problems(robot, packages, tree)
+    return in_order((*_listed(robot.loaded.problems), *meshes))
+
+
+def _listed(problems: Sequence[Problem]) -> Iterator[Problem]:
+    """Yield the problems, those for which something cannot be determined as one, and none that the
+    part that is not read may undo.
+    """
+    unknown = [problem for problem in problems if problem.kind.effect == "undetermined"]
+    is_cut = any(problem.kind.is_before_ros for problem in problems)
+    for problem in problems:
+        is_error = problem.kind.effect == "rejects"  # which the reader reports where it is certain
+        if problem.kind in _OF_THE_WHOLE and (is_cut or (unknown and not is_error)):
+            continue
+        if problem not in unknown:
+            yield problem
+        elif problem is unknown[0]:
+            more = f"; {len(unknown) - 1} more places" if len(unknown) > 1 else ""
+            yield problem._replace(message=f"{problem.message}{more}")

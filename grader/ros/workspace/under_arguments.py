@@ -1,0 +1,100 @@
+"""What robots may have under other arguments of xacro than those under which they are expanded."""
+
+import posixpath
+import re
+from collections.abc import Iterator
+from functools import lru_cache
+
+from grader.base.source import Source
+from grader.ros.workspace.made_paths import made_paths
+from grader.ros.workspace.workspace import Workspace
+
+_TAG = re.compile(
+    r"<(?P<end>/?)xacro:(?:if|unless)\b|<(?P<tag>command_interface|joint|link)\b[^>]*?"
+    r"\bname\s*=\s*(?P<quote>[\"'])(?P<name>.*?)(?P=quote)|\bfilename\s*=\s*[\"'](?P<file>[^\"']*)",
+    re.DOTALL,
+)
+_CALL = re.compile(r"<xacro:(\w+)\b([^>]*)>")
+_ATTRIBUTE = re.compile(r"([\w.-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
+_COMPUTED = re.compile(r"\$\([^()]*\)|\$\{[^{}]*\}")
+_WORD = re.compile(r"[A-Za-z_]\w*")
+_MAX_STEPS = 5  # from an argument by way of properties and parameters of macros
+
+
+def may_be_offered(workspace: Workspace, interface: str) -> bool:
+    """Return whether joints may have a command interface under other arguments."""
+    names = names_under_arguments(workspace, "command_interface")
+    return interface in names or "*" in names
+
+
+@lru_cache(maxsize=4)
+def names_under_arguments(workspace: Workspace, tag: str) -> frozenset[str]:
+    """Return the names in elements of xacro that stand under a condition or in a file that an
+    argument chooses, and those that arguments are a part of; with * for what is computed.
+    """
+    sources = workspace.xacro_sources
+    if not any("$(arg" in source.text for source in sources):
+        return frozenset()
+    dependent = _dependent(sources)
+    chosen = _chosen_files(sources, workspace.robot_files)
+    names: set[str] = set()
+    for source in sources:
+        is_chosen = source.path in chosen
+        for match, depth in _matches(source.text):
+            name = match["name"] or ""
+            is_computed = any(
+                not dependent.isdisjoint(_WORD.findall(it)) for it in _COMPUTED.findall(name)
+            )
+            if match["tag"] == tag and (depth or is_chosen or is_computed):
+                names.add(_COMPUTED.sub("*", name))
+    return frozenset(names)
+
+
+def _matches(text: str) -> Iterator[tuple[re.Match[str], int]]:
+    """Yield names of elements and of files, each with the number of conditions around it."""
+    depth = 0
+    for match in _TAG.finditer(text):
+        if match["tag"] is not None or match["file"] is not None:
+            yield match, depth
+        else:
+            depth += -1 if match["end"] else 1
+
+
+def _dependent(sources: tuple[Source, ...]) -> frozenset[str]:
+    """Return the properties and the parameters of macros that arguments may give a value; `arg`
+    stands for the arguments themselves.
+    """
+    given: list[tuple[str, frozenset[str]]] = []  # names, with the words of their values
+    for source in sources:
+        for tag, attributes in _CALL.findall(source.text):
+            values = {
+                name: first or second for name, first, second in _ATTRIBUTE.findall(attributes)
+            }
+            if tag == "property":
+                values = {values.get("name", ""): values.get("value", "")}
+            for name, value in values.items():
+                words = {word for it in _COMPUTED.findall(value) for word in _WORD.findall(it)}
+                given.append((name, frozenset(words)))
+    names = {"arg"}
+    for _ in range(_MAX_STEPS):
+        names |= {name for name, words in given if not names.isdisjoint(words)}
+    return frozenset(names)
+
+
+def _chosen_files(sources: tuple[Source, ...], robot_files: frozenset[str]) -> set[str]:
+    """Return the files that an include under a condition names, or one whose path is computed."""
+    named: set[str] = set()
+    patterns: set[re.Pattern[str]] = set()
+    for source in sources:
+        patterns |= {*made_paths(source)}
+        named |= {
+            posixpath.basename(match["file"])
+            for match, depth in _matches(source.text)
+            if depth and match["file"]
+        }
+    chosen = set()
+    for path in [source.path for source in sources if source.path not in robot_files]:
+        is_named = posixpath.basename(path) in named
+        if is_named or any(pattern.fullmatch(path) for pattern in patterns):
+            chosen.add(path)
+    return chosen
