@@ -16,7 +16,8 @@ from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import open_submission
 from grader.lab.submission.submission import Lab, Submission
-from grader.report.explanations import example_blocks, explanation
+from grader.report.examples import example_blocks
+from grader.report.explanations import explanation
 from grader.ros.package.found_problems import package_problems
 from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Read

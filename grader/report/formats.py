@@ -60,6 +60,7 @@ class Format(_FormatRow):
     )
     HTML = "html", "pages.student:render_html"
     SVG = "svg", "writers.svg:render_svg"
+    CONCISE = "concise", "writers.concise:render_concise", "base"
 
 
 class InspectFormat(_FormatRow):
@@ -70,6 +71,7 @@ class InspectFormat(_FormatRow):
     GITHUB = "github", "writers.annotations:inspection_github"
     SVG = "svg", "writers.svg:inspection_svg"
     HTML = "html", "pages.student:inspection_html"
+    CONCISE = "concise", "writers.concise:concise_inspection"
 
 
 class OutputFormat(StrEnum):

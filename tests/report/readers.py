@@ -313,6 +313,10 @@ READERS: Mapping[Format, FormatReader] = {
 }
 
 
+# They list what is wrong, and nothing else of a report.
+FINDINGS = frozenset({Format.CONCISE})
+
+
 def reader(kind: Format) -> FormatReader:
     """Return the reader of a format: its row, else one for JSON or text.
 
