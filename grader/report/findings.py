@@ -2,20 +2,25 @@
 systems list.
 """
 
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from grader.base.problems import Problem, Severity
-from grader.base.source import Location
+from grader.base.source import Base, Location
 from grader.base.text import printable
+from grader.files.reading import sha256_of
 from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.criterion import Criterion
 from grader.report.content import entries, other_problems
 from grader.report.criteria import Entry, is_absent, is_failure, sentence
 from grader.report.examples import explanation_of
 from grader.report.inspection import Inspection
-from grader.report.locations import calls_text
+from grader.report.locations import archive_around, calls_text, location_text
 
-_DOCUMENTATION = "https://urdf-grader.github.io/urdf-grader/"
+_NUMBER_OF_LINE = r"\blines? \d+(?:(?:, | and )\d+)*|:\d+"
+DOCUMENTATION = "https://urdf-grader.github.io/urdf-grader/"
 
 
 class _Rule(NamedTuple):
@@ -60,7 +65,7 @@ def _place(finding: Finding) -> tuple[str, int, int]:
 
 def _problem_finding(problem: Problem) -> Finding:
     kind, where = problem.kind, problem.location
-    page = f"{_DOCUMENTATION}problems.html#{kind.code.lower()}"
+    page = f"{DOCUMENTATION}problems.html#{kind.code.lower()}"
     rule = _Rule(kind.code, kind.title, explanation_of(kind), page)
     return Finding(rule, kind.severity, printable(problem.message) + calls_text(where), where)
 
@@ -82,7 +87,7 @@ def _criterion_rule(criterion: Criterion) -> _Rule:
     title = f"Passes when: {sentence(criterion.title)}"
     page = ""
     if not criterion.check.distribution:
-        page = f"{_DOCUMENTATION}checks.html#{criterion.check.name}"
+        page = f"{DOCUMENTATION}checks.html#{criterion.check.name}"
     return _Rule(criterion.id, title, title, page)
 
 
@@ -94,3 +99,33 @@ def _main_file(result: Result, report: Report) -> str:
     if package is not None and result.criterion.check.subject not in ("urdf", "robot"):
         return package.path("package.xml")
     return report.submission.path or ""
+
+
+def place_in_repository(finding: Finding, base: Base) -> tuple[str, Location | None]:
+    """Return the file of a finding from the root of the repository, and where to look in it; of one
+    in an archive the archive, and None.
+    """
+    path = finding.location.path
+    archive = base.archive or archive_around(path)
+    if not archive:
+        return printable(base.folder + path) or ".", finding.location
+    return printable(base.archive or base.folder + archive), None
+
+
+def message_in_repository(finding: Finding, base: Base) -> str:
+    """Return the message of a finding; of one in an archive with the place in it."""
+    if base.archive or archive_around(finding.location.path):
+        return f"{sentence(finding.message)} In {location_text(finding.location)}."
+    return finding.message
+
+
+def fingerprints(findings: Iterable[Finding], base: Base) -> Iterator[str]:
+    """Yield what identifies each finding in later runs: it does not change with the line, and no
+    two have the same.
+    """
+    counts = Counter[str]()
+    for finding in findings:
+        path, _ = place_in_repository(finding, base)
+        text = f"{path}\0{finding.rule.id}\0{re.sub(_NUMBER_OF_LINE, '', finding.message)}"
+        counts[text] += 1
+        yield sha256_of(f"{text}\0{counts[text]}".encode("utf-8", "backslashreplace"))

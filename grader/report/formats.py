@@ -61,6 +61,13 @@ class Format(_FormatRow):
     HTML = "html", "pages.student:render_html"
     SVG = "svg", "writers.svg:render_svg"
     CONCISE = "concise", "writers.concise:render_concise", "base"
+    SARIF = "sarif", "writers.sarif:render_sarif", "base"
+    CODEQUALITY = (
+        "codequality",
+        "writers.codequality:render_codequality",
+        "base",
+        "codequality.json",
+    )
 
 
 class InspectFormat(_FormatRow):
@@ -72,6 +79,13 @@ class InspectFormat(_FormatRow):
     SVG = "svg", "writers.svg:inspection_svg"
     HTML = "html", "pages.student:inspection_html"
     CONCISE = "concise", "writers.concise:concise_inspection"
+    SARIF = "sarif", "writers.sarif:sarif_inspection"
+    CODEQUALITY = (
+        "codequality",
+        "writers.codequality:codequality_inspection",
+        "",
+        "codequality.json",
+    )
 
 
 class OutputFormat(StrEnum):
