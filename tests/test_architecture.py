@@ -75,7 +75,7 @@ ROOMS = {
         "commands",
         "review",
     ),
-    "app": ("bundle", "hints_and_fix", "grading", "commands", "cli api"),
+    "app": ("bundle saving", "hints_and_fix", "grading", "commands", "cli api"),
 }
 # The packages, or rooms of them, that may import a library: each has one concern.
 LIBRARIES = {

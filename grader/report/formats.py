@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _Need = Literal["", "console", "base", "identity"]
 
 
-class _FormatRow(StrEnum):
+class FormatRow(StrEnum):
     """A format: its name, `module:function` in this package, what that function needs, and the
     ending of its files.
 
@@ -41,7 +41,7 @@ class _FormatRow(StrEnum):
         return member
 
 
-class Format(_FormatRow):
+class Format(FormatRow):
     """The formats of a report. Their endings differ, so that one folder can contain a report in all
     of them.
     """
@@ -70,7 +70,7 @@ class Format(_FormatRow):
     )
 
 
-class InspectFormat(_FormatRow):
+class InspectFormat(FormatRow):
     """The formats of an inspection."""
 
     TERMINAL = "terminal", "writers.inspection_terminal:inspection_terminal", "console"
@@ -129,7 +129,9 @@ def render(
     return text if kind is Format.GITHUB else without_commands(text)  # whose lines are commands
 
 
-def render_inspection(inspection: "Inspection", kind: InspectFormat, screen: Screen) -> str:
+def render_inspection(
+    inspection: "Inspection", kind: InspectFormat, screen: Screen | None = None
+) -> str:
     """Return an inspection in a format, for a screen or a file."""
     function = partial(_load(kind.function), inspection)
     if kind.needs == "console":

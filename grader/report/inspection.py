@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice
 from math import isfinite
+from pathlib import Path
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.problems import Problem
@@ -85,6 +86,7 @@ class Inspection:
     extent: Extent | None = None
     source_of: Callable[[str], Source | None] | None = None
     base: Base = _NO_BASE  # its place in a repository
+    besides: tuple[Path, ...] = ()  # the files that were read besides a single one
 
     @property
     def robot(self) -> InspectedRobot | None:
