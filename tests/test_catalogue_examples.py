@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from grader.base.ignore_comments import read_ignore_comments
 from grader.base.problems import Problem
 from grader.lab.checks.manual import MANUAL_CHECKS
 from grader.lab.checks.registry import own_checks
@@ -171,6 +172,10 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(code: str, tmp_pa
                 for it in names
                 if it.code == code or it.severity == "error" == CODES[code].severity
             ]
+        if code.startswith("IGN"):
+            path, text = next(iter(files.items()))
+            comments = [*read_ignore_comments(path, text.decode())]
+            found = [it.useless_problem([*it.codes]) for it in comments]
         if side == "right":
             assert found == []
         else:

@@ -13,6 +13,8 @@ from grader.report.invocation import ExitCode
 _PATH = "A .urdf file, a package, workspace or archive, or - for standard input."
 _ROBOT = "Show this robot of several whole: its name, or the end of its path."
 _JOINT = "Position of a joint, in radians or metres; repeatable."
+_SELECT = "Show only problems whose code begins so, such as REF or REF004; repeatable."
+_IGNORE = "Do not show problems whose code begins so; repeatable."
 _RELATIVE = "The frame of the poses; default: the root."
 
 
@@ -30,6 +32,8 @@ def inspect(
     watch: Annotated[
         bool, typer.Option("--watch", help="Inspect again after every change, until Ctrl-C.")
     ] = False,
+    select: Annotated[list[str] | None, typer.Option(metavar="CODE", help=_SELECT)] = None,
+    ignore: Annotated[list[str] | None, typer.Option(metavar="CODE", help=_IGNORE)] = None,
 ) -> int:
     """Show robots as ROS 2 reads them, with tree, joints and poses, and what is wrong in packages.
 
@@ -67,5 +71,7 @@ def inspect(
         max_size=max_size,
         arg=arg,
         watch=watch,
+        select=select,
+        ignore=ignore,
     )
     return ExitCode.PASSED if inspect_and_save(request, TERMINAL) else ExitCode.FAILED

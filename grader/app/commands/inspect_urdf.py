@@ -2,15 +2,19 @@
 packages around them.
 """
 
+import os
 from collections.abc import Iterator, Sequence
 from math import isfinite, nan
 from pathlib import Path
 from typing import NamedTuple
 
+from grader.app.ignoring import Selection, without_ignored
 from grader.app.saving import check_saves, save_texts
+from grader.app.settings import read_codes, read_settings
 from grader.base.errors import GraderError, InputError, MissingElement, NotDecided
 from grader.base.problems import Problem, in_order
 from grader.base.text import MAX_NAMED, enumerated, printable_path
+from grader.files.tree import overlaid
 from grader.lab.submission.opening import open_workspace
 from grader.report.formats import InspectFormat, render_inspection
 from grader.report.inspection import InspectedRobot, Inspection, main_root
@@ -38,11 +42,21 @@ class InspectRequest(NamedTuple):
     max_size: int  # of a URDF, in bytes
     arg: Sequence[str] | None  # NAME=VALUE, of xacro
     watch: bool  # whether to inspect again after every change
+    select: Sequence[str] | None  # the codes of the only problems to show, or their beginnings
+    ignore: Sequence[str] | None  # those of problems not to show
 
     @property
     def saves(self) -> Saves[InspectFormat]:
         """The files to write, with their formats. Raises GraderError."""
         return read_saves(self.save or (), InspectFormat)
+
+    def selection(self, folder: Path) -> Selection:
+        """Return which problems are shown, of files whose paths begin in a folder. Raises
+        GraderError.
+        """
+        select = read_codes("--select", self.select or ())
+        ignore = read_codes("--ignore", self.ignore or ())
+        return Selection(select, ignore, read_settings(self.path), folder)
 
 
 def inspect_and_save(request: InspectRequest, terminal: Terminal) -> bool:
@@ -89,9 +103,10 @@ def _inspect(request: InspectRequest, warn: Warn) -> Inspection:
     Raises GraderError.
     """
     path, joints, relative_to = request.path, request.joint or (), request.relative_to
+    selection = request.selection(Path(os.path.realpath(path)))
     opened = open_workspace(path, request.max_size, read_arguments(request.arg or ()))
     if opened.is_single:
-        return _inspect_file(opened, path, joints, relative_to, warn)
+        return _inspect_file(opened, request, selection, warn)
     read = [it for it in opened.robots if isinstance(it, Read)]
     unread = [it for it in opened.robots if isinstance(it, Unreadable)]
     if not opened.robots and not (opened.packages or opened.ros1_packages):
@@ -104,7 +119,8 @@ def _inspect(request: InspectRequest, warn: Warn) -> Inspection:
     if request.robot:
         chosen = _named(request.robot, read)
         shown = _inspected(opened, chosen, joints, relative_to)
-        return Inspection(chosen.path, (shown,), source_of=opened.source, base=base)
+        inspection = Inspection(chosen.path, (shown,), source_of=opened.source, base=base)
+        return without_ignored(inspection, opened.whole_tree, _texts_of(chosen), selection)
     if (joints or relative_to is not None) and len(read) != 1:
         raise GraderError(_which_one(path, read))
     robots = tuple(_inspected(opened, it, joints, relative_to) for it in read)
@@ -112,11 +128,12 @@ def _inspect(request: InspectRequest, warn: Warn) -> Inspection:
 
     extent = extent_of(opened.workspace, len(unread))
     found = tuple(_package_problems(opened))
-    return Inspection(opened.id, robots, found, extent, opened.source, base)
+    inspection = Inspection(opened.id, robots, found, extent, opened.source, base)
+    return without_ignored(inspection, opened.whole_tree, [*opened.whole_tree.files], selection)
 
 
 def _inspect_file(
-    opened: OpenedWorkspace, path: str, joints: Sequence[str], relative_to: str | None, warn: Warn
+    opened: OpenedWorkspace, request: InspectRequest, selection: Selection, warn: Warn
 ) -> Inspection:
     """Return the inspection of a URDF on its own. Raises InputError if it cannot be read."""
     urdf = opened.urdf
@@ -125,11 +142,20 @@ def _inspect_file(
     assert not isinstance(urdf, Absent)
     for note in (*_notes(urdf), *opened.notes):
         warn(note)
-    robot = _inspected(opened, urdf, joints, relative_to)
-    folder = folder_of(path, opened.path)
-    base = base_of(path, folder)
-    besides = tuple(folder / it for it in opened.besides)
-    return Inspection(urdf.path, (robot,), source_of=opened.source, base=base, besides=besides)
+    robot = _inspected(opened, urdf, request.joint or (), request.relative_to)
+    folder = folder_of(request.path, opened.path)
+    base = base_of(request.path, folder)
+    besides = [folder / path for path in opened.besides]
+    inspection = Inspection(
+        urdf.path, (robot,), source_of=opened.source, base=base, besides=tuple(besides)
+    )
+    tree = overlaid(opened.whole_tree, {urdf.path: urdf.data})
+    return without_ignored(inspection, tree, _texts_of(urdf), selection._replace(folder=folder))
+
+
+def _texts_of(urdf: Read) -> list[str]:
+    """Return the files that a robot is read from."""
+    return [*dict.fromkeys((urdf.path, *getattr(urdf.reading.source, "documents", ())))]
 
 
 def _notes(urdf: Read) -> Iterator[str]:
