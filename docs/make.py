@@ -31,13 +31,8 @@ from grader.lab.rubric.keys import (
 )
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import open_submission
-from grader.report.explanations import (
-    CAUSES_OF_CHECK,
-    EFFECTS,
-    default_text,
-    example_blocks,
-    explanation_of,
-)
+from grader.report.examples import example_blocks, explanation_of
+from grader.report.explanations import CAUSES_OF_CHECK, EFFECTS, default_text
 from grader.report.json_data import to_json
 from grader.report.writers.terminal import render_terminal
 from grader.ros.workspace.problem_kinds import EVERY_KIND

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from grader.base.ignore_comments import read_ignore_comments
 from grader.base.problems import Problem
 from grader.lab.checks.manual import MANUAL_CHECKS
 from grader.lab.checks.registry import own_checks
@@ -16,7 +17,8 @@ from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import open_submission
 from grader.lab.submission.submission import Lab, Submission
-from grader.report.explanations import example_blocks, explanation
+from grader.report.examples import example_blocks
+from grader.report.explanations import explanation
 from grader.ros.package.found_problems import package_problems
 from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Read
@@ -179,6 +181,10 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(code: str, tmp_pa
                 for it in names
                 if it.code == code or it.severity == "error" == CODES[code].severity
             ]
+        if code.startswith("IGN"):
+            path, text = next(iter(files.items()))
+            comments = [*read_ignore_comments(path, text.decode())]
+            found = [it.useless_problem([*it.codes]) for it in comments]
         if side == "right":
             assert found == []
         else:

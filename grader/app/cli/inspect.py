@@ -4,16 +4,17 @@ from typing import Annotated
 
 import typer
 
-from grader.app.cli.options import ArgOption, MaxSizeOption
-from grader.app.cli.streams import screen, warn
+from grader.app.cli.options import ArgOption, MaxSizeOption, SaveOption
+from grader.app.cli.streams import TERMINAL
 from grader.files.reading import URDF_LIMIT
-from grader.report.formats import InspectFormat, render_inspection
+from grader.report.formats import InspectFormat
 from grader.report.invocation import ExitCode
-from grader.report.writing import write_stdout
 
 _PATH = "A .urdf file, a package, workspace or archive, or - for standard input."
 _ROBOT = "Show this robot of several whole: its name, or the end of its path."
 _JOINT = "Position of a joint, in radians or metres; repeatable."
+_SELECT = "Show only problems whose code begins so, such as REF or REF004; repeatable."
+_IGNORE = "Do not show problems whose code begins so; repeatable."
 _RELATIVE = "The frame of the poses; default: the root."
 
 
@@ -25,8 +26,14 @@ def inspect(
     output_format: Annotated[
         InspectFormat, typer.Option("--format", help="Output format.")
     ] = InspectFormat.TERMINAL,
+    save: SaveOption = None,
     max_size: MaxSizeOption = URDF_LIMIT,
     arg: ArgOption = None,
+    watch: Annotated[
+        bool, typer.Option("--watch", help="Inspect again after every change, until Ctrl-C.")
+    ] = False,
+    select: Annotated[list[str] | None, typer.Option(metavar="CODE", help=_SELECT)] = None,
+    ignore: Annotated[list[str] | None, typer.Option(metavar="CODE", help=_IGNORE)] = None,
 ) -> int:
     """Show robots as ROS 2 reads them, and what is wrong in packages.
 
@@ -52,8 +59,19 @@ def inspect(
 
       grader inspect my_robot.urdf --format html > my_robot.html
     """
-    from grader.app.commands.inspect_urdf import inspect as read
+    from grader.app.commands.inspect_urdf import InspectRequest, inspect_and_save
 
-    inspection = read(path, joint or [], relative_to, max_size, arg or [], warn, robot)
-    write_stdout(render_inspection(inspection, output_format, screen()))
-    return ExitCode.PASSED if inspection.is_passed else ExitCode.FAILED
+    request = InspectRequest(
+        path=path,
+        robot=robot,
+        joint=joint,
+        relative_to=relative_to,
+        output_format=output_format,
+        save=save,
+        max_size=max_size,
+        arg=arg,
+        watch=watch,
+        select=select,
+        ignore=ignore,
+    )
+    return ExitCode.PASSED if inspect_and_save(request, TERMINAL) else ExitCode.FAILED

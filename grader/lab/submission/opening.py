@@ -101,10 +101,13 @@ def open_workspace(path: str, max_size: int, arguments: Mapping[str, str]) -> Op
     if tree is None:
         return open_submission(path, _NO_LAB, Opening(max_size, arguments), with_neighbours=True)
     # Late: a URDF on its own needs no search.
+    from grader.files.gitignore import without_git_ignored
     from grader.ros.workspace.all_robots import read_workspace
 
+    identity = tree_name(place)
+    if place.is_dir():
+        tree, identity = without_git_ignored(tree, place), tree.name
     _refuse_empty(tree, printable_path(place))
-    identity = tree.name if place.is_dir() else tree_name(place)
     return read_workspace(tree, identity, max_size, arguments)
 
 

@@ -114,7 +114,6 @@ class Submission(OpenedWorkspace):
     opening: Opening = DEFAULTS
     budget: Budget = field(default_factory=Budget)  # of the work to read it
     neighbours: tuple[Package, ...] = ()  # those around a URDF on its own
-    besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes
     reopen: "Callable[[Tree], Submission] | None" = None  # opens other files in the same way
     # Those of its documents that were read, by the files that they are among: copies of it have
     # them as well.

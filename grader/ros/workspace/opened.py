@@ -31,6 +31,7 @@ class OpenedWorkspace:
     is_single: bool = True  # whether it is a URDF on its own, not a folder or archive
     robots: tuple[Read | Unreadable, ...] = ()  # of a workspace, all of whose robots are read
     ros1_packages: tuple[Package, ...] = ()  # whose names are not compared
+    besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes
 
     @cached_property
     def workspace(self) -> "Workspace":
