@@ -12,7 +12,6 @@ from grader.app.ignoring import Selection, without_ignored
 from grader.app.saving import check_saves, save_texts
 from grader.app.settings import read_codes, read_settings
 from grader.base.errors import GraderError, InputError, MissingElement, NotDecided
-from grader.base.problems import Problem
 from grader.base.text import MAX_NAMED, enumerated, printable_path
 from grader.files.tree import overlaid
 from grader.lab.submission.opening import open_workspace
@@ -123,11 +122,8 @@ def _inspect(request: InspectRequest, warn: Warn) -> Inspection:
     if (joints or relative_to is not None) and len(read) != 1:
         raise GraderError(_which_one(path, read))
     robots = tuple(_inspected(opened, it, joints, relative_to) for it in read)
-    from grader.ros.workspace.extent import extent_of  # late: most inspections are of a URDF
-
-    extent = extent_of(opened.workspace, len(unread))
-    found = tuple(_package_problems(opened))
-    inspection = Inspection(opened.id, robots, found, extent, opened.source, base)
+    found = tuple(opened.package_problems())
+    inspection = Inspection(opened.id, robots, found, opened.extent(), opened.source, base)
     return without_ignored(inspection, opened.whole_tree, [*opened.whole_tree.files], selection)
 
 
@@ -200,19 +196,6 @@ def _inspected(
         raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
     reading = urdf.loaded._replace(problems=opened.problems_of(urdf))
     return InspectedRobot(urdf.path, reading, robot, relative_to)
-
-
-def _package_problems(opened: OpenedWorkspace) -> Iterator[Problem]:
-    """Yield what is wrong in packages: their files, then the names that do not agree."""
-    # Late: most inspections are of a URDF.
-    from grader.ros.workspace.file_problems import listed_problems, ros1_problem
-    from grader.ros.workspace.name_problems import name_problems
-    from grader.ros.workspace.reading import read_agreement
-
-    for package in opened.ros1_packages:
-        yield ros1_problem(package)
-    yield from listed_problems(opened.workspace)
-    yield from name_problems(read_agreement(opened.workspace))
 
 
 def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None:

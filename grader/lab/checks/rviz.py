@@ -9,7 +9,6 @@ from grader.base.text import enumerated
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, Status, failed, judged, passed
 from grader.lab.submission.submission import Submission
-from grader.ros.build.places import is_of_one_machine
 from grader.ros.package.package import Package
 
 if TYPE_CHECKING:
@@ -229,9 +228,8 @@ def _judge_model(model: "Display", topic: str, opened: "Launch | None") -> _Verd
         return _Verdict("failed", fault, "display")
     source = model.node.get("Description Source")
     if source is not None and source.text == "File":
-        file = model.node.get("Description File")
-        path = (file.text or "" if file is not None else "").strip()
-        if not path or is_of_one_machine(path):
+        path = model.file
+        if not path or model.reads_file_of_one_machine:
             where = f"the file {path!r} of one machine" if path else "a file, and names none"
             message = f"the RobotModel display reads {where}; it should read {topic!r}"
             return _Verdict("failed", message)

@@ -288,7 +288,9 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
     surroundings = surroundings or Surroundings(Budget())
     launched = surroundings.robot_references(path)
     programs = {reference.by for reference in launched}
-    if programs == {"xacro"} if programs else _says_xacro(name):
+    # Nothing loads a file of another name as a URDF; standard input is one.
+    says_xacro = ".xacro" in name or (".urdf" not in name and name != "-")
+    if programs == {"xacro"} if programs else says_xacro:
         return Read(
             path,
             data,
@@ -309,13 +311,6 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
             verdict="degraded"
         )  # ROS 2 ignores the tags of xacro, and what they stand for
     return Read(path, data, expanded, is_expanded=True, has_xacro=True, as_it_stands=reading)
-
-
-def _says_xacro(name: str) -> bool:
-    """Return whether xacro in a file of this name, in lower case, is meant to be expanded; standard
-    input is a URDF.
-    """
-    return ".xacro" in name or (".urdf" not in name and name != "-")
 
 
 def _loaded_model(reading: Reading) -> tuple[object, ...]:

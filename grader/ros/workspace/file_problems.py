@@ -17,7 +17,7 @@ from grader.ros.workspace.workspace import Workspace
 _COUNTED = (kinds.SETUP_UNKNOWN, kinds.LAUNCH_UNKNOWN)  # and not listed
 
 
-def file_problems(workspace: Workspace) -> Iterator[Problem]:
+def _file_problems(workspace: Workspace) -> Iterator[Problem]:
     """Yield what is wrong in package.xml, setup.py, CMakeLists.txt, launch and RViz files."""
     for package in workspace.packages:
         lacks_submodule = any(map(package.holds, workspace.absent_submodules))
@@ -44,7 +44,7 @@ def listed_problems(workspace: Workspace) -> list[Problem]:
     """Return what is wrong in the files, each once, without what is not evaluated, which is only
     counted.
     """
-    return [it for it in dict.fromkeys(file_problems(workspace)) if it.kind not in _COUNTED]
+    return [it for it in dict.fromkeys(_file_problems(workspace)) if it.kind not in _COUNTED]
 
 
 def ros1_problem(package: Package) -> Problem:

@@ -13,6 +13,7 @@ from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.robot_file import Absent, OtherCandidate, Read, Unreadable, Urdf
 
 if TYPE_CHECKING:
+    from grader.ros.workspace.extent import Extent
     from grader.ros.workspace.workspace import Workspace
 
 _NO_FILES = make_tree("", (), ())
@@ -68,6 +69,24 @@ class OpenedWorkspace:
         from grader.ros.package.incomplete import problems_of_robot  # late: few commands list them
 
         return problems_of_robot(robot, (*self.packages, *self.ros1_packages), self.whole_tree)
+
+    def package_problems(self) -> list[Problem]:
+        """Return what is wrong in its packages: in their files, then names that do not agree."""
+        # Late: most commands list no problems of a workspace.
+        from grader.ros.workspace.file_problems import listed_problems, ros1_problem
+        from grader.ros.workspace.name_problems import name_problems
+        from grader.ros.workspace.reading import read_agreement
+
+        found = [ros1_problem(package) for package in self.ros1_packages]
+        found += listed_problems(self.workspace)
+        found += name_problems(read_agreement(self.workspace))
+        return found
+
+    def extent(self) -> "Extent":
+        """Return how much of it was read."""
+        from grader.ros.workspace.extent import extent_of  # late: few commands say it
+
+        return extent_of(self.workspace, sum(isinstance(it, Unreadable) for it in self.robots))
 
     def source(self, path: str) -> Source | None:
         """Return the text of one of its files, for quoting; None if it cannot be read."""
