@@ -6,5 +6,4 @@ from grader.ros.urdf.urdf_problems import CATALOGUE
 from grader.ros.workspace.name_problems import NAME_CATALOGUE
 from grader.ros.xacro.xacro_problems import XACRO_CATALOGUE
 
-ROBOT_KINDS = (*CATALOGUE, *XACRO_CATALOGUE)
-EVERY_KIND = (*ROBOT_KINDS, *PACKAGE_CATALOGUE, *NAME_CATALOGUE, *COMMENT_CATALOGUE)
+EVERY_KIND = (*CATALOGUE, *XACRO_CATALOGUE, *PACKAGE_CATALOGUE, *NAME_CATALOGUE, *COMMENT_CATALOGUE)
