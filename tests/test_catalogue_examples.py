@@ -20,9 +20,8 @@ from grader.report.explanations import example_blocks, explanation
 from grader.ros.package.found_problems import package_problems
 from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Read
-from grader.ros.workspace.name_problems import name_problems
 from grader.ros.workspace.problem_kinds import EVERY_KIND
-from grader.ros.workspace.reading import read_agreement
+from grader.ros.workspace.release_problems import compared_names
 from tests.checks.submissions import png
 from tests.command_line import ROOT
 from tests.oracles.check_urdf import check_urdf
@@ -138,7 +137,7 @@ def opened(folder: Path, files: dict[str, bytes]) -> Submission:
     for path, data in files.items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
         (folder / path).write_bytes(data)
-    return open_submission(str(folder), Lab("urdf/rover.urdf", "rover"))
+    return open_submission(str(folder), Lab("urdf/rover.urdf", "rover", distro="jazzy"))
 
 
 def test_every_code_and_check_has_an_example() -> None:
@@ -164,10 +163,9 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(code: str, tmp_pa
             found += mesh_problems(submission.urdf, submission.packages, submission.tree)
         found += package_problems(submission.package) if submission.package else []
         if code.startswith("REF"):
-            names = name_problems(read_agreement(submission.workspace))
             found = [
                 it
-                for it in names
+                for it in compared_names(submission.workspace)
                 if it.code == code or it.severity == "error" == CODES[code].severity
             ]
         if side == "right":

@@ -10,11 +10,13 @@ from grader.files.reading import URDF_LIMIT
 from grader.report.formats import InspectFormat, render_inspection
 from grader.report.invocation import ExitCode
 from grader.report.writing import write_stdout
+from grader.ros.known.releases import Release
 
 _PATH = "A .urdf file, a package, workspace or archive, or - for standard input."
 _ROBOT = "Show this robot of several whole: its name, or the end of its path."
 _JOINT = "Position of a joint, in radians or metres; repeatable."
 _RELATIVE = "The frame of the poses; default: the root."
+_DISTRO = "The release of ROS 2, such as humble; default: what the files state."
 
 
 def inspect(
@@ -22,6 +24,7 @@ def inspect(
     robot: Annotated[str, typer.Option(metavar="NAME", help=_ROBOT, show_default=False)] = "",
     joint: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE", help=_JOINT)] = None,
     relative_to: Annotated[str | None, typer.Option(metavar="LINK", help=_RELATIVE)] = None,
+    distro: Annotated[Release | None, typer.Option(metavar="NAME", help=_DISTRO)] = None,
     output_format: Annotated[
         InspectFormat, typer.Option("--format", help="Output format.")
     ] = InspectFormat.TERMINAL,
@@ -54,6 +57,6 @@ def inspect(
     """
     from grader.app.commands.inspect_urdf import inspect as read
 
-    inspection = read(path, joint or [], relative_to, max_size, arg or [], warn, robot)
+    inspection = read(path, joint or [], relative_to, max_size, arg or [], warn, robot, distro)
     write_stdout(render_inspection(inspection, output_format, screen()))
     return ExitCode.PASSED if inspection.is_passed else ExitCode.FAILED

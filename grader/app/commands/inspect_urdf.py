@@ -3,6 +3,7 @@ packages around them.
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from math import isfinite, nan
 
 from grader.base.errors import GraderError, InputError, MissingElement, NotDecided
@@ -13,6 +14,7 @@ from grader.report.inspection import InspectedRobot, Inspection, main_root
 from grader.report.invocation import read_arguments
 from grader.report.repository import base_of, folder_of
 from grader.report.writing import Warn
+from grader.ros.known.releases import Release
 from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Absent, Read, Unreadable
 from grader.ros.urdf.kinematics import Configuration
@@ -30,9 +32,10 @@ def inspect(
     arguments: Sequence[str],
     warn: Warn,
     robot: str = "",
+    distro: Release | None = None,
 ) -> Inspection:
-    """Return the inspection of the robots and the packages at a path; of one robot, if it is named.
-    Raises GraderError.
+    """Return the inspection of the robots and the packages at a path; of one robot, if it is named;
+    for a release, or for those that the packages are for. Raises GraderError.
     """
     given = read_arguments(arguments)
     opened = open_workspace(path, max_size, given)
@@ -54,9 +57,13 @@ def inspect(
     if (joints or relative_to is not None) and len(read) != 1:
         raise GraderError(_which_one(path, read))
     robots = tuple(_inspected(opened, it, joints, relative_to) for it in read)
-    from grader.ros.workspace.extent import extent_of  # late: most inspections are of a URDF
+    # Late: most inspections are of a URDF.
+    from grader.ros.workspace.extent import extent_of
+    from grader.ros.workspace.stated_releases import stated_releases
 
-    extent = extent_of(opened.workspace, len(unread))
+    stated = stated_releases(opened.whole_tree, distro)
+    opened = replace(opened, releases=stated.releases)
+    extent = extent_of(opened.workspace, len(unread), stated)
     found = tuple(_package_problems(opened))
     return Inspection(opened.id, robots, found, extent, opened.source, base)
 
@@ -128,13 +135,12 @@ def _package_problems(opened: OpenedWorkspace) -> Iterator[Problem]:
     """Yield what is wrong in packages: their files, then the names that do not agree."""
     # Late: most inspections are of a URDF.
     from grader.ros.workspace.file_problems import listed_problems, ros1_problem
-    from grader.ros.workspace.name_problems import name_problems
-    from grader.ros.workspace.reading import read_agreement
+    from grader.ros.workspace.release_problems import compared_names
 
     for package in opened.ros1_packages:
         yield ros1_problem(package)
     yield from listed_problems(opened.workspace)
-    yield from name_problems(read_agreement(opened.workspace))
+    yield from compared_names(opened.workspace)
 
 
 def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None:

@@ -262,6 +262,7 @@ def submission_of(
         no_package=chosen.no_package,
         lab_packages=chosen.lab_packages,
         whole_tree=tree,
+        releases=(lab.distro,) if lab.distro is not None else (),
         several=chosen.several,
         notes=chosen.notes,
         is_single=False,

@@ -2,17 +2,20 @@
 launch file, and RViz files.
 """
 
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 
 from grader.base.problems import Problem
 from grader.base.source import Location
 from grader.ros.build import package_problems as kinds
+from grader.ros.known.releases import releases_with
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.found_problems import build_problems, launch_problems, sorted_problems
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.workspace.workspace import Workspace
 
+_NO_ARGUMENT = re.compile(r"Node has no argument '(\w+)'")
 _COUNTED = (kinds.SETUP_UNKNOWN, kinds.LAUNCH_UNKNOWN)  # and not listed
 
 
@@ -46,13 +49,18 @@ def ros1_problem(package: Package) -> Problem:
 
 def _started(workspace: Workspace, path: str, launch: Launch) -> Launch:
     """Return a launch file that no other one surely includes, without the faults that its caller
-    may correct: who starts it gives it values, and a file that may include it declares arguments.
+    may correct: who starts it gives it values, and a file that may include it declares arguments;
+    and without those of arguments that a stated release has.
     """
     name = path.rpartition("/")[2]
     is_named = sum(name in text for text in workspace.launch_texts) > (name in launch.source.text)
     is_closed = not is_named and not any(it.unknown for _, _, it in workspace.launches)
     faults = []
     for fault in launch.faults:
+        argument = _NO_ARGUMENT.match(fault.message)
+        having = releases_with("argument", argument[1]) if argument is not None else ()
+        if any(release in having for release in workspace.releases):
+            continue
         if fault.lacks == "" or (fault.lacks == "declaration" and is_closed):
             faults.append(fault)
     return replace(launch, faults=tuple(faults), syntax=None)

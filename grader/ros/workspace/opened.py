@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from grader.base.source import Source
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree
+from grader.ros.known.releases import Release
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.robot_file import Absent, OtherCandidate, Read, Unreadable, Urdf
 
@@ -30,6 +31,7 @@ class OpenedWorkspace:
     is_single: bool = True  # whether it is a URDF on its own, not a folder or archive
     robots: tuple[Read | Unreadable, ...] = ()  # of a workspace, all of whose robots are read
     ros1_packages: tuple[Package, ...] = ()  # whose names are not compared
+    releases: tuple[Release, ...] = ()  # of ROS 2, in one of which names should be; () for any
 
     @cached_property
     def workspace(self) -> "Workspace":
@@ -41,7 +43,9 @@ class OpenedWorkspace:
         )
         urdfs = tuple(it for it in (*self.robots, self.urdf) if isinstance(it, Read))
         has_unread = any(isinstance(it, Unreadable) for it in self.robots)
-        return Workspace(self.packages, urdfs, self.whole_tree, has_other_robots or has_unread)
+        return Workspace(
+            self.packages, urdfs, self.whole_tree, has_other_robots or has_unread, self.releases
+        )
 
     @property
     def path(self) -> str | None:
