@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from itertools import chain
 
 from grader.base.problems import Problem
 from grader.base.source import Location
@@ -34,13 +35,21 @@ def _release_problems(workspace: Workspace, agreement: Agreement) -> list[Proble
     if not workspace.releases:
         return []
     said = {it.location for it in agreement.mismatches if it.family != "dependencies"}
+    # Launch files that decide by the release name what each release has.
+    deciding = {it.source.path for _, _, it in workspace.launches if _DISTRO in it.source.text}
     found: dict[tuple[str, str], Problem] = {}
-    uses = (*_uses_in_yaml(workspace), *_uses_in_launch_files(workspace), *_declared(workspace))
-    for kind, name, at, owner in uses:
+    readers = (
+        _uses_in_robots,
+        _uses_in_yaml,
+        _uses_in_launch_files,
+        _topics_of_controllers,
+        _declared,
+    )
+    for kind, name, at, owner in chain.from_iterable(reader(workspace) for reader in readers):
         # A file such as humble/nav2.yaml is for this release as well.
         releases = {*workspace.releases, *_named_releases(at.path)}
         other = other_name(kind, name, releases, shown=owner)
-        if other is not None and at not in said:
+        if other is not None and at not in said and at.path not in deciding:
             problem = Problem(OTHER_RELEASE, other.message, at, kind)
             found.setdefault((other.message, at.path), problem)
     return sorted(
@@ -54,6 +63,16 @@ def _named_releases(path: str) -> Iterator[Release]:
 
 
 _Use = tuple[NameKind, str, Location, str]  # with the start of the name that is not shown
+
+
+def _uses_in_robots(workspace: Workspace) -> Iterator[_Use]:
+    """Yield the plugins of Gazebo and of ros2_control that robots load, but for own ones."""
+    own = [package.name for package in workspace.packages]
+    for robot in workspace.robots:
+        for element in robot.root.iter("plugin"):
+            name = element.get("filename", "") or (element.text or "").strip()
+            if not any(package in name for package in own):
+                yield "plugin", name, robot.place(element), ""
 
 
 def _uses_in_yaml(workspace: Workspace) -> Iterator[_Use]:
@@ -75,31 +94,43 @@ def _uses_in_yaml(workspace: Workspace) -> Iterator[_Use]:
 
 
 def _uses_in_launch_files(workspace: Workspace) -> Iterator[_Use]:
-    """Yield the packages, programs, launch files and topics of controllers in launch files, but for
-    those that decide by the release.
-    """
-    types = {it.name: it.type.text or "" for it in defined_controllers(workspace)}
-    launches = [(it[0], it[2]) for it in workspace.launches if _DISTRO not in it[2].source.text]
-    paths = {launch.source.path for _, launch in launches}
+    """Yield the packages, programs and launch files in launch files."""
     for package, node in workspace.nodes:
-        if node.location.path not in paths:
-            continue
         if package.find(node.package) is None:
             yield "package", node.package, node.location, ""
             owner = f"{node.package}/"
             yield "program", f"{owner}{node.executable}", node.location, owner
-        for names in node.remaps or ():
-            for topic in names:
-                controller, _, last = topic.strip("/").rpartition("/")
-                owner = f"{types.get(controller.rpartition('/')[2], '')}/"
-                yield "topic", owner + last, node.location, owner
-    for package, launch in launches:
+    for package, _, launch in workspace.launches:
         for passed in launch.passed:
             parts = passed.path.split("/")
             if parts[0] == "share" and len(parts) > 1 and package.find(parts[1]) is None:
                 yield "package", parts[1], passed.location, ""
                 owner = f"{parts[1]}/"
                 yield "launch file", owner + parts[-1], passed.location, owner
+
+
+def _topics_of_controllers(workspace: Workspace) -> Iterator[_Use]:
+    """Yield the topics that are those of controllers, by their names."""
+    types = {it.name: it.type.text or "" for it in defined_controllers(workspace)}
+    for topic, at in _topics(workspace):
+        controller, _, last = topic.strip("/ ").rpartition("/")
+        owner = f"{types.get(controller.rpartition('/')[2], '')}/"
+        yield "topic", owner + last, at, owner
+
+
+def _topics(workspace: Workspace) -> Iterator[tuple[str, Location]]:
+    """Yield the topics that remappings and own nodes in Python name."""
+    for robot in workspace.robots:
+        for element in robot.root.iter("remapping"):
+            for topic in (element.text or "").split(":="):
+                yield topic, robot.place(element)
+    for _, node in workspace.nodes:
+        for names in node.remaps or ():
+            for topic in names:
+                yield topic, node.location
+        python_node = workspace.python_node(node)
+        for endpoint in python_node.endpoints if python_node is not None else ():
+            yield node.topic(endpoint.name or "") or "", endpoint.location
 
 
 def _declared(workspace: Workspace) -> Iterator[_Use]:
