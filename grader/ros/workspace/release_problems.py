@@ -2,12 +2,11 @@
 
 import re
 from collections.abc import Iterator
-from itertools import chain
 
 from grader.base.problems import Problem
 from grader.base.source import Location
 from grader.ros.config.yaml_values import sections_in, values_in
-from grader.ros.known.releases import RELEASES, NameKind, Release, other_name
+from grader.ros.known.releases import RELEASES, NameKind, other_name
 from grader.ros.workspace.controllers import defined_controllers
 from grader.ros.workspace.name_problems import OTHER_RELEASE, name_problems
 from grader.ros.workspace.names import Agreement
@@ -38,28 +37,20 @@ def _release_problems(workspace: Workspace, agreement: Agreement) -> list[Proble
     # Launch files that decide by the release name what each release has.
     deciding = {it.source.path for _, _, it in workspace.launches if _DISTRO in it.source.text}
     found: dict[tuple[str, str], Problem] = {}
-    readers = (
-        _uses_in_robots,
-        _uses_in_yaml,
-        _uses_in_launch_files,
-        _topics_of_controllers,
-        _declared,
-    )
-    for kind, name, at, owner in chain.from_iterable(reader(workspace) for reader in readers):
-        # A file such as humble/nav2.yaml is for this release as well.
-        releases = {*workspace.releases, *_named_releases(at.path)}
-        other = other_name(kind, name, releases, shown=owner)
-        if other is not None and at not in said and at.path not in deciding:
-            problem = Problem(OTHER_RELEASE, other.message, at, kind)
-            found.setdefault((other.message, at.path), problem)
+    for reader in _READERS:
+        for kind, name, at, owner in reader(workspace):
+            if at in said or at.path in deciding:
+                continue
+            # A file such as humble/nav2.yaml is for this release as well.
+            words = re.split("[^a-z]+", at.path.lower())
+            named = [release for release in RELEASES if release in words]
+            other = other_name(kind, name, {*workspace.releases, *named}, shown=owner)
+            if other is not None:
+                problem = Problem(OTHER_RELEASE, other.message, at, kind)
+                found.setdefault((other.message, at.path), problem)
     return sorted(
         found.values(), key=lambda it: (it.location.path, it.location.line, it.location.column)
     )
-
-
-def _named_releases(path: str) -> Iterator[Release]:
-    words = re.split("[^a-z]+", path.lower())
-    yield from (release for release in RELEASES if release in words)
 
 
 _Use = tuple[NameKind, str, Location, str]  # with the start of the name that is not shown
@@ -71,7 +62,8 @@ def _uses_in_robots(workspace: Workspace) -> Iterator[_Use]:
     for robot in workspace.robots:
         for element in robot.root.iter("plugin"):
             name = element.get("filename", "") or (element.text or "").strip()
-            if not any(package in name for package in own):
+            package = name.partition("/")[0].removeprefix("lib").removesuffix(".so")
+            if package not in own:
                 yield "plugin", name, robot.place(element), ""
 
 
@@ -143,3 +135,12 @@ def _declared(workspace: Workspace) -> Iterator[_Use]:
             name = found[1]
             if name in manifest.dependencies and package.find(name) is None:
                 yield "package", name, manifest.source.at(found.start(1)), ""
+
+
+_READERS = (
+    _uses_in_robots,
+    _uses_in_yaml,
+    _uses_in_launch_files,
+    _topics_of_controllers,
+    _declared,
+)
