@@ -35,6 +35,8 @@ _STATED = [
     ("README.md", "| ROS2 | Foxy |", "foxy"),
     ("README.md", "- ROS 2 [Galactic](https://example.org)", "galactic"),
     ("README.md", "![](https://img.shields.io/badge/ROS_2-Kilted_%7C_Jazzy-blue)", "jazzy kilted"),
+    ("README.md", "![](https://img.shields.io/ros/v/jazzy/rclcpp)", "jazzy"),
+    ("README.md", "https://index.ros.org/p/joy/#foxy and https://docs.ros.org/en/foxy", "foxy"),
     ("README.md", "Jazzy Jalisco on Ubuntu 24.04", "jazzy"),
     ("README.md", "Made with ROS2 Jazzy. For ROS2 Humble, see the **humble** branch.", "jazzy"),
     ("README.md", "An iron robot with a rolling base on Ubuntu 22.04", ""),

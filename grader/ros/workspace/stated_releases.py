@@ -17,20 +17,20 @@ _PLACE = re.compile(rf"/opt/ros/{_NAME}|(?<![a-z])ros2?[:-]{_NAME}", re.IGNORECA
 # A setting: ROS_DISTRO: humble, required-ros-distributions: humble; its value may be a list.
 _SETTING = re.compile(
     r"ros[_-]?2?[_-]?distr(?:o|ibution)s?\b[\"']?(?:\s*[:=]|\s)[\s\"'{$:=-]*"
-    rf"(\[[^]]*|(?:{_NAME}[\s,\"'-]*)+)",
+    rf"(\[[^]]{{0,200}}|(?:{_NAME}[\s,\"'-]*)+)",
     re.IGNORECASE,
 )
 # A sentence, a badge or a link in a line: ROS 2 Humble, ROS_2-Humble, docs.ros.org/en/humble.
 _SENTENCE = re.compile(
     rf"(?<![a-z])ROS[ _-]?2?(?:[\W_]*(?:distro\w*|version))?[\W_]{{0,5}}{_NAME}{_LIST}"
     rf"|{_NAME} (?:Fitzroy|Geochelone|Hawksbill|Irwini|Jalisco|Kaiju|Ridley)"
-    rf"|docs\.ros\.org/en/{_NAME}",
+    rf"|(?:docs\.ros\.org/en|img\.shields\.io/ros/v)/{_NAME}|index\.ros\.org/[\w/]+#{_NAME}",
     re.IGNORECASE,
 )
 _BRANCH = re.compile(rf"{_NAME}\W{{0,4}}branch|branch\W{{1,4}}{_NAME}", re.IGNORECASE)
 # What a workflow is run for: another branch than the one that is read.
 _OF_BRANCH = re.compile(
-    rf"\b(?:ref\w*|branches)[ \t]*:[ \t]*\n?[\s\[\"'-]*{_NAME}(?=[\"'\]\s])", re.IGNORECASE
+    rf"\b(?:ref\w*|branches)[ \t]*:[\s\[\"'-]*{_NAME}(?=[\"'\]\s])", re.IGNORECASE
 )
 _UBUNTU = re.compile(r"\bubuntu:(20\.04|22\.04|24\.04|focal|jammy|noble)\b")
 _OF_UBUNTU: dict[str, tuple[Release, ...]] = {
