@@ -7,7 +7,10 @@ import pytest
 from grader.files.folder import read_folder
 from grader.files.opening import open_tree
 from grader.files.tree import make_tree, overlaid
-from grader.ros.known.releases import RELEASES, other_name
+from grader.lab.submission.opening import submission_of
+from grader.lab.submission.submission import Lab
+from grader.ros.known.releases import RELEASES, Release, other_name
+from grader.ros.workspace.reading import read_agreement
 from grader.ros.workspace.stated_releases import StatedReleases, stated_releases
 
 _STATED = [
@@ -110,3 +113,21 @@ def test_a_name_is_said_to_be_another_one_from_a_release_on_or_until_one() -> No
     assert other_name("package", "gazebo_ros", ["jazzy", "iron"]) is None
     assert other_name("package", "gazebo_ros", []) is None
     assert all(other_name("package", "rviz2", [release]) is None for release in RELEASES)
+
+
+@pytest.mark.parametrize(("distro", "wrong"), [("humble", 0), ("jazzy", 1), (None, 1)])
+def test_names_are_compared_with_the_release_of_a_rubric(
+    distro: Release | None, wrong: int
+) -> None:
+    """Of two forms in one file, that of a later release only is no mistake where it is not used."""
+    texts = {
+        "src/nav/package.xml": "<package format='3'><name>nav</name></package>",
+        "src/nav/config/nav2.yaml": (
+            "behavior_server:\n  ros__parameters:\n    spin:\n      plugin: nav2_behaviors::Spin\n"
+            "    wait:\n      plugin: nav2_behaviors/Wait\n"
+        ),
+    }
+    tree = overlaid(make_tree("ws", (), ()), {path: it.encode() for path, it in texts.items()})
+    submission = submission_of(tree, "ws", Lab("robot.urdf", distro=distro))
+    found = read_agreement(submission.workspace).mismatches
+    assert sum(it.is_certain for it in found) == wrong
