@@ -23,9 +23,8 @@ from grader.ros.package.found_problems import package_problems
 from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Read
 from grader.ros.workspace.file_problems import listed_problems
-from grader.ros.workspace.name_problems import name_problems
 from grader.ros.workspace.problem_kinds import EVERY_KIND
-from grader.ros.workspace.reading import read_agreement
+from grader.ros.workspace.release_problems import compared_names
 from tests.checks.submissions import png
 from tests.command_line import ROOT
 from tests.oracles.check_urdf import check_urdf
@@ -147,7 +146,7 @@ def opened(folder: Path, files: dict[str, bytes]) -> Submission:
     for path, data in files.items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
         (folder / path).write_bytes(data)
-    return open_submission(str(folder), Lab("urdf/rover.urdf", "rover"))
+    return open_submission(str(folder), Lab("urdf/rover.urdf", "rover", distro="jazzy"))
 
 
 def test_every_code_and_check_has_an_example() -> None:
@@ -175,10 +174,9 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(code: str, tmp_pa
         if code == "PKG018":
             found = listed_problems(submission.workspace)
         if code.startswith("REF"):
-            names = name_problems(read_agreement(submission.workspace))
             found = [
                 it
-                for it in names
+                for it in compared_names(submission.workspace)
                 if it.code == code or it.severity == "error" == CODES[code].severity
             ]
         if code.startswith("IGN"):

@@ -13,6 +13,7 @@ from grader.base.names import did_you_mean
 from grader.files.reading import read_capped
 from grader.lab.checks.toml_types import simple_type, toml_type
 from grader.lab.rubric.toml_file import KeyTable, TomlRowReader, complain_of, read_toml
+from grader.ros.known.releases import Release
 from grader.ros.workspace.problem_kinds import EVERY_KIND
 
 _NAMES = ("grader.toml", "pyproject.toml")
@@ -28,7 +29,7 @@ _TABLE = KeyTable(
     {
         "ignore": _CODES,
         "per-file-ignores": toml_type(Mapping[str, tuple[str, ...]]),
-        "distro": _TEXT,
+        "distro": toml_type(Release),
         "rubric": _TEXT,
     },
 )
@@ -40,7 +41,7 @@ class Settings(NamedTuple):
     file: Path | None = None  # that says so; None without one
     ignore: tuple[str, ...] = ()  # codes of problems, or their beginnings
     per_file_ignores: Mapping[str, tuple[str, ...]] = {}  # the same by patterns of paths
-    distro: str | None = None  # the release of ROS 2
+    distro: Release | None = None  # of ROS 2
     rubric: str | None = None  # an id or a file
 
 

@@ -9,6 +9,7 @@ from grader.app.cli.streams import TERMINAL
 from grader.files.reading import URDF_LIMIT
 from grader.report.formats import InspectFormat
 from grader.report.invocation import ExitCode
+from grader.ros.known.releases import Release
 
 _PATH = "A .urdf file, a package, workspace or archive, or - for standard input."
 _ROBOT = "Show this robot of several whole: its name, or the end of its path."
@@ -16,6 +17,7 @@ _JOINT = "Position of a joint, in radians or metres; repeatable."
 _SELECT = "Show only problems whose code begins so, such as REF or REF004; repeatable."
 _IGNORE = "Do not show problems whose code begins so; repeatable."
 _RELATIVE = "The frame of the poses; default: the root."
+_DISTRO = "The release of ROS 2, such as humble; default: what the files state."
 
 
 def inspect(
@@ -23,6 +25,7 @@ def inspect(
     robot: Annotated[str, typer.Option(metavar="NAME", help=_ROBOT, show_default=False)] = "",
     joint: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE", help=_JOINT)] = None,
     relative_to: Annotated[str | None, typer.Option(metavar="LINK", help=_RELATIVE)] = None,
+    distro: Annotated[Release | None, typer.Option(metavar="NAME", help=_DISTRO)] = None,
     output_format: Annotated[
         InspectFormat, typer.Option("--format", help="Output format.")
     ] = InspectFormat.TERMINAL,
@@ -66,6 +69,7 @@ def inspect(
         robot=robot,
         joint=joint,
         relative_to=relative_to,
+        distro=distro,
         output_format=output_format,
         save=save,
         max_size=max_size,

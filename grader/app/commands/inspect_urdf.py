@@ -20,6 +20,7 @@ from grader.report.inspection import InspectedRobot, Inspection, main_root
 from grader.report.invocation import Saves, read_arguments, read_saves
 from grader.report.repository import base_of, folder_of
 from grader.report.writing import Terminal, Warn
+from grader.ros.known.releases import Release
 from grader.ros.package.robot_file import Absent, Read, Unreadable
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import Reading
@@ -35,6 +36,7 @@ class InspectRequest(NamedTuple):
     robot: str  # the name of the only one to show, or the end of its path
     joint: Sequence[str] | None  # NAME=VALUE
     relative_to: str | None  # the frame of the poses
+    distro: Release | None  # of ROS 2; without it, what the settings or files state
     output_format: InspectFormat  # of standard output
     save: Sequence[str] | None  # FORMAT=FILE, of the reports to write
     max_size: int  # of a URDF, in bytes
@@ -122,6 +124,7 @@ def _inspect(request: InspectRequest, warn: Warn) -> Inspection:
     if (joints or relative_to is not None) and len(read) != 1:
         raise GraderError(_which_one(path, read))
     robots = tuple(_inspected(opened, it, joints, relative_to) for it in read)
+    opened = opened.of_release(request.distro or selection.settings.distro)
     found = tuple(opened.package_problems())
     inspection = Inspection(opened.id, robots, found, opened.extent(), opened.source, base)
     return without_ignored(inspection, opened.whole_tree, [*opened.whole_tree.files], selection)

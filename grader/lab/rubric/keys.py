@@ -21,6 +21,7 @@ from grader.lab.checks.toml_types import (
 )
 from grader.lab.rubric.hint_levels import HintLevel
 from grader.lab.rubric.toml_file import KeyTable
+from grader.ros.known.releases import Release
 
 MAX_POINTS = 1_000_000
 _MAX_CHOICES = 9  # one key each
@@ -345,6 +346,11 @@ RUBRIC = KeyTable(
         ),
         "folders": described(
             _FOLDERS, "The names of the lab's folder in a repository of several labs."
+        ),
+        "distro": described(
+            toml_type(Release),
+            "The release of ROS 2 that the lab is for (default: jazzy): names of this release are "
+            "right.",
         ),
         "transforms": described(
             toml_type(tuple[str, ...]),

@@ -34,7 +34,6 @@ class _Known(TypedDict):
     required_parameters: dict[str, list[str]]
     children: dict[str, list[str]]
     launch_arguments: dict[str, list[str]]
-    slash_before_jazzy: list[str]
     plugins: list[str]
     controllers: Mapping[Any, dict[str, str]]  # by the type that a file may give
     controller_packages: Mapping[Any, str]

@@ -69,6 +69,7 @@ class EvaluationFails(EvaluationSignal):
     """
 
     lacks: Lacking = ""  # what another launch file, or the user, may give
+    argument: str = ""  # that a function does not have
 
     def __init__(
         self,
@@ -78,6 +79,14 @@ class EvaluationFails(EvaluationSignal):
     ) -> None:
         super().__init__(message, at)
         self.kind = kind
+
+
+class UnknownArgument(EvaluationFails):
+    """A function is given an argument that it does not have."""
+
+    def __init__(self, message: str, at: "Position | None", argument: str) -> None:
+        super().__init__(message, at)
+        self.argument = argument
 
 
 class MissingValue(EvaluationFails):

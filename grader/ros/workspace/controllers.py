@@ -12,6 +12,7 @@ from grader.base.source import Location
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import PARAMETERS, is_misspelt_key, sections_in
 from grader.ros.known.known import known
+from grader.ros.known.releases import releases_with
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import controllers_of
 from grader.ros.package.python_nodes import Endpoint
@@ -137,7 +138,7 @@ def _type_facts(workspace: Workspace, controller: Controller) -> Iterator[Fact]:
     """
     types, written = known()["controllers"], controller.type.text or ""
     package, _, class_name = written.partition("/")
-    if written in types or workspace.has_plugin(written):
+    if written in types or releases_with("controller", written) or workspace.has_plugin(written):
         return
     if any(own.name == package for own in workspace.packages):
         return

@@ -9,6 +9,7 @@ from grader.base.problems import Problem
 from grader.base.source import Location
 from grader.base.text import counted
 from grader.ros.build import package_problems as kinds
+from grader.ros.known.releases import releases_with
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.found_problems import build_problems, launch_problems, sorted_problems
 from grader.ros.package.package import MANIFEST, Package
@@ -55,13 +56,17 @@ def ros1_problem(package: Package) -> Problem:
 
 def _started(workspace: Workspace, path: str, launch: Launch) -> Launch:
     """Return a launch file that no other one surely includes, without the faults that its caller
-    may correct: who starts it gives it values, and a file that may include it declares arguments.
+    may correct: who starts it gives it values, and a file that may include it declares arguments;
+    and without those of arguments that a stated release has.
     """
     name = path.rpartition("/")[2]
     is_named = sum(name in text for text in workspace.launch_texts) > (name in launch.source.text)
     is_closed = not is_named and not any(it.unknown for _, _, it in workspace.launches)
     faults = []
     for fault in launch.faults:
+        having = releases_with("argument", fault.argument) if fault.argument else ()
+        if any(release in having for release in workspace.releases):
+            continue
         if fault.lacks == "" or (fault.lacks == "declaration" and is_closed):
             faults.append(fault)
     return replace(launch, faults=tuple(faults), syntax=None)

@@ -1,7 +1,7 @@
 """Opened files: their packages, and their robots."""
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -9,6 +9,7 @@ from grader.base.problems import Problem
 from grader.base.source import Source
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree
+from grader.ros.known.releases import Release, StatedReleases
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.robot_file import Absent, OtherCandidate, Read, Unreadable, Urdf
 
@@ -33,6 +34,7 @@ class OpenedWorkspace:
     robots: tuple[Read | Unreadable, ...] = ()  # of a workspace, all of whose robots are read
     ros1_packages: tuple[Package, ...] = ()  # whose names are not compared
     besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes
+    stated: StatedReleases = StatedReleases()  # of ROS 2, in one of which names should be
 
     @cached_property
     def workspace(self) -> "Workspace":
@@ -44,7 +46,13 @@ class OpenedWorkspace:
         )
         urdfs = tuple(it for it in (*self.robots, self.urdf) if isinstance(it, Read))
         has_unread = any(isinstance(it, Unreadable) for it in self.robots)
-        return Workspace(self.packages, urdfs, self.whole_tree, has_other_robots or has_unread)
+        return Workspace(
+            self.packages,
+            urdfs,
+            self.whole_tree,
+            has_other_robots or has_unread,
+            self.stated.releases,
+        )
 
     @property
     def path(self) -> str | None:
@@ -74,19 +82,25 @@ class OpenedWorkspace:
         """Return what is wrong in its packages: in their files, then names that do not agree."""
         # Late: most commands list no problems of a workspace.
         from grader.ros.workspace.file_problems import listed_problems, ros1_problem
-        from grader.ros.workspace.name_problems import name_problems
-        from grader.ros.workspace.reading import read_agreement
+        from grader.ros.workspace.release_problems import compared_names
 
         found = [ros1_problem(package) for package in self.ros1_packages]
         found += listed_problems(self.workspace)
-        found += name_problems(read_agreement(self.workspace))
+        found += compared_names(self.workspace)
         return found
+
+    def of_release(self, distro: Release | None) -> "OpenedWorkspace":
+        """Return it for a release of ROS 2; without one, for those that its files state."""
+        from grader.ros.workspace.stated_releases import stated_releases  # late: as above
+
+        return replace(self, stated=stated_releases(self.whole_tree, distro))
 
     def extent(self) -> "Extent":
         """Return how much of it was read."""
         from grader.ros.workspace.extent import extent_of  # late: few commands say it
 
-        return extent_of(self.workspace, sum(isinstance(it, Unreadable) for it in self.robots))
+        unread = sum(isinstance(it, Unreadable) for it in self.robots)
+        return extent_of(self.workspace, unread, self.stated)
 
     def source(self, path: str) -> Source | None:
         """Return the text of one of its files, for quoting; None if it cannot be read."""

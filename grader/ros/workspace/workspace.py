@@ -23,6 +23,7 @@ from grader.ros.build.places import (
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.ros.config.yaml_values import sections_in, values_in
 from grader.ros.known.known import known
+from grader.ros.known.releases import Release
 from grader.ros.launch.launch_model import GivenParameters, Launch, ParameterValue, StartedNode
 from grader.ros.launch.node_parameters import (
     NodeParameters,
@@ -103,6 +104,7 @@ class Workspace:
     urdfs: tuple[Read, ...]  # the files of robots that are read
     tree: Tree  # all files, also those outside of packages
     has_unread_robots: bool  # whether other files may be robots
+    releases: tuple[Release, ...] = ()  # in one of which names should be; () for any
 
     @cached_property
     def packages(self) -> tuple[Package, ...]:
