@@ -33,6 +33,9 @@ class StatedReleases(NamedTuple):
         return f"release: {enumerated(self.releases, len(RELEASES), 'or')} ({places})"
 
 
+NOT_STATED = StatedReleases()
+
+
 class _ReleaseName(NamedTuple):
     """A name in the releases from one on, up to another one. A star at its end stands for the
     rest.

@@ -9,7 +9,7 @@ from grader.base.problems import Problem
 from grader.base.source import Source
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree
-from grader.ros.known.releases import Release, StatedReleases
+from grader.ros.known.releases import NOT_STATED, Release, StatedReleases
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.robot_file import Absent, OtherCandidate, Read, Unreadable, Urdf
 
@@ -34,7 +34,7 @@ class OpenedWorkspace:
     robots: tuple[Read | Unreadable, ...] = ()  # of a workspace, all of whose robots are read
     ros1_packages: tuple[Package, ...] = ()  # whose names are not compared
     besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes
-    stated: StatedReleases = StatedReleases()  # of ROS 2, in one of which names should be
+    stated: StatedReleases = NOT_STATED  # of ROS 2, in one of which names should be
 
     @cached_property
     def workspace(self) -> "Workspace":
@@ -45,14 +45,9 @@ class OpenedWorkspace:
             not it.is_part for it in self.unused_candidates if not it.path.endswith(MANIFEST)
         )
         urdfs = tuple(it for it in (*self.robots, self.urdf) if isinstance(it, Read))
-        has_unread = any(isinstance(it, Unreadable) for it in self.robots)
-        return Workspace(
-            self.packages,
-            urdfs,
-            self.whole_tree,
-            has_other_robots or has_unread,
-            self.stated.releases,
-        )
+        has_unread = has_other_robots or any(isinstance(it, Unreadable) for it in self.robots)
+        releases = self.stated.releases
+        return Workspace(self.packages, urdfs, self.whole_tree, has_unread, releases)
 
     @property
     def path(self) -> str | None:
