@@ -247,7 +247,7 @@ def _add_python(findings: Findings, file: "_PythonLaunchFile") -> None:
     ):  # the description is not loaded, so what is wrong with the rest of it does not count
         findings.faults, findings.doubts = [], []
     for fault in interpreter.errors:
-        findings.add_fault(fault.message, fault.at)
+        findings.add_fault(fault.message, fault.at, argument=fault.argument)
     for contents, at in file.reads:
         findings.refer("read", contents, Call("", [], {}, at))
 

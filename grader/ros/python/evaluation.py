@@ -28,6 +28,7 @@ class PythonError(NamedTuple):
     message: str
     at: Position
     name: str = ""  # that is undefined
+    argument: str = ""  # that a function does not have
 
 
 NOT_EVALUATED = "is not evaluated"
@@ -94,6 +95,7 @@ class Evaluation(Expressions):
         kind: type[BaseException] | None = None,
         *,
         name: str = "",
+        argument: str = "",
     ) -> None:
         """Record once an error that certainly stops Python, such as an undefined name; raise it
         where a try may catch it.
@@ -103,7 +105,7 @@ class Evaluation(Expressions):
         if len(self.errors) < _MAX_ERRORS and all(
             message != error.message for error in self.errors
         ):
-            self.errors.append(PythonError(message, at, name))
+            self.errors.append(PythonError(message, at, name, argument))
 
     def evaluate(self, node: ast.expr, scope: py.Scope) -> py.Value:
         """Return the value of an expression; Unknown, with the reason, where it cannot be
@@ -125,7 +127,8 @@ class Evaluation(Expressions):
                 raise py.Undetermined(unknown.reason, unknown.at, is_final=True) from None
             return self.doubted(unknown)
         except py.EvaluationFails as error:
-            self.error(str(error), error.at or position_of(node), error.kind)
+            at = error.at or position_of(node)
+            self.error(str(error), at, error.kind, argument=error.argument)
             return py.unknown_after_error(position_of(node))
 
     def _name(self, node: ast.Name, scope: py.Scope) -> py.Value:

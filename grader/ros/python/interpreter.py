@@ -154,7 +154,8 @@ class Interpreter(Evaluation):
             try:
                 kind(self, node, scope)
             except py.EvaluationFails as error:  # of the statement itself, such as an assignment
-                self.error(str(error), error.at or position_of(node), error.kind)
+                at = error.at or position_of(node)
+                self.error(str(error), at, error.kind, argument=error.argument)
             except py.Undetermined as error:
                 if error.is_final:
                     raise
