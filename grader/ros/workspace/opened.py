@@ -84,11 +84,15 @@ class OpenedWorkspace:
         found += compared_names(self.workspace)
         return found
 
-    def of_release(self, distro: Release | None) -> "OpenedWorkspace":
-        """Return it for a release of ROS 2; without one, for those that its files state."""
+    def of_release(self, distro: Release | None, place: str) -> "OpenedWorkspace":
+        """Return it for a release of ROS 2 that an option or a setting gives; without one, for
+        those that its files state.
+        """
         from grader.ros.workspace.stated_releases import stated_releases  # late: as above
 
-        return replace(self, stated=stated_releases(self.whole_tree, distro))
+        if distro is not None:
+            return replace(self, stated=StatedReleases((distro,), (place,)))
+        return replace(self, stated=stated_releases(self.whole_tree))
 
     def extent(self) -> "Extent":
         """Return how much of it was read."""
