@@ -2,6 +2,7 @@
 around.
 """
 
+import posixpath
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
@@ -137,6 +138,16 @@ class Surroundings(NamedTuple):
             for package in around
             for found in package.robot_references(path.rpartition("/")[2])
         ]
+
+    def runs_xacro_beside(self, path: str) -> bool:
+        """Return whether a launch file runs xacro on a file of the same folder."""
+        folder = posixpath.basename(posixpath.dirname(path))
+        for package in self._launched_packages(path):
+            for reference in package.robot_references():
+                beside = posixpath.basename(posixpath.dirname(reference.path or ""))
+                if reference.by == "xacro" and beside == folder:
+                    return True
+        return False
 
     def other_arguments(self, path: str, references: "Sequence[NamedFile]") -> "OtherArguments":
         """Return what is known of arguments of xacro that neither the user nor the launch file
@@ -288,7 +299,10 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
     surroundings = surroundings or Surroundings(Budget())
     launched = surroundings.robot_references(path)
     programs = {reference.by for reference in launched}
-    if programs == {"xacro"} if programs else _says_xacro(name):
+    is_xacro = programs == {"xacro"} if programs else _says_xacro(name)
+    if not programs and surroundings.assumes_defaults:
+        is_xacro = is_xacro or ".xacro" in name or surroundings.runs_xacro_beside(path)
+    if is_xacro:
         return Read(
             path,
             data,

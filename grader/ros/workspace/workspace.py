@@ -219,10 +219,16 @@ class Workspace:
         """Return whether a launch file starts a controller manager, or the robot has one in
         Gazebo.
         """
+        is_started = any(node.executable == "ros2_control_node" for _, node in self.nodes)
+        return is_started or self.has_controllers_in_gazebo
+
+    @cached_property
+    def has_controllers_in_gazebo(self) -> bool:
+        """Whether a robot has a controller manager in Gazebo."""
         for robot in self.robots:
             if any("ros2_control" in it.get("filename", "") for it in robot.root.iter("plugin")):
                 return True
-        return any(node.executable == "ros2_control_node" for _, node in self.nodes)
+        return False
 
     @cached_property
     def python_nodes(self) -> Mapping[str, PythonNodes]:
