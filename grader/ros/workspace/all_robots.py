@@ -32,7 +32,7 @@ def read_workspace(
         max_size: The largest size of a robot, in bytes.
         arguments: The arguments of xacro that the user gives.
     """
-    packages = read_packages(tree, "", most=_MAX_PACKAGES)
+    packages = _outermost(read_packages(tree, "", most=_MAX_PACKAGES))
     ros1_packages = tuple(package for package in packages if package.is_of_ros1)
     return OpenedWorkspace(
         identity,
@@ -43,6 +43,17 @@ def read_workspace(
         robots=tuple(_read_robots(tree, packages, max_size, arguments)),
         ros1_packages=ros1_packages,
     )
+
+
+def _outermost(packages: tuple[Package, ...]) -> tuple[Package, ...]:
+    """Return the packages without those that are inside of others, where colcon looks for none."""
+    folders = [package.path("") for package in packages]
+    outermost = []
+    for package in packages:
+        path = package.path("")
+        if not any(path.startswith(folder) and path != folder for folder in folders):
+            outermost.append(package)
+    return tuple(outermost)
 
 
 def _read_robots(
