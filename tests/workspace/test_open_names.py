@@ -537,3 +537,22 @@ def test_a_package_inside_another_one_is_not_built() -> None:
     kit = _kit(more)
     assert [package.name for package in kit.packages] == ["kit"]
     assert not any(it.code == "PKG012" for it in listed_problems(kit.workspace))
+
+
+def test_a_file_that_an_argument_chooses_is_a_part() -> None:
+    """What xacro includes by a computed name is no robot of its own."""
+    include = '<xacro:property name="far" value="1"/><xacro:include filename="$(arg tool)_arm.urdf.xacro"/>'
+    part = _ROBOT.replace("kit", "part").replace("MORE", '<link name="${far}"/>')
+    kit = _kit({"src/kit/urdf/none_arm.urdf.xacro": part}, robot=include)
+    assert [it.path for it in kit.robots] == ["src/kit/urdf/kit.urdf.xacro"]
+
+
+def test_a_default_that_xacro_fails_at_is_not_assumed() -> None:
+    """Where a launch file computes the value, a default that stops xacro leaves it open."""
+    robot = '<xacro:arg name="model" default=""/><xacro:include filename="$(arg model).xacro"/>'
+    launch = _LAUNCH.replace(
+        "'kit.urdf.xacro'])", "'kit.urdf.xacro']), ' model:=', open('m').read()"
+    )
+    kit = _kit({"src/kit/launch/kit.launch.py": launch.replace("MORE", "")}, robot=robot)
+    codes = {it.code for one in kit.robots for it in kit.problems_of(one)}  # type: ignore[arg-type]
+    assert codes == {"XACRO006"}

@@ -84,6 +84,6 @@ def test_reports_name_the_calls(tmp_path: Path) -> None:
         assert place in " ".join(done.stdout.decode().split()), options
     problem = json.loads(
         run(("inspect", tmp_path / "my_robot.urdf.xacro", "--format", "json")).stdout
-    )["problems"][0]
+    )["robots"][0]["problems"][0]
     called = {"path": "my_robot.urdf.xacro", "line": 4, "column": 1}
     assert problem["location"]["calls"] == [{"macro": "wheel", "location": called}]

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 from grader.base.source import Location
 from grader.files.tree import Tree
-from grader.ros.workspace.made_paths import made_paths
+from grader.ros.package.made_paths import made_paths
 from grader.ros.workspace.workspace import Workspace
 
 _KINDS = (".yaml", ".yml", ".xacro", ".urdf", ".rviz", ".srdf")

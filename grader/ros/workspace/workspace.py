@@ -37,7 +37,7 @@ MANAGER, SPAWNERS = "controller_manager", ("spawner", "spawner.py")
 _NAME = re.compile(r"\bname=[\"'](?:xacro:)?([\w.-]+)[\"']")
 _CALLED = re.compile(r"<xacro:(?:[\w-]+\.)*([\w-]+)")
 _PACKAGE_IN = re.compile("the package '([\\w-]+)'")  # in the reason why a path is not known
-_INCLUDED = re.compile(r"<xacro:include\b[^>]*?\bfilename\s*=\s*[\"']([^\"']+)[\"']")
+INCLUDED = re.compile(r"<xacro:include\b[^>]*?\bfilename\s*=\s*[\"']([^\"']+)[\"']")
 _FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
 _MAX_FILES = 60  # of one kind in a package
 _MAX_YAML = 512 * 1024  # bytes
@@ -494,7 +494,7 @@ class Workspace:
             sources += self.sources_of(package, (".xacro", ".urdf"))
         names: set[str] = set()
         for source in sources:
-            names |= {posixpath.basename(path) for path in _INCLUDED.findall(source.text)}
+            names |= {posixpath.basename(path) for path in INCLUDED.findall(source.text)}
         others = tuple(name for name in names if name and not name.endswith((".xacro", ".urdf")))
         for package in self.packages:
             sources += self.sources_of(package, others)
