@@ -556,3 +556,13 @@ def test_a_default_that_xacro_fails_at_is_not_assumed() -> None:
     kit = _kit({"src/kit/launch/kit.launch.py": launch.replace("MORE", "")}, robot=robot)
     codes = {it.code for one in kit.robots for it in kit.problems_of(one)}  # type: ignore[arg-type]
     assert codes == {"XACRO006"}
+
+
+def test_a_configuration_of_moveit_finds_files_by_their_usual_names() -> None:
+    """A package that a builder of configurations is given needs no names of its files."""
+    more = {
+        "src/kit/config/small_tuning.yaml": "a: 1",
+        "src/kit/package.xml": _MANIFEST,
+        "demo/kit_demo.py": "from moveit_configs_utils import B\nB('arm', package_name='kit')\n",
+    }
+    assert not any("REF010" in it for it in _names(_kit(more)))
