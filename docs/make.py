@@ -31,12 +31,8 @@ from grader.lab.rubric.keys import (
 )
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import open_submission
-from grader.report.explanations import (
-    EFFECTS,
-    default_text,
-    example_blocks,
-    explanation_of,
-)
+from grader.report.examples import example_blocks, explanation_of
+from grader.report.explanations import CAUSES_OF_CHECK, EFFECTS, default_text
 from grader.report.json_data import to_json
 from grader.report.writers.terminal import render_terminal
 from grader.ros.workspace.problem_kinds import EVERY_KIND
@@ -54,6 +50,7 @@ KEYS = {
     "[[test.ignore]]": IGNORE,
 }
 LANGUAGES = {
+    ".launch": "xml",
     ".yaml": "yaml",
     ".md": "markdown",
     ".py": "python",
@@ -122,6 +119,11 @@ def checks() -> Iterator[str]:
             meaning = escaped(check.documentation.arguments[name])
             yield f"| `{name}` | {meaning} | {parameter.type.name} | {default} |"
         if check.parameters:
+            yield ""
+        if check.about.causes:
+            yield from (f"{CAUSES_OF_CHECK}:", "")
+            for cause, meaning in check.about.causes.items():
+                yield f"- `{cause}`: {escaped(meaning)}"
             yield ""
         yield from example(check.name)
 

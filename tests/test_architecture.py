@@ -32,6 +32,7 @@ ROOMS = {
         "errors markup merge_conflicts text reuse pairing transforms",
         "source names",
         "problems element_edits slips",
+        "ignore_comments",
     ),
     "ros": (
         "known python xml",
@@ -54,7 +55,8 @@ ROOMS = {
         "locations screen json_data",
         "criteria",
         "content",
-        "drawing inspection",
+        "drawing examples inspection",
+        "findings",
         "writers",
         "pages",
         "explanations formats",
@@ -74,7 +76,7 @@ ROOMS = {
         "commands",
         "review",
     ),
-    "app": ("bundle", "hints_and_fix", "grading", "commands", "cli api"),
+    "app": ("bundle saving settings", "ignoring hints_and_fix", "grading", "commands", "cli api"),
 }
 # The packages, or rooms of them, that may import a library: each has one concern.
 LIBRARIES = {
@@ -106,7 +108,7 @@ LIBRARIES = {
 # How dense the code may be: see `tests/prose.py`. A limit may only get lower, but that of nodes: what the code weighs
 # grows with what it can do, and with nothing else.
 LIMITS = {
-    "nodes": 530_000,
+    "nodes": 545_000,
     "nodes of a simple statement, mean": 14.6,
     "nodes of a simple statement, 90th percentile": 26,
     "comprehensions for each 1,000 nodes": 5.3,

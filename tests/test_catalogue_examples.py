@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from grader.base.ignore_comments import read_ignore_comments
 from grader.base.problems import Problem
 from grader.lab.checks.manual import MANUAL_CHECKS
 from grader.lab.checks.registry import own_checks
@@ -16,13 +17,14 @@ from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import open_submission
 from grader.lab.submission.submission import Lab, Submission
-from grader.report.explanations import example_blocks, explanation
+from grader.report.examples import example_blocks
+from grader.report.explanations import explanation
 from grader.ros.package.found_problems import package_problems
 from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Read
-from grader.ros.workspace.name_problems import name_problems
+from grader.ros.workspace.file_problems import listed_problems
 from grader.ros.workspace.problem_kinds import EVERY_KIND
-from grader.ros.workspace.reading import read_agreement
+from grader.ros.workspace.release_problems import compared_names
 from tests.checks.submissions import png
 from tests.command_line import ROOT
 from tests.oracles.check_urdf import check_urdf
@@ -56,7 +58,13 @@ ALSO = {
     "URDF095": "URDF009",
     "URDF099": "URDF031",
 }
-FOLDERS = {".urdf": "urdf", ".xacro": "urdf", ".rviz": "rviz", ".yaml": "config"}
+FOLDERS = {
+    ".launch": "launch",
+    ".urdf": "urdf",
+    ".xacro": "urdf",
+    ".rviz": "rviz",
+    ".yaml": "config",
+}
 WHEEL = """\
 <robot xmlns:xacro="http://www.ros.org/wiki/xacro">
 <xacro:macro name="wheel" params="name"><link name="${name}"/></xacro:macro>
@@ -138,7 +146,7 @@ def opened(folder: Path, files: dict[str, bytes]) -> Submission:
     for path, data in files.items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
         (folder / path).write_bytes(data)
-    return open_submission(str(folder), Lab("urdf/rover.urdf", "rover"))
+    return open_submission(str(folder), Lab("urdf/rover.urdf", "rover", distro="jazzy"))
 
 
 def test_every_code_and_check_has_an_example() -> None:
@@ -163,19 +171,22 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(code: str, tmp_pa
             found += submission.urdf.problems
             found += mesh_problems(submission.urdf, submission.packages, submission.tree)
         found += package_problems(submission.package) if submission.package else []
+        if code == "PKG018":
+            found = listed_problems(submission.workspace)
         if code.startswith("REF"):
-            names = name_problems(read_agreement(submission.workspace))
             found = [
                 it
-                for it in names
+                for it in compared_names(submission.workspace)
                 if it.code == code or it.severity == "error" == CODES[code].severity
             ]
+        if code.startswith("IGN"):
+            path, text = next(iter(files.items()))
+            comments = [*read_ignore_comments(path, text.decode())]
+            found = [it.useless_problem([*it.codes]) for it in comments]
         if side == "right":
             assert found == []
         else:
-            lines = (
-                range(1, 2) if code == "REF010" else lines
-            )  # of the file that no other one names
+            lines = range(1, 2) if code in ("REF010", "PKG018") else lines  # of the file as a whole
             assert any(it.code == code and it.location.line in lines for it in found), (
                 found,
                 lines,

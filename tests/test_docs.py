@@ -76,7 +76,7 @@ def test_anchors_are_headings(page: Path) -> None:
 def test_codes_and_criteria_exist(page: Path) -> None:
     """Every problem code on a page is in the catalogue."""
     codes = set(
-        re.findall(r"(?:URDF|XACRO|PKG|LCH|RVZ|REF)\d{3}", page.read_text(encoding="utf-8"))
+        re.findall(r"(?:URDF|XACRO|PKG|LCH|RVZ|REF|IGN)\d{3}", page.read_text(encoding="utf-8"))
     )
     assert all(f"\n## {code}\n" in GENERATED["problems.md"] for code in codes)
 
@@ -278,7 +278,7 @@ def test_every_test_that_the_table_of_attacks_names_exists() -> None:
 
 
 def test_the_pages_stay_short() -> None:
-    """The README has at most 650 words, and all pages that are not generated have at most 24,000."""
+    """The README has at most 650 words, and all pages that are not generated have at most 25,500."""
     words = {
         page: len(page.read_text(encoding="utf-8").split())
         for page in [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
@@ -286,5 +286,5 @@ def test_the_pages_stay_short() -> None:
     assert words[ROOT / "README.md"] <= 650
     assert (
         sum(words[page] for page in words if page.name not in ("problems.md", "checks.md"))
-        <= 24_000
+        <= 25_500
     )

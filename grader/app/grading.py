@@ -9,10 +9,10 @@ from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from grader.app.saving import is_source, save_texts
 from grader.base.errors import GraderError, InputError
 from grader.base.source import Base
 from grader.base.text import enumerated, printable, shell_quoted
-from grader.files.limits import ROBOT_ENDINGS
 from grader.lab.rubric.hint_levels import HintLevel
 from grader.lab.rubric.rubric_files import load_named
 from grader.report.formats import Format, inputs_of, render
@@ -27,10 +27,6 @@ from grader.report.invocation import (
 from grader.report.repository import base_of, folder_of
 from grader.report.writing import (
     Warn,
-    missing_folder,
-    refuse_inputs,
-    refuse_symlinks,
-    save_all,
 )
 
 if TYPE_CHECKING:
@@ -38,15 +34,6 @@ if TYPE_CHECKING:
     from grader.lab.hints.hinting import Fix
     from grader.lab.rubric.rubric import Rubric
 
-_SOURCES = (
-    *ROBOT_ENDINGS,
-    ".toml",
-    ".py",
-    ".yaml",
-    ".yml",
-    ".rviz",
-    ".cfg",
-)  # files that no report may replace
 MAX_NAMED_CRITERIA = 8  # in a message
 _MAX_UP = 3  # folders between a package and what is graded in it
 _SHA256 = r"[0-9a-fA-F]{64}"
@@ -73,9 +60,9 @@ class GradeRequest(NamedTuple):
     watch: bool  # whether to grade again after every change
 
     @property
-    def saves(self) -> Saves:
+    def saves(self) -> Saves[Format]:
         """The files to write, with their formats. Raises GraderError."""
-        return read_saves(self.save or ())
+        return read_saves(self.save or (), Format)
 
     @property
     def threshold(self) -> tuple[Decimal, bool] | None:
@@ -115,9 +102,7 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
     from grader.lab.submission.submission import Opening
 
     rubric = requested_rubric(request)
-    reports = frozenset(
-        os.path.realpath(file) for _, file in request.saves if file.suffix.lower() not in _SOURCES
-    )
+    reports = frozenset(os.path.realpath(file) for _, file in request.saves if not is_source(file))
     opening = Opening(request.max_size, read_arguments(request.arg or ()), reports=reports)
     submission = open_submission(request.path, rubric.lab, opening, with_neighbours=True)
     if submission.several:
@@ -148,36 +133,14 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
     )
 
 
-def check_saves(saves: Saves, rubric: Sequence[Path], *paths: str) -> None:
-    """Raise InputError if a report has no folder, would overwrite an input, or leads through a
-    symlink of a submission.
-
-    Inputs are the files of the rubric and the submissions that are files.
-    """
-    # os.path.isdir is False for a name that is too long, for which Path.is_dir raises before Python
-    # 3.14.
-    inputs = [*rubric, *(Path(path) for path in paths if not os.path.isdir(path))]  # noqa: PTH112
-    for _, file in saves:
-        refuse_symlinks(file, paths)
-        refuse_inputs("--save", file, inputs)
-        if not os.path.isdir(file.parent):  # noqa: PTH112
-            raise missing_folder(file)
-
-
 def save_reports(request: GradeRequest, run: GradeRun) -> None:
     """Write the reports that `--save` names. Raises InputError: then none has changed."""
     graded = Path(request.path, run.report.submission.path or "")
-    for _, file in request.saves:
-        is_source = file.suffix.lower() in _SOURCES
-        refuse_inputs("--save", file, (Path(request.path) if is_source else graded, *run.besides))
     texts = {
         file: render(run.report, kind, run.base, verbose=request.verbose)
         for kind, file in request.saves
     }
-    save_all(
-        {file: text.encode("utf-8", "backslashreplace") for file, text in texts.items()},
-        (request.path,),
-    )
+    save_texts(texts, request.path, (graded, *run.besides))
 
 
 def _package_around(path: str) -> str:

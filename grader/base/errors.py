@@ -107,8 +107,8 @@ class MissingElement(LookupError):
     `package` are those of work that a submission lacks, where evidence may take its place. `known`
     lists the names that exist; `location` is a Location or LazyLocation in the file, or None. The
     text is the message and the detail, which is what differs between students who made the same
-    mistake; `mistake` is the message alone. `problem` and `absent` are those of an Outcome. What
-    fails for the same reason later is skipped, or with `costs_once` not deducted.
+    mistake; `mistake` is the message alone. `problem`, `absent` and `cause` are those of an
+    Outcome. What fails for the same reason later is skipped, or with `costs_once` not deducted.
 
     >>> MissingElement("link", "lidra", ("base_link", "lidar"))
     MissingElement("there is no link 'lidra'; the file has: 'base_link', 'lidar'")
@@ -126,6 +126,7 @@ class MissingElement(LookupError):
         problem: str = "",
         costs_once: bool = False,
         absent: str = "",
+        cause: str = "missing",
     ) -> None:
         self.kind = kind
         self.name = name
@@ -134,6 +135,7 @@ class MissingElement(LookupError):
         self.problem = problem
         self.costs_once = costs_once
         self.absent = absent
+        self.cause = cause
         self.mistake = message or f"there is no {kind} {name!r}"
         if not message:
             detail = f"; the file has: {', '.join(map(repr, known[:20])) or 'none'}"

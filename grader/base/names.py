@@ -143,6 +143,14 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     return f"; did you mean {quoted(match)}?" if match else ""
 
 
+def similar_there(name: str, known: Iterable[str]) -> str:
+    """Return `; there is 'x'` for the end of a message that asks for a name, or nothing if no known
+    name is close: the one that is asked for is the right one.
+    """
+    match = closest(name, known)
+    return f"; there is {quoted(match)}" if match else ""
+
+
 def folded(name: str) -> str:
     """Return the letters and digits of a name in lower case: my_robot, My-Robot and MYROBOT are
     one name.

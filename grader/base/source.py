@@ -141,12 +141,14 @@ class Base(NamedTuple):
     """The location of a submission in a repository: the folder of its paths with a slash, or the
     archive around them.
 
-    With `is_outside` it is in no repository.
+    With `is_outside` it is in no repository. `here` is what comes before its paths in the current
+    folder.
     """
 
     folder: str = ""
     archive: str = ""
     is_outside: bool = False
+    here: str = ""
 
 
 class LazyLocation(NamedTuple):

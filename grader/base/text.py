@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from functools import lru_cache
 from pathlib import Path
@@ -113,6 +113,12 @@ def capitalised(text: str) -> str:
 def sentence_end(text: str) -> str:
     """Return a text with the point that ends a sentence, unless a question ends it."""
     return text if text.endswith(("?", ".")) else f"{text}."
+
+
+def in_backticks(texts: Iterable[str], most: int = MAX_NAMED) -> str:
+    """Return texts of a file for a sentence: `a` and `b`; empty without one that can be read."""
+    shown = [" ".join(text.split()) for text in texts]
+    return enumerated([f"`{cut(text, _MAX_NAME)}`" for text in dict.fromkeys(shown) if text], most)
 
 
 def enumerated(

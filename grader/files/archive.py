@@ -23,7 +23,7 @@ from typing import IO, Any, Literal, NamedTuple
 from grader.base.errors import FileError, InputError, MachineError
 from grader.base.text import printable_path
 from grader.files import limits
-from grader.files.limits import ignored_part, is_generated
+from grader.files.limits import ignored_part, is_generated, is_setting
 from grader.files.reading import advice_for, capped
 from grader.files.tree import IS_LINK, File, IgnoredFile, Tree, keep_small, make_tree, parents
 
@@ -128,11 +128,14 @@ def tree_of(
     ignored: list[IgnoredFile] = []
     generated: set[str] = set()
     unseen: set[str] = set()
+    settings: list[File] = []
     for member in _check_limits(members, name, min(limit, limits.MAX_UNPACKED_SIZE)):
         path = _path_in_tree(member)
         if isinstance(path, IgnoredFile):
             ignored.append(path)
         elif part := ignored_part(path):
+            if is_setting(path) and member.kind == "file":
+                settings.append(_file_of(member, path))
             if is_generated(path) and member.kind == "file":
                 generated.add(path)
             unseen |= {part} - {path}
@@ -143,15 +146,23 @@ def tree_of(
             path: member for path, member in found.items() if environments.isdisjoint(parents(path))
         }
     folders = [path for path, member in found.items() if member.kind == "folder"]
-    files = [
-        File(path, member.size, keep_small(partial(_read_member, member, path)))
-        for path, member in found.items()
-        if member.kind == "file"
-    ]
+    files = [_file_of(member, path) for path, member in found.items() if member.kind == "file"]
     ignored += [IgnoredFile(path, member.reason) for path, member in found.items() if member.reason]
     links = [path for path, member in found.items() if member.kind == "link"]
     ignored += [IgnoredFile(path, IS_LINK, is_closed=True) for path in links]
-    return make_tree(name, files, folders, sorted(ignored), sorted(generated), [*unseen, *links])
+    return make_tree(
+        name,
+        files,
+        folders,
+        sorted(ignored),
+        sorted(generated),
+        [*unseen, *links],
+        settings=lambda: settings,
+    )
+
+
+def _file_of(member: ArchiveMember, path: str) -> File:
+    return File(path, member.size, keep_small(partial(_read_member, member, path)))
 
 
 def _path_in_tree(member: ArchiveMember) -> str | IgnoredFile:

@@ -12,7 +12,14 @@ from pathlib import Path
 from grader.base.errors import FileError, MachineError
 from grader.base.text import printable_path
 from grader.files import limits
-from grader.files.limits import BUILD_FOLDERS, IGNORED_FOLDERS, ignored_part, is_generated
+from grader.files.limits import (
+    BUILD_FOLDERS,
+    IGNORED_FOLDERS,
+    ignored_part,
+    is_generated,
+    is_setting,
+    may_have_settings,
+)
 from grader.files.reading import advice_for, read_capped, read_error, read_start, shown_below
 from grader.files.tree import IS_LINK, File, IgnoredFile, Tree, keep_small, make_tree
 
@@ -38,6 +45,7 @@ def read_folder(folder: Path, top: str = "") -> Tree:
         sorted(walk.ignored),
         sorted(walk.generated),
         walk.unseen,
+        settings=partial(_find_settings, walk.top),
     )
 
 
@@ -47,10 +55,10 @@ class _Walk:
     def __init__(self, folder: Path, top: str) -> None:
         self._folder = folder
         self._shown = shown_below(folder, top)
-        self._top = os.path.realpath(folder)
-        self.name = printable_path(Path(self._top).name or "submission")
-        self._trusted = os.path.realpath(top) if top else self._top
-        if top and self._top != os.path.normpath(
+        self.top = os.path.realpath(folder)
+        self.name = printable_path(Path(self.top).name or "submission")
+        self._trusted = os.path.realpath(top) if top else self.top
+        if top and self.top != os.path.normpath(
             f"{self._trusted}{os.fspath(folder).removeprefix(top)}"
         ):
             raise FileError(printable_path(folder.name), IS_LINK)
@@ -95,7 +103,7 @@ class _Walk:
             self.folders.append(shown)
             return True
         elif entry.is_file():
-            place = f"{self._top}/{path}"
+            place = f"{self.top}/{path}"
             self.files.append(
                 File(
                     shown,
@@ -163,6 +171,30 @@ def _generated_files(folder: Path, path: str) -> list[str]:
                 break
             copies = (f"{where}/{name}" for name in names if is_generated("build/" + name))
             found += [printable_path(os.path.relpath(copy, folder)) for copy in copies]
+    return found
+
+
+def _find_settings(top: str) -> list[File]:
+    """Return the hidden files of a folder that say how packages are built; no symlink is
+    followed.
+    """
+    found: list[File] = []
+    waiting = [""]
+    seen = 0
+    while waiting:
+        where = waiting.pop()
+        with suppress(OSError), os.scandir(f"{top}/{where}") as entries:
+            for entry in sorted(islice(entries, limits.MAX_FILES), key=attrgetter("name")):
+                seen += 1
+                path = f"{where}/{entry.name}" if where else entry.name
+                if entry.is_dir(follow_symlinks=False) and may_have_settings(path):
+                    waiting.append(path)
+                elif is_setting(path) and entry.is_file(follow_symlinks=False):
+                    shown = printable_path(path)
+                    read = partial(_read_file, f"{top}/{path}", shown, top)
+                    found.append(File(shown, entry.stat(follow_symlinks=False).st_size, read))
+        if seen > limits.MAX_FILES:
+            break
     return found
 
 

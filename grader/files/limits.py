@@ -4,6 +4,8 @@ limits.
 Robots, packages and archives are known by their names.
 """
 
+import re
+
 from grader.base.errors import FileError, InputError
 from grader.base.text import size_text
 
@@ -35,6 +37,14 @@ MAX_ARCHIVES = 20  # in an archive or folder
 MAX_NESTED = 3  # archives inside each other
 MAX_RATIO = 200  # of the content of an archive to its own size
 SETUP_ASSISTANT = ".setup_assistant"  # where a MoveIt configuration says which robot it is for
+# Hidden files that say how a folder, or the only one in it, is built: workflows and containers.
+_SETTING = re.compile(
+    r"(?:[^/]+/)?(?:\.gitlab-ci\.yml|\.env|\.github/workflows/[^/]+\.ya?ml"
+    r"|\.(?:devcontainer|docker)/(?:[^/]+/)?[^/]+)"
+)
+_OF_SETTINGS = re.compile(
+    r"(?:[^./][^/]*/)?\.(?:github(?:/workflows)?|(?:devcontainer|docker)(?:/[^/]+)?)|[^./][^/]*"
+)
 HARMLESS_SIZE = 32 * 1024 * 1024  # bytes that an archive may contain regardless of the ratio
 
 
@@ -53,6 +63,16 @@ def ignored_part(path: str) -> str | None:
 def is_generated(path: str) -> bool:
     """Return whether a path is that of a file of a package which a build has copied."""
     return path.lower().endswith(_COPIED) and not BUILD_FOLDERS.isdisjoint(path.split("/")[:-1])
+
+
+def is_setting(path: str) -> bool:
+    """Return whether a path is that of a hidden file which says how packages are built."""
+    return _SETTING.fullmatch(path) is not None
+
+
+def may_have_settings(folder: str) -> bool:
+    """Return whether such a file may be in a folder."""
+    return _OF_SETTINGS.fullmatch(folder) is not None
 
 
 class Allowance:

@@ -138,7 +138,9 @@ def _combined_tree(
         generated += [start + path for path in part.generated]
         unseen += [start + folder for folder in part.unseen]
     trees = tuple(part for _, part in parts)
-    return make_tree(name, files, folders, [*ignored, *unopened], generated, unseen, trees)
+    ignored += unopened
+    settings = parts[0][1].settings
+    return make_tree(name, files, folders, ignored, generated, unseen, trees, settings)
 
 
 def _open_inner(archive: File, allowance: limits.Allowance, depth: int) -> Tree:

@@ -90,6 +90,7 @@ class Tree:
     generated: tuple[str, ...] = ()  # the paths of files of packages that a build has copied
     unseen: frozenset[str] = frozenset()  # folders and links that were not looked into
     kept: tuple[object, ...] = ()  # the archives that have to stay open
+    settings: Callable[[], Iterable[File]] = tuple  # hidden files that say how packages are built
 
     @property
     def unopened(self) -> tuple[IgnoredFile, ...]:
@@ -153,6 +154,7 @@ def make_tree(
     generated: Iterable[str] = (),
     unseen: Iterable[str] = (),
     kept: tuple[object, ...] = (),
+    settings: Callable[[], Iterable[File]] = tuple,
 ) -> Tree:
     """Return a tree of these files; folders that only their paths name are added. Raises InputError
     for too many.
@@ -168,7 +170,14 @@ def make_tree(
     everything = named | _folders_above([*by_path, *named], name)
     ignored = tuple(dict.fromkeys([*ignored, *large]))
     return Tree(
-        name, by_path, everything, ignored, tuple(generated), frozenset(unseen) - everything, kept
+        name,
+        by_path,
+        everything,
+        ignored,
+        tuple(generated),
+        frozenset(unseen) - everything,
+        kept,
+        settings,
     )
 
 

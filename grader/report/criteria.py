@@ -330,8 +330,9 @@ def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iter
         yield Line("hint", hint_text(entry, hint))
         if hint.edits and not entry.first:
             yield Diff(hint.edits)
-    if criterion.feedback and is_mistake and has_subject and (everything or hint is None):
-        yield Line("feedback", _one_line(criterion.feedback))
+    feedback = criterion.feedback_on(outcome)
+    if feedback and is_mistake and has_subject and (everything or hint is None):
+        yield Line("feedback", _one_line(feedback))
     if is_failure(result) and not is_asked:
         # The title of a criterion is never stated alone, because it would read as a fact.
         yield Line("expected", f"Passes when: {sentence(criterion.title)}")

@@ -4,26 +4,22 @@ check.
 
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping
-from functools import cache
-from string import digits
-from typing import Any
 
 from grader.base.errors import InputError
 from grader.base.names import did_you_mean
-from grader.base.problems import Kind
 from grader.base.text import counted, enumerated, format_points, printable
-from grader.files.reading import shipped_folder
 from grader.lab.checks.check import Check
 from grader.lab.checks.registry import check_names, find_check, unused_checks
 from grader.lab.rubric.criterion import Criterion, worth
 from grader.lab.rubric.rubric import Rubric
-from grader.lab.rubric.toml_file import assignment, read_toml, toml_literal
+from grader.lab.rubric.toml_file import assignment, toml_literal
 from grader.report.criteria import model_lines, sentence
+from grader.report.examples import example_blocks, explanation_of
 from grader.ros.workspace.problem_kinds import EVERY_KIND
 
 _WIDTH = 80
 _MAX_SIMILAR = 6  # criteria that are named
-_CHECKS = "checks"
+CAUSES_OF_CHECK = "Causes of a failure, besides `wrong`, `missing` and `slip`, for `feedback`"
 EFFECTS = {
     "rejects": "ROS 2 rejects the file.",
     "undetermined": "The criteria that depend on it need manual grading.",
@@ -111,7 +107,9 @@ def explanation(name: str, rubric: Rubric) -> str:
             f"{check.name}: a check for rubrics{source}",
             *map(_fill, check.documentation.paragraphs),
         ]
-        return _paragraphs([*texts, _arguments(check).rstrip("\n"), *_examples(check.name)])
+        return _paragraphs(
+            [*texts, _arguments(check).rstrip("\n"), _causes(check), *_examples(check.name)]
+        )
     known = (
         [kind.code for kind in EVERY_KIND]
         + [criterion.id for criterion in rubric.criteria]
@@ -123,7 +121,8 @@ def explanation(name: str, rubric: Rubric) -> str:
     )
     begun = [criterion.id for criterion in rubric.criteria if criterion.id.startswith(name)]
     if begun:
-        similar = f"; there are {enumerated(begun, _MAX_SIMILAR)}: `grader explain {begun[0]}`"
+        verb = "is" if len(begun) == 1 else "are"
+        similar = f"; there {verb} {enumerated(begun, _MAX_SIMILAR)}: `grader explain {begun[0]}`"
     else:
         similar = ""
     guess = similar or did_you_mean(name, known) or f"; {lists}"
@@ -139,7 +138,7 @@ def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
     yield _fill(f"Passes when: {criterion.title}.")
     if criterion.adjustment is not None:
         yield _fill(sentence(criterion.adjustment.message))
-    yield _fill(criterion.feedback)
+    yield from map(_fill, criterion.feedback.values())
     if criterion.requires:
         yield _fill(f"Skipped unless these passed: {', '.join(criterion.requires)}.")
     pose = _pose_text(criterion.at) if criterion.at else ""
@@ -184,34 +183,18 @@ def _arguments(check: Check) -> str:
     return "".join(line for line in lines if line.strip())
 
 
+def _causes(check: Check) -> str:
+    if not check.about.causes:
+        return ""
+    lines = [f"{CAUSES_OF_CHECK}:", ""]
+    lines += [f"    {cause}: {meaning}" for cause, meaning in check.about.causes.items()]
+    return "\n".join(lines)
+
+
 def _fill(text: str, width: int = _WIDTH) -> str:
     return textwrap.fill(
         " ".join(text.split()), width, break_long_words=False, break_on_hyphens=False
     )
-
-
-def explanation_of(kind: Kind) -> str:
-    """Return what ROS 2 does about a problem and how to fix the file, in one line; the title if
-    that is unknown.
-    """
-    entry = _family(_family_of(kind.code)).get(kind.code, {})
-    return " ".join(entry.get("explanation", kind.title).split())
-
-
-def example_blocks(name: str) -> Iterator[tuple[str, str, str]]:
-    """Yield title, file name and text of a check's row in a rubric, of what is wrong and of what is
-    right, if known.
-    """
-    family = _family_of(name)
-    entries = _family(family)
-    example = entries.get(name, {})
-    if "wrong" in example:
-        if family == _CHECKS:
-            given = f"\nwith = {toml_literal(example['with'])}" if "with" in example else ""
-            yield "In a rubric", "rubric.toml", f'check = "{name}"{given}'
-        file = example.get("frame", next(iter(entries["frames"]))).rpartition("/")[2]
-        yield "Wrong", file, example["wrong"].rstrip() or "(an empty file)"
-        yield "Right", file, example["right"].rstrip()
 
 
 def _examples(name: str) -> Iterator[str]:
@@ -219,20 +202,6 @@ def _examples(name: str) -> Iterator[str]:
     return (
         f"{title}:\n\n{textwrap.indent(text, '    ')}" for title, _, text in example_blocks(name)
     )
-
-
-def _family_of(name: str) -> str:
-    if name.isupper():
-        return name.rstrip(digits).lower()
-    return _CHECKS
-
-
-@cache
-def _family(name: str) -> Mapping[str, Any]:
-    path = shipped_folder("docs", "examples") / f"{name}.toml"  # not in a bundle for a platform
-    if path.is_file():
-        return read_toml(path.read_bytes(), path)[1]
-    return {}
 
 
 def default_text(value: object) -> str:

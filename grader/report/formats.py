@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _Need = Literal["", "console", "base", "identity"]
 
 
-class _FormatRow(StrEnum):
+class FormatRow(StrEnum):
     """A format: its name, `module:function` in this package, what that function needs, and the
     ending of its files.
 
@@ -41,7 +41,7 @@ class _FormatRow(StrEnum):
         return member
 
 
-class Format(_FormatRow):
+class Format(FormatRow):
     """The formats of a report. Their endings differ, so that one folder can contain a report in all
     of them.
     """
@@ -60,9 +60,17 @@ class Format(_FormatRow):
     )
     HTML = "html", "pages.student:render_html"
     SVG = "svg", "writers.svg:render_svg"
+    CONCISE = "concise", "writers.concise:render_concise", "base"
+    SARIF = "sarif", "writers.sarif:render_sarif", "base"
+    CODEQUALITY = (
+        "codequality",
+        "writers.codequality:render_codequality",
+        "base",
+        "codequality.json",
+    )
 
 
-class InspectFormat(_FormatRow):
+class InspectFormat(FormatRow):
     """The formats of an inspection."""
 
     TERMINAL = "terminal", "writers.inspection_terminal:inspection_terminal", "console"
@@ -70,6 +78,14 @@ class InspectFormat(_FormatRow):
     GITHUB = "github", "writers.annotations:inspection_github"
     SVG = "svg", "writers.svg:inspection_svg"
     HTML = "html", "pages.student:inspection_html"
+    CONCISE = "concise", "writers.concise:concise_inspection"
+    SARIF = "sarif", "writers.sarif:sarif_inspection"
+    CODEQUALITY = (
+        "codequality",
+        "writers.codequality:codequality_inspection",
+        "",
+        "codequality.json",
+    )
 
 
 class OutputFormat(StrEnum):
@@ -113,7 +129,9 @@ def render(
     return text if kind is Format.GITHUB else without_commands(text)  # whose lines are commands
 
 
-def render_inspection(inspection: "Inspection", kind: InspectFormat, screen: Screen) -> str:
+def render_inspection(
+    inspection: "Inspection", kind: InspectFormat, screen: Screen | None = None
+) -> str:
     """Return an inspection in a format, for a screen or a file."""
     function = partial(_load(kind.function), inspection)
     if kind.needs == "console":

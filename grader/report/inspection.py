@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice
 from math import isfinite
+from pathlib import Path
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.problems import Problem
@@ -40,6 +41,7 @@ class InspectedRobot:
     reading: Reading
     configuration: Configuration | None = None
     relative_to: str | None = None
+    hidden: frozenset[Problem] = frozenset()  # its problems that are ignored
 
     @property
     def verdict(self) -> str:
@@ -48,8 +50,17 @@ class InspectedRobot:
 
     @property
     def problems(self) -> tuple[Problem, ...]:
-        """What is wrong with it."""
-        return self.reading.problems
+        """What is wrong with it, and not ignored."""
+        return tuple(it for it in self.reading.problems if it not in self.hidden)
+
+    @property
+    def is_passed(self) -> bool:
+        """Return whether ROS 2 loads it, as far as problems are not ignored."""
+        if self.verdict not in ("rejected", "undecided"):
+            return True
+        return self.hidden != frozenset() and all(
+            problem.kind.effect not in ("rejects", "undetermined") for problem in self.problems
+        )
 
     @property
     def name(self) -> str:
@@ -85,6 +96,8 @@ class Inspection:
     extent: Extent | None = None
     source_of: Callable[[str], Source | None] | None = None
     base: Base = _NO_BASE  # its place in a repository
+    besides: tuple[Path, ...] = ()  # the files that were read besides a single one
+    ignored: int = 0  # how many problems are ignored, and not among these
 
     @property
     def robot(self) -> InspectedRobot | None:
@@ -94,10 +107,8 @@ class Inspection:
     @property
     def is_passed(self) -> bool:
         """Return whether ROS 2 loads all robots, and nothing else is certainly wrong."""
-        verdicts = {robot.verdict for robot in self.robots}
-        return verdicts.isdisjoint(("rejected", "undecided")) and all(
-            problem.severity != "error" for problem in self.package_problems
-        )
+        severities = {problem.severity for problem in self.package_problems}
+        return "error" not in severities and all(robot.is_passed for robot in self.robots)
 
     @property
     def problems(self) -> tuple[Problem, ...]:
@@ -152,6 +163,8 @@ def effect(inspection: Inspection) -> str:
     count = len(inspection.problems)
     if count:
         return counted(count, "problem")
+    if inspection.ignored:
+        return "no other problems"
     return "the names agree"
 
 

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from decimal import Decimal
 from enum import IntEnum
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from grader.base.errors import GraderError
-from grader.report.formats import Format
+from grader.report.formats import FormatRow
 
 if TYPE_CHECKING:
     from grader.lab.grading.report import Report
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 _THRESHOLD = r"[0-9]{1,9}(?:\.[0-9]{1,9})?%?"
 _MAX_PERCENT = 100
-Saves = tuple[tuple[Format, Path], ...]
+_Row = TypeVar("_Row", bound=FormatRow)
+Saves = tuple[tuple[_Row, Path], ...]
 
 
 class ExitCode(IntEnum):
@@ -64,9 +65,9 @@ def exit_code(report: "Report", threshold: tuple[Decimal, bool] | None) -> ExitC
     return ExitCode.PASSED if is_passed else ExitCode.FAILED
 
 
-def read_saves(texts: Sequence[str]) -> Saves:
+def read_saves(texts: Sequence[str], formats: type[_Row]) -> Saves[_Row]:
     """Return the formats and files that `--save` names. Raises GraderError."""
-    saves = tuple(map(_read_save, texts))
+    saves = tuple(_read_save(text, formats) for text in texts)
     files = [os.path.realpath(file) for _, file in saves if file.is_file() or not file.exists()]
     for _, file in saves:
         if files.count(os.path.realpath(file)) > 1:
@@ -74,17 +75,17 @@ def read_saves(texts: Sequence[str]) -> Saves:
     return saves
 
 
-def _read_save(text: str) -> tuple[Format, Path]:
+def _read_save(text: str, formats: type[_Row]) -> tuple[_Row, Path]:
     kind, equals, file = text.partition("=")
-    if kind not in list(Format) or not equals or file in ("", "-"):
-        meant = next((kind for kind in Format if text.endswith(f".{kind.ending}")), None)
+    if kind not in list(formats) or not equals or file in ("", "-"):
+        meant = next((kind for kind in formats if text.endswith(f".{kind.ending}")), None)
         guess = f"; did you mean --save {meant}={text}?" if meant is not None and not equals else ""
         raise GraderError(
-            f"--save takes FORMAT=FILE with one of the formats {', '.join(Format)}, not "
+            f"--save takes FORMAT=FILE with one of the formats {', '.join(formats)}, not "
             f"{text!r}{guess}"
         )
     # The shell expands no ~ after `=`; Path.expanduser raises for an unknown user.
-    return Format(kind), Path(os.path.expanduser(file))  # noqa: PTH111
+    return formats(kind), Path(os.path.expanduser(file))  # noqa: PTH111
 
 
 def read_arguments(texts: Sequence[str]) -> dict[str, str]:

@@ -29,6 +29,12 @@ def to_json(data: Mapping[str, Any]) -> str:
     return _harmless(f"{{\n{lines}\n}}\n")
 
 
+def list_to_json(objects: Sequence[Mapping[str, Any]]) -> str:
+    """Return objects as JSON text, a line for each."""
+    lines = ",\n ".join(map(_ENCODER.encode, objects))
+    return _harmless(f"[\n {lines}\n]\n") if lines else "[]\n"
+
+
 def _harmless(text: str) -> str:
     """Return JSON with escapes for unprintable characters, and for what a CI system takes for a
     command.

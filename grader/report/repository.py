@@ -5,6 +5,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from grader.base.source import Base
+from grader.base.text import printable_path
 from grader.report.writing import CHECKOUTS
 
 
@@ -14,11 +15,23 @@ def folder_of(path: str, inside: str | None) -> Path:
 
 
 def base_of(path: str, single: Path | None) -> Base:
-    """Return where a submission is in its repository; `single` is the folder in which paths of a
-    single URDF start.
+    """Return where a submission is in its repository, and seen from the current folder; `single`
+    is the folder in which paths of a single URDF start.
     """
     if path == "-":
         return Base(is_outside=True)
+    return _base_in_repository(path, single)._replace(here=_seen_from_here(path, single))
+
+
+def _seen_from_here(path: str, single: Path | None) -> str:
+    """Return what comes before the paths of a submission in the current folder."""
+    start = os.path.normpath(path)
+    with suppress(OSError, ValueError):  # the current folder was deleted; another drive
+        start = os.path.relpath(path if single is None else single)
+    return "" if start == os.curdir else f"{printable_path(start)}/"
+
+
+def _base_in_repository(path: str, single: Path | None) -> Base:
     named = Path(path)
     is_folder = named.is_dir()
     # A file keeps the name that was typed, even if that is a symlink; a folder is resolved.

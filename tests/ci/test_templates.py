@@ -16,7 +16,9 @@ SCHEMAS = {
     "action.yml": "vendor.github-actions",
     "docs/ci/student-repository.yml": "vendor.github-workflows",
     "docs/ci/class.yml": "vendor.github-workflows",
+    "docs/ci/code-scanning.yml": "vendor.github-workflows",
     "docs/ci/gitlab-ci.yml": "vendor.gitlab-ci",
+    "docs/ci/gitlab-code-quality.yml": "vendor.gitlab-ci",
     ".github/dependabot.yml": "vendor.dependabot",
     ".github/ISSUE_TEMPLATE/config.yml": "vendor.github-issue-config",
     **{
@@ -50,7 +52,12 @@ def test_the_file_is_valid_for_its_host(name: str) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-WORKFLOWS = ("action.yml", "docs/ci/class.yml", "docs/ci/student-repository.yml")
+WORKFLOWS = (
+    "action.yml",
+    "docs/ci/class.yml",
+    "docs/ci/code-scanning.yml",
+    "docs/ci/student-repository.yml",
+)
 
 
 def zizmor(*files: str | Path) -> subprocess.CompletedProcess[str]:
@@ -115,6 +122,13 @@ def test_the_page_links_to_the_files() -> None:
     page = (ROOT / "docs/ci.md").read_text(encoding="utf-8")
     for path in (ROOT / "docs/ci").iterdir():
         assert f"(ci/{path.name})" in page, path.name
+
+
+def test_the_page_on_editors_links_to_its_files() -> None:
+    """Those for editors are tested with the format concise."""
+    page = (ROOT / "docs/editors.md").read_text(encoding="utf-8")
+    for path in (ROOT / "docs/editors").iterdir():
+        assert f"(editors/{path.name})" in page, path.name
 
 
 def test_the_page_lists_each_input_and_output() -> None:

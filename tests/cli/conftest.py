@@ -41,5 +41,6 @@ def unwatched(monkeypatch: pytest.MonkeyPatch) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(
-        "grader.app.commands.watch.time", SimpleNamespace(sleep=interrupt, monotonic=time.monotonic)
+        "grader.app.commands.repeating.time",
+        SimpleNamespace(sleep=interrupt, monotonic=time.monotonic),
     )

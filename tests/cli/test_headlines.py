@@ -10,10 +10,11 @@ import jsonschema
 from grader.report.formats import Format
 from tests.classroom.gradebooks import batch, grader, lab_text
 from tests.command_line import run
+from tests.report.readers import FINDINGS
 
 FORMATS = [kind for kind in Format if kind is not Format.CLASSROOM50]
 DECIDED = 6  # of 11 points, 5 of which need manual grading
-WITH_HEADLINE = [kind for kind in FORMATS if kind is not Format.JSON]
+WITH_HEADLINE = [kind for kind in FORMATS if kind not in {Format.JSON, *FINDINGS}]
 
 
 def reports(top: Path, key: str, rubric: Path | None = None) -> Mapping[Format, str]:

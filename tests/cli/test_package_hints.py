@@ -119,7 +119,7 @@ def test_the_cause_gives_no_answer_away(name: str, tmp_path: Path) -> None:
     assert hint["edits"] == []
     assert not any(len(new) > 1 and new in hint["message"] for _, new in edits)
     words = {
-        "default value of a path": "a path in the launch file",
+        "default value of a path": "the path `my_robto.urdf` in the launch file",
         "fixed frame": "the value of `Fixed Frame` in the RViz file",
     }
     assert words[name] in hint["message"]

@@ -1,5 +1,6 @@
 """grader grade --watch: which changes are graded, the first lines, and the end."""
 
+import json
 import os
 import shutil
 import signal
@@ -40,7 +41,9 @@ class Rounds(NamedTuple):
 def watch(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Rounds]:
     """Return a function that watches while files change, one change after the other, and presses Ctrl-C then."""
 
-    def run_watch(arguments: Sequence[object], *edits: Callable[[], object]) -> Rounds:
+    def run_watch(
+        arguments: Sequence[object], *edits: Callable[[], object], command: str = "grade"
+    ) -> Rounds:
         waiting, looks = (
             iter(edits),
             cycle(range(3)),
@@ -60,8 +63,8 @@ def watch(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Rounds]:
         clock = SimpleNamespace(
             sleep=sleep, monotonic=time.monotonic, strftime=lambda _: "12:00:00"
         )
-        monkeypatch.setattr("grader.app.commands.watch.time", clock)
-        done = run(("grade", "--watch", *map(str, arguments)))
+        monkeypatch.setattr("grader.app.commands.repeating.time", clock)
+        done = run((command, "--watch", *map(str, arguments)))
         out, err = (stream.decode().split(NEXT) for stream in (done.stdout, done.stderr))
         assert (len(out), out[-1], err[-1]) == (len(edits) + 2, "", "grader: interrupted\n"), done
         return Rounds(out[:-1], err[:-1], done.returncode)
@@ -216,3 +219,34 @@ def test_ctrl_c_and_a_closed_standard_output_end_the_process(robot: Path) -> Non
         2,
         [b"grader: cannot write the report: standard output: Broken pipe"],
     )
+
+
+def test_an_inspection_is_repeated(tmp_path: Path, watch: Watch) -> None:
+    """The first one is that of inspect; then a rule with the time, and the whole one; reports are saved each time."""
+    robot, report = tmp_path / "a.urdf", tmp_path / "a.sarif"
+    texts = [f"<robot name='a'><link name='b'/>{more}</robot>" for more in ("", "<link/>", "<")]
+    robot.write_text(texts[0])
+    saved = []
+
+    def edit(text: str) -> None:
+        saved.append(json.loads(report.read_text(encoding="utf-8"))["runs"][0]["results"])
+        put(text, robot)
+
+    arguments = [robot, "--save", f"sarif={report}"]
+    edits = [partial(edit, text) for text in (*texts[1:], texts[0])]
+    done = watch(arguments, *edits, robot.unlink, command="inspect")
+    outputs = []
+    for text in (*texts, texts[0]):
+        put(text, robot)
+        outputs.append(run(("inspect", str(robot))).stdout.decode())
+    rule = "-- 12:00:00 " + "-" * 68 + "\n"
+    assert done.out == [outputs[0], *(rule + text for text in outputs[1:]), ""]
+    assert [[result["ruleId"] for result in results] for results in saved] == [
+        [],
+        ["URDF030", "URDF080"],
+        ["URDF001", "URDF015"],
+    ]
+    start, *rest, gone = done.err
+    assert start == f"grader: watching {robot}; stop with Ctrl-C\n"
+    assert "does not exist" in gone
+    assert (rest, done.code) == (["", "", ""], 130)

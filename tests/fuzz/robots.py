@@ -12,7 +12,7 @@ from grader.base.element_edits import edited
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.source import Source
 from grader.report.formats import Format, InspectFormat, render_inspection
-from grader.report.inspection import Inspection, main_root
+from grader.report.inspection import InspectedRobot, Inspection, main_root
 from grader.report.screen import Screen
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.expressions import evaluate
@@ -71,7 +71,8 @@ def inspection(data: bytes) -> None:
     """What is read of any bytes is shown in each format, and as text."""
     reading = read_urdf(data, "a.urdf")
     robot = Configuration(reading.robot) if reading.robot is not None else None
-    shown = Inspection("a.urdf", reading, robot, main_root(robot) if robot is not None else None)
+    inspected = InspectedRobot("a.urdf", reading, robot, main_root(robot) if robot else None)
+    shown = Inspection("a.urdf", (inspected,))
     for kind in InspectFormat:
         is_harmless(
             render_inspection(shown, kind, _SCREEN),

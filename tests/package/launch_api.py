@@ -186,7 +186,7 @@ def table(*roots: Path) -> dict[str, Any]:
             "classes": {alias: targets[alias] for alias in aliases if targets[alias] in known},
             "others": [alias for alias in aliases if targets[alias] not in known],
         }
-    rows = LATER_CLASSES | {
+    rows: dict[str, Any] = LATER_CLASSES | {
         name: {
             "base": base_of(name, classes),
             **effective(name, classes),

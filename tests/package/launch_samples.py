@@ -13,7 +13,7 @@ SAMPLES = {
     for path in sorted(Path(__file__).parent.glob("launch_samples/*.txt"))
 }
 FOLDER = "share/my_robot/launch"
-# Launch files of the package that the samples include.
+# Files of the package that the samples include or read.
 INNER = {
     f"{FOLDER}/inner.launch.py": b"""\
 from launch import LaunchDescription
@@ -31,6 +31,7 @@ def generate_launch_description():
         Node(package='joint_state_publisher', executable='joint_state_publisher'),
     ])
 """,
+    "share/my_robot/config/viewers.yaml": b"names: [rviz2]\n",
     f"{FOLDER}/broken.launch.py": b"def generate_launch_description(:\n",
 }
 _SIGNS = {True: "", False: "!", None: "?"}

@@ -116,8 +116,8 @@ FILE = "CONFIG / 'named.yaml'"
         ),
         (
             f"SetParametersFromFile(str({FILE})), " + IN_ROOT.format("{'speed': 9.0}"),
-            {"is_python": True},
-            {"speed": 9.0},
+            {},
+            {"speed": 1.0},
         ),
         ("GroupAction([SetParameter('a', 1)]), " + NAMED.format("{'b': 1}"), {}, {"b": 1}),
         (
@@ -150,9 +150,9 @@ def test_values(actions: str, options: dict[str, Any], expected: dict[str, Any])
 
 def test_files() -> None:
     """A file is read as rcl reads it: by the names of nodes, with YAML's numbers, booleans, quotes and nested names."""
-    found = given(IN_ROOT.format(FILE), is_python=True)
+    found = given(IN_ROOT.format(FILE))
     assert values(found) == {
-        "speed": 2.0,
+        "speed": 1.0,
         "is_on": True,
         "quoted": "yes",
         "empty": "?",
@@ -182,19 +182,31 @@ def test_texts() -> None:
     )
 
 
+def test_precedence() -> None:
+    """Where a file names the node before /**, the value of /** counts."""
+    assert values(given(NAMED.format(FILE)))["speed"] == 1.0
+
+
 @pytest.mark.parametrize(
-    ("is_python", "speed"),
-    [(False, 1.0), (True, 2.0), (None, "?")],
+    ("key", "is_read"),
+    [
+        ("/**/driver", True),
+        ("/*", False),
+        ("/**", True),
+        ("/*/driver", True),
+        ("/**/other", False),
+        ("/*/*", True),
+        ("/ns/*", True),
+        ("ns/driver", True),
+        ("driver", False),
+    ],
 )
-def test_precedence(is_python: bool | None, speed: object) -> None:
-    """Where a file names the node before /**, rclcpp takes the value of /**, rclpy that of the node."""
-    assert values(given(NAMED.format(FILE), is_python=is_python))["speed"] == speed
-
-
-def test_precedence_of_known_packages() -> None:
-    """The nodes of well-known packages in C++ are known."""
-    action = IN_ROOT.replace("'a'", "'controller_manager'")
-    assert values(given(action.format(FILE)))["speed"] == 1.0
+def test_wildcards(key: str, is_read: bool) -> None:
+    """In a key, * stands for one name and ** for any number of them, or none."""
+    files = {f"{SHARE}/named.yaml": f"{key}: {{ros__parameters: {{a: 1}}}}".encode()}
+    started = node(IN_ROOT.replace("'/'", "'ns'").format(FILE))
+    found = parameters_of(started, Installed(files).open_installed)
+    assert values(found) == ({"a": 1} if is_read else {})
 
 
 @pytest.mark.parametrize(
@@ -227,8 +239,8 @@ def test_an_empty_separator_stops_the_launch() -> None:
 def test_names() -> None:
     """The key of a section has wildcards and namespaces; the name is unknown where the launch file gives none."""
     wild = XML.format("<param from='$(find-pkg-share my_robot)/config/wild.yaml'/>")
-    assert values(given(wild, "xml", is_python=False)) == {"speed": 3, "deep": 4}
-    assert values(given(wild, "xml", is_python=False, name="/other")) == {"speed": 5}
+    assert values(given(wild, "xml")) == {"speed": 3, "deep": 4}
+    assert values(given(wild, "xml", name="/other")) == {"speed": 5}
     nameless = f"Node(package='a', executable='b', parameters=[{FILE}, {{'x': 1}}])"
     assert values(given(nameless)) == {
         "speed": "?",
@@ -240,7 +252,7 @@ def test_names() -> None:
         "pid.i": "?",
         "x": 1,
     }
-    assert values(given(nameless, name="driver", is_python=True))["wheels"] == ["left", "right"]
+    assert values(given(nameless, name="driver"))["wheels"] == ["left", "right"]
     renamed = "Node(package='a', executable='b', name='x', arguments=['--ros-args', '-r', '__node:=y', '-r', '__ns:=/z'])"
     assert (node(renamed).node_name, node(renamed).namespace) == ("y", "/z")
 
@@ -321,7 +333,7 @@ def controllers(words: str) -> list[tuple[str | None, str | None, dict[str, Any]
         (
             it.node_name,
             it.namespace,
-            values(parameters_of(it, Installed(FILES).open_installed, is_python=False)),
+            values(parameters_of(it, Installed(FILES).open_installed)),
         )
         for it in found
     ]

@@ -34,8 +34,9 @@ def xml_schema(name: str) -> etree.XMLSchema:
 def json_validator(name: str) -> Any:
     """Return a validator for one of the schemas beside this file."""
     schema = json.loads((FOLDER / "schemas" / f"{name}.json").read_text(encoding="utf-8"))
-    jsonschema.Draft202012Validator.check_schema(schema)
-    return jsonschema.Draft202012Validator(schema)
+    validator = jsonschema.validators.validator_for(schema, jsonschema.Draft202012Validator)
+    validator.check_schema(schema)
+    return validator(schema)
 
 
 def read_json(text: str) -> Any:
@@ -313,6 +314,10 @@ READERS: Mapping[Format, FormatReader] = {
 }
 
 
+# They list what is wrong, and nothing else of a report.
+FINDINGS = frozenset({Format.CONCISE, Format.SARIF, Format.CODEQUALITY})
+
+
 def reader(kind: Format) -> FormatReader:
     """Return the reader of a format: its row, else one for JSON or text.
 
@@ -322,6 +327,10 @@ def reader(kind: Format) -> FormatReader:
         return FormatReader(
             read_svg, lambda _: None, svg_text
         )  # its texts have as many lines as they need
+    if (
+        kind is Format.SARIF
+    ):  # whose schema is that of https://github.com/SchemaStore/schemastore, under Apache-2.0
+        return FormatReader(read_by_schema("sarif-2.1.0"), json_structure, json_text)
     is_json = kind.ending.endswith("json")
     return READERS.get(kind) or FormatReader(
         read_json if is_json else str, json_structure if is_json else lambda _: None, str

@@ -13,7 +13,7 @@ from grader.lab.grading.grade import grade
 from grader.lab.rubric.keys import rubric_schema
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import read_submission
-from grader.report.inspection import Inspection, main_root
+from grader.report.inspection import InspectedRobot, Inspection, main_root
 from grader.report.json_data import rounded, to_json
 from grader.report.writers.as_json import render_json
 from grader.report.writers.inspection_json import inspection_json
@@ -28,9 +28,8 @@ def inspected(data: bytes) -> str:
     """Return the inspection of a file's bytes as JSON."""
     reading = read_urdf(data, "a.urdf")
     robot = Configuration(reading.robot) if reading.robot is not None else None
-    return inspection_json(
-        Inspection("a.urdf", reading, robot, main_root(robot) if robot else None)
-    )
+    shown = InspectedRobot("a.urdf", reading, robot, main_root(robot) if robot else None)
+    return inspection_json(Inspection("a.urdf", (shown,)))
 
 
 @pytest.mark.parametrize(

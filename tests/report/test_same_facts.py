@@ -136,7 +136,8 @@ def _of_criterion(result: Result, report: Report) -> Iterator[Fact]:
         and result.hint is None
         and (report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot"))
     ):
-        yield Fact("feedback", (criterion.feedback, criterion.feedback.replace("`", "")), name)
+        feedback = criterion.feedback_on(outcome)
+        yield Fact("feedback", (feedback, feedback.replace("`", "")), name)
 
 
 def _plain(text: str) -> str:

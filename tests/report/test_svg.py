@@ -11,7 +11,7 @@ import pytest
 from grader.base.text import format_points
 from grader.report.drawing.picture import picture_of
 from grader.report.formats import Format, render
-from grader.report.inspection import Inspection, main_root
+from grader.report.inspection import InspectedRobot, Inspection, main_root
 from grader.report.writers.svg import drawing_element, inspection_svg
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import read_urdf
@@ -144,9 +144,8 @@ def test_every_text_that_the_reader_knows_is_drawn() -> None:
         data = case.text if isinstance(case.text, bytes) else case.text.encode()
         reading = read_urdf(data, "a.urdf")
         robot = Configuration(reading.robot) if reading.robot is not None else None
-        root = inspection_svg(
-            Inspection("a.urdf", reading, robot, main_root(robot) if robot is not None else None)
-        )
+        shown = InspectedRobot("a.urdf", reading, robot, main_root(robot) if robot else None)
+        root = inspection_svg(Inspection("a.urdf", (shown,)))
         drawn = "".join(path.get("d") for path in read_svg(root).iter("{*}path"))
         assert not re.search(r"[a-z]{2}|e", drawn), case.name
 

@@ -14,7 +14,7 @@ from grader.lab.grading.grade import grade
 from grader.lab.grading.report import ManualMark, Report
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import read_submission
-from grader.report.inspection import Inspection, main_root
+from grader.report.inspection import InspectedRobot, Inspection, main_root
 from grader.report.writers.inspection_terminal import inspection_terminal
 from grader.report.writers.terminal import Page, excerpt_block, render_terminal
 from grader.ros.urdf.kinematics import Configuration
@@ -42,9 +42,8 @@ def printed(data: bytes, width: int = 80, *, terminal: bool = False) -> str:
     render_terminal(grade(RUBRIC, submission), console)
     reading = submission.needed_urdf()
     robot = Configuration(reading.robot) if reading.robot is not None else None
-    inspection_terminal(
-        Inspection("a.urdf", reading, robot, main_root(robot) if robot else None), console
-    )
+    shown = InspectedRobot("a.urdf", reading, robot, main_root(robot) if robot else None)
+    inspection_terminal(Inspection("a.urdf", (shown,)), console)
     return out.getvalue()
 
 

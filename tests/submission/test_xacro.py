@@ -73,7 +73,7 @@ def test_a_launch_file_that_runs_xacro_means_expansion(tmp_path: Path) -> None:
 
 
 def test_a_name_that_says_xacro_means_expansion() -> None:
-    """A name with .xacro in it means expansion, in any case and with anything after it; .urdf at its end does not.
+    """A name with .xacro in it means expansion, in any case and with anything after it.
 
     A name with neither means expansion too: nothing loads such a file as a URDF.
     """
@@ -83,10 +83,11 @@ def test_a_name_that_says_xacro_means_expansion() -> None:
         "urdf.Xacro file.txt",
         "urdf.xacro file.py",
         "a.urdf.xacro.txt",
+        "a.xacro.urdf",
     ):
         assert state(single(MACRO, name)) == "expanded", name
     assert state(single(MACRO, "my_robot")) == state(single(MACRO, "robot.xml")) == "expanded"
-    for name in ("a.urdf", "A.URDF", "a.urdf.txt", "a.xacro.urdf", "-"):
+    for name in ("a.urdf", "A.URDF", "a.urdf.txt", "-"):
         assert state(single(PLAIN, name)) == "both", name
     assert state(single(REFERENCE, "a.xacro")) == "read"
 

@@ -6,7 +6,14 @@ from typing import Annotated
 
 import typer
 
-from grader.app.cli.options import AnswersOption, ArgOption, MaxSizeOption, PartOption, RubricOption
+from grader.app.cli.options import (
+    AnswersOption,
+    ArgOption,
+    MaxSizeOption,
+    PartOption,
+    RubricOption,
+    SaveOption,
+)
 from grader.app.cli.streams import TERMINAL, screen, warn, write_stderr
 from grader.app.commands.grade_submission import grade_and_save
 from grader.app.grading import GradeRequest, GradeRun
@@ -18,7 +25,6 @@ from grader.report.formats import Format, render
 from grader.report.writing import write_stdout
 
 _PATH = "A .urdf file, package, workspace, repository, .zip or .tar.gz, or - for standard input."
-_SAVE = "Also write a report to a file; repeatable."
 _FAIL_UNDER = "Exit 0 if the score reaches this, in points or percent."
 _FIX = (
     "Write the graded file with all proven edits to a file; of a folder or an archive, the "
@@ -38,7 +44,7 @@ def grade(
         Format,
         typer.Option("--format", metavar="FORMAT", help=f"Output format: {', '.join(Format)}."),
     ] = Format.TERMINAL,
-    save: Annotated[list[str] | None, typer.Option(metavar="FORMAT=FILE", help=_SAVE)] = None,
+    save: SaveOption = None,
     fail_under: Annotated[str | None, typer.Option(metavar="N|N%", help=_FAIL_UNDER)] = None,
     max_size: MaxSizeOption = URDF_LIMIT,
     arg: ArgOption = None,

@@ -4,17 +4,20 @@ from typing import Annotated
 
 import typer
 
-from grader.app.cli.options import ArgOption, MaxSizeOption
-from grader.app.cli.streams import screen, warn
+from grader.app.cli.options import ArgOption, MaxSizeOption, SaveOption
+from grader.app.cli.streams import TERMINAL
 from grader.files.reading import URDF_LIMIT
-from grader.report.formats import InspectFormat, render_inspection
+from grader.report.formats import InspectFormat
 from grader.report.invocation import ExitCode
-from grader.report.writing import write_stdout
+from grader.ros.known.releases import Release
 
 _PATH = "A .urdf file, a package, workspace or archive, or - for standard input."
 _ROBOT = "Show this robot of several whole: its name, or the end of its path."
 _JOINT = "Position of a joint, in radians or metres; repeatable."
+_SELECT = "Show only problems whose code begins so, such as REF or REF004; repeatable."
+_IGNORE = "Do not show problems whose code begins so; repeatable."
 _RELATIVE = "The frame of the poses; default: the root."
+_DISTRO = "The release of ROS 2, such as humble; default: what the files state."
 
 
 def inspect(
@@ -22,13 +25,20 @@ def inspect(
     robot: Annotated[str, typer.Option(metavar="NAME", help=_ROBOT, show_default=False)] = "",
     joint: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE", help=_JOINT)] = None,
     relative_to: Annotated[str | None, typer.Option(metavar="LINK", help=_RELATIVE)] = None,
+    distro: Annotated[Release | None, typer.Option(metavar="NAME", help=_DISTRO)] = None,
     output_format: Annotated[
         InspectFormat, typer.Option("--format", help="Output format.")
     ] = InspectFormat.TERMINAL,
+    save: SaveOption = None,
     max_size: MaxSizeOption = URDF_LIMIT,
     arg: ArgOption = None,
+    watch: Annotated[
+        bool, typer.Option("--watch", help="Inspect again after every change, until Ctrl-C.")
+    ] = False,
+    select: Annotated[list[str] | None, typer.Option(metavar="CODE", help=_SELECT)] = None,
+    ignore: Annotated[list[str] | None, typer.Option(metavar="CODE", help=_IGNORE)] = None,
 ) -> int:
-    """Show robots as ROS 2 reads them, with tree, joints and poses, and what is wrong in packages.
+    """Show robots as ROS 2 reads them, and what is wrong in packages.
 
     A xacro file is expanded as xacro does, without running it. Of several robots each has a line.
     Of packages it lists what stops a build or a launch file, and the names that files use and
@@ -52,8 +62,20 @@ def inspect(
 
       grader inspect my_robot.urdf --format html > my_robot.html
     """
-    from grader.app.commands.inspect_urdf import inspect as read
+    from grader.app.commands.inspect_urdf import InspectRequest, inspect_and_save
 
-    inspection = read(path, joint or [], relative_to, max_size, arg or [], warn, robot)
-    write_stdout(render_inspection(inspection, output_format, screen()))
-    return ExitCode.PASSED if inspection.is_passed else ExitCode.FAILED
+    request = InspectRequest(
+        path=path,
+        robot=robot,
+        joint=joint,
+        relative_to=relative_to,
+        distro=distro,
+        output_format=output_format,
+        save=save,
+        max_size=max_size,
+        arg=arg,
+        watch=watch,
+        select=select,
+        ignore=ignore,
+    )
+    return ExitCode.PASSED if inspect_and_save(request, TERMINAL) else ExitCode.FAILED

@@ -63,6 +63,12 @@ ArgOption = Annotated[
         "--arg", metavar="NAME=VALUE", help="The value of an argument of a xacro file; repeatable."
     ),
 ]
+SaveOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--save", metavar="FORMAT=FILE", help="Also write a report to a file; repeatable."
+    ),
+]
 ByOption = Annotated[
     str, typer.Option("--by", metavar="NAME", help="Your name in reports; default: none.")
 ]

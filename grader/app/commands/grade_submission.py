@@ -3,7 +3,8 @@
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from grader.app.grading import GradeRequest, GradeRun, check_saves, grade_submission, save_reports
+from grader.app.grading import GradeRequest, GradeRun, grade_submission, save_reports
+from grader.app.saving import check_saves
 from grader.lab.rubric.rubric_files import files_of
 from grader.report.writing import Warn
 

@@ -2,17 +2,25 @@
 packages around them.
 """
 
+import os
 from collections.abc import Iterator, Sequence
 from math import isfinite, nan
+from pathlib import Path
+from typing import NamedTuple
 
+from grader.app.ignoring import Selection, without_ignored
+from grader.app.saving import check_saves, save_texts
+from grader.app.settings import read_codes, read_settings
 from grader.base.errors import GraderError, InputError, MissingElement, NotDecided
-from grader.base.problems import Problem
 from grader.base.text import MAX_NAMED, enumerated, printable_path
+from grader.files.tree import overlaid
 from grader.lab.submission.opening import open_workspace
+from grader.report.formats import InspectFormat, render_inspection
 from grader.report.inspection import InspectedRobot, Inspection, main_root
-from grader.report.invocation import read_arguments
+from grader.report.invocation import Saves, read_arguments, read_saves
 from grader.report.repository import base_of, folder_of
-from grader.report.writing import Warn
+from grader.report.writing import Terminal, Warn
+from grader.ros.known.releases import Release
 from grader.ros.package.robot_file import Absent, Read, Unreadable
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import Reading
@@ -21,22 +29,84 @@ from grader.ros.workspace.opened import OpenedWorkspace
 _MAX_NAMED = 20
 
 
-def inspect(
-    path: str,
-    joints: Sequence[str],
-    relative_to: str | None,
-    max_size: int,
-    arguments: Sequence[str],
-    warn: Warn,
-    robot: str = "",
-) -> Inspection:
+class InspectRequest(NamedTuple):
+    """The options of `grader inspect`."""
+
+    path: str  # of a URDF or a workspace; - for a URDF on standard input
+    robot: str  # the name of the only one to show, or the end of its path
+    joint: Sequence[str] | None  # NAME=VALUE
+    relative_to: str | None  # the frame of the poses
+    distro: Release | None  # of ROS 2; without it, what the settings or files state
+    output_format: InspectFormat  # of standard output
+    save: Sequence[str] | None  # FORMAT=FILE, of the reports to write
+    max_size: int  # of a URDF, in bytes
+    arg: Sequence[str] | None  # NAME=VALUE, of xacro
+    watch: bool  # whether to inspect again after every change
+    select: Sequence[str] | None  # the codes of the only problems to show, or their beginnings
+    ignore: Sequence[str] | None  # those of problems not to show
+
+    @property
+    def saves(self) -> Saves[InspectFormat]:
+        """The files to write, with their formats. Raises GraderError."""
+        return read_saves(self.save or (), InspectFormat)
+
+    def selection(self, folder: Path) -> Selection:
+        """Return which problems are shown, of files whose paths begin in a folder. Raises
+        GraderError.
+        """
+        select = read_codes("--select", self.select or ())
+        ignore = read_codes("--ignore", self.ignore or ())
+        return Selection(select, ignore, read_settings(self.path), folder)
+
+
+def inspect_and_save(request: InspectRequest, terminal: Terminal) -> bool:
+    """Show an inspection, and save the reports that `--save` names; with `--watch` after every
+    change. Return whether nothing is certainly wrong. Raises GraderError.
+    """
+    saves = request.saves
+    check_saves(saves, (), request.path)
+    if not request.watch:
+        inspection = _inspect(request, terminal.warn)
+        _show_and_save(inspection, request, terminal)
+        return inspection.is_passed
+    # Late: few inspections are watched.
+    from grader.app.commands.repeating import refuse_watching, repeat_on_change, titled_with_time
+
+    refuse_watching(request.path, request.output_format)
+    is_first = True
+
+    def work() -> tuple[Inspection, Sequence[Path]]:
+        inspection = _inspect(request, terminal.warn)
+        return inspection, inspection.besides
+
+    def show(inspection: Inspection) -> None:
+        nonlocal is_first
+        if not is_first:
+            terminal.print(titled_with_time("", terminal.screen()))
+        is_first = False
+        _show_and_save(inspection, request, terminal)
+
+    repeat_on_change([Path(request.path)], [file for _, file in saves], terminal, work, show)
+    return True
+
+
+def _show_and_save(inspection: Inspection, request: InspectRequest, terminal: Terminal) -> None:
+    screen = terminal.screen()
+    texts = {file: render_inspection(inspection, kind) for kind, file in request.saves}
+    robots = [Path(request.path, robot.path) for robot in inspection.robots]
+    terminal.print(render_inspection(inspection, request.output_format, screen))
+    save_texts(texts, request.path, (*robots, *inspection.besides))
+
+
+def _inspect(request: InspectRequest, warn: Warn) -> Inspection:
     """Return the inspection of the robots and the packages at a path; of one robot, if it is named.
     Raises GraderError.
     """
-    given = read_arguments(arguments)
-    opened = open_workspace(path, max_size, given)
+    path, joints, relative_to = request.path, request.joint or (), request.relative_to
+    selection = request.selection(Path(os.path.realpath(path)))
+    opened = open_workspace(path, request.max_size, read_arguments(request.arg or ()))
     if opened.is_single:
-        return _inspect_file(opened, path, joints, relative_to, warn)
+        return _inspect_file(opened, request, selection, warn)
     read = [it for it in opened.robots if isinstance(it, Read)]
     unread = [it for it in opened.robots if isinstance(it, Unreadable)]
     if not opened.robots and not (opened.packages or opened.ros1_packages):
@@ -46,22 +116,22 @@ def inspect(
     for reason in [it.reason for it in unread]:
         warn(reason)
     base = base_of(path, None)
-    if robot:
-        chosen = _named(robot, read)
+    if request.robot:
+        chosen = _named(request.robot, read)
         shown = _inspected(opened, chosen, joints, relative_to)
-        return Inspection(chosen.path, (shown,), source_of=opened.source, base=base)
+        inspection = Inspection(chosen.path, (shown,), source_of=opened.source, base=base)
+        return without_ignored(inspection, opened.whole_tree, _texts_of(chosen), selection)
     if (joints or relative_to is not None) and len(read) != 1:
         raise GraderError(_which_one(path, read))
     robots = tuple(_inspected(opened, it, joints, relative_to) for it in read)
-    from grader.ros.workspace.extent import extent_of  # late: most inspections are of a URDF
-
-    extent = extent_of(opened.workspace, len(unread))
-    found = tuple(_package_problems(opened))
-    return Inspection(opened.id, robots, found, extent, opened.source, base)
+    opened = opened.of_release(request.distro or selection.settings.distro)
+    found = tuple(opened.package_problems())
+    inspection = Inspection(opened.id, robots, found, opened.extent(), opened.source, base)
+    return without_ignored(inspection, opened.whole_tree, [*opened.whole_tree.files], selection)
 
 
 def _inspect_file(
-    opened: OpenedWorkspace, path: str, joints: Sequence[str], relative_to: str | None, warn: Warn
+    opened: OpenedWorkspace, request: InspectRequest, selection: Selection, warn: Warn
 ) -> Inspection:
     """Return the inspection of a URDF on its own. Raises InputError if it cannot be read."""
     urdf = opened.urdf
@@ -70,9 +140,20 @@ def _inspect_file(
     assert not isinstance(urdf, Absent)
     for note in (*_notes(urdf), *opened.notes):
         warn(note)
-    robot = _inspected(opened, urdf, joints, relative_to)
-    base = base_of(path, folder_of(path, opened.path))
-    return Inspection(urdf.path, (robot,), source_of=opened.source, base=base)
+    robot = _inspected(opened, urdf, request.joint or (), request.relative_to)
+    folder = folder_of(request.path, opened.path)
+    base = base_of(request.path, folder)
+    besides = [folder / path for path in opened.besides]
+    inspection = Inspection(
+        urdf.path, (robot,), source_of=opened.source, base=base, besides=tuple(besides)
+    )
+    tree = overlaid(opened.whole_tree, {urdf.path: urdf.data})
+    return without_ignored(inspection, tree, _texts_of(urdf), selection._replace(folder=folder))
+
+
+def _texts_of(urdf: Read) -> list[str]:
+    """Return the files that a robot is read from."""
+    return [*dict.fromkeys((urdf.path, *getattr(urdf.reading.source, "documents", ())))]
 
 
 def _notes(urdf: Read) -> Iterator[str]:
@@ -118,19 +199,6 @@ def _inspected(
         raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
     reading = urdf.loaded._replace(problems=opened.problems_of(urdf))
     return InspectedRobot(urdf.path, reading, robot, relative_to)
-
-
-def _package_problems(opened: OpenedWorkspace) -> Iterator[Problem]:
-    """Yield what is wrong in packages: their files, then the names that do not agree."""
-    # Late: most inspections are of a URDF.
-    from grader.ros.workspace.file_problems import listed_problems, ros1_problem
-    from grader.ros.workspace.name_problems import name_problems
-    from grader.ros.workspace.reading import read_agreement
-
-    for package in opened.ros1_packages:
-        yield ros1_problem(package)
-    yield from listed_problems(opened.workspace)
-    yield from name_problems(read_agreement(opened.workspace))
 
 
 def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None:

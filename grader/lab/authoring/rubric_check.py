@@ -165,7 +165,7 @@ def _warnings_about(
     if stale := _unknown_measures(criterion.title, own):
         yield "title", f"the title says {enumerated(stale)}, which `with` does not"
     known = [number * factor for number in (*everywhere, _RIGHT_ANGLE) for factor in _DERIVED]
-    if stale := _unknown_measures(criterion.feedback, known):
+    if stale := _unknown_measures(" ".join(criterion.feedback.values()), known):
         yield "feedback", f"the feedback says {enumerated(stale)}, which no criterion does"
     arguments, tolerance = criterion.arguments, criterion.arguments.get("tolerance", 0)
     if tolerance >= max(_measured_sizes(arguments), default=inf):

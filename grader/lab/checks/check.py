@@ -11,7 +11,7 @@ from keyword import iskeyword
 from typing import Any, Literal, NamedTuple, get_args, get_type_hints
 
 from grader.base.errors import InputError
-from grader.lab.checks.outcome import Outcome
+from grader.lab.checks.outcome import MISSING, SLIP, WRONG, Outcome
 from grader.lab.checks.toml_types import TomlType, toml_type
 
 # The ways in which the text of a robot is rewritten to an equal robot, in the order in which they
@@ -27,6 +27,11 @@ EQUIVALENTS = (
     "xacro macro",
 )
 _BreaksUnder = Callable[[Mapping[str, Any]], Collection[str]]
+CAUSES = {
+    WRONG: "what is examined is there, and is not as it should be",
+    MISSING: "something that the check needs does not exist or cannot be read",
+    SLIP: "a misspelt word or sign, with whose correction the rest is graded",
+}
 _SECTION = r"(?m)^(Args|Arguments|Examples?|Notes?|Raises|Returns):\s*$"
 _ARGUMENT = r"^\*{0,2}(\w+)(?:\s*\([^)]*\))?:\s+"
 
@@ -52,7 +57,8 @@ class About(NamedTuple):
     arguments may fail. `picture` is what a failure shows of the reference: the outline of the link
     or its frame; a `wheel` shows how it rolls. `function_for` returns what is called for such
     arguments, where they decide what is examined. A check that `is_of_writing` judges the words as
-    they are written, not what a misspelt one surely stands for.
+    they are written, not what a misspelt one surely stands for. `causes` are those of its
+    failures beside `CAUSES`, each with its meaning, which the feedback of a rubric may name.
     """
 
     looks_at: tuple[str, ...] = ()
@@ -60,6 +66,7 @@ class About(NamedTuple):
     picture: Literal["", "outline", "wheel", "frame"] = ""
     function_for: Callable[[Mapping[str, Any]], Callable[..., Outcome]] | None = None
     is_of_writing: bool = False
+    causes: Mapping[str, str] = {}
 
 
 # The arguments of checks that name links, or list their names.
@@ -127,6 +134,11 @@ class Check(NamedTuple):
     def subject(self) -> Subject:
         """The main object that it examines."""
         return self.examined[0]
+
+    @property
+    def causes(self) -> Mapping[str, str]:
+        """The causes of its failures, each with its meaning."""
+        return {**CAUSES, **self.about.causes}
 
     @property
     def documentation(self) -> "Documentation":

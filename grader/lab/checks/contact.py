@@ -23,7 +23,12 @@ from grader.ros.urdf.model import Box, Mesh
 from grader.ros.urdf.overlap import penetration
 from grader.ros.urdf.shapes import PlacedShape, UnknownShape
 
-ABOUT = dict.fromkeys(("stands_on", "clear_of"), About(picture="outline"))
+ABOUT = {
+    "stands_on": About(
+        picture="outline", causes={"edge": "the link reaches beyond the edge of the other one"}
+    ),
+    "clear_of": About(picture="outline"),
+}
 
 _LEFT: Vector = (0.0, 1.0, 0.0)
 _MAX_PAIRS = 2_000
@@ -61,7 +66,8 @@ def stands_on(
     elif not fine:
         message = f"{link!r} reaches {in_millimetres(beyond)} beyond the edge of the top of {on!r}"
     at = origin_place(robot, link) if touches else None  # either of the two may be wrong
-    return judged(fine, message, bottom, top, tolerance, "m", at=at)
+    outcome = judged(fine, message, bottom, top, tolerance, "m", at=at)
+    return outcome._replace(cause="edge") if touches else outcome
 
 
 def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative) -> Outcome:

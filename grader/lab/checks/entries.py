@@ -5,7 +5,7 @@ from copy import deepcopy
 from typing import Annotated, Any, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
-from grader.base.names import did_you_mean
+from grader.base.names import similar_there
 from grader.base.pairing import most_pairs
 from grader.base.source import LazyLocation
 from grader.base.text import MAX_NAMED, enumerated, first_lines, quoted
@@ -276,12 +276,12 @@ def _no_entry(tree: TreeEntry, search: Search, wanted: _Wanted, where: str) -> O
         place = f" {where}" if not depth or not tree.is_xml else ""
         names = [child.name for child in above.children if child.name]
         message = f"there is no {shown}{place}"
-        return failed(message, above.place, detail=did_you_mean(step.name, names))
+        return failed(message, above.place, detail=similar_there(step.name, names))
     message = f"there is no <{step.name}> {where}"
     for outer, inner in _nested(tree):
         if inner.name == step.name:
             return failed(message, inner.place, detail=f"; there is one in <{outer.name}>")
-    meant = did_you_mean(step.name, {child.name for child in tree.children})
+    meant = similar_there(step.name, {child.name for child in tree.children})
     return failed(message, detail=meant)._replace(absent=() if meant else (shown,))
 
 
@@ -306,8 +306,8 @@ def _none_fits(search: Search, named: Sequence[TreeEntry], step: PathStep, shown
                 others.append(text)
         known[_shown([PathStep(step.name, tuple(given))], rows[0])] = None
     detail = f"; the file has {enumerated(known, MAX_NAMED)}"
-    for key, value in step.conditions:
-        detail += did_you_mean(value, filter(None, texts[key]))
+    for key, value in step.conditions if len(known) > MAX_NAMED else ():
+        detail += similar_there(value, filter(None, texts[key]))
     return failed(f"there is no {shown}", rows[0].place, detail=detail)
 
 

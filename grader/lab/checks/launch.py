@@ -24,10 +24,30 @@ if TYPE_CHECKING:
 
 
 # What the edits for hints may change.
+_STOPS = {"stops": "ros2 launch stops at an error in the launch file, or at a file that it reads"}
 ABOUT = {
     "launch_found": About(("launch",)),
-    "node_runs": About(("launch",)),
-    "launch_finds_files": About(("launch",)),
+    "node_runs": About(
+        ("launch",),
+        causes={
+            **_STOPS,
+            "given": "a node has other remappings or arguments, or another file is included",
+            "topic": "no node publishes a topic, or subscribes to it",
+            "type": "a topic has another type",
+            "program": "an entry point in setup.py names no function",
+        },
+    ),
+    "launch_finds_files": About(
+        ("launch",),
+        causes={
+            **_STOPS,
+            "local": "a path exists on one machine only, or is relative to the working folder",
+            "name": "a file or package of another name is looked for",
+            "needs": "a build does not install a file that the robot needs, such as a mesh",
+            "encoding": "a file that is read as text is not UTF-8",
+            "given": "a node or an action is not given a file as it needs it",
+        },
+    ),
 }
 _UNKNOWN_FILES = "cannot determine statically which files it names"
 _ON_ONE_MACHINE = "the launch file looks for files at paths that exist on one machine only"
@@ -106,7 +126,7 @@ def node_runs(
     wanted = Wanted(_names_in(found, not_ or ()), remap, arguments, includes, publishes, subscribes)
     faults = find_faults(submission, found, choices, wanted) if any(wanted) else []
     if wrong := next((it for it in faults if it.is_certain), None):
-        return failed(wrong.message, wrong.at, detail=wrong.detail)
+        return failed(wrong.message, wrong.at, detail=wrong.detail, cause=wrong.cause)
     if fault := _faulty_program(package, found, choices):
         raise fault
     stopped = _stop_at_files(package, places, built=built)
@@ -162,7 +182,7 @@ def _stop_at_files(package: Package, places: Sequence[FilePlace], *, built: bool
     not.
     """
     if built and (wrong := [it for it in places if it.state == "wrong" and it.stops_launch]):
-        return _fail_places(package, wrong)
+        return _fail_places(package, wrong)._replace(cause="stops")
     return next(filter(None, (_warning_that_stops(package, it) for it in places)), None)
 
 
@@ -259,7 +279,13 @@ def _faulty_program(
             message = f"the entry point of {name.rpartition('/')[2]!r} names no function"
             why, at = f": {fault.message}", fault.location
             return MissingElement(
-                "entry point", name, message=message, detail=why, location=at, costs_once=True
+                "entry point",
+                name,
+                message=message,
+                detail=why,
+                location=at,
+                costs_once=True,
+                cause="program",
             )
     return None
 
@@ -312,7 +338,9 @@ def _fail_places(package: Package, wrong: Sequence[FilePlace]) -> Outcome:
         wrong[0].file,
         wrong[0].mistake or (_ON_ONE_MACHINE if is_local else _NOT_INSTALLED),
     )
-    return failed(message, first.location, problem=wrong[0].problem, mistake=mistake)
+    return failed(
+        message, first.location, problem=wrong[0].problem, mistake=mistake, cause=wrong[0].cause
+    )
 
 
 def _no_files(launch: "Launch") -> NotDecided | MissingElement:
@@ -331,13 +359,14 @@ def _warning_that_stops(package: Package, place: FilePlace) -> Outcome | None:
         return None
     mistake = "Command stops ros2 launch, because xacro writes a warning"
     if place.file.is_deprecated:
-        return failed(mistake, place.file.location, detail=" about --inorder: remove it")
+        detail = " about --inorder: remove it"
+        return failed(mistake, place.file.location, detail=detail, cause="stops")
     warning = place.installed_robot(package).warning
     if warning is None:
         return None
     source = package.installed.get(place.text, posixpath.basename(place.text))
     detail = f": line {warning.location.line} of {source}: {warning.message}"
-    return failed(mistake, place.file.location, detail=detail, mistake=mistake)
+    return failed(mistake, place.file.location, detail=detail, mistake=mistake, cause="stops")
 
 
 def _path_of(package: Package, name: str) -> str:
@@ -358,7 +387,11 @@ def _launch_of(package: Package, name: str) -> "Launch":
         raise NotDecided(launch.unread, "the launch file cannot be read")
     if launch.syntax is not None:
         raise MissingElement(
-            "launch file", path, message=launch.syntax.message, location=launch.syntax.location
+            "launch file",
+            path,
+            message=launch.syntax.message,
+            location=launch.syntax.location,
+            cause="stops",
         )
     return launch
 
@@ -372,6 +405,7 @@ def _fault_that_stops(package: Package, name: str, launch: "Launch") -> MissingE
         message=_join_faults(launch),
         location=first.location,
         problem=first.message,
+        cause="stops",
     )
 
 

@@ -187,10 +187,9 @@ def turns_about_itself(
     message = f"{link!r} turns about its own axis"
     if not fine:
         message = (
-            f"the joint axis of {link!r} is {in_millimetres(away)} from the cylinder's axis; "
-            "they should coincide"
+            f"the joint axis of {link!r} is {in_millimetres(away)} from the cylinder's axis; it "
+            "should be on it"
         )
-        message += "; it should be on it"
     at = place(visual.origin.location, "xyz") or at
     return judged(fine, message, away, 0.0, tolerance, "m", at=at, detail="" if fine else detail)
 

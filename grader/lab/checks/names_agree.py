@@ -2,10 +2,19 @@
 
 from grader.base.errors import NotDecided
 from grader.base.text import enumerated, first_lines
+from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.submission.submission import Submission
 from grader.ros.workspace.names import Family
 
+ABOUT = {
+    "names_agree": About(
+        causes={
+            "similar": "a name is similar to one that is defined",
+            "type": "a value or a topic has another type",
+        }
+    )
+}
 _MAX_IN_MESSAGE = 3  # mistakes, and places of each
 
 
@@ -38,7 +47,12 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
         (first, (_, *also)), *others = places.items()
         texts = [f"{at}: {message}{_also(more)}" for message, (at, *more) in others]
         message = "; ".join([f"{first}{_also(also)}", *first_lines(texts, _MAX_IN_MESSAGE - 1)])
-        return failed(message, wrong[0].location, mistake=first)
+        cause = ""
+        if wrong[0].is_of_type:
+            cause = "type"
+        elif wrong[0].corrections:
+            cause = "similar"
+        return failed(message, wrong[0].location, mistake=first, cause=cause)
     if of in undecided:
         reason = undecided[of]
         cause = f"cannot determine statically whether the names of {of} agree"

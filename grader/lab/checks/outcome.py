@@ -28,6 +28,8 @@ _DIRECTIONS = (
 )
 _UNITS = ((1000.0, "millimetres"), (100.0, "centimetres"))
 _FEW, _MANY = 100.0, 1e7  # from here on: no decimals, an exponent
+# The causes of failures that every check has; an outcome without one is of the first.
+WRONG, MISSING, SLIP = "wrong", "missing", "slip"
 
 
 class Outcome(NamedTuple):
@@ -61,6 +63,8 @@ class Outcome(NamedTuple):
     absent: tuple[
         str, ...
     ] = ()  # what is not built yet, of a failure that is due to that alone: "lidar", "package"
+    # one of the causes of failures that the check declares, by which a rubric's feedback is chosen
+    cause: str = ""
 
 
 def fault_of(returned: object) -> str:
@@ -103,6 +107,7 @@ _VALID: Mapping[str, Callable[[object], bool]] = {
     "mistake": _is_text,
     "problem": _is_text,
     "absent": lambda value: isinstance(value, tuple) and all(map(_is_text, value)),
+    "cause": _is_text,
 }
 
 
@@ -119,7 +124,13 @@ def pending(message: str, cause: str = "", at: _AnyPlace = None, *, problem: str
 
 
 def failed(
-    message: str, at: _AnyPlace = None, *, detail: str = "", problem: str = "", mistake: str = ""
+    message: str,
+    at: _AnyPlace = None,
+    *,
+    detail: str = "",
+    problem: str = "",
+    mistake: str = "",
+    cause: str = "",
 ) -> Outcome:
     """Return the outcome for a fact that is not true.
 
@@ -127,7 +138,7 @@ def failed(
     which something else does.
     """
     outcome = judged(False, message, at=at, detail=detail)
-    return outcome._replace(problem=problem, mistake=mistake or outcome.mistake)
+    return outcome._replace(problem=problem, mistake=mistake or outcome.mistake, cause=cause)
 
 
 def judged(

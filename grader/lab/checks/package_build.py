@@ -16,12 +16,25 @@ from grader.lab.submission.submission import Submission
 from grader.ros.package.package import MANIFEST, RESOURCE_INDEX, SETUP, Package
 
 _FileKind = Literal["urdf", "launch", "rviz"]
+_INSTALLS = {
+    "fails": "a build fails",
+    "pattern": "a pattern matches no file",
+    "elsewhere": "a build installs the file elsewhere",
+}
 ABOUT = {
-    "package_found": About((MANIFEST, SETUP)),
+    "package_found": About(
+        (MANIFEST, SETUP), causes={"refused": "the tools of ROS 2 refuse package.xml"}
+    ),
     "package_type": About((MANIFEST,)),
-    "build_installs": About((SETUP, "file")),
-    "setup_imports": About((SETUP,)),
-    "installs_files": About((SETUP, "file")),
+    "build_installs": About((SETUP, "file"), causes=_INSTALLS),
+    "setup_imports": About(
+        (SETUP,),
+        causes={
+            "name": "a name in setup.py is not defined or imported",
+            "files": "a file or folder that is listed does not exist, or is of another kind",
+        },
+    ),
+    "installs_files": About((SETUP, "file"), causes=_INSTALLS),
 }
 _ENDINGS: dict[_FileKind, tuple[str, ...]] = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
 
@@ -38,7 +51,9 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
     if manifest.refusals and (fine or manifest.name is None):
         problem, count = manifest.refusals[0], len(manifest.refusals)
         more = f" (and {count - 1} more)" if count > 1 else ""
-        return failed(problem.message + more, problem.location, problem=problem.message)
+        return failed(
+            problem.message + more, problem.location, problem=problem.message, cause="refused"
+        )
     message = (
         f"the package is named {manifest.name!r}{'' if fine else f'; it should be named {name!r}'}"
     )
@@ -121,15 +136,18 @@ def installs_files(package: Package, *, files: list[str], despite_errors: bool =
     return _require_installed(package, matching, None, despite_errors=despite_errors)
 
 
-def setup_imports(package: Package) -> Outcome:
+def setup_imports(package: Package, *, where_there: bool = False) -> Outcome:
     """A build of the package succeeds: Python runs `setup.py`, or CMake `CMakeLists.txt`,
     without an error.
+
+    Args:
+        where_there: Whether what is to be installed and does not exist is no error, for `carried`.
     """
     setup = package.needed_installation()
-    return _build_error(package) or passed(f"{setup.file} builds")
+    return _build_error(package, where_there=where_there) or passed(f"{setup.file} builds")
 
 
-def _build_error(package: Package) -> Outcome | None:
+def _build_error(package: Package, *, where_there: bool = False) -> Outcome | None:
     """Return why a build of the package fails; None if it succeeds. Raises NotDecided."""
     setup = package.needed_installation()
     if package.ignored_by:
@@ -137,13 +155,25 @@ def _build_error(package: Package) -> Outcome | None:
         return failed(message, problem=message)
     stops = [stop for stop in setup.stops if stop.path != MANIFEST or package.manifest is not None]
     errors = [(fault.message, "", fault.at) for fault in setup.faults]
-    errors += [(stop.message, stop.hint, stop.at) for stop in stops]
+    there = package.tree.files.keys() | package.tree.folders
+    errors += [
+        (stop.message, stop.hint, stop.at)
+        for stop in stops
+        if not where_there or not stop.path or stop.path.rstrip("/") in there
+    ]
     if errors:
         messages = list(dict.fromkeys(message for message, _, _ in errors))
         _, hint, at = errors[0]
         message, problem = "; ".join(first_lines(messages, 3)), messages[0] + hint
+        cause = "files"
+        if setup.faults:
+            cause = "name" if setup.faults[0].name else ""
         return failed(
-            message, setup.location(at), detail=hint if len(messages) == 1 else "", problem=problem
+            message,
+            setup.location(at),
+            detail=hint if len(messages) == 1 else "",
+            problem=problem,
+            cause=cause,
         )
     if not setup.is_called:
         message = "setup.py does not call setup()"
@@ -182,7 +212,7 @@ def _require_installed(
     setup = package.needed_installation()
     error = _build_error(package)
     if error is not None and not despite_errors:
-        return error._replace(message=f"a build fails: {error.message}")
+        return error._replace(message=f"a build fails: {error.message}", cause="fails")
     if error is not None and _stops_at(package, files, kind):
         return passed(f"{setup.file} has an entry for {files[0]}")
     copies = [copy for copy in setup.copies if copy.source in files]
@@ -206,6 +236,8 @@ def _require_installed(
         raise package.without_data_files(setup.misspelt.message)
     if inside:
         return passed(f"a build installs {inside[0].source} as {inside[0].target}")
+    if despite_errors and setup.is_unknown_after_error:
+        return passed(f"what {setup.file} installs is not known because of an error in it")
     if setup.unknown:
         reason = f"{setup.unknown[0].reason} (line {setup.unknown[0].at.line} of {setup.file})"
         message = f"cannot determine statically whether a build installs {files[0]}: {reason}"
@@ -214,7 +246,7 @@ def _require_installed(
         message = f"a build installs {copies[0].source} as {copies[0].target}"
         message += f"; ROS 2 looks for the package's files below {package.share}"
         mistake = f"a build installs the file outside of {package.share}"
-        return failed(message, setup.location(copies[0].at), mistake=mistake)
+        return failed(message, setup.location(copies[0].at), mistake=mistake, cause="elsewhere")
     raise _why_not_installed(package, files, kind)
 
 
@@ -241,7 +273,11 @@ def _why_not_installed(
     if empty is None:
         message += f": {'no' if setup.is_cmake else 'no entry of'} {setup.entries} names it"
         return MissingElement(
-            what, package.folder, message=message, location=setup.location(setup.called_at)
+            what,
+            package.folder,
+            message=message,
+            location=setup.location(setup.files_at),
+            cause="",
         )
     problem = f"the pattern {empty.pattern!r} in {setup.file} matches no file"
     # Late: a URDF on its own needs none of what reads a package.
@@ -250,7 +286,13 @@ def _why_not_installed(
     detail, at = why_no_match(package, empty.pattern), setup.location(empty.at)
     message += f": {problem}"
     return MissingElement(
-        what, package.folder, message=message, detail=detail, location=at, problem=problem + detail
+        what,
+        package.folder,
+        message=message,
+        detail=detail,
+        location=at,
+        problem=problem + detail,
+        cause="pattern",
     )
 
 

@@ -2,26 +2,30 @@
 the robot.
 """
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from math import dist
 from typing import Any, Literal
 
 from grader.base.errors import MissingElement, NotDecided, RubricError
-from grader.base.names import did_you_mean
+from grader.base.names import closest, similar_there
 from grader.base.text import enumerated, quoted
 from grader.base.transforms import Vector
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.checks.toml_types import Content, NonNegative, Scalar
 from grader.lab.checks.visuals import main_visual, placed
 from grader.lab.submission.submission import Submission
-from grader.ros.launch.launch_model import ParameterValue
+from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Cylinder, Joint, Sphere
+from grader.ros.workspace.workspace import Workspace
 
 _Measure = Literal["radius", "length", "distance", "lower", "upper", "velocity", "effort"]
 _EXACT = 1e-6
+_OF_CPP = (".cpp", ".cc", ".cxx", ".hpp", ".h")
 _DIGITS = 6  # after the point, as a measure has rounding errors
 
 
@@ -121,6 +125,7 @@ def value_of(submission: Submission, node: str, parameter: str) -> ParameterValu
     """
     workspace = submission.workspace
     given = workspace.parameter_owners.get(node, [])
+    given = given or [workspace.parameters_given(*it) for it in _named_in_cpp(workspace, node)]
     values = [found.values[parameter] for found in given if parameter in found.values]
     if len({repr(it.value) for it in values}) == 1 and len(values) == len(given):
         return values[0]
@@ -138,16 +143,40 @@ def value_of(submission: Submission, node: str, parameter: str) -> ParameterValu
             f"the parameters of {node} are not known: {unknown}",
             "parameters of a node are not known",
         )
+    for _, other in [] if given else _nameless(workspace):
+        cause = "the name of a node is only in its program"
+        raise NotDecided(f"{cause}: {other.package}/{other.executable}", cause)
     if not given:
-        guess = did_you_mean(node, workspace.parameter_owners)
-        message = f"nothing gives parameters to a node {quoted(node)}{guess}"
+        there = similar_there(node, workspace.parameter_owners)
+        message = f"nothing gives parameters to a node {quoted(node)}{there}"
         raise MissingElement("parameters of the node", node, message=message)
-    names = [name for found in given for name in found.values]
+    written = {name: it.location for found in given for name, it in found.values.items()}
     message = (
-        f"{node} does not get the parameter {quoted(parameter)}{did_you_mean(parameter, names)}"
+        f"{node} does not get the parameter {quoted(parameter)}{similar_there(parameter, written)}"
     )
-    at = next((it.location for found in given for it in found.values.values()), None)
+    at = written.get(closest(parameter, written) or "", next(iter(written.values()), None))
     raise MissingElement("parameter", f"{node} {parameter}", message=message, location=at)
+
+
+def _nameless(workspace: Workspace) -> list[tuple[Package, StartedNode]]:
+    """Return the own nodes whose names neither the launch file nor a program in Python gives, with
+    their packages.
+    """
+    found = []
+    for _, node in workspace.nodes:
+        package = workspace.package_of(node)
+        if package is not None and workspace.name_of(node) is None:
+            found.append((package, node))
+    return found
+
+
+def _named_in_cpp(workspace: Workspace, name: str) -> Iterator[tuple[Package, StartedNode]]:
+    """Yield the nodes that only the sources of their packages in C++ give this name."""
+    written = re.compile(rf'\bNode>?\s*[({{]\s*"{re.escape(name)}"')
+    for package, node in _nameless(workspace):
+        sources = workspace.sources_of(package, _OF_CPP)
+        if any(written.search(source.text) for source in sources):
+            yield package, replace(node, node_name=name)
 
 
 def _equal(actual: Any, wanted: Any, tolerance: float) -> bool:

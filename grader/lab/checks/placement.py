@@ -21,9 +21,10 @@ from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Mesh, Visual
 from grader.ros.urdf.shapes import UnknownShape
 
+_LOOSE = {"joint": "a joint between the two links moves"}
 ABOUT = {
-    "frame_at": About(("joint/origin",), picture="frame"),
-    "centre_at": About(("visual/origin",), picture="outline"),
+    "frame_at": About(("joint/origin",), picture="frame", causes=_LOOSE),
+    "centre_at": About(("visual/origin",), picture="outline", causes=_LOOSE),
 }
 
 _ALONG = 0.9  # the least cosine of the angle between two vectors that count as one direction
@@ -141,9 +142,10 @@ def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome |
     if own is not None and own in path and loose is not own:
         reason = f"which moves: a joint above it is {loose.type}; it should be fixed"
         at = place(own.location, "link", "parent")
-        return failed(f"{link!r} is a child of {own.parent!r}, {reason}", at, detail=detail)
+        message = f"{link!r} is a child of {own.parent!r}, {reason}"
+        return failed(message, at, detail=detail, cause="joint")
     message = f"a joint between {relative_to!r} and {link!r} is {loose.type}; it should be fixed"
-    return failed(message, place(loose.location, "type"), detail=detail)
+    return failed(message, place(loose.location, "type"), detail=detail, cause="joint")
 
 
 def _origin_by(

@@ -15,12 +15,12 @@ from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.reader import Reading
 from grader.ros.urdf.urdf_problems import UNLISTED
-from grader.ros.workspace.problem_kinds import ROBOT_KINDS
+from grader.ros.workspace.problem_kinds import EVERY_KIND
 
 # Another text for the same robot may have problems of its own.
 ABOUT = {"without_problems": About(breaks_under=everything, is_of_writing=True)}
 
-_CODES = [kind.code for kind in ROBOT_KINDS]
+_CODES = [kind.code for kind in EVERY_KIND if kind.code.startswith(("URDF", "XACRO"))]
 _KNOWN = Constraint(
     (
         "codes of problems of a URDF or of xacro, such as URDF012 (`grader explain CODE` "

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 from weakref import WeakKeyDictionary
 
 from grader.base.errors import MissingElement, NotDecided, RubricError
-from grader.base.names import did_you_mean
+from grader.base.names import similar_there
 from grader.base.text import counted, enumerated, quoted
 from grader.base.transforms import Transform
 from grader.lab.checks.check import About
@@ -171,7 +171,7 @@ def _check_names(robot: Configuration, names: Sequence[str]) -> None:
     message = (
         f"there is no joint {enumerated([*map(quoted, missing)], _MAX_JOINTS, 'and no joint')}"
     )
-    guess = did_you_mean(missing[0], known) or f"; the file has: {_list_names(known) or 'none'}"
+    guess = similar_there(missing[0], known) or f"; the file has: {_list_names(known) or 'none'}"
     raise MissingElement("joint", missing[0], known, message=message, detail=guess)
 
 

@@ -9,7 +9,6 @@ from grader.base.text import enumerated
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, Status, failed, judged, passed
 from grader.lab.submission.submission import Submission
-from grader.ros.build.places import is_of_one_machine
 from grader.ros.package.package import Package
 
 if TYPE_CHECKING:
@@ -20,11 +19,18 @@ if TYPE_CHECKING:
 ABOUT = {
     "rviz_found": About(("rviz",)),
     "rviz_fixed_frame": About(("rviz",)),
-    "rviz_shows_robot": About(("rviz",)),
+    "rviz_shows_robot": About(
+        ("rviz",),
+        causes={
+            "display": "the display is off, draws nothing, or is of another class",
+            "nodes": "the nodes that are started use other names than RViz",
+        },
+    ),
     "rviz_display_on": About(("rviz",)),
 }
 
 _PLUGINS = "rviz_default_plugins"
+_NO_FILE = "the package has no RViz file"
 _UNKNOWN_PREFIX = "the frame_prefix of robot_state_publisher is known only at run time"
 
 
@@ -53,7 +59,9 @@ def rviz_found(package: Package, *, name: str, launch: str = "") -> Outcome:
     )
 
 
-def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: str = "") -> Outcome:
+def rviz_fixed_frame(
+    submission: Submission, *, name: str, frame: str, launch: str = "", where_there: bool = False
+) -> Outcome:
     """The RViz file's Fixed Frame is this link, after the launch file's `frame_prefix` for
     robot_state_publisher.
 
@@ -62,8 +70,11 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
         frame: The link in whose frame RViz should draw.
         launch: The name of a launch file whose RViz file is examined, under any name; by default,
             only `name` decides.
+        where_there: Whether a package without an RViz file passes, for `carried`.
     """
     package = submission.needed_package()
+    if where_there and not package.rviz_files:
+        return passed(_NO_FILE)
     rviz = _read_rviz(package, name, launch)
     if rviz.conflict is not None:
         return failed(rviz.conflict.message, rviz.conflict.location)
@@ -77,7 +88,9 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
     if None in frames and actual.endswith(frame):
         raise NotDecided(_UNKNOWN_PREFIX)
     links: list[str] = []
-    for link in submission.robot.links if submission.robot is not None else ():
+    robot = submission.robot
+    # A robot that ROS 2 does not load may lack links, such as those of a file that is not there.
+    for link in robot.links if robot is not None and not robot.rejected else ():
         links += filter(None, _frames_of_link(opened, link.name))
     message, detail = f"the Fixed Frame is {actual!r}", ""
     if actual not in frames:
@@ -95,7 +108,12 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
 
 
 def rviz_shows_robot(
-    package: Package, *, name: str, topic: str = "/robot_description", launch: str = ""
+    package: Package,
+    *,
+    name: str,
+    topic: str = "/robot_description",
+    launch: str = "",
+    where_there: bool = False,
 ) -> Outcome:
     """A RobotModel display of the RViz file is on, reads the robot from this topic, and has the
     prefix of its frames.
@@ -108,20 +126,21 @@ def rviz_shows_robot(
         topic: The topic from which the display should read the robot.
         launch: The name of a launch file whose RViz file is examined, under any name; by default,
             only `name` decides.
+        where_there: Whether a package without an RViz file passes, for `carried`.
     """
+    if where_there and not package.rviz_files:
+        return passed(_NO_FILE)
     rviz = _read_rviz(package, name, launch)
     models = [display for display in rviz.displays if display.kind == "RobotModel"]
     if not models:
         return _no_display(rviz, "RobotModel")
     opened = _read_launch(package, launch)
     verdicts = [(_judge_model(model, topic, opened), model) for model in models]
-    fine = [model for (status, _), model in verdicts if status == "passed"]
+    fine = [model for verdict, model in verdicts if verdict.status == "passed"]
     if fine:
         return passed(f"the display {fine[0].name or 'RobotModel'!r} shows the robot")
-    (status, reason), model = next(
-        (verdict for verdict in verdicts if verdict[0][0] == "pending"), verdicts[0]
-    )
-    return Outcome(status, reason, location=model.location)
+    verdict, model = next((it for it in verdicts if it[0].status == "pending"), verdicts[0])
+    return Outcome(verdict.status, verdict.reason, location=model.location, cause=verdict.cause)
 
 
 def rviz_display_on(package: Package, *, name: str, kind: str, launch: str = "") -> Outcome:
@@ -186,11 +205,19 @@ def _frames_of_link(opened: "Launch | None", link: str) -> tuple[str | None, ...
     return (link,)
 
 
-def _judge_model(model: "Display", topic: str, opened: "Launch | None") -> tuple[Status, str]:
+class _Verdict(NamedTuple):
+    """Whether a RobotModel display shows the robot, and if not, why."""
+
+    status: Status
+    reason: str = ""
+    cause: str = ""
+
+
+def _judge_model(model: "Display", topic: str, opened: "Launch | None") -> _Verdict:
     """Return whether a RobotModel display shows the robot, and if not, why."""
     fault = _class_of_ros1(model) or _why_off(model)
     if not fault and model.package != _PLUGINS:
-        return (
+        return _Verdict(
             "pending",
             f"{model.package}/RobotModel is not a class of RViz itself; needs manual grading",
         )
@@ -198,15 +225,15 @@ def _judge_model(model: "Display", topic: str, opened: "Launch | None") -> tuple
     if not fault and hidden:
         fault = f"the RobotModel display is on, but {hidden}, so RViz draws nothing"
     if fault:
-        return "failed", fault
+        return _Verdict("failed", fault, "display")
     source = model.node.get("Description Source")
     if source is not None and source.text == "File":
-        file = model.node.get("Description File")
-        path = (file.text or "" if file is not None else "").strip()
-        if not path or is_of_one_machine(path):
+        path = model.file
+        if not path or model.reads_file_of_one_machine:
             where = f"the file {path!r} of one machine" if path else "a file, and names none"
-            return "failed", f"the RobotModel display reads {where}; it should read {topic!r}"
-        return (
+            message = f"the RobotModel display reads {where}; it should read {topic!r}"
+            return _Verdict("failed", message)
+        return _Verdict(
             "pending",
             "the RobotModel display reads a local file instead of a topic; needs manual grading",
         )
@@ -214,19 +241,20 @@ def _judge_model(model: "Display", topic: str, opened: "Launch | None") -> tuple
     verdict = _judge_topic(
         (value.text or "" if value is not None else "").strip(), topic, _Names.of(opened)
     )
-    if verdict[0] != "passed":
+    if verdict.status != "passed":
         return verdict
     return _judge_prefix(model, opened)
 
 
-def _judge_topic(actual: str, topic: str, names: "_Names") -> tuple[Status, str]:
+def _judge_topic(actual: str, topic: str, names: "_Names") -> _Verdict:
     """Return whether a RobotModel display reads the robot, by the nodes that are started or else by
     the topic.
     """
     described, shown = names.described, names.shown(actual)
     if described is None or (described and None in shown):
-        return "pending", "the topics of the nodes are known only at run time; needs manual grading"
-    unheard = names.unheard
+        reason = "the topics of the nodes are known only at run time; needs manual grading"
+        return _Verdict("pending", reason)
+    unheard, cause = names.unheard, "nodes"
     if actual and described and (described != {topic} or shown != {actual}):
         if not described & shown:
             unheard = (
@@ -237,8 +265,8 @@ def _judge_topic(actual: str, topic: str, names: "_Names") -> tuple[Status, str]
             fault = f"reads the topic {actual!r}; it should read"
         else:
             fault = "has no Description Topic; it should be"
-        unheard = f"the RobotModel display {fault} {topic!r}"
-    return ("failed", unheard) if unheard else ("passed", "")
+        unheard, cause = f"the RobotModel display {fault} {topic!r}", ""
+    return _Verdict("failed", unheard, cause) if unheard else _Verdict("passed")
 
 
 class _Names(NamedTuple):
@@ -306,7 +334,7 @@ def _listed(topics: set[str] | set[str | None]) -> str:
     return enumerated(sorted(topic for topic in topics if topic))
 
 
-def _judge_prefix(model: "Display", opened: "Launch | None") -> tuple[Status, str]:
+def _judge_prefix(model: "Display", opened: "Launch | None") -> _Verdict:
     """Return whether a RobotModel display finds the links' frames: it puts its TF Prefix and a
     slash before them.
     """
@@ -316,15 +344,16 @@ def _judge_prefix(model: "Display", opened: "Launch | None") -> tuple[Status, st
     # robot_state_publisher none.
     found, prefixes = f"{own}/" if own else "", _frames_of_link(opened, "")
     if found in prefixes:
-        return "passed", ""
+        return _Verdict("passed")
     if None in prefixes:
-        return "pending", f"{_UNKNOWN_PREFIX}; needs manual grading"
+        return _Verdict("pending", f"{_UNKNOWN_PREFIX}; needs manual grading")
     expected = prefixes[0] or ""
     message = (
         f"the TF Prefix of the RobotModel display is {own!r}, so it looks for frames like "
         f"'{found}LINK'; "
     )
-    return "failed", f"{message}robot_state_publisher publishes '{expected}LINK'"
+    reason = f"{message}robot_state_publisher publishes '{expected}LINK'"
+    return _Verdict("failed", reason, "nodes")
 
 
 def _read_launch(package: Package, launch: str) -> "Launch | None":

@@ -47,6 +47,7 @@ class Fault(NamedTuple):
     at: Location | None = None
     detail: str = ""
     is_certain: bool = True
+    cause: str = "given"  # one of those of the check node_runs
 
 
 def find_faults(
@@ -87,7 +88,8 @@ def _started_although(launch: "Launch", names: Iterable[str]) -> Iterator[Fault]
         nodes = [node for node in launch.nodes if node.name == name]
         certain = next((node for node in nodes if node.when), None)
         if certain is not None:
-            yield Fault(f"the launch file starts {name}; it should not", certain.location)
+            message = f"the launch file starts {name}; it should not"
+            yield Fault(message, certain.location, cause="")
         elif nodes or launch.unknown:
             yield Fault(f"{name} is started", is_certain=False)
 
@@ -192,16 +194,24 @@ class _NodeTopics:
     def __init__(self, launch: "Launch", workspace: "Workspace") -> None:
         self._topics: list[_NodeTopic] = []
         self._is_open = bool(launch.unknown)
+        self._unread: list[Fault] = []  # programs that Python cannot read publish nothing
         for node in launch.nodes:
             package, python_node = workspace.package_of(node), workspace.python_node(node)
-            if package is not None and (
-                python_node is None
-                or python_node.doubts
-                or workspace.python_nodes[package.name].doubts
-            ):
+            if package is None:
+                continue
+            own = workspace.python_nodes.get(package.name)
+            programs = own.programs if own is not None else ()
+            started = [it.syntax for it in programs if it.name == node.executable]
+            syntax = next(filter(None, started), None)
+            doubts = list(own.doubts) if own is not None else []
+            if syntax is not None:
+                message = f"Python cannot read the file: {syntax.message}"
+                self._unread.append(Fault(message, syntax.location))
+                doubts = [it for it in doubts if it.location.path != syntax.location.path]
+            elif python_node is None or python_node.doubts:
                 self._is_open = True
-            if python_node is not None:
-                self._add(node, python_node.endpoints)
+            self._is_open = self._is_open or bool(doubts)
+            self._add(node, python_node.endpoints if python_node is not None else ())
 
     def _add(self, node: "StartedNode", endpoints: "Iterable[Endpoint]") -> None:
         for endpoint in [endpoint for endpoint in endpoints if endpoint.kind in _VERBS]:
@@ -229,10 +239,13 @@ class _NodeTopics:
             endpoint = same[0].endpoint
             shown = (endpoint.type or "").replace(".", "/")
             message = f"a node {verb} {full_name} with {shown}; it should be {message_type}"
-            return Fault(message, endpoint.location)
+            return Fault(message, endpoint.location, cause="type")
+        if self._unread:
+            return self._unread[0]
         message = f"no node {verb} {full_name}"
         meant = closest(full_name, [topic.name for topic in of_kind])
         for topic in of_kind:
             if topic.name == meant:
-                return Fault(message, topic.endpoint.location, f"; did you mean {quoted(meant)}?")
-        return Fault(message)
+                guess = f"; there is {quoted(meant)}"
+                return Fault(message, topic.endpoint.location, guess, cause="topic")
+        return Fault(message, cause="topic")

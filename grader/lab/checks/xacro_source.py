@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.base.errors import InputError, MissingElement, NotDecided
-from grader.base.names import did_you_mean
+from grader.base.names import similar_there
 from grader.base.source import LazyLocation, Location
 from grader.base.text import MAX_NAMED, counted, enumerated, quoted
 from grader.files.reading import URDF_LIMIT
@@ -195,7 +195,7 @@ def _missing_uses(
         return
     for name in wanted:
         if name not in first_places:
-            detail = did_you_mean(name, first_places)
+            detail = similar_there(name, first_places)
             yield _Lack(f"the {kind} {quoted(name)} is not defined", None, detail)
         elif name not in used:
             verb = "called" if kind == "macro" else "used"

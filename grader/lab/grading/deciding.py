@@ -290,6 +290,7 @@ class _Grading:
             mistake=missing.mistake,
             problem=missing.problem,
             absent=self._absent_of(missing),
+            cause=missing.cause,
         )
         if first != criterion.id:
             return Result(criterion, outcome, carried=first)

@@ -8,7 +8,7 @@ from grader.base.problems import Problem
 from grader.base.slips import Slip
 from grader.base.text import enumerated, sentence_end
 from grader.lab.checks.loading import urdf_loads
-from grader.lab.checks.outcome import Outcome
+from grader.lab.checks.outcome import SLIP, Outcome
 from grader.lab.grading.deciding import decide
 from grader.lab.grading.report import Meant, PaidSlip, Result
 from grader.lab.rubric.rubric import Rubric
@@ -147,7 +147,7 @@ class _Readings:
         text = f"{sentence_end(failure.message)} {_correction_text(paid)}"
         if meant.is_lost and meant.outcome.status == "failed":
             text += f". Even so, {meant.outcome.message}"
-        return Result(written.criterion, failure._replace(message=text))
+        return Result(written.criterion, failure._replace(message=text, cause=SLIP))
 
 
 def _correction_text(slips: Iterable[Slip]) -> str:

@@ -7,13 +7,14 @@ takes the best, so that a later stage is asked only for what the earlier ones le
 and joints get hints in words: no edit writes them.
 """
 
+import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from grader.base.source import Edit, Edits
-from grader.base.text import enumerated, texts_in
+from grader.base.text import enumerated, in_backticks, quoted, texts_in
 from grader.lab.hints.edits import MAX_IN_HINT, FoundHint, Proposal
 from grader.lab.hints.robot_difference import MissingPart, Piece, RobotDifference
 from grader.lab.hints.robot_draft import Draft, Set
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
 
 _RAW_XACRO = "the URDF contains xacro, but is loaded without xacro"
 _MAX_LINKS = 40
+_TAG = re.compile(r"</?([A-Za-z][\w:]*)")
 _MAX_SIMILAR = 2
 
 
@@ -246,14 +248,38 @@ def _repairs(reading: Reading) -> Iterator[Proposal]:
         repaired = repair(reading.source.text)
         if not repaired.is_lossy:
             edits = tuple(reading.source.edit(*change) for change in repaired.changes)
-            yield Proposal(edits, "the syntax of tags")
+            yield Proposal(edits, _syntax_in_words(edits))
     draft = Draft.of(reading)
     if draft is not None and reading.undone:
         edits_of_words: list[Edit] = []
         for word in reading.undone:
             edits_of_words += _word_edits(draft, word)
-        cause = "the spelling of a word" if len(reading.undone) == 1 else "the spelling of words"
+        written = dict.fromkeys(map(_word_in_words, reading.undone))
+        cause = enumerated(written, MAX_IN_HINT)
         yield Proposal(tuple(edits_of_words), cause)
+
+
+def _syntax_in_words(edits: Edits) -> str:
+    """Return what is wrong with the tags that edits change, remove or add."""
+    texts = [edit.old.strip() or edit.new.strip() for edit in edits]
+    if any(text.startswith("<<<<<<<") for text in texts):
+        return "an unresolved merge conflict"
+    tags: dict[str, None] = {}
+    for text in texts:
+        tags |= dict.fromkeys(_TAG.findall(text)[:1])
+    if tags:
+        return f"the syntax of {enumerated([f'<{tag}>' for tag in tags], MAX_IN_HINT)}"
+    return f"the syntax of {in_backticks(texts)}"
+
+
+def _word_in_words(word: Word) -> str:
+    """Return a word as it is written, with what it is."""
+    element, attribute = word.element, word.attribute
+    if attribute is None:
+        return f"the tag <{element.tag}>"
+    if attribute in word.attributes:
+        return f"{attribute}={quoted(str(element.attrib[attribute]))} of <{element.tag}>"
+    return f"the attribute {attribute} of <{element.tag}>"
 
 
 def _word_edits(draft: Draft, word: Word) -> Edits:

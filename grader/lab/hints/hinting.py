@@ -1,6 +1,6 @@
 """Reports with hints, in the words of each level, and submissions with the edits of all hints."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from decimal import Decimal
 from functools import partial
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 
 _MAX_LINES = 6
+_IMPORTS = ("import ", "from ")
 _MAX_TEXT = 240  # characters of a changed text
 
 
@@ -95,10 +96,8 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
             hints[name] = hint._replace(after=earlier)
     if level == "edit":
         edited = list(dict.fromkeys(entries.values()))
-        others = enumerated(edited, MAX_IN_HINT)
-        for name in _passing(search, [it for it in costs if it not in {*hints, *edited}]):
-            at = results[name].outcome.location or Location("", 1, 1)
-            hints[name] = Hint(f"Make the edits for {others}.", at, {})
+        passing = [name for name in costs if name not in hints and name not in edited]
+        hints |= _hints_of_others([results[it] for it in passing], search.results, edited)
     with_hints = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
     report = report._replace(results=tuple(with_hints), hints_complete=search.is_complete)
     edits: list[Edit] = []
@@ -107,10 +106,17 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
     return _HintedReport(report, tuple(edits), trials.faults)
 
 
-def _passing(search: HintSearch, names: Iterable[str]) -> list[str]:
-    """Return the criteria of these names that pass with all edits that were found."""
-    results = search.results
-    return [name for name in names if name in results and not results[name].is_lost]
+def _hints_of_others(
+    results: Sequence[Result], after: Mapping[str, Result], edited: Sequence[str]
+) -> dict[str, Hint]:
+    """Return the hints of criteria that pass only after all edits, which other ones show."""
+    text = f"Make the edits for {enumerated(edited, MAX_IN_HINT)}."
+    hints = {}
+    for result in results:
+        name = result.criterion.id
+        if name in after and not after[name].is_lost:
+            hints[name] = Hint(text, result.outcome.location or Location("", 1, 1), {})
+    return hints
 
 
 def _written(found: Sequence[FoundHint]) -> list[FoundHint]:
@@ -177,20 +183,26 @@ def _entry(
 
 
 def _first_at(found: FoundHint, where: Location | None) -> FoundHint:
-    """Return a hint with the edits in the line of the failure first."""
+    """Return a hint with the edits in the line of the failure first, and imports last."""
     place = (where.path, where.line) if where is not None else None
-    edits = sorted(
-        found.proposal.edits,
-        key=lambda it: ((it.path, it.line) != place, it.path, it.line, it.column),
-    )
+
+    def rank(edit: Edit) -> tuple[bool, bool, str, int, int]:
+        is_import = not edit.old and edit.new.startswith(_IMPORTS)
+        is_elsewhere = (edit.path, edit.line) != place
+        return is_import, is_elsewhere, edit.path, edit.line, edit.column
+
+    edits = sorted(found.proposal.edits, key=rank)
     return found._replace(proposal=found.proposal._replace(edits=tuple(edits)))
 
 
 def _hint(found: FoundHint, text: str, shown_by: str, result: Result, *, keeps_edits: bool) -> Hint:
     at = result.outcome.location or Location("", 1, 1)
     if found.edits:  # of two alternatives, there are none
-        first = found.edits[0]
-        at = Location(first.path, first.line, first.column)
+        first, where = found.edits[0], result.outcome.location
+        # A line that is missing has no place of its own.
+        is_line = "\n" in first.new and not first.old and not first.path.endswith(ROBOT_ENDINGS)
+        if not (is_line and where is not None and where.path == first.path):
+            at = Location(first.path, first.line, first.column)
     shown = (found.edits, found.proposal.cause) if keeps_edits else ((), "")
     return Hint(text, at, found.gains, *shown, shown_by, found.certainty)
 

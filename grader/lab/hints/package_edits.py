@@ -19,6 +19,7 @@ from grader.base.markup import indentation, indented
 from grader.base.merge_conflicts import find_conflicts
 from grader.base.names import closest
 from grader.base.source import Edit, Edits, Source
+from grader.base.text import in_backticks
 from grader.lab.hints.edits import Proposal
 from grader.lab.hints.package_task import WHAT, PackageTask, change, file_proposals, package_names
 from grader.ros.build.places import HOME, PREFIX, WORKING_FOLDER
@@ -33,6 +34,7 @@ _MAX_MEANT = 4  # names that an undefined one may stand for
 _MAX_MORE = 2  # letters that one word has more than the other
 _LIKENESS = 0.75
 _TOKEN = re.compile(r"\w+|[ \t]+|\r?\n|.", re.DOTALL)
+_AROUND_TEXTS = " ,'\"\r\n"
 _MAX_DIFFERENCES, _MAX_TOKENS = 6, 3000
 _SETTING = re.compile(r"(?P<key>[^\W\d][\w -]*?)(?::[ ]+|=\")(?P<value>[^\s\"][^\n\"]*)")
 _MAX_VALUES = 4
@@ -133,7 +135,7 @@ def _proposals_of_file(
     ending, ending_of_like = posixpath.splitext(path)[1], posixpath.splitext(like or "")[1]
     is_python = ending in (".py", "")
     if wanted and (ending == ending_of_like or is_python):
-        yield from _reword(source, wanted, what)
+        yield from _reword(source, file, wanted, what)
     if is_python:
         yield from _missing_entries(file, PythonFile(Source(source.path, wanted)), what)
         yield from _undefined_names(file, what)
@@ -174,7 +176,7 @@ def _respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Pr
         if not guess or {word, guess} <= bound:  # names that are both bound are two things
             continue
         edits = [source.edit(*place.span(), guess) for place in places[word]]
-        yield change(edits, "the spelling of a word", what)
+        yield change(edits, f"the spelling of `{word}`", what)
         count += 1
         if count == _MAX_WORDS:
             break
@@ -183,7 +185,7 @@ def _respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Pr
         source.edit(*match.span(), "'" if match[0] in _SINGLE else '"')
         for match in _TYPOGRAPHIC.finditer(source.text)
     ]
-    yield change(quotes, "a syntax error", what)
+    yield change(quotes, "quotation marks that are not straight", what)
     if not source.path.endswith(".py"):
         yield from _replace_words(source, _SUBSTITUTION, _SUBSTITUTIONS, what)
 
@@ -197,7 +199,8 @@ def _replace_words(
         places.setdefault(match[0], []).append(match)
     for matches, word in product(places.values(), words):
         edits = [source.edit(*match.span(), word) for match in matches]
-        yield change(edits, "a word", what)
+        written = in_backticks([matches[0][0]]) or "a missing space"
+        yield change(edits, written, what)
 
 
 def _slip(word: str, known: Iterable[str]) -> str | None:
@@ -210,7 +213,7 @@ def _slip(word: str, known: Iterable[str]) -> str | None:
     return guess if likeness >= _LIKENESS else None
 
 
-def _reword(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
+def _reword(source: Source, file: PythonFile, wanted: str, what: str) -> Iterator[Proposal]:
     """Yield edits that undo one difference each between a file and the text that it should have,
     if there are few.
     """
@@ -226,8 +229,27 @@ def _reword(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
     for _, first, last, start, end in changes:
         offset = start_of_text + len("".join(own[:first]))
         old, new = "".join(own[first:last]), "".join(right[start:end])
-        cause = "a line" if first < last else "a missing line"
-        yield change([source.edit(offset, offset + len(old), new)], cause, what)
+        edit = source.edit(offset, offset + len(old), new)
+        written = in_backticks([old.strip(_AROUND_TEXTS)])
+        yield change([edit], written or _missing_in_words(file, offset, new), what)
+
+
+def _missing_in_words(file: PythonFile, offset: int, new: str) -> str:
+    """Return what is missing at an offset: an import, white space, or a part of a list or call."""
+    if not new.strip():
+        return "missing white space" if "\n" in new else "a missing space"
+    undefined = file.used - file.bound
+    names = [word for word in _WORD.findall(new) if word in undefined]
+    if new.lstrip().startswith(("import ", "from ")):
+        return f"the import of {in_backticks(names)}" if names else "a missing import"
+    around = ""
+    for node in file.nodes:
+        if isinstance(node, ast.Call | ast.keyword):
+            start, end = file.span(node)
+            name = node.arg if isinstance(node, ast.keyword) else file.segment(node.func)
+            if start < offset < end and name:
+                around = name
+    return f"a missing part of `{around}`" if around else "a missing line"
 
 
 def _other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
@@ -253,15 +275,17 @@ def _undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
     if file.fault is not None:
         start = file.source.offset(file.fault.location.line, 1)
         end = start + len(file.text[start:].partition("\n")[0].rstrip())
-        yield change([file.source.edit(end, end, ",")], "a syntax error", what)
-    yield change(file.with_imports(sorted(file.used)), "the imports", what)
+        yield change([file.source.edit(end, end, ",")], "a missing comma", what)
+    undefined = sorted(file.used - file.bound - {*dir(builtins)})
+    imported = in_backticks(name for name in undefined if name in USUAL_NAMES)
+    yield change(file.with_imports(sorted(file.used)), f"the import of {imported}", what)
     yield from _meant_names(file, what)
     yield from _other_imports(file, what)
     for node in file.nodes:
         # ("a", "b")("c", "d") is two tuples without a comma between them
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Tuple):
             end = file.span(node.func)[1]
-            yield change([file.source.edit(end, end, ",")], "a syntax error", what)
+            yield change([file.source.edit(end, end, ",")], "a missing comma", what)
 
 
 def _meant_names(file: PythonFile, what: str) -> Iterator[Proposal]:
@@ -284,7 +308,8 @@ def _other_imports(file: PythonFile, what: str) -> Iterator[Proposal]:
     for statement in file.imports:
         if [alias.name for alias in statement.names] == ["glob"]:
             new = "from glob import glob" if isinstance(statement, ast.Import) else "import glob"
-            proposal = change([file.replaced(statement, new)], "an import", what)
+            cause = in_backticks([file.segment(statement)])
+            proposal = change([file.replaced(statement, new)], cause, what)
             # It says better what changes than the difference of the lines.
             yield proposal._replace(rank=-1)
 
@@ -379,7 +404,8 @@ def _programs(task: PackageTask, launch: Launch, source: Source) -> Iterator[Pro
             edits.sort(key=lambda edit: abs(edit.line - node.location.line))
             for edit in edits[:_MAX_EDITS]:
                 rank = -1 if edit.old == node.executable else 0
-                yield change([edit], "the program of a node", _LAUNCH)._replace(rank=rank)
+                cause = f"the program `{edit.old}` of a node"
+                yield change([edit], cause, _LAUNCH)._replace(rank=rank)
 
 
 def _setup_paths(task: PackageTask) -> Iterator[Proposal]:
@@ -403,7 +429,7 @@ def _setup_paths(task: PackageTask) -> Iterator[Proposal]:
         for actual in texts:
             for wanted in _similar(actual, known)[:_MAX_EDITS]:
                 for edit in _moved(source, actual, wanted, line)[:2]:
-                    yield change([edit], "a path", SETUP)
+                    yield change([edit], f"the path `{edit.old}`", SETUP)
 
 
 def _similar(path: str, known: Iterable[str]) -> list[str]:
@@ -427,9 +453,15 @@ def _launch_paths(task: PackageTask, launch: Launch, source: Source) -> Iterator
             if edits_of_path:
                 ways.append(edits_of_path)
     if len(ways) > 1:
-        yield change([edit for way in ways for edit in way[0]], "the paths", _LAUNCH)
+        yield _paths_changed([edit for way in ways for edit in way[0]])
     for way in ways:
-        yield from (change(edits, "a path", _LAUNCH) for edits in way)
+        yield from map(_paths_changed, way)
+
+
+def _paths_changed(edits: Sequence[Edit]) -> Proposal:
+    """Return the proposal that changes paths in the launch file."""
+    paths = [edit.old.strip(_AROUND_TEXTS) for edit in edits if edit.old]
+    return change(edits, f"the path{'s' if len(paths) > 1 else ''} {in_backticks(paths)}", _LAUNCH)
 
 
 def _targets(task: PackageTask, purpose: str) -> list[str]:
@@ -569,7 +601,8 @@ def _adding(own: PythonFile, codes: Sequence[str], what: str) -> Iterator[Propos
         names: set[str] = set()
         for code in codes:
             names |= own.names_in(code)
-        yield change([*own.with_imports(sorted(names)), edit], f"a missing part of {what}")
+        cause = f"a missing part of `{'data_files' if what == SETUP else _DESCRIPTION}`"
+        yield change([edit, *own.with_imports(sorted(names))], cause, what)
 
 
 def _codes_of_entry(file: PythonFile, item: ast.expr) -> set[str]:

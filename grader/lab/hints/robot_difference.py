@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 from grader.base.names import near
 from grader.base.source import Edits
+from grader.base.text import enumerated, quoted
+from grader.lab.hints.edits import MAX_IN_HINT
 from grader.lab.hints.robot_draft import Draft, Set, child_of, end_of, escaped
 from grader.lab.hints.robot_numbers import mistake_in, values_of
 from grader.lab.hints.tree_difference import Node, Step, paired, steps
@@ -178,9 +180,10 @@ class RobotDifference:
             mimics = (it for it in self.draft.root.iter("mimic") if it.get("joint") == old)
             sets = (Set(joint, "", "name", new), *(Set(it, "", "joint", new) for it in mimics))
             every += sets
-            yield self.piece(joint, "the name of a joint", sets=sets, rank=STRUCTURE)
+            yield self.piece(joint, f"the name {quoted(old)} of a joint", sets=sets, rank=STRUCTURE)
         if len(every) > 1:
-            yield Piece("the names of joints", "", tuple(every), (), STRUCTURE)
+            names = enumerated([*map(quoted, self._names["joint"].values())], MAX_IN_HINT)
+            yield Piece(f"the names {names} of joints", "", tuple(every), (), STRUCTURE)
 
     def _tree(self, draft: Draft, names: Mapping[str, Mapping[str, str]]) -> Node:
         children = [child for child in draft.root if isinstance(child.tag, str)]
@@ -251,7 +254,8 @@ class RobotDifference:
         link = name if tag == "link" else ""
         for sets in dict.fromkeys((everywhere, alone)):
             if sets:
-                yield self.piece(element, f"the name of a {tag}", sets=sets, link=link)
+                cause = f"the name {quoted(old)} of a {tag}" if old else f"the name of a {tag}"
+                yield self.piece(element, cause, sets=sets, link=link)
 
     def _remove(self, node: Node) -> Iterator[Piece]:
         """Remove what the reference does not have; an origin or axis gets its default."""
@@ -265,7 +269,9 @@ class RobotDifference:
         elif around is self.draft.root and not is_twice:
             return
         elif around is not None and around.tag != "geometry":  # there the shape is replaced
-            cause = f"an extra {tag}" if tag in ("link", "joint") else f"an extra <{tag}>: {{}}"
+            cause = f"an extra <{tag}>: {{}}"
+            if tag in ("link", "joint"):
+                cause = f"an extra {tag} {quoted(element.get('name') or '')}"
             yield self.piece(element, cause, self.draft.remove(element), rank=STRUCTURE)
 
     @cached_property

@@ -154,7 +154,8 @@ class Draft:
         name = self.link_of(owner) if owner.tag in ("link", "joint") else owner.get("name") or ""
         what = path[0] if len(path) == 1 else f"{path[0]} {path[-1]}"
         if name not in known:
-            return f"the {what}"
+            own = owner.get("name") if what == "joint" else None
+            return f"the {what} {own!r}" if own else f"the {what}"
         if what == "link":
             return f"the link {name!r}"
         return f"the {what} of {name!r}"

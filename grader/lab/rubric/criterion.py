@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from grader.base.text import counted_points, format_points
 from grader.lab.checks.check import Check
+from grader.lab.checks.outcome import WRONG, Outcome
 
 TOTAL = "total"  # in place of a criterion's id, in manual marks: the whole submission
 DEADLINE = "deadline"  # likewise: a deadline of the student
@@ -57,7 +58,7 @@ class Criterion(NamedTuple):
     check: Check
     arguments: Mapping[str, Any]
     requires: tuple[str, ...] = ()  # ids of criteria above it: it is skipped unless they passed
-    feedback: str = ""  # for students whose submission fails it
+    feedback: Mapping[str, str] = {}  # for students who fail it, by the cause; "": for any cause
     about: str = ""  # a heading that consecutive criteria share
     position: int = 0  # in the rubric, from 0
     answer: str = ""  # the model answer; empty unless the rubric was loaded with its answers
@@ -79,6 +80,10 @@ class Criterion(NamedTuple):
     def maximum(self) -> Decimal:
         """The points that are part of the maximum: none of a bonus."""
         return Decimal(0) if self.bonus else self.points
+
+    def feedback_on(self, outcome: Outcome) -> str:
+        """Return the feedback on a failure: that for its cause, or that for any cause."""
+        return self.feedback.get(outcome.cause or WRONG, self.feedback.get("", ""))
 
     @property
     def is_given(self) -> bool:

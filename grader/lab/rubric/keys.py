@@ -21,6 +21,7 @@ from grader.lab.checks.toml_types import (
 )
 from grader.lab.rubric.hint_levels import HintLevel
 from grader.lab.rubric.toml_file import KeyTable
+from grader.ros.known.releases import Release
 
 MAX_POINTS = 1_000_000
 _MAX_CHOICES = 9  # one key each
@@ -142,6 +143,15 @@ _CHOICES = simple_type(
     _are_choices,
     lambda table: {text: Decimal(points) for text, points in table.items()},
 )
+_FEEDBACK = simple_type(
+    "a string, or a table of strings by the cause of the failure",
+    {"type": ["string", "object"], "additionalProperties": _TEXT.schema},
+    lambda value: (
+        isinstance(value, str)
+        or (isinstance(value, dict) and all(isinstance(it, str) for it in value.values()))
+    ),
+    lambda value: {"": value} if isinstance(value, str) else value,
+)
 _LAUNCH_ARGUMENTS = simple_type(
     "a table of strings, numbers, true or false",
     {
@@ -238,7 +248,11 @@ CRITERION = KeyTable(
             "Which of the `packages` it is about; default: the one with the robot, else the first.",
         ),
         "feedback": described(
-            _TEXT, "An explanation for students whose submission fails the criterion."
+            _FEEDBACK,
+            (
+                "An explanation for students whose submission fails the criterion: one for every "
+                "failure, or one for each of some causes, and none for others."
+            ),
         ),
         "choices": described(
             _CHOICES, "Usual deductions for manual grading: a comment, and points below 0."
@@ -332,6 +346,11 @@ RUBRIC = KeyTable(
         ),
         "folders": described(
             _FOLDERS, "The names of the lab's folder in a repository of several labs."
+        ),
+        "distro": described(
+            toml_type(Release),
+            "The release of ROS 2 that the lab is for (default: jazzy): names of this release are "
+            "right.",
         ),
         "transforms": described(
             toml_type(tuple[str, ...]),

@@ -36,6 +36,7 @@ from grader.lab.rubric.toml_file import (
 from grader.lab.rubric.validation import BoundCarried, BoundCheck, Validation
 from grader.lab.submission.opening import open_submission
 from grader.lab.submission.submission import Lab, Submission
+from grader.ros.known.releases import Release
 from grader.ros.launch.launch_cache import LaunchCache
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import is_selector
@@ -127,6 +128,7 @@ class Rubric:
     without_package: str = ""  # the same without a package
     hints: HintLevel = "cause"  # the most that hints tell
     ignored: tuple[Ignored, ...] = ()  # mutants that `grader rubric test` lets pass
+    distro: Release = "jazzy"  # the release of ROS 2
     transforms: tuple[str, ...] = ()  # launch files whose static transforms are part of the robot
     solution: ReferenceSolution | None = field(default=None, compare=False, repr=False)
     links: frozenset[str] = frozenset()  # that criteria name
@@ -147,6 +149,7 @@ class Rubric:
             self.packages,
             self._launch_cache,
             self.installed,
+            self.distro,
         )
 
     @property
@@ -289,6 +292,7 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         without_package=rubric.get("without_package", ""),
         hints=rubric.get("hints", "cause"),
         ignored=tuple(ignored),
+        distro=rubric.get("distro", "jazzy"),
         transforms=rubric.get("transforms", ()),
         solution=_reference_solution(rubric, path, data),
         links=frozenset(_links_named(valid.bound)),
@@ -336,6 +340,7 @@ def _reference_solution(rubric: TomlRow, path: Path, data: bytes) -> ReferenceSo
         rubric.get("folders", ()),
         packages=rubric.get("packages", ()),
         launch_cache=LaunchCache(),
+        distro=rubric.get("distro", "jazzy"),
     )
 
     def error(what: str) -> InputError:

@@ -76,6 +76,7 @@ class Validation:
             if (bound := self._bind_check(where, row)) is not None:
                 self.bound.append(bound)
                 self._check_subject(where, row, bound[0])
+                self._check_causes((*where, "feedback"), row, bound[0])
             given = row.get("carried", [])
             tables: list[tuple[TomlPath, TomlRow]]
             if isinstance(given, dict):
@@ -168,6 +169,15 @@ class Validation:
                 "the key reference"
             )
             self._complain((*where, "check"), message)
+
+    def _check_causes(self, where: TomlPath, row: TomlRow, check: Check) -> None:
+        """Complain of feedback on a cause that no failure of the check has."""
+        for cause in row.get("feedback", {}):
+            if cause and cause not in check.causes:
+                there = f"; there are: {', '.join(check.causes)}"
+                hint = self._guess(cause, check.causes) or there
+                message = f"the check {check.name} has no cause {cause!r}{hint}"
+                self._complain((*where, cause), message)
 
     def _find_positions(self, key: str) -> dict[str, int]:
         """Return the position of the first row with each id, and complain of later ones with the

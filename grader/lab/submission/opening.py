@@ -1,7 +1,7 @@
 """Opens a submission: a URDF, a folder, an archive or standard input."""
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -40,6 +40,7 @@ _NO_URDFS = frozenset(
 _TABLES = frozenset({".csv", ".tsv", ".xlsx", ".xls", ".ods"})
 _NO_LAB = Lab("robot.urdf")  # any robot, and any package
 _MAX_NAMED = 6  # files in a note
+_MAX_LEVELS = 4  # above a package, at which its workspace may be
 _EXPECTED = "give a .urdf file, or the folder or archive that was submitted"
 
 
@@ -100,10 +101,13 @@ def open_workspace(path: str, max_size: int, arguments: Mapping[str, str]) -> Op
     if tree is None:
         return open_submission(path, _NO_LAB, Opening(max_size, arguments), with_neighbours=True)
     # Late: a URDF on its own needs no search.
+    from grader.files.gitignore import without_git_ignored
     from grader.ros.workspace.all_robots import read_workspace
 
+    identity = tree_name(place)
+    if place.is_dir():
+        tree, identity = without_git_ignored(tree, place), tree.name
     _refuse_empty(tree, printable_path(place))
-    identity = tree.name if place.is_dir() else tree_name(place)
     return read_workspace(tree, identity, max_size, arguments)
 
 
@@ -149,12 +153,7 @@ def _read_with_neighbours(place: Path, data: bytes, identity: str, opening: Open
         root = next(
             (above for above in (folder, *folder.parents) if (above / MANIFEST).is_file()), folder
         )
-        if any(
-            (root.parent / name / MANIFEST).is_file()
-            for name in _packages_in(asked)
-            if name != root.name
-        ):
-            root = root.parent  # of a workspace, in which another package is beside this one
+        root = _workspace_around(root, _packages_in(asked) - {root.name})
         path = printable((folder / place.name).relative_to(root).as_posix())
         found = read_folder(root)
         tree = overlaid(found, {path: data}) if path in found.files or place.is_symlink() else None
@@ -164,6 +163,20 @@ def _read_with_neighbours(place: Path, data: bytes, identity: str, opening: Open
     if tree is not None:
         return _with_files_around(submission, tree, path, alone)
     return submission
+
+
+def _workspace_around(package: Path, names: Collection[str]) -> Path:
+    """Return the folder of a workspace in which packages of these names are: that of a package, one
+    in which another one is beside it, or the nearest src or repository above; without any the
+    package.
+    """
+    if any((package.parent / name / MANIFEST).is_file() for name in names):
+        return package.parent
+    if names and (package / MANIFEST).is_file():
+        for above in (*package.parents,)[:_MAX_LEVELS]:
+            if above.name == "src" or (above / ".git").exists():
+                return above
+    return package
 
 
 def _packages_in(asked: Iterable[str]) -> set[str]:
@@ -262,6 +275,7 @@ def submission_of(
         no_package=chosen.no_package,
         lab_packages=chosen.lab_packages,
         whole_tree=tree,
+        stated=lab.stated,
         several=chosen.several,
         notes=chosen.notes,
         is_single=False,

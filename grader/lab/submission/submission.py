@@ -10,6 +10,7 @@ from grader.base.text import enumerated, was_not_committed
 from grader.files.limits import MAX_FILE_SIZE, ROBOT_ENDINGS
 from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.files.tree import File, Tree, make_tree
+from grader.ros.known.releases import Release, StatedReleases
 from grader.ros.launch.launch_cache import LaunchCache
 from grader.ros.package.package import NO_PACKAGE, Package
 from grader.ros.package.robot_file import (
@@ -47,6 +48,12 @@ class Lab(NamedTuple):
     launch_cache: LaunchCache | None = None  # of its submissions, where several are read
     # the packages of other people whose programs the lab asks for: they are on its machines
     installed: frozenset[str] = frozenset()
+    distro: Release | None = None  # of ROS 2; None for any
+
+    @property
+    def stated(self) -> StatedReleases:
+        """The release of ROS 2 that it is for."""
+        return StatedReleases((self.distro,) if self.distro is not None else ())
 
     @property
     def package_names(self) -> tuple[str, ...]:
@@ -114,7 +121,6 @@ class Submission(OpenedWorkspace):
     opening: Opening = DEFAULTS
     budget: Budget = field(default_factory=Budget)  # of the work to read it
     neighbours: tuple[Package, ...] = ()  # those around a URDF on its own
-    besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes
     reopen: "Callable[[Tree], Submission] | None" = None  # opens other files in the same way
     # Those of its documents that were read, by the files that they are among: copies of it have
     # them as well.

@@ -9,6 +9,7 @@ from itertools import groupby
 from markupsafe import Markup
 
 from grader import __version__
+from grader.base.problems import Problem
 from grader.base.text import format_points, printable
 from grader.lab.documents.pictures import PDF, EmbeddedPicture
 from grader.lab.grading.criterion_pictures import may_have_pictures, pictures_of
@@ -136,17 +137,18 @@ def inspection_html(inspection: Inspection) -> str:
         "extent": inspection.extent.words if inspection.extent is not None else "",
         "verdict": _CLASSES.get(look_of(inspection), "failed"),
         "problems": [
-            (
-                problem.severity,
-                content.problem_line(problem),
-                source_lines(problem.location, inspection.source),
-            )
-            for problem in inspection.problems[:MAX_LISTED]
+            _problem_card(problem, inspection) for problem in inspection.problems[:MAX_LISTED]
         ],
         "lists": [("Robots", lines)] if robot is None and lines else lists(robot),
     }
     relative_to = robot.relative_to if robot is not None else None
     return _render("inspection.html", values, plain_picture(configuration, relative_to))
+
+
+def _problem_card(problem: Problem, inspection: Inspection) -> tuple[str, str, object]:
+    """Return the severity of a problem, its line, and its place in the source."""
+    line = content.problem_line(problem)
+    return problem.severity, line, source_lines(problem.location, inspection.source)
 
 
 def _render(

@@ -79,7 +79,7 @@ def _expectation(result: Result) -> Any:
 
 def _feedback(result: Result) -> str:
     is_failed = result.outcome.status == "failed" and not result.why_given
-    return result.criterion.feedback if is_failed else ""
+    return result.criterion.feedback_on(result.outcome) if is_failed else ""
 
 
 def _hints(result: Result) -> list[Hint]:

@@ -73,6 +73,8 @@ INSPECTION = JsonObject(
         "robots": Many(_ROBOT),
         "problems": (Many(PROBLEM), "package_problems"),
         "read": (Maybe(_EXTENT), "extent"),
+        "distro": (array(TEXT), lambda it: it.extent.stated.releases if it.extent else ()),
+        "distro_from": (array(TEXT), lambda it: it.extent.stated.places if it.extent else ()),
     }
 )
 

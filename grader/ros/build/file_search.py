@@ -257,6 +257,7 @@ def file_functions(listing: PackageListing, root: str) -> FunctionTable:
         "glob.glob": folder.glob,
         "glob.iglob": folder.iglob,
         "os.listdir": folder.listdir,
+        "os.path.getsize": folder.getsize,
         "os.walk": folder.walk,
         "builtins.open": folder.open,
         "io.open": folder.open,
@@ -377,6 +378,14 @@ class _PackageFolder:
         path = call.argument(0, "path")
         return self._names("." if path is None else path)
 
+    def getsize(self, _: Evaluation, call: Call) -> Value:
+        path = call.argument(0, "filename")
+        real = self.real(path)
+        if real is None:
+            raise EvaluationFails(f"there is no file {str(path)!r}", kind=FileNotFoundError)
+        file = self.listing.files.get(real)
+        return Unknown("the size of a folder is not known", call.at) if file is None else file.size
+
     def iterdir(self, _: Evaluation, call: Call) -> Value:
         found = [call.args[0] / name for name in self._names(call.args[0])]
         self.listing.order_matters |= len(found) > 1
@@ -412,9 +421,9 @@ class _PackageFolder:
             raise Undetermined(reason, call.at, is_final=True)
         real = self.real(path)
         if real is None:
-            raise EvaluationFails(f"there is no file {str(path)!r}")
+            raise EvaluationFails(f"there is no file {str(path)!r}", kind=FileNotFoundError)
         if real in self.listing.folders:
-            raise EvaluationFails(f"{str(path)!r} is a folder, not a file")
+            raise EvaluationFails(f"{str(path)!r} is a folder, not a file", kind=IsADirectoryError)
         try:
             text = self.listing.files[real].read(_MAX_READ).decode()
         except (InputError, UnicodeDecodeError):
@@ -433,8 +442,8 @@ class _PackageFolder:
         if real in self.listing.folders:
             return list(self.listing.names(real or ""))
         if real is None:
-            raise EvaluationFails(f"there is no folder {str(path)!r}")
-        raise EvaluationFails(f"{str(path)!r} is a file, not a folder")
+            raise EvaluationFails(f"there is no folder {str(path)!r}", kind=FileNotFoundError)
+        raise EvaluationFails(f"{str(path)!r} is a file, not a folder", kind=NotADirectoryError)
 
 
 def _find_packages(listing: PackageListing, _: Evaluation, call: Call) -> Value:

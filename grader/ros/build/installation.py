@@ -82,6 +82,7 @@ class Installation:
     doubt: Unknown | None = None
     is_called: bool = True
     called_at: Position = START
+    files_at: Position = START  # of the argument data_files; of the call without it
     entry_points: Value = None  # what setup() is given
     ignored: tuple[IgnoredArgument, ...] = ()  # arguments that setup() does not have
     scripts_folder: str = "bin"  # below the prefix, for console_scripts
@@ -143,6 +144,11 @@ class Installation:
     def is_cmake(self) -> bool:
         """Whether it is a CMakeLists.txt."""
         return self.file != "setup.py"
+
+    @property
+    def is_unknown_after_error(self) -> bool:
+        """Whether what is installed is unknown only because of an error that stops Python."""
+        return bool(self.unknown and self.faults) and all(it.follows_error for it in self.unknown)
 
     @property
     def fault_text(self) -> str:

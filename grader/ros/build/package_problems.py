@@ -29,7 +29,7 @@ SETUP_UNKNOWN = _kind(
     "PKG016", "note", "Cannot be determined statically in setup.py or CMakeLists.txt"
 )
 IGNORED_ARGUMENT = _kind("PKG017", "warning", "Argument that setup() does not have")
-ROS1_PACKAGE = _kind("PKG018", "note", "Package of ROS 1")
+OF_ROS1 = _kind("PKG018", "note", "Package or launch files of ROS 1")
 LAUNCH_SYNTAX = _kind("LCH001", "error", "Unreadable launch file")
 LAUNCH_FAULT = _kind("LCH002", "error", "Error that stops a launch file")
 HARD_CODED = _kind("LCH003", "warning", "Path that exists on one machine only")

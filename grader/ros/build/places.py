@@ -3,6 +3,7 @@
 import posixpath
 import re
 from pathlib import PurePosixPath
+from typing import Literal
 
 # Paths below these are compared as strings.
 PREFIX = "/<prefix>"  # the folder that a build installs to
@@ -36,6 +37,28 @@ def is_launch_file(path: str) -> bool:
     return suffix in ("", ".launch", ".py", ".xml", ".yaml", ".yml") or (
         suffix == ".txt" and ".launch." in name
     )
+
+
+LaunchKind = Literal["launch", "ROS 1", "other"]
+_IS_YAML_LAUNCH = re.compile(r"^[\"']?launch[\"']?\s*:", re.MULTILINE)
+# What launch files of ROS 1 have, and those of ROS 2 never.
+_ROS1 = re.compile(r"<node\b(?![^>]*\bexec=)[^>]*\btype=|\$\((?:find|arg|optenv) |<rosparam\b")
+
+
+def launch_kind(path: str, text: str) -> LaunchKind:
+    """Return whether a file that may be a launch file is one, by its text: of what a folder named
+    launch holds, some files are read by others.
+    """
+    is_named = path.endswith(ENDINGS)
+    if path.endswith(".py"):
+        is_launch = is_named or "launch_description" in text or "LaunchDescription" in text
+    elif path.endswith((".yaml", ".yml")):
+        is_launch = is_named or _IS_YAML_LAUNCH.search(text) is not None
+    else:
+        if "<launch" in text and _ROS1.search(text):
+            return "ROS 1"
+        is_launch = is_named or "<launch" in text
+    return "launch" if is_launch else "other"
 
 
 def is_launch_named(path: str, name: str) -> bool:

@@ -16,6 +16,7 @@ from pathlib import PurePosixPath
 
 from grader.base.errors import InputError
 from grader.base.names import closest, did_you_mean
+from grader.base.source import Source
 from grader.base.text import enumerated
 from grader.files.limits import ignored_part
 from grader.files.tree import Tree
@@ -28,6 +29,7 @@ from grader.ros.python.library import MAX_PATH, PACKAGE_FOLDER, standard_functio
 from grader.ros.python.parse import START, Code, Position, SyntaxFault, parse, position_of
 from grader.ros.python.values import (
     PLAIN,
+    SCALARS,
     Call,
     Function,
     Items,
@@ -104,7 +106,8 @@ _TEXTS = (
     "test_suite",
 )
 # The arguments whose faults are found below.
-_CHECKED = ("version", "packages", "py_modules", "data_files", "entry_points")
+_SWITCHES = ("zip_safe", "include_package_data")
+_CHECKED = ("version", "packages", "py_modules", "data_files", "entry_points", *_SWITCHES)
 # The other arguments that setuptools 68 knows, and those that well-known plug-ins add.
 _OTHERS = (
     "package_dir",
@@ -268,11 +271,21 @@ def _evaluate_setup(
         doubt=doubts[0] if doubts else None,
         is_called=bool(calls) or interpreter.doubt is not None,
         called_at=calls[0].at if calls else START,
+        files_at=_files_at(calls[0], code.source) if calls else START,
         entry_points=given.get("entry_points"),
         ignored=tuple(data_files.ignored),
         scripts_folder=_scripts_folder(listing),
         packages=_packages_in(given.get("packages")),
     )
+
+
+def _files_at(call: Call, source: Source) -> Position:
+    """Return the position of the argument data_files; without it, of the call."""
+    at = call.places.get("data_files")
+    if at is None:
+        return call.at
+    name = source.line(at.line).find("data_files")
+    return at._replace(column=name + 1) if 0 <= name < at.column else at
 
 
 def _read_call(data_files: "_DataFiles", call: Call) -> None:
@@ -288,7 +301,7 @@ def _read_call(data_files: "_DataFiles", call: Call) -> None:
     entries = call.kwargs.get("data_files")
     if entries is not None:
         data_files.read(entries, call.at)
-    of_files = [*_file_findings(data_files.listing, call.at)]
+    of_files = [*_file_findings(data_files.listing, call)]
     is_configured = any(isinstance(finding, Unknown) for finding in of_files)
     for finding in (
         *_argument_findings(call.kwargs, data_files.listing, call.at, is_configured),
@@ -412,9 +425,9 @@ class _DataFiles:
                 "the files of an entry are a string, not a list: write [...] around it", at, files
             )
             files = [files] if files in self.listing.files else []
-        elif isinstance(files, Items | tuple):
+        elif isinstance(files, Items | tuple | set):
             self._not_list(files, at)
-            files = list(iterate(files))
+            files = sorted(files, key=str) if isinstance(files, set) else list(iterate(files))
         if not isinstance(files, list):
             self._not_list(files, at)
             return
@@ -430,7 +443,7 @@ class _DataFiles:
             self.stop(
                 "the files of an entry are an iterator, not a list: write list(...) around it", at
             )
-        elif isinstance(files, (*PLAIN, QualifiedName, Function)):
+        elif isinstance(files, (*PLAIN, set, QualifiedName, Function)):
             kind = type(files).__name__
             self.stop(
                 (
@@ -535,12 +548,15 @@ def _argument_findings(
                 f"this value of {name} in setup() is not evaluated", at
             )
     yield from _version_findings(kwargs, at)
+    for name in _SWITCHES:
+        value = kwargs.get(name)
+        if not isinstance(value, (*SCALARS, type(None))):
+            yield unknown_in(value) or Unknown(f"this value of {name} is not evaluated", at)
+        elif value not in (True, False, None):
+            yield f"{name} is True or False, not {value!r}"
     yield from _entry_point_findings(kwargs, at)
     yield from _package_findings(kwargs, listing, at)
-    modules = kwargs.get("py_modules") or []
-    if not _is_list(modules) or any(
-        f"{name.replace('.', '/')}.py" not in listing.files for name in modules
-    ):
+    if not _is_list(kwargs.get("py_modules") or []):  # one that is not there is a warning
         yield Unknown("this value of py_modules is not evaluated", at)
     if (
         not is_configured
@@ -604,7 +620,6 @@ _USUAL: Mapping[str, Callable[[Value], bool]] = {
     **dict.fromkeys(
         ("keywords", "classifiers", "platforms"), lambda it: isinstance(it, str) or _is_list(it)
     ),
-    **dict.fromkeys(("zip_safe", "include_package_data"), lambda it: isinstance(it, bool)),
     **dict.fromkeys(("install_requires", "tests_require"), _are_requirements),
     "setup_requires": lambda it: (
         _are_requirements(it) and _AT_HAND.issuperset([it] if isinstance(it, str) else it)
@@ -669,17 +684,17 @@ def _discovery_findings(listing: PackageListing) -> Iterator[_Finding]:
         )
 
 
-def _file_findings(listing: PackageListing, at: Position) -> Iterator[_Finding]:
+def _file_findings(listing: PackageListing, call: Call) -> Iterator[_Finding]:
     """Yield what is wrong with setup.cfg and pyproject.toml, and what of them is not evaluated."""
     for name, read in (("setup.cfg", _cfg_findings), ("pyproject.toml", _toml_findings)):
         if name in listing.files:
             try:
-                yield from read(listing.files[name].read(_MAX_SETTINGS).decode(), at)
+                yield from read(listing.files[name].read(_MAX_SETTINGS).decode(), call)
             except (InputError, UnicodeDecodeError):
-                yield Unknown(f"{name} cannot be read", at)
+                yield Unknown(f"{name} cannot be read", call.at)
 
 
-def _cfg_findings(text: str, at: Position) -> Iterator[_Finding]:
+def _cfg_findings(text: str, call: Call) -> Iterator[_Finding]:
     parser = ConfigParser()
     parser.optionxform = str  # type: ignore[assignment,method-assign]
     try:
@@ -694,9 +709,9 @@ def _cfg_findings(text: str, at: Position) -> Iterator[_Finding]:
     for section, names in options.items():
         if section in _SECTIONS:
             options_of_section = {name.replace("-", "_") for name in names}
-            yield from _option_findings(section, options_of_section - _SECTIONS[section], at)
+            yield from _option_findings(section, options_of_section - _SECTIONS[section], call.at)
         elif names and not _TOOL_SECTIONS.fullmatch(section):
-            yield Unknown(f"the section [{section}] of setup.cfg is not evaluated", at)
+            yield Unknown(f"the section [{section}] of setup.cfg is not evaluated", call.at)
 
 
 def _packages_in(value: Value) -> tuple[str, ...]:
@@ -725,12 +740,16 @@ def _option_findings(section: str, others: set[str], at: Position) -> Iterator[_
         yield Unknown(f"the option {min(others)} in [{section}] of setup.cfg is not evaluated", at)
 
 
-def _toml_findings(text: str, at: Position) -> Iterator[_Finding]:
+def _toml_findings(text: str, call: Call) -> Iterator[_Finding]:
     try:
         table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         yield f"pyproject.toml cannot be read: {error}"
         return
     tools = table.get("tool", {})
-    if "project" in table or not isinstance(tools, dict) or "setuptools" in tools:
-        yield Unknown("[project] and [tool.setuptools] of pyproject.toml are not evaluated", at)
+    named = {"name": call.kwargs.get("name"), "version": call.kwargs.get("version")}
+    # A [project] that only repeats these changes nothing.
+    is_plain = table.get("project", named) == named
+    if not is_plain or not isinstance(tools, dict) or "setuptools" in tools:
+        message = "[project] and [tool.setuptools] of pyproject.toml are not evaluated"
+        yield Unknown(message, call.at)

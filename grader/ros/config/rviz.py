@@ -11,6 +11,7 @@ from grader.base.problems import Problem
 from grader.base.reuse import reuse
 from grader.base.source import Location, Source
 from grader.ros.build import package_problems as kinds
+from grader.ros.build.places import is_of_one_machine
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
 
 _MAX_DISPLAYS = 500
@@ -55,6 +56,17 @@ class Display:
         if shown and not any(_switched_on(it, default=True) for it in shown):
             return "all its links are off"
         return ""
+
+    @property
+    def file(self) -> str:
+        """The path of the file that a RobotModel may read in place of a topic; empty without."""
+        node = self.node.get("Description File")
+        return (node.text or "" if node is not None else "").strip()
+
+    @property
+    def reads_file_of_one_machine(self) -> bool:
+        """Whether the path of its file exists on one machine only."""
+        return is_of_one_machine(self.file)
 
     @property
     def location(self) -> Location:

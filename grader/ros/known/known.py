@@ -2,7 +2,6 @@
 
 import tomllib
 from collections.abc import Mapping, Sequence
-from fnmatch import fnmatchcase
 from functools import cache
 from pathlib import Path
 from typing import Any, Literal, TypedDict, cast
@@ -35,10 +34,9 @@ class _Known(TypedDict):
     required_parameters: dict[str, list[str]]
     children: dict[str, list[str]]
     launch_arguments: dict[str, list[str]]
-    slash_before_jazzy: list[str]
     plugins: list[str]
     controllers: Mapping[Any, dict[str, str]]  # by the type that a file may give
-    packages_of_controllers: dict[str, str]  # by the types that do not begin with them
+    controller_packages: Mapping[Any, str]
     controller_topics: Mapping[Any, dict[Literal["subscription", "publisher"], dict[str, str]]]
     controller_actions: dict[str, list[str]]
     parameter_types: Mapping[Any, dict[str, list[str]]]  # by the type of a controller
@@ -59,8 +57,6 @@ class _Machine(TypedDict):
 
     other_packages: list[str]
     imported_by_launch: list[str]
-    in_cpp: list[str]
-    in_python: list[str]
     spawner_options: list[str]
     ending_commands: dict[str, list[str]]
     packages: dict[str, list[str]]
@@ -133,14 +129,6 @@ def node_attributes() -> frozenset[str]:
 def is_imported_by_launch(module: str) -> bool:
     """Return whether `ros2 launch` imports a Python package of this name."""
     return module in _machine()["imported_by_launch"]
-
-
-def is_written_in_cpp(package: str) -> bool:
-    """Return whether all nodes of a package certainly are written in C++."""
-    machine = _machine()
-    if any(fnmatchcase(package, pattern) for pattern in machine["in_python"]):
-        return False
-    return any(fnmatchcase(package, pattern) for pattern in machine["in_cpp"])
 
 
 def spawner_options() -> Sequence[str]:

@@ -37,6 +37,7 @@ from grader.ros.python.values import (
     QualifiedName,
     Undetermined,
     Unknown,
+    UnknownArgument,
     Value,
     iterate,
     known,
@@ -64,6 +65,7 @@ _NAMES = {
     Function: "a function",
     BoundMethod: "a method that is not called",
     UnknownText: "a text",
+    Items: "an iterator",
 }
 _WANTED = {
     bool: "True, False",
@@ -212,7 +214,7 @@ def _name_arguments(cls: LaunchClass, call: Call) -> None:
     for name in call.kwargs:
         if name not in cls.parameters:
             message = f"{cls.short} has no argument {name!r}{did_you_mean(name, cls.parameters)}"
-            raise EvaluationFails(message, call.at)
+            raise UnknownArgument(message, call.at, name)
     given |= call.kwargs
     for name, value in given.items():
         if isinstance(value, Items):

@@ -22,6 +22,7 @@ from grader.ros.config.yaml_nodes import (
 from grader.ros.launch.api import class_named, front_end
 from grader.ros.launch.call_arguments import TYPED, check
 from grader.ros.launch.launch_model import Findings, LaunchFault
+from grader.ros.launch.substitutions import boolean
 from grader.ros.python.parse import START, Position
 from grader.ros.python.values import (
     Call,
@@ -155,6 +156,7 @@ _NESTED: Mapping[str, _Parts] = {
         "param": _ELEMENTS,
     },
 }
+_SCALARS: Mapping[str, type] = {"bool": bool, "float": float, "int": int}
 _VALUE_TYPES = (
     "str",
     "bool",
@@ -546,10 +548,15 @@ def _read_parameter_value(entity: _Entity, given: Mapping[str, Any]) -> Value:
             f"a <param> has the type {kind!r}, which is none of {', '.join(_VALUE_TYPES)}",
             entity.at,
         )
+    has_separator = "value-sep" in given
+    scalar = _SCALARS.get(kind or "")
+    if scalar is not None and not entity.is_yaml and not has_separator:
+        converted = _converted(str(entity.attributes["value"]), scalar, entity)
+        return _checked_call(Call(TYPED[0], [], converted, entity.at))
     if kind not in (None, "str", "yaml"):
         raise Undetermined(f"a <param> of the type {kind} is not evaluated", entity.at)
     kwargs: dict[str, Value] = {}
-    if "value-sep" in given:
+    if has_separator:
         kwargs["value"] = _separated_values(entity, kind)
         return _checked_call(Call(TYPED[0], [], kwargs, entity.at))
     value = given["value"]
@@ -559,6 +566,20 @@ def _read_parameter_value(entity: _Entity, given: Mapping[str, Any]) -> Value:
     if kind == "str":
         kwargs["value_type"] = Call("builtins.str", [], {}, entity.at)
     return _checked_call(Call(TYPED[0], [], kwargs, entity.at))
+
+
+def _converted(text: str, kind: type, entity: _Entity) -> dict[str, Value]:
+    """Return the arguments of ParameterValue for a value in XML with a type, as launch's
+    type_utils.py converts it. Raises EvaluationFails.
+    """
+    if "$(" in text:
+        of_kind = Call(f"builtins.{kind.__name__}", [], {}, entity.at)
+        return {"value": _parse_if_text(text, entity.place("value")), "value_type": of_kind}
+    try:
+        return {"value": boolean(text, entity.at) if kind is bool else kind(text)}
+    except ValueError:
+        message = f"the value {text[:40]!r} of a <param> is not {kind.__name__}"
+        raise EvaluationFails(message, entity.place("value")) from None
 
 
 def _separated_values(entity: _Entity, kind: str | None) -> list[Value]:

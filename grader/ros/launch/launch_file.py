@@ -17,6 +17,7 @@ from typing import Any
 from grader.base.merge_conflicts import resolve_conflicts
 from grader.base.source import Location, Source
 from grader.ros.build.places import HOME, PREFIX, SHARE, WORKING_FOLDER
+from grader.ros.config.yaml_nodes import yaml_value
 from grader.ros.launch.actions import ActionVisitor, Include, NotIncluded
 from grader.ros.launch.api import (
     DESCRIPTION,
@@ -53,6 +54,7 @@ from grader.ros.python.interpreter import Interpreter
 from grader.ros.python.library import standard_functions
 from grader.ros.python.parse import START, Code, Position, SyntaxFault, location_in, parse
 from grader.ros.python.values import (
+    MAX_TEXT,
     Call,
     EvaluationFails,
     Function,
@@ -245,7 +247,7 @@ def _add_python(findings: Findings, file: "_PythonLaunchFile") -> None:
     ):  # the description is not loaded, so what is wrong with the rest of it does not count
         findings.faults, findings.doubts = [], []
     for fault in interpreter.errors:
-        findings.add_fault(fault.message, fault.at)
+        findings.add_fault(fault.message, fault.at, argument=fault.argument)
     for contents, at in file.reads:
         findings.refer("read", contents, Call("", [], {}, at))
 
@@ -377,8 +379,10 @@ class _PythonLaunchFile:
             "xacro.process": self._xacro,
             "xacro.parse": self._xacro,
             **dict.fromkeys(_TEXTS, self._text),
+            **dict.fromkeys(("yaml.safe_load", "yaml.load"), self._load_yaml),
             "subprocess.check_output": self._check_output,
             "subprocess.check_output.decode": lambda _, call: _printed_text(call.owner),
+            **dict.fromkeys(("sys.exit", "builtins.exit", "builtins.quit"), _leave),
             f"{_WRITTEN}.__enter__": record,
             f"{_WRITTEN}.read": _fail_to_read,
         }
@@ -410,6 +414,21 @@ class _PythonLaunchFile:
             at=opened.at,
             contents=_contents_read(opened),
         )
+
+    def _load_yaml(self, evaluation: Evaluation, call: Call) -> Value:
+        """Return the value of a file or text in YAML."""
+        given = call.argument(0, "stream")
+        if isinstance(given, Call) and given.name == "builtins.open":
+            given = self._text(evaluation, Call("builtins.open.read", [], {}, call.at, given))
+        if isinstance(given, FileText) and given.contents.by == "open":
+            given = self.context.text_of(given.contents.path)
+        text = known(given)
+        if not isinstance(text, str) or len(text) > MAX_TEXT or "<<" in text:
+            raise Undetermined("what yaml reads is not evaluated")
+        try:
+            return evaluation.budget.checked(yaml_value(text))
+        except ValueError:
+            raise EvaluationFails("what yaml reads is not YAML") from None
 
     def _package(self, evaluation: Evaluation, call: Call) -> str:
         name = known(call.argument(0, "package_name", "package"))
@@ -530,6 +549,12 @@ def _fail_to_read(_: Evaluation, call: Call) -> Value:
     raise EvaluationFails(
         "a file that is opened to be written is emptied, and cannot be read: leave out the mode",
         call.at,
+    )
+
+
+def _leave(_: Evaluation, call: Call) -> Value:
+    raise EvaluationFails(
+        f"{call.name.removeprefix('builtins.')}() ends ros2 launch here", call.at, SystemExit
     )
 
 

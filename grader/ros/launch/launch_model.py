@@ -45,9 +45,13 @@ class Contents:
 class UnknownText(Unknown):
     """A value that is not known, but certainly is a text."""
 
+    is_text = True
+
 
 class UnknownTable(UnknownText):
     """A table of parameters that is not known, whose names are not known either."""
+
+    is_text = False
 
 
 class FileText(UnknownText):
@@ -267,6 +271,7 @@ class LaunchFault:
     message: str
     location: Location
     lacks: Lacking = ""  # what another launch file, or the user, may give
+    argument: str = ""  # that a function does not have
 
 
 @dataclass(frozen=True, slots=True)
@@ -339,9 +344,11 @@ class Findings:
     sets_parameters: bool = False
     is_silent: bool = False  # while what may never be executed is visited
 
-    def add_fault(self, message: str, at: Position, lacks: Lacking = "") -> None:
+    def add_fault(
+        self, message: str, at: Position, lacks: Lacking = "", argument: str = ""
+    ) -> None:
         """Add an error that stops the launch."""
-        self.faults.append(LaunchFault(message, self.locate(at), lacks))
+        self.faults.append(LaunchFault(message, self.locate(at), lacks, argument))
 
     def add_unknown(self, reason: str, at: Position) -> None:
         """Add what may start more than is found."""
@@ -366,7 +373,7 @@ class Findings:
         if not isinstance(signal, EvaluationFails):
             self.add_doubt(str(signal), at)
         elif when:
-            self.add_fault(str(signal), at, signal.lacks)
+            self.add_fault(str(signal), at, signal.lacks, signal.argument)
         else:
             self.add_doubt(f"whether this is executed is not evaluated: {signal}", at)
 

@@ -16,12 +16,13 @@ from typing import Any, NamedTuple
 from grader.base.source import Location
 from grader.ros.build.places import PREFIX
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_value
-from grader.ros.known.known import is_written_in_cpp, spawner_options
+from grader.ros.known.known import spawner_options
 from grader.ros.launch.call_arguments import FILE, SCALARS, TYPED, items_in, kind_of, type_of
 from grader.ros.launch.launch_model import (
     NAMESPACE,
     Contents,
     Context,
+    FileText,
     GivenParameters,
     ParameterValue,
     Resolved,
@@ -126,6 +127,8 @@ def _read_item(item: Value, place: _Place) -> _Read:
         raise Undetermined("a parameter of this kind is not evaluated", item.at)
     elif isinstance(item, PurePosixPath):
         yield GivenParameters(place.location, str(item))
+    elif isinstance(item, set) and any(isinstance(it, FileText) for it in item):
+        yield GivenParameters(place.location, values={})  # launch_ros looks for a file of this name
     else:
         yield _make_file(resolve(item, place.context, place.at), place)
 
@@ -442,14 +445,12 @@ class NodeParameters(NamedTuple):
     unknown: str = ""  # why there may be more
 
 
-def parameters_of(
-    node: StartedNode, open_file: _OpenFile, name: str = "", *, is_python: bool | None = None
-) -> NodeParameters:
+def parameters_of(node: StartedNode, open_file: _OpenFile, name: str = "") -> NodeParameters:
     """Return the parameters that a node gets from a launch file, and where each is written.
 
     Later files and tables replace earlier ones. Of the keys of nodes in them (`/**`, `/ns/node`,
-    `node`), rclcpp lets the one count that it meets last for the first time, rclpy the exact name:
-    where these differ, a value is unknown unless it is known which of them the node uses.
+    `node`), the one counts that is met last for the first time, for rclcpp and, since rclpy 3.7,
+    for rclpy.
 
     Args:
         node: The node, as it is started.
@@ -457,14 +458,8 @@ def parameters_of(
             submission.
         name: The name that the node has in its program if the launch file gives it none; or the
             full name of another node of the same process, such as a controller.
-        is_python: Whether it is written in Python, if this is known.
     """
     full = _full_name(node, name)
-    is_cpp: bool | None = None
-    if is_python is not None:
-        is_cpp = not is_python
-    elif is_written_in_cpp(node.package):
-        is_cpp = True
     by_key: dict[str | None, dict[str, ParameterValue]] = {}
     reasons = []
     if node.parameters is None:
@@ -489,7 +484,7 @@ def parameters_of(
             reasons += [unknown.reason for unknown in opened.values()]
             _forget_below(opened, by_key)
             by_key.setdefault(key, {}).update(known)
-    return NodeParameters(_select_values(by_key, full, is_cpp), "; ".join(dict.fromkeys(reasons)))
+    return NodeParameters(_select_values(by_key, full), "; ".join(dict.fromkeys(reasons)))
 
 
 def _forget_below(
@@ -586,23 +581,14 @@ def value_in_file(node: YamlNode, *, is_plain: bool = True) -> ParameterValue:
 
 
 def _select_values(
-    by_key: Mapping[str | None, Mapping[str, ParameterValue]], full: str | None, is_cpp: bool | None
+    by_key: Mapping[str | None, Mapping[str, ParameterValue]], full: str | None
 ) -> dict[str, ParameterValue]:
     """Return the values that count for a node, of all sections in the order in which their keys are
     met first.
     """
     if full is None:
         return _select_for_any_name(by_key)
-    of_cpp = _merge(values for key, values in by_key.items() if _matches(key, full))
-    of_python = _merge(by_key.get(key, {}) for key in (_EVERY_NODE, full))
-    if is_cpp is not None:
-        return of_cpp if is_cpp else of_python
-    doubt = Unknown("rclcpp and rclpy let different values count", START)
-    names = {**of_cpp, **of_python}
-    return {
-        it: own if of_cpp.get(it) == of_python.get(it) else own._replace(value=doubt)
-        for it, own in names.items()
-    }
+    return _merge(values for key, values in by_key.items() if _matches(key, full))
 
 
 def _select_for_any_name(
@@ -625,7 +611,9 @@ def _merge(tables: Iterable[Mapping[str, ParameterValue]]) -> dict[str, Paramete
 
 
 def _matches(key: str | None, full: str) -> bool:
-    """Return whether the key of a section names a node, as rclcpp reads it."""
+    """Return whether the key of a section names a node: `*` stands for one name, `**` for any
+    number of them.
+    """
     if key is None:
         return False
     pattern = re.sub(r"/\\\*(\\\*)?", lambda it: r"(/\w+)*" if it[1] else r"(/\w+)", re.escape(key))

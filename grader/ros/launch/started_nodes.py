@@ -25,6 +25,7 @@ from grader.ros.launch.launch_model import (
     STATE_PUBLISHER,
     Contents,
     Context,
+    FileText,
     Findings,
     GivenParameters,
     NamedFile,
@@ -177,8 +178,10 @@ def _add_remaps(
     try:
         below = call.kwargs.get("namespace") or ""
         namespace: str | None = namespace_below(below, context, call.at)
-        for rule in call.kwargs.get("remappings") or ():
-            remaps.append(tuple(known_text(name, context, call.at) for name in rule))
+        for rule in items_in(call.kwargs.get("remappings") or ()) or ():
+            remaps.append(
+                tuple(known_text(name, context, call.at) for name in items_in(rule) or ())
+            )
     except EvaluationSignal:
         return replace(node, namespace=None, remaps=None)
     for name, _, value in reversed(rules):
@@ -354,14 +357,18 @@ def _find_description(findings: Findings, call: Call, context: Context) -> None:
     elif words or not is_clear or "ros_arguments" in call.kwargs or findings.sets_parameters:
         findings.refer("urdf", Unknown("its parameters are known only at run time", call.at), call)
     else:
-        message = (
-            "robot_state_publisher is started without robot_description: it has no robot to publish"
-        )
+        message = "robot_state_publisher is started without robot_description"
+        if any(isinstance(it, set) for it in parameters):
+            message += ": { , } is a set, and a table has a colon: {'robot_description': ...}"
+        else:
+            message += ": it has no robot to publish"
         findings.refer("urdf", None, call, wrong=message)
 
 
 def _is_flat(parameter: Value) -> bool:
-    """Return whether parameters are a dict that contains no other."""
+    """Return whether parameters are a dict that contains no other, or no table at all."""
+    if isinstance(parameter, set) and any(isinstance(it, FileText) for it in parameter):
+        return True
     if not isinstance(parameter, dict):
         return False
     return not any(isinstance(value, dict) for value in parameter.values())
@@ -380,7 +387,7 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
         return
     match found := _text_if_known(value, context, call.at):
         case Contents(path=path, by=by) if (
-            by != "xacro" and path.endswith(".xacro") and _may_be_xacro(path, context)
+            by != "xacro" and path.endswith(".xacro") and context.text_of(path) is None
         ):
             name = path.rpartition("/")[2]
             message = (
@@ -405,12 +412,6 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
             findings.refer("urdf", None, call, value, wrong=message)
         case _:
             findings.refer("urdf", found, call, value)
-
-
-def _may_be_xacro(path: str, context: Context) -> bool:
-    """Return whether a file may use xacro: it has a tag or an expression of it, or is not known."""
-    text = context.text_of(path)
-    return text is None or "xacro:" in text or "$" in text
 
 
 def _find_configuration(findings: Findings, call: Call, context: Context) -> None:

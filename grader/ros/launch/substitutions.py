@@ -31,6 +31,7 @@ from grader.ros.python.values import (
 )
 
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
+_OF_CMAKE = b"<build_type>ament_cmake</build_type>"
 _MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression
 TEXT_PARTS = (str, Call, Unknown)  # of which a text may consist
 PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown
@@ -247,7 +248,8 @@ class _Substitution:
         texts = self.texts(self.call.kwargs["expression"])
         if isinstance(texts, Unknown):
             raise Undetermined(f"this expression is not evaluated: {texts.reason}", self.at)
-        if "python_modules" in self.call.kwargs:
+        modules = self.texts(*listed(self.call.kwargs.get("python_modules", ["math"])))
+        if modules != ["math"]:
             raise Undetermined("the modules of this expression are not evaluated", self.at)
         return _expression_text(texts[0], self.at, self.context)
 
@@ -317,9 +319,11 @@ def check_program(package: str, name: str, context: Context, at: Position) -> No
         raise Undetermined(f"whether {package!r} has the program {name!r} is not evaluated", at)
     if not is_there:
         others = enumerated(programs_of(package)) or "none"
-        where = (
-            f" in lib/{package}: see console_scripts of setup.py, and install_scripts of setup.cfg"
-        )
+        manifest = context.machine.open_installed(f"share/{package}/package.xml")
+        listed = "console_scripts of setup.py, and install_scripts of setup.cfg"
+        if manifest is not None and _OF_CMAKE in manifest[0]:
+            listed = "install(PROGRAMS ...) and install(TARGETS ...) in CMakeLists.txt"
+        where = f" in lib/{package}: see {listed}"
         known = f"; it has {others}" if is_on_every_machine(package) else where
         raise EvaluationFails(f"the package {package!r} has no program {name!r}{known}", at)
 

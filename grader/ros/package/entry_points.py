@@ -17,7 +17,7 @@ from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.package import Package
 from grader.ros.python.budget import PYTHON_LIMIT
 from grader.ros.python.constants import binds_unseen
-from grader.ros.python.parse import Code, bound_in, parse
+from grader.ros.python.parse import Code, SyntaxFault, bound_in, parse
 
 _ENTRY = re.compile(
     r"\s*([^=\s]+)\s*=\s*(\w+(?:\.\w+)*)\s*(?::\s*(\w+)(?:\.\w+)*\s*)?(?:\[.*)?", re.ASCII
@@ -127,6 +127,13 @@ def read_module(package: Package, path: str) -> Code | None:
     data = package.tree.read(path, PYTHON_LIMIT)
     code = parse(data, package.path(path)) if data is not None else None
     return code if isinstance(code, Code) else None
+
+
+def unreadable_module(package: Package, path: str) -> SyntaxFault | None:
+    """Return why Python certainly cannot read a file of a package; None where it can, or may."""
+    data = package.tree.read(path, PYTHON_LIMIT)
+    fault = parse(data, package.path(path)) if data is not None else None
+    return fault if isinstance(fault, SyntaxFault) and fault.is_certain else None
 
 
 def module_path(package: Package, module: str) -> str | None:

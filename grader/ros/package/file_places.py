@@ -45,13 +45,15 @@ class FilePlace(NamedTuple):
     """Where a launch file looks for a file: found there, or why it is not. `missing`: a build does
     not install it.
 
-    `mistake` is the text without what differs between students.
+    `mistake` is the text without what differs between students, `cause` one of those of the check
+    `launch_finds_files`.
     """
 
     file: "NamedFile"
     state: Literal["found", "wrong", "unknown", "missing"]
     text: str = ""
     mistake: str = ""
+    cause: str = ""
 
     @property
     def is_local(self) -> bool:
@@ -92,7 +94,7 @@ class FilePlace(NamedTuple):
             f"{posixpath.basename(self.text)} needs {enumerated(missing)}, which a build does not "
             "install there"
         )
-        return FilePlace(self.file, "wrong", detail, mistake)
+        return FilePlace(self.file, "wrong", detail, mistake, "needs")
 
     def installed_robot(self, package: Package) -> "InstalledRobot":
         """Return the robot in the installed file."""
@@ -142,20 +144,22 @@ def _missing_file(package: Package, place: FilePlace) -> MissingElement:
         for path in package.tree.files
     ):
         kind, name = f"{_WORDS[purpose]} in the package", ""
-    return MissingElement(kind, name, message=place.text, location=place.file.location)
+    cause = "" if kind == f"installed {purpose}" else "missing"
+    return MissingElement(kind, name, message=place.text, location=place.file.location, cause=cause)
 
 
 def _place_of(package: Package, file: "NamedFile", *, built: bool) -> FilePlace:
     """Return whether a launch file finds a file that it names."""
     if file.path is None or file.reason:
-        return FilePlace(file, "wrong" if file.is_certain else "unknown", file.reason)
+        state: Literal["wrong", "unknown"] = "wrong" if file.is_certain else "unknown"
+        return FilePlace(file, state, file.reason, cause="given")
     if OBJECT in file.path:
         name = file.path.rpartition(OBJECT)[0].rpartition("<")[2]
         reason = (
             f"{name}(...) is made part of a text, which is not its value then: use "
             "PathJoinSubstitution([...])"
         )
-        return FilePlace(file, "wrong", reason)
+        return FilePlace(file, "wrong", reason, cause="given")
     what, path = _WORDS[file.purpose], posixpath.normpath(file.path)
     owner, rest = share_parts(path)
     if owner:
@@ -171,7 +175,8 @@ def _place_of(package: Package, file: "NamedFile", *, built: bool) -> FilePlace:
         )
     fault = _fault_of_path(package, path)
     if fault:
-        return FilePlace(file, "wrong", f"the launch file looks for the {what} at {fault}")
+        reason = f"the launch file looks for the {what} at {fault}"
+        return FilePlace(file, "wrong", reason, cause="local")
     return FilePlace(
         file, "unknown", f"the {what} {path.removeprefix(PREFIX)} is not part of the package"
     )
@@ -206,7 +211,7 @@ def _place_in_unknown(package: Package, owner: str, rest: str, file: "NamedFile"
     what = _WORDS[file.purpose]
     fault = "" if package.depends_on(owner) else _fault_of_owner(package, owner, rest, what)
     if fault:
-        return FilePlace(file, "wrong", fault)
+        return FilePlace(file, "wrong", fault, cause="name")
     if file.purpose == "include":
         return FilePlace(file, "found")
     return FilePlace(
@@ -272,7 +277,7 @@ def _place_not_utf8(owner: Package, path: str, file: "NamedFile") -> FilePlace |
             "UnicodeDecodeError: it is not UTF-8"
         )
         detail = f" (line {line} of {posixpath.basename(path)}); save it as UTF-8"
-        return FilePlace(file, "wrong", mistake + detail, mistake)
+        return FilePlace(file, "wrong", mistake + detail, mistake, "encoding")
     except InputError:
         pass  # other criteria report it
     return None
@@ -300,4 +305,4 @@ def _place_not_there(owner: Package, target: str, found: Lookup, file: "NamedFil
         similar = alike[0]
     if similar is not None:
         message += f"; there is {similar!r}"
-    return FilePlace(file, "wrong", message)
+    return FilePlace(file, "wrong", message, cause="name")

@@ -17,7 +17,7 @@ from grader.ros.package.robots import RobotFile
 
 # The files that hide a folder, with all that is below, from colcon.
 _IGNORING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
-MAX_PACKAGES = 40
+_MAX_PACKAGES = 40
 _MAX_MANIFEST_SIZE = 256 * 1024  # bytes
 _NAMED, _IN_NAMED_FOLDER, _SIMILAR, _OTHER = range(4)  # how well a package has a name
 _CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
@@ -56,7 +56,7 @@ def is_backup(path: str) -> bool:
     return not _WORDS.isdisjoint(_WORD.findall(_CAMEL.sub(" ", path).casefold()))
 
 
-def find_packages(tree: Tree, names: Sequence[str], most: int = MAX_PACKAGES) -> list[str]:
+def find_packages(tree: Tree, names: Sequence[str], most: int = _MAX_PACKAGES) -> list[str]:
     """Return the folders of packages: those with a package.xml, and those of these names with only
     a setup.py.
     """
@@ -84,7 +84,7 @@ def read_packages(
     names: tuple[str, ...] = (),
     launch_cache: LaunchCache | None = None,
     installed: frozenset[str] = frozenset(),
-    most: int = MAX_PACKAGES,
+    most: int = _MAX_PACKAGES,
 ) -> tuple[Package, ...]:
     """Return the packages in a file tree, the one that matches best first.
 

@@ -35,9 +35,13 @@ def look_up(owner: Package, target: str) -> Lookup:
         return Lookup("no build", text=setup.fault_text)
     if target in owner.installed:
         return Lookup("installed", owner.installed[target])
-    if setup.unknown:
-        return Lookup("unknown", text=f"cannot determine statically what {setup.file} installs")
-    return _instead(owner, target)
+    if not setup.unknown:
+        return _instead(owner, target)
+    if setup.is_unknown_after_error:
+        lookup = Lookup("no build", text=setup.faults[0].message)
+    else:
+        lookup = Lookup("unknown", text=f"cannot determine statically what {setup.file} installs")
+    return lookup
 
 
 def _instead(owner: Package, target: str) -> Lookup:

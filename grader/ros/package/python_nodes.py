@@ -15,13 +15,26 @@ from grader.base.errors import InputError
 from grader.base.slips import Slip
 from grader.base.source import Edits, Location
 from grader.ros.build.installation import InstalledFile
-from grader.ros.package.entry_points import entry_points, module_path, read_module
+from grader.ros.package.entry_points import (
+    entry_points,
+    module_path,
+    read_module,
+    unreadable_module,
+)
 from grader.ros.package.node_slips import Program as StartedProgram
 from grader.ros.package.node_slips import node_slips
 from grader.ros.package.package import Package
 from grader.ros.python.constants import Constants, constant_in, dotted, offset_of
 from grader.ros.python.evaluation import record
-from grader.ros.python.parse import START, Code, location_in, own_nodes, parse, position_of
+from grader.ros.python.parse import (
+    START,
+    Code,
+    SyntaxFault,
+    location_in,
+    own_nodes,
+    parse,
+    position_of,
+)
 from grader.ros.python.python_slips import python_slips
 from grader.ros.python.values import SCALARS, Call, QualifiedName, Scope, Unknown, Value
 
@@ -178,6 +191,7 @@ class _Program(NamedTuple):
     location: Location
     path: str  # of its file in the package
     function: str  # that setup.py names; empty for a file that is a program
+    syntax: SyntaxFault | None = None  # why Python cannot read the file
 
 
 class PythonNodes(NamedTuple):
@@ -195,9 +209,11 @@ def read_nodes(package: Package) -> PythonNodes:
     """Return the nodes in the Python modules that a build of a package installs. Never raises."""
     modules: dict[str, _Module] = {}
     doubts: list[_Doubt] = []
+    unread: set[str] = set()
     for name, path in _module_paths(package).items():
         code = read_module(package, path)
         if code is None:
+            unread.add(path)
             doubts.append(_Doubt("the file is not read", Location(package.path(path), 1, 1)))
         else:
             modules[name] = _Module(code, name, is_package=path.endswith("/__init__.py"))
@@ -213,7 +229,8 @@ def read_nodes(package: Package) -> PythonNodes:
     for program in _programs(package, modules, nodes):
         slips = _slips_of(package, program)
         doubts += [_Doubt(slip.reaction, slip.location) for slip in slips]
-        programs.append(program._replace(nodes=()) if slips else program)
+        syntax = unreadable_module(package, program.path) if program.path in unread else None
+        programs.append(program._replace(nodes=() if slips else program.nodes, syntax=syntax))
     is_loose = any(module.has_loose_declarations for module in modules.values())
     return PythonNodes(tuple(nodes), tuple(programs), tuple(doubts), is_loose)
 

@@ -309,9 +309,11 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
     surroundings = surroundings or Surroundings(Budget())
     launched = surroundings.robot_references(path)
     programs = {reference.by for reference in launched}
-    is_xacro = programs == {"xacro"} if programs else _says_xacro(name)
+    # Nothing loads a file of another name as a URDF; standard input is one.
+    says_xacro = ".xacro" in name or (".urdf" not in name and name != "-")
+    is_xacro = programs == {"xacro"} if programs else says_xacro
     if not programs and surroundings.assumes_defaults:
-        is_xacro = is_xacro or ".xacro" in name or surroundings.runs_xacro_beside(path)
+        is_xacro = is_xacro or surroundings.runs_xacro_beside(path)
     if is_xacro:
         return Read(
             path,
@@ -333,15 +335,6 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
             verdict="degraded"
         )  # ROS 2 ignores the tags of xacro, and what they stand for
     return Read(path, data, expanded, is_expanded=True, has_xacro=True, as_it_stands=reading)
-
-
-def _says_xacro(name: str) -> bool:
-    """Return whether xacro in a file of this name, in lower case, is meant to be expanded; standard
-    input is a URDF.
-    """
-    if ".xacro" in name:
-        return not name.endswith(".urdf")
-    return ".urdf" not in name and name != "-"
 
 
 def _loaded_model(reading: Reading) -> tuple[object, ...]:

@@ -14,7 +14,7 @@ from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.base.errors import InputError, MissingElement, NotDecided
-from grader.base.names import did_you_mean
+from grader.base.names import similar_there
 from grader.base.source import LazyLocation, Location, Source
 from grader.ros.package.package import Package
 from grader.ros.python.budget import Budget, OutOfBudget
@@ -199,7 +199,7 @@ def read_tree(package: Package, file: str) -> TreeEntry:
             "several files have the name",
         )
     if not found:
-        message, meant = f"the package has no file {file!r}", did_you_mean(file, files)
+        message, meant = f"the package has no file {file!r}", similar_there(file, files)
         raise MissingElement(
             "file", file, message=message, detail=meant, absent="" if meant else file
         )

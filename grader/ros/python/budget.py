@@ -116,7 +116,7 @@ class Budget:
         if (
             isinstance(part, py.PLAIN)
             or (kind == "text" and py.is_object(part))
-            or (kind == "holds" and isinstance(part, py.OPAQUE))
+            or (kind == "holds" and isinstance(part, (*py.OPAQUE, set)))
         ):
             return 0
         if isinstance(

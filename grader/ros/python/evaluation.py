@@ -27,6 +27,8 @@ class PythonError(NamedTuple):
 
     message: str
     at: Position
+    name: str = ""  # that is undefined
+    argument: str = ""  # that a function does not have
 
 
 NOT_EVALUATED = "is not evaluated"
@@ -48,8 +50,8 @@ _MAX_ERRORS = 200
 _MAX_CALLS = 20_000
 _MAX_DEPTH = 30  # of calls
 _CHANGING_METHODS: Mapping[type, tuple[str, ...]] = {
-    list: ("append", "extend", "insert", "sort", "reverse", "pop"),
-    dict: ("update", "pop", "setdefault"),
+    list: ("append", "extend", "insert", "sort", "reverse", "pop", "clear", "remove"),
+    dict: ("update", "pop", "setdefault", "clear"),
 }
 _TEXT_METHODS = frozenset(name for name in dir(str) if not name.startswith("_"))
 
@@ -86,12 +88,24 @@ class Evaluation(Expressions):
         self.doubt = self.doubt or unknown
         return unknown
 
-    def error(self, message: str, at: Position) -> None:
-        """Record once an error that certainly stops Python."""
+    def error(
+        self,
+        message: str,
+        at: Position,
+        kind: type[BaseException] | None = None,
+        *,
+        name: str = "",
+        argument: str = "",
+    ) -> None:
+        """Record once an error that certainly stops Python, such as an undefined name; raise it
+        where a try may catch it.
+        """
+        if self.attempts:
+            raise py.EvaluationFails(message, at, kind)
         if len(self.errors) < _MAX_ERRORS and all(
             message != error.message for error in self.errors
         ):
-            self.errors.append(PythonError(message, at))
+            self.errors.append(PythonError(message, at, name, argument))
 
     def evaluate(self, node: ast.expr, scope: py.Scope) -> py.Value:
         """Return the value of an expression; Unknown, with the reason, where it cannot be
@@ -113,7 +127,8 @@ class Evaluation(Expressions):
                 raise py.Undetermined(unknown.reason, unknown.at, is_final=True) from None
             return self.doubted(unknown)
         except py.EvaluationFails as error:
-            self.error(str(error), error.at or position_of(node))
+            at = error.at or position_of(node)
+            self.error(str(error), at, error.kind, argument=error.argument)
             return py.unknown_after_error(position_of(node))
 
     def _name(self, node: ast.Name, scope: py.Scope) -> py.Value:
@@ -128,7 +143,8 @@ class Evaluation(Expressions):
             return self._builtin(node.id)
         if node.id.startswith("__"):
             raise py.Undetermined(f"the name {node.id!r} {NOT_EVALUATED}")
-        self.error(f"the name {node.id!r} is not defined or imported", position_of(node))
+        message = f"the name {node.id!r} is not defined or imported"
+        self.error(message, position_of(node), NameError, name=node.id)
         texts = (name for name, value in self.module.names.items() if isinstance(value, str))
         meant = closest(node.id, texts) if node.id not in USUAL_NAMES else None
         if meant is not None:
@@ -294,6 +310,8 @@ class Evaluation(Expressions):
                 args = [
                     value if isinstance(value, dict) else list(iterate(value)) for value in args
                 ]
+            elif name == "remove":
+                known([owner, args])
             elif name != "append":
                 known(args if name not in ("insert", "setdefault") else args[:1])
             return self.budget.checked(call_plain(getattr(owner, name), *args, **kwargs))

@@ -7,12 +7,12 @@ known.
 
 import ast
 import builtins
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from copy import copy
 from functools import partial
 from io import StringIO
 from itertools import chain
-from operator import setitem
+from operator import delitem, setitem
 from pathlib import PurePosixPath
 from typing import Any, ClassVar
 
@@ -48,19 +48,34 @@ _IN_ANNOTATIONS = (
 )
 
 
-_OF_IMPORTS = (
-    "ImportError",
-    "ModuleNotFoundError",
-    "Exception",
-)  # what catches an import that fails
-
-
 class _ReturnFlow(py.EvaluationSignal):
     """A return statement, with its value."""
 
     def __init__(self, value: py.Value) -> None:
         super().__init__()
         self.value = value
+
+
+class _ClassScope(py.Scope):
+    """The names in the body of a class."""
+
+
+def _stop_at(node: ast.FunctionDef) -> Iterator[py.Value]:
+    """Raise Undetermined where the first item of a generator function is needed."""
+    yield from ()
+    raise py.Undetermined("a generator function is not evaluated", position_of(node), is_final=True)
+
+
+def _catches(kind: ast.expr | None, raised: py.EvaluationFails, at: Position) -> bool:
+    """Return whether `except KIND` catches an error. Raises Undetermined."""
+    name = kind.id if isinstance(kind, ast.Name) else ""
+    if kind is None or name == "BaseException" or (raised.kind is None and name == "Exception"):
+        return True
+    caught = getattr(builtins, name, None)
+    if raised.kind is None or not isinstance(caught, type):
+        message = "which error is raised in this try is not evaluated"
+        raise py.Undetermined(message, at, is_final=True)
+    return issubclass(raised.kind, caught)
 
 
 class Interpreter(Evaluation):
@@ -139,7 +154,8 @@ class Interpreter(Evaluation):
             try:
                 kind(self, node, scope)
             except py.EvaluationFails as error:  # of the statement itself, such as an assignment
-                self.error(str(error), position_of(node))
+                at = error.at or position_of(node)
+                self.error(str(error), at, error.kind, argument=error.argument)
             except py.Undetermined as error:
                 if error.is_final:
                     raise
@@ -150,10 +166,11 @@ class Interpreter(Evaluation):
 
     def _functiondef(self, node: ast.FunctionDef, scope: py.Scope) -> None:
         at = position_of(node)
-        if node.decorator_list or getattr(node, "type_params", []):
+        if getattr(node, "type_params", []):
             raise py.Undetermined(
-                "a function with a decorator or type parameters is not evaluated", at, is_final=True
+                "a function with type parameters is not evaluated", at, is_final=True
             )
+        decorators = [self.evaluate(decorator, scope) for decorator in node.decorator_list]
         parameters = node.args
         every = (
             *parameters.posonlyargs,
@@ -170,13 +187,36 @@ class Interpreter(Evaluation):
             node.returns,
         ):
             self._annotation(annotation, scope)
+        for decorator in reversed(decorators):
+            function = self.call_value(decorator, py.Call("", [function], {}, at))
         scope.names[node.name] = function
+
+    def _classdef(self, node: ast.ClassDef, scope: py.Scope) -> None:
+        """Evaluate the body of a class, which is not evaluated itself."""
+        bases = [self.evaluate(base, scope) for base in node.bases]
+        is_plain = not node.keywords and not node.decorator_list
+        if not is_plain or not all(isinstance(base, py.QualifiedName) for base in bases):
+            raise py.Undetermined("a class of this kind is not evaluated", self.at, is_final=True)
+        at = self.at
+        self._block(node.body, _ClassScope({}, scope))
+        scope.names[node.name] = py.Unknown("a class is not evaluated", at)
+
+    def _delete(self, node: ast.Delete, scope: py.Scope) -> None:
+        for target in node.targets:
+            match target:
+                case ast.Name(id=name) if name in scope.names:
+                    del scope.names[name]
+                case ast.Subscript(value=owner, slice=key):
+                    changed = self.evaluate(owner, scope)
+                    if not isinstance(changed, list | dict):
+                        refuse(changed, "this use of del is not supported")
+                    call_plain(delitem, changed, known(self.key(key, scope)))
+                case _:
+                    raise py.Undetermined("this use of del is not supported")
 
     def _function_body(self, node: ast.FunctionDef, scope: py.Scope) -> py.Value:
         if any(isinstance(inner, ast.Yield | ast.YieldFrom) for inner in own_nodes(node)):
-            raise py.Undetermined(
-                "a generator function is not evaluated", position_of(node), is_final=True
-            )
+            return py.Items(_stop_at(node))
         try:
             self._block(node.body, scope)
         except _ReturnFlow as flow:
@@ -234,7 +274,7 @@ class Interpreter(Evaluation):
     def _annassign(self, node: ast.AnnAssign, scope: py.Scope) -> None:
         if node.value is not None:
             self.bind(node.target, self.evaluate(node.value, scope), scope)
-        if scope is self.module:
+        if scope is self.module or isinstance(scope, _ClassScope):
             self._annotation(node.annotation, scope)
 
     def _expr(self, node: ast.Expr, scope: py.Scope) -> None:
@@ -262,7 +302,7 @@ class Interpreter(Evaluation):
                 )
                 self.doubted(py.Unknown(reason, self.at))
             elif error is not None:
-                self.error(error, self.at)
+                self.error(error, self.at, ModuleNotFoundError)
                 bound = dict.fromkeys(bound, usual_meaning(alias.name))
             if bound.pop("*", None) is not None:
                 raise py.Undetermined(
@@ -271,55 +311,49 @@ class Interpreter(Evaluation):
             scope.names.update(bound)
 
     def _try(self, node: ast.Try, scope: py.Scope) -> None:
-        """Run a body that raises nothing, or whose import certainly fails; stop at any other."""
+        """Run a body, and the handler of what it certainly raises; stop where it may raise more."""
         if node.finalbody:
             raise py.Undetermined("a try with finally is not evaluated", self.at, is_final=True)
-        errors, doubt, self.doubt, after = list(self.errors), self.doubt, None, node.orelse
+        doubt, self.doubt, raised = self.doubt, None, None
         self.attempts += 1
         try:
-            for statement in node.body:
-                self._block([statement], scope)
-                if len(self.errors) > len(errors):
-                    self.errors, after = errors, []
-                    self._handle(statement, node.handlers, scope)
-                    break
-        except py.Undetermined:
-            self.errors = errors  # a handler may have caught what was raised before
-            raise
+            self._block(node.body, scope)
+        except py.EvaluationFails as error:
+            raised = error
         finally:
             self.attempts -= 1
         if self.doubt is not None:
             raise py.Undetermined(self.doubt.reason, self.doubt.at, is_final=True)
         self.doubt = doubt
-        self._block(after, scope)
+        if raised is None:
+            self._block(node.orelse, scope)
+        else:
+            self._handle(raised, node.handlers, scope)
 
     def _handle(
-        self, statement: ast.stmt, handlers: Sequence[ast.ExceptHandler], scope: py.Scope
+        self, raised: py.EvaluationFails, handlers: Sequence[ast.ExceptHandler], scope: py.Scope
     ) -> None:
-        """Run the handler of an import that fails; stop at what another statement raises."""
-        for handler in handlers if isinstance(statement, ast.Import | ast.ImportFrom) else ():
-            if handler.type is None or (
-                isinstance(handler.type, ast.Name) and handler.type.id in _OF_IMPORTS
-            ):
+        """Run the handler of an error; raise it again where none catches it."""
+        for handler in handlers:
+            kinds = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
+            if any(_catches(kind, raised, self.at) for kind in kinds):
                 if handler.name:
                     scope.names[handler.name] = py.Unknown(
                         "an error is not evaluated", position_of(handler)
                     )
                 self._block(handler.body, scope)
                 return
-        raise py.Undetermined(
-            "which error is raised in this try is not evaluated", self.at, is_final=True
-        )
+        raise raised
 
     def _assert(self, node: ast.Assert, scope: py.Scope) -> None:
         if not truth(self.evaluate(node.test, scope)):
-            self.error("this assertion fails", self.at)
+            self.error("this assertion fails", self.at, AssertionError)
 
     def _raise(self, node: ast.Raise, _: py.Scope) -> None:
         raised = node.exc.func if isinstance(node.exc, ast.Call) else node.exc
         kind = getattr(builtins, raised.id, None) if isinstance(raised, ast.Name) else None
         if isinstance(kind, type) and issubclass(kind, Exception):
-            self.error(f"the file raises {kind.__name__} here", self.at)
+            self.error(f"the file raises {kind.__name__} here", self.at, kind)
         raise py.Undetermined("which error is raised here is not evaluated", self.at, is_final=True)
 
     def _attribute(self, node: ast.Attribute, scope: py.Scope) -> py.Value:
@@ -406,6 +440,9 @@ class Interpreter(Evaluation):
                     return [*before, ast.copy_location(ast.Tuple(elts=args, ctx=ast.Load()), start)]
         return [node]
 
+    def _set(self, node: ast.Set, scope: py.Scope) -> py.Value:
+        return call_plain(set, self.elements(node.elts, scope))
+
     def _dict(self, node: ast.Dict, scope: py.Scope) -> py.Value:
         table: dict[Any, py.Value] = {}
         for key, value in zip(node.keys, node.values, strict=True):
@@ -420,15 +457,19 @@ class Interpreter(Evaluation):
 
     def _joinedstr(self, node: ast.JoinedStr, scope: py.Scope) -> py.Value:
         pieces = [self.evaluate(piece, scope) for piece in node.values]
+        if len(pieces) == 1 and isinstance(pieces[0], py.Unknown):
+            return pieces[0]
         self.budget.measure(pieces, "text")
         return self.budget.checked("".join(pieces), "text")
 
     def _formattedvalue(self, node: ast.FormattedValue, scope: py.Scope) -> py.Value:
         value = self.evaluate(node.value, scope)
-        self.budget.measure(value, "text")
+        is_text = isinstance(value, py.Unknown) and value.is_text
+        if not is_text:
+            self.budget.measure(value, "text")
         if node.format_spec is not None or node.conversion not in (-1, ord("s")):
             raise py.Undetermined("a format of this kind is not supported")
-        return str_of(value)
+        return value if is_text else str_of(value)
 
     def _generatorexp(self, node: ast.GeneratorExp, scope: py.Scope) -> py.Value:
         """Return a generator: the items of its first loop are evaluated now, the rest when it is
@@ -508,6 +549,7 @@ class Interpreter(Evaluation):
         **Evaluation.KINDS,
         ast.Attribute: _attribute,
         ast.Dict: _dict,
+        ast.Set: _set,
         ast.JoinedStr: _joinedstr,
         ast.FormattedValue: _formattedvalue,
         ast.GeneratorExp: _generatorexp,
@@ -518,6 +560,8 @@ class Interpreter(Evaluation):
     # The statements that are evaluated.
     _STATEMENTS: ClassVar[Mapping[type[ast.stmt], Callable[[Any, Any, py.Scope], None]]] = {
         ast.FunctionDef: _functiondef,
+        ast.ClassDef: _classdef,
+        ast.Delete: _delete,
         ast.Return: _return,
         ast.If: _if,
         ast.For: _for,

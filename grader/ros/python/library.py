@@ -367,7 +367,16 @@ def _no_print(
     del sep, end, file, flush
 
 
+def _set(*values: py.Value) -> set[py.Value]:
+    return set(*map(list, map(iterate, values)))
+
+
 _FUNCTIONS: py.FunctionTable = {
+    **{
+        f"builtins.{name}": py.PlainFunction(name, lambda function: function, "holds")
+        for name in ("staticmethod", "classmethod", "property")
+    },
+    "builtins.set": py.PlainFunction("set", _set, "holds"),
     "builtins.print": py.PlainFunction("print", _no_print, "holds"),
     "itertools.chain": py.PlainFunction(
         "chain", lambda *lists: py.Items(chain(*map(iterate, lists))), "holds"

@@ -37,15 +37,32 @@ def _text(node: ast.AST, texts: dict[str, str]) -> str:
             made = "".join(_text(part, texts) for part in parts)
         case ast.FormattedValue(value=value):
             made = _text(value, texts)
-        case ast.BinOp(left=left, op=ast.Mod()):
-            made = _FORMATTED.sub(UNKNOWN, _text(left, texts))
-        case ast.BinOp(left=left, op=ast.Add() | ast.Div() as op, right=right):
-            between = "/" if isinstance(op, ast.Div) else ""
-            made = f"{_text(left, texts)}{between}{_text(right, texts)}"
-        case ast.Call(func=ast.Attribute(value=value, attr="format")):
-            made = _FORMATTED.sub(UNKNOWN, _text(value, texts))
-        case ast.Call(func=function, args=[ast.List(elts=parts)] | parts) if (
-            dotted(function).rpartition(".")[2] in _JOINING
-        ):
-            made = "/".join(_text(part, texts) for part in parts)
+        case ast.BinOp():
+            made = _text_of_operation(node, texts)
+        case ast.Call():
+            made = _text_of_call(node, texts)
     return made
+
+
+def _text_of_operation(node: ast.BinOp, texts: dict[str, str]) -> str:
+    """Return the text that %, + or / makes of two."""
+    left = _text(node.left, texts)
+    match node.op:
+        case ast.Mod():
+            return _FORMATTED.sub(UNKNOWN, left)
+        case ast.Add():
+            return left + _text(node.right, texts)
+        case ast.Div():
+            return f"{left}/{_text(node.right, texts)}"
+    return UNKNOWN
+
+
+def _text_of_call(node: ast.Call, texts: dict[str, str]) -> str:
+    """Return the text that format, or a function that joins the parts of a path, makes."""
+    match node:
+        case ast.Call(func=ast.Attribute(value=value, attr="format")):
+            return _FORMATTED.sub(UNKNOWN, _text(value, texts))
+        case ast.Call(args=[ast.List(elts=parts)] | parts):
+            if dotted(node.func).rpartition(".")[2] in _JOINING:
+                return "/".join(_text(part, texts) for part in parts)
+    return UNKNOWN

@@ -65,10 +65,28 @@ Lacking = Literal["", "value", "declaration"]
 
 class EvaluationFails(EvaluationSignal):
     """Python, xacro or launch certainly raises an error here; the text is a sentence without its
-    end.
+    end. `kind` is Python's class of the error, if it is known.
     """
 
     lacks: Lacking = ""  # what another launch file, or the user, may give
+    argument: str = ""  # that a function does not have
+
+    def __init__(
+        self,
+        message: str = "",
+        at: "Position | None" = None,
+        kind: type[BaseException] | None = None,
+    ) -> None:
+        super().__init__(message, at)
+        self.kind = kind
+
+
+class UnknownArgument(EvaluationFails):
+    """A function is given an argument that it does not have."""
+
+    def __init__(self, message: str, at: "Position | None", argument: str) -> None:
+        super().__init__(message, at)
+        self.argument = argument
 
 
 class MissingValue(EvaluationFails):
@@ -110,6 +128,8 @@ class Unknown:
     """A value that is not known, and why. With `follows_error`, an error that is recorded already
     certainly stops Python before it has the value.
     """
+
+    is_text = False  # whether it certainly is a text
 
     def __init__(self, reason: str, at: "Position", *, follows_error: bool = False) -> None:
         self.reason, self.at, self.follows_error = reason, at, follows_error
@@ -287,7 +307,7 @@ def parts_of(part: Value) -> Collection[Value]:
     """Return what a value contains."""
     if isinstance(part, dict):
         return [*part.keys(), *part.values()]
-    if isinstance(part, list | tuple | range):
+    if isinstance(part, list | tuple | range | set):
         return part
     if isinstance(part, VIEWS):
         return [*part]
@@ -311,7 +331,7 @@ def call_plain(function: Callable[..., Value], *args: Value, **kwargs: Value) ->
                 "this use of a function, a namespace or an iterator is not supported"
             ) from None
         message = error.args[0] if isinstance(error, KeyError) and error.args else error
-        raise EvaluationFails(f"{type(error).__name__}: {message}") from None
+        raise EvaluationFails(f"{type(error).__name__}: {message}", kind=type(error)) from None
 
 
 def iterate(value: Value) -> Iterator[Value]:

@@ -12,7 +12,7 @@ from math import pi
 from typing import NamedTuple, NoReturn
 
 from grader.base.errors import MissingElement, NotDecided
-from grader.base.names import closest, did_you_mean
+from grader.base.names import closest, similar_there
 from grader.base.source import LazyLocation
 from grader.base.text import quoted
 from grader.base.transforms import IDENTITY, Transform, Vector, rotation_from_rpy
@@ -326,7 +326,7 @@ class Robot:
     'arm'
     >>> robot.link("amr")
     Traceback (most recent call last):
-    grader.base.errors.MissingElement: there is no link 'amr'; did you mean 'arm'?
+    grader.base.errors.MissingElement: there is no link 'amr'; there is 'arm'
     """
 
     name: str
@@ -395,7 +395,7 @@ class Robot:
         self.check_complete()
         known = tuple(element.known.name for element in existing)
         guess = (
-            did_you_mean(name, known)
+            similar_there(name, known)
             or f"; the file has: {', '.join(map(quoted, known[:20])) or 'none'}"
         )
         raise MissingElement(

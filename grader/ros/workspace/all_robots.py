@@ -2,6 +2,7 @@
 
 import posixpath
 from collections.abc import Mapping, Sequence
+from typing import TypeGuard
 
 from grader.base.errors import InputError, NotDecided
 from grader.base.source import Source
@@ -79,7 +80,7 @@ def _read_robots(
         robot = _read(tree, file, max_size, surroundings)
         left = max(0, left - budget.used)
         is_loaded = file.path in launched and file.path not in included
-        is_whole = is_loaded or not _is_part(robot)
+        is_whole = not _is_empty(robot) and (is_loaded or not _is_part(robot))
         (robots if is_whole else parts).append(robot)
     return robots or [part for part in parts if not _is_empty(part)]
 
@@ -120,7 +121,7 @@ def _read(
 
 def _is_part(robot: Read | Unreadable) -> bool:
     """Return whether a file of xacro has no name or no links, as one that others include."""
-    if not isinstance(robot, Read) or not _is_of_xacro(robot):
+    if not _is_xacro(robot):
         return False
     model = robot.reading.robot
     return _is_empty(robot) or (model is not None and not model.name)
@@ -128,12 +129,11 @@ def _is_part(robot: Read | Unreadable) -> bool:
 
 def _is_empty(robot: Read | Unreadable) -> bool:
     """Return whether a file of xacro has no links, as one that only defines macros."""
-    if not isinstance(robot, Read) or not _is_of_xacro(robot):
+    if not _is_xacro(robot):
         return False
     errors = {problem.kind for problem in robot.problems if problem.severity == "error"}
     return NO_LINKS in errors and errors <= {NO_LINKS, ROBOT_WITHOUT_NAME}
 
 
-def _is_of_xacro(robot: Read) -> bool:
-    """Return whether a file is xacro, or its name says so."""
-    return robot.is_expanded or robot.path.endswith(".xacro")
+def _is_xacro(robot: Read | Unreadable) -> TypeGuard[Read]:
+    return isinstance(robot, Read) and (robot.is_expanded or robot.path.endswith(".xacro"))

@@ -270,7 +270,7 @@ def _clocks(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Mismatch]:
             if not workspace.source_of(passed.path) and "/ros_gz_sim/" not in passed.path:
                 return  # what it includes may have a bridge
     for package, node in workspace.nodes:
-        given = workspace.parameters_given(package, node, is_python=None)
+        given = workspace.parameters_given(package, node)
         sim_time = given.values.get("use_sim_time")
         if sim_time is not None and str(sim_time.value).lower() == "true" and node.when:
             message = (

@@ -4,6 +4,7 @@ joints.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import NamedTuple
 
 from grader.base.names import closest, near
@@ -11,6 +12,7 @@ from grader.base.source import Location
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import PARAMETERS, is_misspelt_key, sections_in
 from grader.ros.known.known import known
+from grader.ros.known.releases import releases_with
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import controllers_of
 from grader.ros.package.python_nodes import Endpoint
@@ -61,19 +63,23 @@ def controller_facts(workspace: Workspace) -> Iterator[Fact]:
         yield Mismatch("controllers", message, managers[0].location)
 
 
-def _sections(workspace: Workspace) -> Iterator[tuple[tuple[str, ...], YamlNode]]:
-    """Yield the parameters of nodes, also those that are inside of others, which is another
+@lru_cache(maxsize=2)
+def _sections(workspace: Workspace) -> tuple[tuple[tuple[str, ...], YamlNode], ...]:
+    """Return the parameters of nodes, also those that are inside of others, which is another
     mistake.
     """
+    found: list[tuple[tuple[str, ...], YamlNode]] = []
     for _, tree in workspace.trees:
         for keys, node in sections_in(tree):
             if keys:
-                yield keys, node
-                yield from sections_in(node, keys)
+                found += [(keys, node), *sections_in(node, keys)]
+    return tuple(found)
 
 
-def defined_controllers(workspace: Workspace) -> Iterator[Controller]:
-    """Yield the controllers that parameter files define, with their types."""
+@lru_cache(maxsize=2)
+def defined_controllers(workspace: Workspace) -> tuple[Controller, ...]:
+    """Return the controllers that parameter files define, with their types."""
+    found: list[Controller] = []
     for keys, section in _sections(workspace):
         name = keys[-1].rpartition("/")[2]
         # The type is in a section of the controller manager, or in their own, for a spawner.
@@ -85,7 +91,8 @@ def defined_controllers(workspace: Workspace) -> Iterator[Controller]:
             kind = node.get("type")
             if kind is not None and kind.text is not None and "/" in kind.text:
                 has_file = node.get("params_file") is not None
-                yield Controller(controller, kind, kind.location, has_file)
+                found.append(Controller(controller, kind, kind.location, has_file))
+    return tuple(found)
 
 
 def controller_endpoints(
@@ -131,7 +138,7 @@ def _type_facts(workspace: Workspace, controller: Controller) -> Iterator[Fact]:
     """
     types, written = known()["controllers"], controller.type.text or ""
     package, _, class_name = written.partition("/")
-    if written in types or workspace.has_plugin(written):
+    if written in types or releases_with("controller", written) or workspace.has_plugin(written):
         return
     if any(own.name == package for own in workspace.packages):
         return

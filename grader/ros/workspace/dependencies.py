@@ -72,7 +72,7 @@ def _used(workspace: Workspace, package: Package) -> Iterator[tuple[str, Locatio
         for match in _FIND.finditer(source.text):
             name = match[1] or match[2]
             # A misspelt own package is a mistake of files.
-            if near(name, names) is None or package.depends_on(name):
+            if name in names or package.depends_on(name) or near(name, names) is None:
                 yield name, source.at(match.start())
     yield from _imported(workspace, package, names)
     for path, tree in workspace.trees:
@@ -113,6 +113,5 @@ def _controller_packages(section: YamlNode) -> Iterator[tuple[str, Location]]:
     for inner in section.value.values() if isinstance(section.value, dict) else ():
         kind = inner.get("type")
         if kind is not None and kind.text in known()["controllers"]:
-            written = str(kind.text)
-            packages = known()["packages_of_controllers"]
-            yield packages.get(written, written.partition("/")[0]), kind.location
+            own_package = str(kind.text).partition("/")[0]
+            yield known()["controller_packages"].get(kind.text, own_package), kind.location

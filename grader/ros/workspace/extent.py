@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from grader.base.text import counted
+from grader.ros.known.releases import StatedReleases
 from grader.ros.workspace.workspace import Workspace
 
 _CPP = (".cpp", ".cc", ".cxx")
@@ -20,6 +21,7 @@ class Extent(NamedTuple):
     cpp_files: int
     computed_names: int  # of topics, services and actions
     expressions: int  # of launch files, setup.py and CMakeLists.txt that are not evaluated
+    stated: StatedReleases  # of ROS 2, in one of which names should be
 
     @property
     def words(self) -> str:
@@ -41,10 +43,12 @@ class Extent(NamedTuple):
             counted(self.expressions, "expression"),
         ]
         unread = [it for it in unread if not it.startswith("0 ")]
-        return f"{text}; not read: {', '.join(unread)}" if unread else text
+        if unread:
+            text += f"; not read: {', '.join(unread)}"
+        return f"{text}; {self.stated.words}"
 
 
-def extent_of(workspace: Workspace, unread_robots: int) -> Extent:
+def extent_of(workspace: Workspace, unread_robots: int, stated: StatedReleases) -> Extent:
     """Return what of a workspace was read; `unread_robots` are not even opened."""
     nodes = [node for found in workspace.python_nodes.values() for node in found.nodes]
     unread = set()
@@ -73,4 +77,5 @@ def extent_of(workspace: Workspace, unread_robots: int) -> Extent:
         cpp_files=cpp_files,
         computed_names=sum(endpoint.name is None for endpoint in endpoints),
         expressions=expressions,
+        stated=stated,
     )

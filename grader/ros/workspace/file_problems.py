@@ -7,7 +7,9 @@ from dataclasses import replace
 
 from grader.base.problems import Problem
 from grader.base.source import Location
+from grader.base.text import counted
 from grader.ros.build import package_problems as kinds
+from grader.ros.known.releases import releases_with
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.found_problems import build_problems, launch_problems, sorted_problems
 from grader.ros.package.package import MANIFEST, Package
@@ -18,14 +20,9 @@ _OF_MISSING_FILES = (kinds.SETUP_STOPS, kinds.EMPTY_GLOB)
 _COUNTED = (kinds.SETUP_UNKNOWN, kinds.LAUNCH_UNKNOWN)  # and not listed
 
 
-def file_problems(workspace: Workspace) -> Iterator[Problem]:
+def _file_problems(workspace: Workspace) -> Iterator[Problem]:
     """Yield what is wrong in package.xml, setup.py, CMakeLists.txt, launch and RViz files."""
-    for package in workspace.packages:
-        lacks_submodule = any(map(package.holds, workspace.absent_submodules))
-        for problem in build_problems(package):
-            # A build needs what git has not fetched.
-            if not (lacks_submodule and problem.kind in _OF_MISSING_FILES):
-                yield problem
+    yield from _build_problems(workspace)
     roots = {id(launch) for _, launch in workspace.roots}
     mismatches = read_agreement(workspace).mismatches
     wrong_programs = {it.location for it in mismatches if it.family == "programs"}
@@ -36,33 +33,50 @@ def file_problems(workspace: Workspace) -> Iterator[Problem]:
         for problem in found:
             if problem.location not in wrong_programs:  # which is also a name that does not agree
                 yield problem
+    for package, paths in workspace.ros1_launches:
+        files = counted(len(paths), "launch file")
+        message = f"the package has {files} of ROS 1, which ros2 launch does not read"
+        yield Problem(kinds.OF_ROS1, message, Location(package.path(paths[0]), 1, 1))
     for package in workspace.packages:
         for path in package.rviz_files:
             yield from _rviz_problems(package, path)
+
+
+def _build_problems(workspace: Workspace) -> Iterator[Problem]:
+    """Yield what stops a build, unless it needs what git has not fetched."""
+    for package in workspace.packages:
+        lacks_submodule = any(map(package.holds, workspace.absent_submodules))
+        for problem in build_problems(package):
+            if not (lacks_submodule and problem.kind in _OF_MISSING_FILES):
+                yield problem
 
 
 def listed_problems(workspace: Workspace) -> list[Problem]:
     """Return what is wrong in the files, each once, without what is not evaluated, which is only
     counted.
     """
-    return [it for it in dict.fromkeys(file_problems(workspace)) if it.kind not in _COUNTED]
+    return [it for it in dict.fromkeys(_file_problems(workspace)) if it.kind not in _COUNTED]
 
 
 def ros1_problem(package: Package) -> Problem:
     """Return the note that a package is not one of ROS 2."""
     message = f"the package {package.name!r} is one of ROS 1, and is not compared with others"
-    return Problem(kinds.ROS1_PACKAGE, message, Location(package.path(MANIFEST), 1, 1))
+    return Problem(kinds.OF_ROS1, message, Location(package.path(MANIFEST), 1, 1))
 
 
 def _started(workspace: Workspace, path: str, launch: Launch) -> Launch:
     """Return a launch file that no other one surely includes, without the faults that its caller
-    may correct: who starts it gives it values, and a file that may include it declares arguments.
+    may correct: who starts it gives it values, and a file that may include it declares arguments;
+    and without those of arguments that a stated release has.
     """
     name = path.rpartition("/")[2]
     is_named = sum(name in text for text in workspace.launch_texts) > (name in launch.source.text)
     is_closed = not is_named and not any(it.unknown for _, _, it in workspace.launches)
     faults = []
     for fault in launch.faults:
+        having = releases_with("argument", fault.argument) if fault.argument else ()
+        if any(release in having for release in workspace.releases):
+            continue
         if fault.lacks == "" or (fault.lacks == "declaration" and is_closed):
             faults.append(fault)
     return replace(launch, faults=tuple(faults), syntax=None)

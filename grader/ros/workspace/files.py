@@ -9,9 +9,8 @@ from typing import NamedTuple
 
 from grader.base.names import closest, near
 from grader.base.source import Location, Source
-from grader.files.tree import parents
 from grader.ros.build.installation import Installation
-from grader.ros.build.places import PREFIX, SHARE, is_launch_file, share_parts
+from grader.ros.build.places import PREFIX, SHARE, share_parts
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.installed_files import (
@@ -32,9 +31,6 @@ _FIND = re.compile(
 _PACKAGE = re.compile(r"package://([\w-]+)/([\w./-]+)(?=[\"'<\s,\]}])")
 _PROPERTY = re.compile(r"<xacro:property\b[^>]*?\bname\s*=\s*[\"'](\w+)[\"']")
 # Files of text that are read, which no download leaves out for their size; and programs.
-_TEXTS = (".yaml", ".yml", ".urdf", ".xacro", ".srdf", ".sdf", ".world", ".rviz", ".py", ".xml")
-_OWN_FOLDERS = frozenset({"config", "launch", "maps", "params", "rviz", "urdf", "worlds"})
-_PROGRAMS = (".py", ".cpp", ".cc", ".hpp", ".sh", "CMakeLists.txt")
 _PATH = re.compile(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
 
 
@@ -168,29 +164,8 @@ def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
     if inside in owner.tree.folders:
         yield from _no_folder(owner, inside, f"a build installs no {target}", at)
     else:
-        is_absent = named.is_needed and _is_nowhere(workspace, owner, target)
+        is_absent = named.is_needed and workspace.is_nowhere(owner, target)
         yield _not_there(owner, target, at, is_output=named.is_output, is_absent=is_absent)
-
-
-def _is_nowhere(workspace: Workspace, owner: Package, target: str) -> bool:
-    """Return whether a file of text that the package does not have is surely nowhere.
-
-    What the limits of reading, a submodule or a link leave out may be there, and an own program may
-    write a file that it names.
-    """
-    if not target.endswith(_TEXTS) or workspace.tree.ignored or owner.tree.links:
-        return False
-    for folder in parents(target.removeprefix(owner.share)):
-        is_empty = not any(path.startswith(f"{folder}/") for path in owner.tree.files)
-        is_submodule = is_empty and posixpath.basename(folder) not in _OWN_FOLDERS
-        if folder in owner.tree.folders and is_submodule:
-            return False
-    name = posixpath.basename(target)
-    for package in workspace.packages:
-        for source in workspace.sources_of(package, _PROGRAMS):
-            if name in source.text and not is_launch_file(source.path):
-                return False
-    return True
 
 
 def _not_there(

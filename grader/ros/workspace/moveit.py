@@ -40,7 +40,7 @@ def _controllers(workspace: Workspace, manager: YamlNode) -> Iterator[Fact]:
     """
     names = manager.get("controller_names")
     # Without definitions, the robot's driver has the controllers.
-    are_defined = next(defined_controllers(workspace), None) is not None
+    are_defined = bool(defined_controllers(workspace))
     for node in names.items if names is not None else ():
         name = node.text or ""
         section = manager.get(name)

@@ -1,4 +1,5 @@
-"""The kinds of problems of names: one for each family, for similar names and for unused files.
+"""The kinds of problems of names: one for each family, for similar names, for unused
+files, and for names of other releases.
 
 docs/examples/ref.toml explains each.
 """
@@ -22,6 +23,7 @@ _NO_TOPIC = _error("REF007", "Topic with another name, type or quality of servic
 _NO_DEPENDENCY = _warning("REF008", "Package that package.xml does not declare")
 _SIMILAR = _warning("REF009", "Name that is similar to one that is defined")
 _UNUSED = _warning("REF010", "File that no other file names")
+OTHER_RELEASE = _warning("REF011", "Name of another release of ROS 2")
 
 _KINDS: Mapping[Family, Kind] = {
     "files": _NO_FILE,

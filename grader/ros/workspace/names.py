@@ -110,6 +110,7 @@ class Mismatch(NamedTuple):
     corrections: tuple[
         Correction, ...
     ] = ()  # with each of which it agrees: first of the use, then of the definition
+    is_of_type: bool = False  # whether a value or a topic has another type
 
 
 class Compared(NamedTuple):

@@ -1,7 +1,7 @@
 """Opened files: their packages, and their robots."""
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -9,10 +9,12 @@ from grader.base.problems import Problem
 from grader.base.source import Source
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree
+from grader.ros.known.releases import NOT_STATED, Release, StatedReleases
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.robot_file import Absent, OtherCandidate, Read, Unreadable, Urdf
 
 if TYPE_CHECKING:
+    from grader.ros.workspace.extent import Extent
     from grader.ros.workspace.workspace import Workspace
 
 _NO_FILES = make_tree("", (), ())
@@ -31,6 +33,8 @@ class OpenedWorkspace:
     is_single: bool = True  # whether it is a URDF on its own, not a folder or archive
     robots: tuple[Read | Unreadable, ...] = ()  # of a workspace, all of whose robots are read
     ros1_packages: tuple[Package, ...] = ()  # whose names are not compared
+    besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes
+    stated: StatedReleases = NOT_STATED  # of ROS 2, in one of which names should be
 
     @cached_property
     def workspace(self) -> "Workspace":
@@ -41,8 +45,9 @@ class OpenedWorkspace:
             not it.is_part for it in self.unused_candidates if not it.path.endswith(MANIFEST)
         )
         urdfs = tuple(it for it in (*self.robots, self.urdf) if isinstance(it, Read))
-        has_unread = any(isinstance(it, Unreadable) for it in self.robots)
-        return Workspace(self.packages, urdfs, self.whole_tree, has_other_robots or has_unread)
+        has_unread = has_other_robots or any(isinstance(it, Unreadable) for it in self.robots)
+        releases = self.stated.releases
+        return Workspace(self.packages, urdfs, self.whole_tree, has_unread, releases)
 
     @property
     def path(self) -> str | None:
@@ -67,6 +72,30 @@ class OpenedWorkspace:
         from grader.ros.package.incomplete import problems_of_robot  # late: few commands list them
 
         return problems_of_robot(robot, (*self.packages, *self.ros1_packages), self.whole_tree)
+
+    def package_problems(self) -> list[Problem]:
+        """Return what is wrong in its packages: in their files, then names that do not agree."""
+        # Late: most commands list no problems of a workspace.
+        from grader.ros.workspace.file_problems import listed_problems, ros1_problem
+        from grader.ros.workspace.release_problems import compared_names
+
+        found = [ros1_problem(package) for package in self.ros1_packages]
+        found += listed_problems(self.workspace)
+        found += compared_names(self.workspace)
+        return found
+
+    def of_release(self, distro: Release | None) -> "OpenedWorkspace":
+        """Return it for a release of ROS 2; without one, for those that its files state."""
+        from grader.ros.workspace.stated_releases import stated_releases  # late: as above
+
+        return replace(self, stated=stated_releases(self.whole_tree, distro))
+
+    def extent(self) -> "Extent":
+        """Return how much of it was read."""
+        from grader.ros.workspace.extent import extent_of  # late: few commands say it
+
+        unread = sum(isinstance(it, Unreadable) for it in self.robots)
+        return extent_of(self.workspace, unread, self.stated)
 
     def source(self, path: str) -> Source | None:
         """Return the text of one of its files, for quoting; None if it cannot be read."""

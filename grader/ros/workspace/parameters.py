@@ -20,9 +20,9 @@ from grader.ros.config.yaml_values import (
     values_in,
 )
 from grader.ros.known.known import known
+from grader.ros.known.releases import RELEASES, Release, releases_with
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.launch.node_parameters import parameters_of
-from grader.ros.package.installed_files import open_meant
 from grader.ros.package.mesh_content import LFS_POINTER
 from grader.ros.package.package import Package
 from grader.ros.package.python_nodes import PythonNode
@@ -113,7 +113,7 @@ def _plugins(workspace: Workspace) -> Iterator[Fact]:
                 if other != path:
                     elsewhere |= sections
         yield from _plugin_lists(tree, elsewhere)
-        yield from _plugin_names(tree)
+        yield from _plugin_names(tree, workspace.releases)
 
 
 def _sections(node: YamlNode, above: str = "") -> Iterator[tuple[str, str]]:
@@ -271,15 +271,15 @@ def _given(
 ) -> Iterator[Fact]:
     """Yield the parameters that a node of the workspace is given."""
     owner = f"{node.package}/{node.executable}"
-    opened = partial(open_meant, package, absent_are_empty=True)
-    given = parameters_of(node, opened, python_node.name or "", is_python=True)
+    opened = partial(workspace.open_given, package)
+    given = parameters_of(node, opened, python_node.name or "")
     if given.unknown:
         yield Undecided("parameters", given.unknown)
     # What a file gives to every node need not be declared by this one.
     for_all = workspace.wildcard_places(node)
     for name, value in given.values.items():
         if value.location not in for_all and not name.startswith("qos_overrides."):
-            said = f"the node {workspace.name_of(node)!r}"
+            said = f"the node {workspace.name_of(node) or node.executable!r}"
             yield Use("parameter", name, value.location, said, owner)
     yield from _types_given(python_node, given.values)
 
@@ -373,7 +373,7 @@ def _other_type(
     message = (
         f"the parameter {name!r} is given {actual}; {reader} declares {declared}{there}, and stops"
     )
-    yield Mismatch("parameters", message, given.location, at, is_certain)
+    yield Mismatch("parameters", message, given.location, at, is_certain, is_of_type=True)
 
 
 def _type_of(value: Any) -> str:
@@ -467,24 +467,25 @@ def _listed(key: str, node: YamlNode) -> Iterator[tuple[str, Location]]:
             yield text, at
 
 
-def _plugin_names(tree: YamlNode) -> Iterator[Fact]:
-    """Yield plugins that are written with other separators than pluginlib knows them by."""
+def _plugin_names(tree: YamlNode, releases: Collection[Release]) -> Iterator[Fact]:
+    """Yield plugins that are written with other separators than pluginlib knows them by, in every
+    release that the file may be for.
+    """
     names = {_SEPARATORS.sub("::", name): name for name in known()["plugins"]}
     values = [value for value in values_in(tree) if value.keys[-1:] == ("plugin",)]
-    older = tuple(known()["slash_before_jazzy"])
-    # A file for an older release, which other launch files may choose, writes all of these with a
-    # slash.
-    is_for_jazzy = False
+    first = 0  # of the releases that the file may be for: it has a name that none before has
     for value in values:
-        text = value.node.text or ""
-        is_for_jazzy |= "::" in text and text.startswith(older)
+        having = releases_with("plugin", value.node.text or "")
+        if any(release in having for release in releases or having):
+            first = max(first, RELEASES.index(having[0]))
     for value in values:
         text = value.node.text or ""
         meant = names.get(_SEPARATORS.sub("::", text))
-        if meant is not None and meant != text:
-            message = f"{value.said}: there is no plugin {text!r}; did you mean {meant!r}?"
-            is_certain = is_for_jazzy or not text.startswith(older)
-            at = value.node.location
-            yield Mismatch(
-                "parameters", message, at, None, is_certain, corrections(text, at, meant)
-            )
+        if meant is None or meant == text:
+            continue
+        if any(release in RELEASES[first:] for release in releases_with("plugin", text)):
+            yield Compared("parameters")  # of another release, at most
+            continue
+        message = f"{value.said}: there is no plugin {text!r}; did you mean {meant!r}?"
+        at = value.node.location
+        yield Mismatch("parameters", message, at, corrections=corrections(text, at, meant))

@@ -44,7 +44,10 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
             yield from _own_program(owner, node)
             continue
         programs = compared_programs(node.package)
-        if programs is not None and node.executable not in programs:
+        if programs is None:
+            continue
+        yield Compared("programs")
+        if node.executable not in programs:
             missing = _missing_program(node.package, node.executable, programs)
             either = corrections(node.executable, node.location, missing.meant)
             yield Mismatch("programs", missing.message, node.location, corrections=either)

@@ -116,7 +116,7 @@ def _without_type(
         if not _is_spawner(spawner) or not spawner.when or not is_plain:
             continue
         for controller in controllers_of(spawner) or ():
-            own = parameters_of(controller, partial(open_meant, package), is_python=False)
+            own = parameters_of(controller, partial(open_meant, package))
             has_type = "type" in own.values or f"{controller.node_name}.type" in given.values
             lacks_type[controller.node_name] = not own.unknown and not has_type
     files = [workspace.source_of(each.path) for each in manager.parameters or () if each.path]

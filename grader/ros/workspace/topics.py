@@ -136,7 +136,7 @@ def _differences(subscription: _OpenedTopic, publisher: _OpenedTopic) -> Iterato
                 f"the topic {publisher.topic} is published with {writer.type}, but the controller "
                 f"subscribes to it with {reader.type} ({reader.location.file_and_line})"
             )
-            yield Mismatch("topics", message, writer.location, reader.location)
+            yield Mismatch("topics", message, writer.location, reader.location, is_of_type=True)
         return
     at = writer.location.file_and_line
     if reader.type is not None and writer.type is not None and reader.type != writer.type:
@@ -144,7 +144,7 @@ def _differences(subscription: _OpenedTopic, publisher: _OpenedTopic) -> Iterato
             f"the topic {subscription.topic} is subscribed to with {reader.type}, but published "
             f"with {writer.type} ({at})"
         )
-        yield Mismatch("topics", message, reader.location, writer.location)
+        yield Mismatch("topics", message, reader.location, writer.location, is_of_type=True)
     incompatible = []  # what is asked for, and what is offered
     if reader.qos.reliability == "reliable" and writer.qos.reliability == "best_effort":
         incompatible.append(("reliable", "best_effort"))
@@ -177,7 +177,7 @@ def _bridged_types(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator
                     f"bridge with {row.ros_type} ({row.location.file_and_line})"
                 )
                 is_certain = row.is_used and each.is_started
-                yield Mismatch("topics", message, at, row.location, is_certain)
+                yield Mismatch("topics", message, at, row.location, is_certain, is_of_type=True)
 
 
 def _remappings(workspace: Workspace, node: StartedNode) -> Iterator[Fact]:

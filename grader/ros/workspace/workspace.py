@@ -12,10 +12,18 @@ from functools import cached_property, partial
 from grader.base.errors import InputError
 from grader.base.source import LazyLocation, Location, Source
 from grader.files.tree import Tree, parents
-from grader.ros.build.places import PREFIX, SHARE, share_parts
+from grader.ros.build.places import (
+    PREFIX,
+    SHARE,
+    LaunchKind,
+    is_launch_file,
+    launch_kind,
+    share_parts,
+)
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.ros.config.yaml_values import sections_in, values_in
 from grader.ros.known.known import known
+from grader.ros.known.releases import Release
 from grader.ros.launch.launch_model import GivenParameters, Launch, ParameterValue, StartedNode
 from grader.ros.launch.node_parameters import (
     NodeParameters,
@@ -24,7 +32,7 @@ from grader.ros.launch.node_parameters import (
     value_in_file,
 )
 from grader.ros.package.finding import is_backup
-from grader.ros.package.installed_files import open_meant
+from grader.ros.package.installed_files import are_installs_known, open_meant
 from grader.ros.package.package import Package
 from grader.ros.package.python_nodes import PythonNode, PythonNodes, read_nodes
 from grader.ros.package.robot_file import Read
@@ -41,6 +49,9 @@ INCLUDED = re.compile(r"<xacro:include\b[^>]*?\bfilename\s*=\s*[\"']([^\"']+)[\"
 _FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
 _MAX_FILES = 60  # of one kind in a package
 _MAX_YAML = 512 * 1024  # bytes
+_TEXTS = (".yaml", ".yml", ".urdf", ".xacro", ".srdf", ".sdf", ".world", ".rviz", ".py", ".xml")
+_OWN_FOLDERS = frozenset({"config", "launch", "maps", "params", "rviz", "urdf", "worlds"})
+_PROGRAMS = (".py", ".cpp", ".cc", ".hpp", ".sh", "CMakeLists.txt")
 # Of a package, which may be empty.
 _USUAL_FOLDERS = (
     *("action", "config", "include", "launch", "maps", "meshes", "models", "msg", "params"),
@@ -93,6 +104,7 @@ class Workspace:
     urdfs: tuple[Read, ...]  # the files of robots that are read
     tree: Tree  # all files, also those outside of packages
     has_unread_robots: bool  # whether other files may be robots
+    releases: tuple[Release, ...] = ()  # in one of which names should be; () for any
 
     @cached_property
     def packages(self) -> tuple[Package, ...]:
@@ -117,12 +129,31 @@ class Workspace:
 
     @cached_property
     def launches(self) -> tuple[tuple[Package, str, Launch], ...]:
-        """The launch files, each with its package and its path in it; without those of tests."""
+        """The launch files, each with its package and its path in it; without those of tests and of
+        ROS 1.
+        """
         launches: list[tuple[Package, str, Launch]] = []
         for package in self.packages:
             paths = _without_tests(package.launch_files)
+            kinds = {path: self._kind_of_launch(package, path) for path in paths}
+            paths = [path for path, kind in kinds.items() if kind == "launch"]
             launches += [(package, path, package.launch(path)) for path in paths]
         return tuple(launches)
+
+    def _kind_of_launch(self, package: Package, path: str) -> LaunchKind:
+        data = package.tree.read(path, _MAX_YAML)
+        if data is None:
+            return "launch"  # that it cannot be read is said
+        return launch_kind(path, data.decode("utf-8", "replace"))
+
+    @property
+    def ros1_launches(self) -> Iterator[tuple[Package, list[str]]]:
+        """The packages with launch files of ROS 1, and the paths of these."""
+        for package in self.packages:
+            paths = _without_tests(package.launch_files)
+            of_ros1 = [it for it in paths if self._kind_of_launch(package, it) == "ROS 1"]
+            if of_ros1:
+                yield package, of_ros1
 
     @cached_property
     def nodes(self) -> tuple[tuple[Package, StartedNode], ...]:
@@ -159,7 +190,8 @@ class Workspace:
         files: dict[str, YamlNode | YamlFault] = {}
         for package in self.packages:
             paths = [path for path in package.tree.files if path.endswith((".yaml", ".yml"))]
-            for path in _without_tests(path for path in paths if path not in package.launch_files):
+            launched = {path for owner, path, _ in self.launches if owner is package}
+            for path in _without_tests(path for path in paths if path not in launched):
                 whole_path, data = package.path(path), package.tree.read(path, _MAX_YAML)
                 if data is None:
                     continue
@@ -361,7 +393,7 @@ class Workspace:
         """
         owners: dict[str, list[NodeParameters]] = {}
         for package, launch in self.roots:
-            opened = partial(open_meant, package, absent_are_empty=True)
+            opened = partial(self.open_given, package)
             # What a controller manager and Gazebo are given, its controllers get too.
             shared: list[GivenParameters] = []
             for node in launch.nodes:
@@ -371,13 +403,12 @@ class Workspace:
             for node in launch.nodes:
                 name = self.name_of(node)
                 if name == MANAGER or (name is not None and node.package != MANAGER):
-                    is_python = True if self.python_node(node) is not None else None
-                    given = parameters_of(node, opened, name, is_python=is_python)
+                    given = parameters_of(node, opened, name)
                     owners.setdefault(name, []).append(given)
                 for controller in _spawned_by(node):
                     files = (*shared, *(controller.parameters or ()))
                     started = replace(controller, parameters=files)
-                    given = parameters_of(started, opened, is_python=False)
+                    given = parameters_of(started, opened)
                     owners.setdefault(controller.node_name or "", []).append(given)
         return owners
 
@@ -416,12 +447,40 @@ class Workspace:
                 return "the arguments of a spawner are not evaluated"
         return ""
 
-    def parameters_given(
-        self, package: Package, node: StartedNode, *, is_python: bool | None = False
-    ) -> NodeParameters:
+    def parameters_given(self, package: Package, node: StartedNode) -> NodeParameters:
         """Return the parameters that a node gets, whose launch file is in a package."""
         opened = partial(open_meant, package)
-        return parameters_of(node, opened, self.name_of(node) or "", is_python=is_python)
+        return parameters_of(node, opened, self.name_of(node) or "")
+
+    def open_given(self, package: Package, path: str) -> tuple[bytes, str] | None:
+        """Return a parameter file that a launch file of a package gives, as `open_meant` does, and
+        nothing in one that surely is nowhere.
+        """
+        found = open_meant(package, path, absent_are_empty=True)
+        owner = package.find(share_parts(f"{PREFIX}/{path}")[0])
+        if found is None and owner is not None and are_installs_known(owner):
+            return (b"", path) if self.is_nowhere(owner, path) else None
+        return found
+
+    def is_nowhere(self, owner: Package, target: str) -> bool:
+        """Return whether a file of text that the package does not have is surely nowhere.
+
+        What the limits of reading, a submodule or a link leave out may be there, and an own program
+        may write a file that it names.
+        """
+        if not target.endswith(_TEXTS) or self.tree.ignored or owner.tree.links:
+            return False
+        for folder in parents(target.removeprefix(owner.share)):
+            is_empty = not any(path.startswith(f"{folder}/") for path in owner.tree.files)
+            is_submodule = is_empty and posixpath.basename(folder) not in _OWN_FOLDERS
+            if folder in owner.tree.folders and is_submodule:
+                return False
+        name = posixpath.basename(target)
+        for package in self.packages:
+            for source in self.sources_of(package, _PROGRAMS):
+                if name in source.text and not is_launch_file(source.path):
+                    return False
+        return True
 
     def written_values(self, parameter: str) -> Iterator[ParameterValue]:
         """Yield the values that files have for a parameter, of whatever node."""
@@ -470,11 +529,18 @@ class Workspace:
 
     def _sources(self, package: Package, paths: Iterable[str]) -> Iterator[Source]:
         for path in _without_tests(paths):
-            data = package.tree.read(path, _MAX_YAML)
-            if data is not None:
-                text = data.decode("utf-8", "replace")
-                comment = _COMMENT_LINE if path.endswith(_WITH_LINES) else _XML_COMMENT
-                yield Source(package.path(path), comment.sub(_blank, text))
+            if (package, path) not in self._texts:
+                self._texts[package, path] = _without_comments(package, path)
+            source = self._texts[package, path]
+            if source is not None:
+                yield source
+
+    @cached_property
+    def _texts(self) -> dict[tuple[Package, str], Source | None]:
+        """The texts that were read, without comments, by package and path, of others too: each is
+        read once.
+        """
+        return {}
 
     @cached_property
     def robot_files(self) -> frozenset[str]:
@@ -517,6 +583,16 @@ class Workspace:
         for package in self.packages:
             sources += self.sources_of(package, (".py",))
         return tuple(source.text for source in sources)
+
+
+def _without_comments(package: Package, path: str) -> Source | None:
+    """Return the text of a file with blanks in place of comments; None if it cannot be read."""
+    data = package.tree.read(path, _MAX_YAML)
+    if data is None:
+        return None
+    text = data.decode("utf-8", "replace")
+    comment = _COMMENT_LINE if path.endswith(_WITH_LINES) else _XML_COMMENT
+    return Source(package.path(path), comment.sub(_blank, text))
 
 
 def _without_tests(paths: Iterable[str]) -> list[str]:

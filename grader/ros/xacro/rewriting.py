@@ -19,6 +19,7 @@ from grader.base import markup
 from grader.base.element_edits import format_number, merged, tag_edits, with_attribute
 from grader.base.names import near
 from grader.base.source import Edit, Edits, Location, Source
+from grader.base.text import in_backticks
 from grader.ros.python.values import EvaluationSignal
 from grader.ros.xacro.corrections import (
     Refusal,
@@ -539,7 +540,8 @@ class ExpandedEdits:
         """
         written = Source(self._source.path, self._source.text)
         if self._source.corrected:
-            found = [_XacroMistake(self._source.corrected, "what xacro refuses")]
+            texts = in_backticks(edit.old for edit in self._source.corrected)
+            found = [_XacroMistake(self._source.corrected, f"xacro refuses {texts or 'this'}")]
         else:
             found = []
         found += _corrections(written, self._source.documents, self._source.refused)

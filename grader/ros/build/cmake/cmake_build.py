@@ -61,6 +61,7 @@ class Build:
             unknown=tuple(dict.fromkeys([*self.doubts, *self.unknown])),
             doubt=self.doubts[0] if self.doubts else None,
             called_at=self._package_at or self.last,
+            files_at=self._package_at or self.last,
             packages=tuple(self.modules),
         )
 
@@ -101,9 +102,17 @@ class Build:
         return is_there
 
     def exists(self, text: str) -> bool | None:
-        """Return whether a file or folder of the package exists; None where that is not known."""
+        """Return whether a file or folder of the package exists; None where that is not known, as
+        below an empty folder, which may be a submodule.
+        """
         path = self.inside(text)
-        return None if path is None else self._has(path)
+        if path is None:
+            return None
+        folder = posixpath.dirname(path)
+        is_there = self._has(path)
+        if not is_there and folder and self._has(folder) and not self.listing.names(folder):
+            return None
+        return is_there
 
     def searched(self, texts: Sequence[Text], at: Position, *, recursive: bool) -> Text:
         """Return the list that file(GLOB) makes."""

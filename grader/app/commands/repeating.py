@@ -1,0 +1,133 @@
+"""--watch: do something now and whenever a watched file changes, until Ctrl-C."""
+
+import gc
+import os
+import time
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import TypeVar
+
+from rich.console import Console
+from rich.text import Text
+
+from grader.base.errors import GraderError, InputError, MachineError, RubricError
+from grader.base.text import printable_path
+from grader.files.folder import read_folder
+from grader.report.screen import Screen, draw
+from grader.report.writers.terminal import Page
+from grader.report.writing import Terminal
+
+_POLL = 0.1  # seconds between two looks
+_SHARE = 10  # a look at many files is followed by a pause of this many times its own time
+_Stamps = dict[str, tuple[int, ...] | None]
+_Result = TypeVar("_Result")
+
+
+def refuse_watching(path: str, output_format: str) -> None:
+    """Raise GraderError for what cannot be watched: standard input, another format."""
+    if path in ("", "-"):
+        raise GraderError("--watch takes a file or folder: standard input is read only once")
+    if output_format != "terminal":
+        raise GraderError(
+            "--watch prints in the format terminal only: use --save "
+            f"{output_format}=FILE instead of --format"
+        )
+
+
+def repeat_on_change(
+    watched: Sequence[Path],
+    own: Collection[Path],
+    terminal: Terminal,
+    work: Callable[[], tuple[_Result, Sequence[Path]]],
+    show: Callable[[_Result], None],
+) -> None:
+    """Work now and after every change, until Ctrl-C, which raises KeyboardInterrupt.
+
+    A file that cannot be read is reported, and the work is done again after the next change.
+
+    Args:
+        watched: The files and folders, the first of which is named.
+        own: The files that are written, whose changes do not count.
+        terminal: Where it is said what is watched.
+        work: Returns a result, and the files that were read besides, which are watched as well.
+        show: Shows the result; what it raises ends the watch.
+    """
+    gc.enable()  # unlike other commands, this one may run for hours
+    terminal.warn(f"watching {printable_path(watched[0])}; stop with Ctrl-C")
+    for besides in _changes(watched, frozenset(map(os.path.realpath, own))):
+        try:
+            result, read = work()
+        except (InputError, MachineError, RubricError) as error:
+            for line in str(error).split("\n"):
+                terminal.warn(line)
+            continue
+        besides[:] = read
+        show(result)
+
+
+def titled_with_time(text: str, screen: Screen) -> str:
+    """Return a text below a rule with the time."""
+    rule = f"-- {time.strftime('%H:%M:%S')} ".ljust(screen.width, "-")
+    return drawn_rows([Text(rule, "dim")], screen) + text
+
+
+def drawn_rows(rows: list[Text], screen: Screen) -> str:
+    """Return rows of text as the screen shows them."""
+
+    def print_rows(console: Console) -> None:
+        page = Page(console, [])
+        for row in rows:
+            page.inset(row, indent=0)
+        page.print()
+
+    return draw(print_rows, screen)
+
+
+def _changes(watched: Sequence[Path], own: Collection[str] = ()) -> Iterator[list[Path]]:
+    """Yield at once and after every change of the watched files and folders, without end.
+
+    What is yielded is a list for the files that were read besides, which are watched from then on.
+    `own` are the real paths of files that do not count: the reports that are written.
+    """
+    besides: list[Path] = []
+    seen: _Stamps | None = None
+    before: _Stamps = {}
+    while True:
+        start = time.monotonic()
+        now = _stamps([*watched, *besides], own)
+        if (
+            seen is None or before == now != seen
+        ):  # what changed since the last look may be half written
+            yield besides
+            seen = {**_stamps(besides, own), **now}
+        before = now
+        time.sleep(max(_POLL, _SHARE * (time.monotonic() - start)))
+
+
+def _stamps(paths: Iterable[Path], own: Collection[str] = ()) -> _Stamps:
+    """Return what identifies each file and its content; of a folder, each file and folder that a
+    grading looks at.
+    """
+    found: _Stamps = {}
+    for path in paths:
+        names: Iterable[str] = ()
+        try:
+            tree = read_folder(path) if path.is_dir() else None
+            names = (*tree.files, *tree.folders) if tree is not None else ()
+        except (InputError, MachineError) as error:
+            found[str(error)] = None
+        files = (path, *(path / name for name in names))
+        found |= {str(file): _stamp(file) for file in files if os.path.realpath(file) not in own}
+    return found
+
+
+def _stamp(path: Path) -> tuple[int, ...] | None:
+    with suppress(OSError, ValueError):
+        status = path.stat()
+        known = status.st_dev, status.st_ino, status.st_mode
+        # A folder changes with each report that is written into it.
+        if path.is_dir():
+            return known
+        return (*known, status.st_size, status.st_mtime_ns, status.st_ctime_ns)
+    return None

@@ -1,0 +1,107 @@
+"""The settings of `grader inspect`: keys of a grader.toml, or of [tool.grader] in a pyproject.toml.
+
+`grade` and `batch` never read them: what a student ignores is graded.
+"""
+
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from grader.base.errors import InputError
+from grader.base.names import did_you_mean
+from grader.files.reading import read_capped
+from grader.lab.checks.toml_types import simple_type, toml_type
+from grader.lab.rubric.toml_file import KeyTable, TomlRowReader, complain_of, read_toml
+from grader.ros.known.releases import Release
+from grader.ros.workspace.problem_kinds import EVERY_KIND
+
+_NAMES = ("grader.toml", "pyproject.toml")
+_MAX_SIZE = 256 * 1024  # bytes of such a file
+_CODES = toml_type(tuple[str, ...])
+_TEXT = simple_type(
+    "a text",
+    {"type": "string", "minLength": 1},
+    lambda value: isinstance(value, str) and value != "",
+)
+_TABLE = KeyTable(
+    "table of settings",
+    {
+        "ignore": _CODES,
+        "per-file-ignores": toml_type(Mapping[str, tuple[str, ...]]),
+        "distro": toml_type(Release),
+        "rubric": _TEXT,
+    },
+)
+
+
+class Settings(NamedTuple):
+    """What a project says about its inspection."""
+
+    file: Path | None = None  # that says so; None without one
+    ignore: tuple[str, ...] = ()  # codes of problems, or their beginnings
+    per_file_ignores: Mapping[str, tuple[str, ...]] = {}  # the same by patterns of paths
+    distro: Release | None = None  # of ROS 2
+    rubric: str | None = None  # an id or a file
+
+
+def read_settings(path: str) -> Settings:
+    """Return the settings of the nearest file at or above a path; of a file its folder is meant.
+    Raises GraderError.
+    """
+    if path == "-":
+        return Settings()
+    # Path.is_dir raises for a name that is too long before Python 3.14.
+    folder = Path(path if os.path.isdir(path) else os.path.dirname(path) or os.curdir)  # noqa: PTH112, PTH120
+    real = Path(os.path.realpath(folder))
+    for above in (real, *real.parents):
+        for name in _NAMES:
+            file = above / name
+            if file.is_file() and not file.is_symlink():
+                settings = _read_file(file)
+                if settings is not None:
+                    return settings
+    return Settings()
+
+
+def _read_file(file: Path) -> Settings | None:
+    """Return the settings in a file; None for a pyproject.toml without them. Raises GraderError."""
+    shown = Path(os.path.relpath(file))
+    data = read_capped(file, _MAX_SIZE, shown=str(shown), advice="")
+    keys: tuple[str, ...] = ()
+    if file.name == _NAMES[1]:
+        keys = ("tool", "grader")
+        if b"grader" not in data:  # also in one with mistakes, which are none of ours
+            return None
+    text, table = read_toml(data, shown)
+    for key in keys:
+        inner = table.get(key)
+        if not isinstance(inner, dict):
+            return None
+        table = inner
+    reader = TomlRowReader()
+    row = reader.row(keys, table, _TABLE)
+    for code, why in _unknown_codes(row.get("ignore", ())):
+        reader.complain((*keys, "ignore"), f"ignore: {code}{why}")
+    for pattern, codes in row.get("per-file-ignores", {}).items():
+        for code, why in _unknown_codes(codes):
+            reader.complain((*keys, "per-file-ignores", pattern), f"per-file-ignores: {code}{why}")
+    complain_of(reader.complaints, text, shown)
+    fields: dict[str, Any] = {key.replace("-", "_"): value for key, value in row.items()}
+    return Settings(file, **fields)
+
+
+def read_codes(option: str, texts: Iterable[str]) -> tuple[str, ...]:
+    """Return the codes that an option names, with or without commas. Raises InputError."""
+    codes = tuple(code.strip() for text in texts for code in text.split(","))
+    for code, why in _unknown_codes(codes):
+        raise InputError(f"{option}: {code}{why}")
+    return codes
+
+
+def _unknown_codes(codes: Iterable[str]) -> Iterator[tuple[str, str]]:
+    """Yield the texts that no code begins with, between quotes, and what is wrong with each."""
+    known = [kind.code for kind in EVERY_KIND]
+    for code in codes:
+        if not code or not any(it.startswith(code) for it in known):
+            yield repr(code), f" is no problem code or its beginning{did_you_mean(code, known)}"

@@ -1,0 +1,30 @@
+"""One line for each finding, `path:line:column: CODE message`, for editors, grep and problem
+matchers. The paths begin in the current folder; without a finding there is no line.
+"""
+
+from collections.abc import Iterable
+
+from grader.base.source import Base
+from grader.base.text import printable
+from grader.lab.grading.report import Report
+from grader.report.findings import Finding, findings_in_inspection, findings_in_report
+from grader.report.inspection import Inspection
+
+
+def render_concise(report: Report, base: Base) -> str:
+    """Return the findings of a report, with the ids of criteria in place of codes."""
+    return _lines(findings_in_report(report), base)
+
+
+def concise_inspection(inspection: Inspection) -> str:
+    """Return the findings of an inspection."""
+    return _lines(findings_in_inspection(inspection), inspection.base)
+
+
+def _lines(findings: Iterable[Finding], base: Base) -> str:
+    text = ""
+    for finding in findings:
+        where = finding.location
+        path = printable(base.here + where.path) or "."
+        text += f"{path}:{where.line}:{where.column}: {finding.rule.id} {finding.message}\n"
+    return text

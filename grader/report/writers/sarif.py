@@ -1,0 +1,88 @@
+"""Findings as SARIF 2.1.0, for GitHub's code scanning and other viewers.
+
+https://docs.oasis-open.org/sarif/sarif/v2.1.0/sarif-v2.1.0.html, and what GitHub reads of it:
+https://docs.github.com/en/code-security/code-scanning/integrating-with-code-scanning/sarif-support-for-code-scanning
+"""
+
+import json
+from collections.abc import Sequence
+from typing import Any
+from urllib.parse import quote
+
+from grader import __version__
+from grader.base.source import Base
+from grader.lab.grading.report import Report
+from grader.report.findings import (
+    DOCUMENTATION,
+    Finding,
+    findings_in_inspection,
+    findings_in_report,
+    fingerprints,
+    message_in_repository,
+    place_in_repository,
+)
+from grader.report.inspection import Inspection
+from grader.report.json_data import to_json
+
+_SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
+_ROOT = "%SRCROOT%"  # of the repository, as GitHub calls it
+
+
+def render_sarif(report: Report, base: Base) -> str:
+    """Return the findings of a report; their rules are criteria and kinds of problems."""
+    return _log(findings_in_report(report), base)
+
+
+def sarif_inspection(inspection: Inspection) -> str:
+    """Return the findings of an inspection; their rules are kinds of problems."""
+    return _log(findings_in_inspection(inspection), inspection.base)
+
+
+def _log(findings: Sequence[Finding], base: Base) -> str:
+    """Return a log of one run, with the rules that have a result."""
+    rules = {finding.rule.id: _rule(finding) for finding in reversed(findings)}
+    names = sorted(rules)
+    results = []
+    for finding, fingerprint in zip(findings, fingerprints(findings, base), strict=True):
+        result = {
+            "ruleId": finding.rule.id,
+            "ruleIndex": names.index(finding.rule.id),
+            "level": finding.severity,
+            "message": {"text": message_in_repository(finding, base)},
+            "locations": [{"physicalLocation": _physical_location(finding, base)}],
+            "partialFingerprints": {"grader/v1": fingerprint},
+        }
+        results.append(result)
+    driver = {
+        "name": "grader",
+        "version": __version__,
+        "informationUri": DOCUMENTATION,
+        "rules": [rules[name] for name in names],
+    }
+    tool = {"driver": driver}
+    run = to_json({"tool": tool, "columnKind": "unicodeCodePoints", "results": results})
+    start = f'{{\n "$schema": {json.dumps(_SCHEMA)},\n "version": "2.1.0",\n "runs": ['
+    return f"{start}{run.rstrip()}]\n}}\n"
+
+
+def _rule(finding: Finding) -> dict[str, Any]:
+    """Return the rule of a finding; GitHub requires each of its texts."""
+    rule = finding.rule
+    data: dict[str, Any] = {
+        "id": rule.id,
+        "shortDescription": {"text": rule.title},
+        "fullDescription": {"text": rule.explanation},
+        "help": {"text": rule.explanation},
+        "defaultConfiguration": {"level": finding.severity},
+    }
+    if rule.page:
+        data["helpUri"] = rule.page
+    return data
+
+
+def _physical_location(finding: Finding, base: Base) -> dict[str, Any]:
+    path, where = place_in_repository(finding, base)
+    place: dict[str, Any] = {"artifactLocation": {"uri": quote(path), "uriBaseId": _ROOT}}
+    if where is not None:
+        place["region"] = {"startLine": where.line, "startColumn": where.column}
+    return place

@@ -1,0 +1,137 @@
+"""The releases of ROS 2, and the names that not all of them have."""
+
+import tomllib
+from collections.abc import Collection, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Literal, NamedTuple, get_args
+
+from grader.base.text import MAX_NAMED, enumerated
+
+Release = Literal["foxy", "galactic", "humble", "iron", "jazzy", "kilted", "rolling"]
+RELEASES: tuple[Release, ...] = get_args(Release)
+NameKind = Literal[
+    "plugin", "controller", "package", "program", "launch file", "parameter", "topic", "argument"
+]
+_FILE = Path(__file__).with_name("releases.toml")
+
+
+class StatedReleases(NamedTuple):
+    """The releases that a workspace is for, and the files or the option that say so; names of any
+    release are right if there are none.
+    """
+
+    releases: tuple[Release, ...] = ()
+    places: tuple[str, ...] = ()
+
+    @property
+    def words(self) -> str:
+        """Return the releases and their places in words."""
+        if not self.releases:
+            return "release: not stated; names of any release are right"
+        places = enumerated(self.places, MAX_NAMED)
+        return f"release: {enumerated(self.releases, len(RELEASES), 'or')} ({places})"
+
+
+NOT_STATED = StatedReleases()
+
+
+class _ReleaseName(NamedTuple):
+    """A name in the releases from one on, up to another one. A star at its end stands for the
+    rest.
+    """
+
+    name: str
+    since: Release = RELEASES[0]
+    until: Release = RELEASES[-1]
+
+    @property
+    def first(self) -> int:
+        """The number of the first release that has it."""
+        return RELEASES.index(self.since)
+
+    @property
+    def last(self) -> int:
+        """The number of the last release that has it."""
+        return RELEASES.index(self.until)
+
+    def matches(self, name: str) -> bool:
+        """Return whether a name is this one."""
+        start = self.name.removesuffix("*")
+        return name == self.name or (start != self.name and name.startswith(start))
+
+    def is_in(self, release: Release) -> bool:
+        """Return whether a release has it."""
+        return self.first <= RELEASES.index(release) <= self.last
+
+    def in_place_of(self, other: "_ReleaseName", name: str) -> str:
+        """Return what a name, which matches another one of the row, is here."""
+        start = self.name.removesuffix("*")
+        if start == self.name:
+            return start
+        return start + name.removeprefix(other.name.removesuffix("*"))
+
+
+class _OtherName(NamedTuple):
+    """What a name of other releases is called, in words; and the name, empty without one."""
+
+    message: str
+    name: str = ""
+
+
+def other_name(
+    kind: NameKind, name: str, releases: Collection[Release], *, shown: str = ""
+) -> _OtherName | None:
+    """Return what a name is called in the given releases; None if one of them has it, or if none is
+    given.
+
+    Args:
+        kind: What has the name.
+        name: The name, as releases.toml has it.
+        releases: The releases in one of which the name should be.
+        shown: The start of the name that messages leave out, such as the package of a program.
+    """
+    row = _row_with(kind, name)
+    own = next((it for it in row if it.matches(name)), None)
+    if own is None or not releases or any(map(own.is_in, releases)):
+        return None
+    release = min(releases, key=RELEASES.index)
+    is_later = RELEASES.index(release) > own.last
+    meant = next((it for it in row if it.is_in(release)), None)
+    here = name.removeprefix(shown)
+    if meant is None and is_later:
+        next_one = RELEASES[own.last + 1].title()
+        return _OtherName(f"there is no {kind} {here!r} from {next_one} on")
+    if meant is None:
+        return _OtherName(f"there is no {kind} {here!r} before {own.since.title()}")
+    there = meant.in_place_of(own, name).removeprefix(shown)
+    if is_later:
+        first = RELEASES[max(own.last + 1, meant.first)]
+        return _OtherName(f"{here!r} is {there!r} from {first.title()} on", there)
+    last = RELEASES[min(own.first - 1, meant.last)]
+    return _OtherName(f"{here!r} is {there!r} until {last.title()}", there)
+
+
+def releases_with(kind: NameKind, name: str) -> Sequence[Release]:
+    """Return the releases that have a name, in their order; none for a name without a row."""
+    having: list[Release] = []
+    for release_name in _row_with(kind, name):
+        if release_name.matches(name):
+            having += RELEASES[release_name.first : release_name.last + 1]
+    return having
+
+
+def _row_with(kind: NameKind, name: str) -> Sequence[_ReleaseName]:
+    """Return the first row with a name; an empty one without."""
+    for row in _rows(kind):
+        if any(release_name.matches(name) for release_name in row):
+            return row
+    return ()
+
+
+@cache
+def _rows(kind: NameKind) -> list[list[_ReleaseName]]:
+    rows = []
+    for row in tomllib.loads(_FILE.read_text("utf-8"))[kind]:
+        rows.append([_ReleaseName(**name) for name in row])
+    return rows

@@ -1,0 +1,127 @@
+"""The releases of ROS 2 for which a workspace says that it is."""
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+
+from grader.base.errors import InputError
+from grader.files.tree import File, Tree
+from grader.ros.known.releases import RELEASES, Release, StatedReleases
+
+_NAME = rf"({'|'.join(RELEASES)})(?![a-z0-9])"
+_RELEASE = re.compile(_NAME, re.IGNORECASE)
+_LIST = rf"(?:\s*(?:[,/&|+]|_%7C_|\band\b|\bor\b)\s*(?:ROS ?2 )?{_NAME})*"
+# What any file says: /opt/ros/humble, ros-humble-xacro, ros:humble.
+_PLACE = re.compile(rf"/opt/ros/{_NAME}|(?<![a-z])ros2?[:-]{_NAME}", re.IGNORECASE)
+# A setting: ROS_DISTRO: humble, required-ros-distributions: humble; its value may be a list.
+_SETTING = re.compile(
+    r"ros[_-]?2?[_-]?distr(?:o|ibution)s?\b[\"']?(?:\s*[:=]|\s)[\s\"'{$:=-]*"
+    rf"(\[[^]]{{0,200}}|(?:{_NAME}[\s,\"'-]*)+)",
+    re.IGNORECASE,
+)
+# A sentence, a badge or a link in a line: ROS 2 Humble, ROS_2-Humble, docs.ros.org/en/humble.
+_SENTENCE = re.compile(
+    rf"(?<![a-z])ROS[ _-]?2?(?:[\W_]*(?:distro\w*|version))?[\W_]{{0,5}}{_NAME}{_LIST}"
+    rf"|{_NAME} (?:Fitzroy|Geochelone|Hawksbill|Irwini|Jalisco|Kaiju|Ridley)"
+    rf"|(?:docs\.ros\.org/en|img\.shields\.io/ros/v)/{_NAME}|index\.ros\.org/[\w/]+#{_NAME}",
+    re.IGNORECASE,
+)
+_BRANCH = re.compile(rf"{_NAME}\W{{0,4}}branch|branch\W{{1,4}}{_NAME}", re.IGNORECASE)
+# What a workflow is run for: another branch than the one that is read.
+_OF_BRANCH = re.compile(
+    rf"\b(?:ref\w*|branches)[ \t]*:[\s\[\"'-]*{_NAME}(?=[\"'\]\s])", re.IGNORECASE
+)
+_UBUNTU = re.compile(r"\bubuntu:(20\.04|22\.04|24\.04|focal|jammy|noble)\b")
+_OF_UBUNTU: dict[str, tuple[Release, ...]] = {
+    **dict.fromkeys(("20.04", "focal"), ("foxy", "galactic")),
+    **dict.fromkeys(("22.04", "jammy"), ("humble", "iron")),
+    **dict.fromkeys(("24.04", "noble"), ("jazzy", "kilted")),
+}
+_COMMENT = re.compile(r"(?:^|(?<=\s))#[^\n]*")
+_MAX_FILES, _MAX_SIZE = 60, 128 * 1024  # of one kind; bytes
+
+
+def stated_releases(tree: Tree, distro: Release | None = None) -> StatedReleases:
+    """Return the release that the user gives, else those that files of a workspace state: its
+    containers, workflows and README, else other texts, else images of Ubuntu.
+    """
+    if distro is not None:
+        return StatedReleases((distro,), ("--distro",))
+    settings = [file for file in tree.files.values() if _is_container(file.name.lower())]
+    settings += tree.settings()
+    readmes = [file for file in tree.files.values() if file.name.lower().startswith("readme")]
+    # An archive of a repository has all files in one folder.
+    depth = len({path.partition("/")[0] for path in tree.files}) == 1
+    highest = [file for file in readmes if file.path.count("/") <= depth]
+    texts = [file for file in tree.files.values() if file.suffix in (".md", ".sh", ".bash")]
+    levels: list[list[tuple[Sequence[File], Callable[[str], set[str]]]]] = [
+        [(settings, _in_setting_of_every_branch), (highest, _in_prose)],
+        [(settings, _in_setting)],
+        [(readmes, _in_prose)],
+        [(texts, _in_prose)],
+        [(settings, _by_ubuntu)],
+    ]
+    for level in levels:
+        stated: set[str] = set()
+        places: list[str] = []
+        for files, find in level:
+            for path, text in _read(files):
+                found = find(text)
+                if found:
+                    stated |= found
+                    places.append(path)
+        if stated:
+            releases = tuple(release for release in RELEASES if release in stated)
+            return StatedReleases(releases, tuple(sorted(places)))
+    return StatedReleases()
+
+
+def _is_container(name: str) -> bool:
+    is_compose = name.startswith(("compose", "docker-compose")) and name.endswith((".yml", ".yaml"))
+    return is_compose or "dockerfile" in name
+
+
+def _read(files: Sequence[File]) -> Iterator[tuple[str, str]]:
+    """Yield the texts of files, with their paths; without comments, but for prose."""
+    for file in files[:_MAX_FILES]:
+        if file.size > _MAX_SIZE:
+            continue
+        try:
+            text = file.read(_MAX_SIZE).decode("utf-8", "replace")
+        except InputError:
+            continue
+        is_prose = file.name.lower().startswith("readme") or file.suffix == ".md"
+        yield file.path, text if is_prose else _COMMENT.sub("", text)
+
+
+def _names_in(pattern: re.Pattern[str], text: str) -> set[str]:
+    """Return the releases in what a pattern matches."""
+    found: set[str] = set()
+    for match in pattern.finditer(text):
+        found.update(name.lower() for name in _RELEASE.findall(match[0]))
+    return found
+
+
+def _in_setting(text: str) -> set[str]:
+    """Return the releases that a Dockerfile, a workflow or a script states."""
+    return _names_in(_PLACE, text) | _names_in(_SETTING, text)
+
+
+def _in_setting_of_every_branch(text: str) -> set[str]:
+    """Return the same without the releases whose branches a workflow is for."""
+    return _in_setting(text) - _names_in(_OF_BRANCH, text)
+
+
+def _in_prose(text: str) -> set[str]:
+    """Return the releases that a README states, but for those that are on other branches."""
+    found: set[str] = set()
+    for line in text.splitlines():
+        found |= (_in_setting(line) | _names_in(_SENTENCE, line)) - _names_in(_BRANCH, line)
+    return found
+
+
+def _by_ubuntu(text: str) -> set[str]:
+    """Return the releases for the images of Ubuntu that a Dockerfile or a workflow names."""
+    found: set[str] = set()
+    for version in _UBUNTU.findall(text):
+        found.update(_OF_UBUNTU[version])
+    return found
