@@ -467,3 +467,102 @@ def test_a_build_may_need_what_git_has_not_fetched() -> None:
         )
         kit = read_workspace(tree, "ws", URDF_LIMIT, {})
         assert any(it.code == "PKG012" for it in listed_problems(kit.workspace)) == is_wrong
+
+
+def test_a_read_with_an_alternative_needs_no_declaration() -> None:
+    """get_parameter stops for what is not declared, get_parameter_or does not."""
+    launch = _started("")
+    read = "self.get_parameterOR('speed')"
+    assert _names(_kit(mover=read.replace("OR", "_or"), launch=launch)) == []
+    [found] = _names(_kit(mover=read.replace("OR", ""), launch=launch))
+    assert found.startswith("REF004 get_parameter: there is no parameter 'speed'")
+
+
+def test_a_program_that_is_missing_is_named_once() -> None:
+    """What the launch file cannot start is also a name that does not agree: one of both is said."""
+    text = "<launch><node pkg='kit' exec='walker'/></launch>"
+    kit = _kit({"src/kit/launch/walk.launch.xml": text})
+    codes = [it.code for it in listed_problems(kit.workspace) if it.severity == "error"]
+    assert codes == []
+    [found] = _names(kit)
+    assert found.startswith("REF006 the package 'kit' has no program 'walker'")
+
+
+def test_a_place_that_several_robots_share_is_named_once() -> None:
+    """The macro of two robots names a link that neither has."""
+    part = (
+        '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="paint">'
+        '<gazebo reference="wheel"><mu1>1</mu1></gazebo></xacro:macro></robot>'
+    )
+    call = '<xacro:include filename="paint.xacro"/><xacro:paint/>'
+    more = {
+        "src/kit/urdf/paint.xacro": part,
+        "src/kit/urdf/second.urdf.xacro": _ROBOT.replace("MORE", call).replace("kit", "second"),
+    }
+    found = [it for it in _names(_kit(more, robot=call)) if "no link 'wheel'" in it]
+    assert len(found) == 1
+
+
+_RAW = (
+    '<robot name="raw" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+    '<xacro:property name="a" value="0"/><link name="one"/><link name="two"/>'
+    '<joint name="j" type="fixed"><parent link="one"/><child link="two"/>'
+    '<origin rpy="${a} 0 0"/></joint></robot>'
+)
+
+
+@pytest.mark.parametrize("name", ["raw.xacro.urdf", "raw.urdf"])
+def test_xacro_in_a_urdf_is_expanded_where_xacro_is_run(name: str) -> None:
+    """The name says xacro, or a launch file runs it on a file of the folder."""
+    [raw] = [it for it in _kit({f"src/kit/urdf/{name}": _RAW}).robots if "raw" in it.path]
+    assert getattr(raw, "is_expanded", False)
+
+
+def test_an_argument_may_choose_the_plugin_of_hardware() -> None:
+    """Hardware whose plugin stands under a condition has one."""
+    text = "<ros2_control name='s' type='system'><hardware>PLUGIN</hardware></ros2_control>"
+    chosen = "<xacro:if value=\"${'$(arg tool)' == 'sim'}\"><plugin>a/B</plugin></xacro:if>"
+    for plugin, codes in ((chosen, []), ("", ["URDF097"])):
+        kit = _kit(robot=text.replace("PLUGIN", plugin))
+        assert [it.code for one in kit.robots for it in kit.problems_of(one)] == codes  # type: ignore[arg-type]
+
+
+def test_a_package_inside_another_one_is_not_built() -> None:
+    """Colcon looks for no packages in a package; CMake installs its files with the folder."""
+    old = "cmake_minimum_required(VERSION 3.8)\nproject(old)\nadd_executable(a a.cpp)\n"
+    more = {
+        "src/kit/parts/old/package.xml": _MANIFEST.replace(">kit<", ">old<"),
+        "src/kit/parts/old/CMakeLists.txt": old,
+    }
+    kit = _kit(more)
+    assert [package.name for package in kit.packages] == ["kit"]
+    assert not any(it.code == "PKG012" for it in listed_problems(kit.workspace))
+
+
+def test_a_file_that_an_argument_chooses_is_a_part() -> None:
+    """What xacro includes by a computed name is no robot of its own."""
+    include = '<xacro:property name="far" value="1"/><xacro:include filename="$(arg tool)_arm.urdf.xacro"/>'
+    part = _ROBOT.replace("kit", "part").replace("MORE", '<link name="${far}"/>')
+    kit = _kit({"src/kit/urdf/none_arm.urdf.xacro": part}, robot=include)
+    assert [it.path for it in kit.robots] == ["src/kit/urdf/kit.urdf.xacro"]
+
+
+def test_a_default_that_xacro_fails_at_is_not_assumed() -> None:
+    """Where a launch file computes the value, a default that stops xacro leaves it open."""
+    robot = '<xacro:arg name="model" default=""/><xacro:include filename="$(arg model).xacro"/>'
+    launch = _LAUNCH.replace(
+        "'kit.urdf.xacro'])", "'kit.urdf.xacro']), ' model:=', open('m').read()"
+    )
+    kit = _kit({"src/kit/launch/kit.launch.py": launch.replace("MORE", "")}, robot=robot)
+    codes = {it.code for one in kit.robots for it in kit.problems_of(one)}  # type: ignore[arg-type]
+    assert codes == {"XACRO006"}
+
+
+def test_a_configuration_of_moveit_finds_files_by_their_usual_names() -> None:
+    """A package that a builder of configurations is given needs no names of its files."""
+    more = {
+        "src/kit/config/small_tuning.yaml": "a: 1",
+        "src/kit/package.xml": _MANIFEST,
+        "demo/kit_demo.py": "from moveit_configs_utils import B\nB('arm', package_name='kit')\n",
+    }
+    assert not any("REF010" in it for it in _names(_kit(more)))

@@ -2,15 +2,19 @@
 missing.
 """
 
+import re
 from collections.abc import Iterator, Sequence
 
 from grader.base.problems import Problem, in_order
+from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree
 from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.package import Package
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf import urdf_problems as kinds
 
+_HARDWARE = re.compile(rb"<hardware>.*?</hardware>", re.DOTALL)
+_CONDITION = re.compile(rb"<xacro:(if|unless)\b")
 # That something is not there, or is there twice.
 _OF_THE_WHOLE = frozenset(
     {
@@ -31,7 +35,16 @@ def problems_of_robot(
 ) -> tuple[Problem, ...]:
     """Return the problems of a robot and of its meshes, in the order of their places."""
     meshes = mesh_problems(robot, packages, tree)
-    return in_order((*_listed(robot.loaded.problems), *meshes))
+    own = [it for it in _listed(robot.loaded.problems) if not _is_chosen(it, robot, tree)]
+    return in_order((*own, *meshes))
+
+
+def _is_chosen(problem: Problem, robot: Read, tree: Tree) -> bool:
+    """Return whether an argument of xacro chooses what is missing: the plugin of hardware."""
+    if not robot.is_expanded or problem.kind is not kinds.HARDWARE_PLUGIN:
+        return False
+    text = tree.read(problem.location.path, URDF_LIMIT) or b""
+    return any(_CONDITION.search(hardware) for hardware in _HARDWARE.findall(text))
 
 
 def _listed(problems: Sequence[Problem]) -> Iterator[Problem]:

@@ -60,7 +60,8 @@ _KINDS: dict[str, _Kind] = {
     "create_service": "service",
     "create_client": "client",
 }
-_READS = ("get_parameter", "get_parameter_or", "has_parameter")
+_READS_IF_DECLARED = ("get_parameter_or", "has_parameter")
+_READS = ("get_parameter", *_READS_IF_DECLARED)
 _DECLARES = ("declare_parameter", "declare_parameters")
 _METHODS = frozenset({*_KINDS, *_READS, *_DECLARES, "create_timer"})
 # What may be given a node, and declares and opens nothing but actions and the topics of tf2.
@@ -139,6 +140,7 @@ class NodeParameter(NamedTuple):
     location: Location
     is_declared: bool = True
     is_plain: bool = True  # without a descriptor, which may allow values of other types
+    is_needed: bool = True  # False where it is read, and need not be declared
 
 
 class Timer(NamedTuple):
@@ -574,7 +576,12 @@ class _Module:
             default = argument(1, "value") if is_declared else None
             is_plain = argument(2, "descriptor") is None
             yield NodeParameter(
-                _text(argument(0, "name")), _default(default), at, is_declared, is_plain
+                _text(argument(0, "name")),
+                _default(default),
+                at,
+                is_declared,
+                is_plain,
+                is_needed=method not in _READS_IF_DECLARED,
             )
 
 

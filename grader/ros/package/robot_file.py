@@ -2,10 +2,12 @@
 around.
 """
 
+import posixpath
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple, cast
 
 from grader.base.errors import InputError, MissingElement, NotDecided
@@ -138,6 +140,23 @@ class Surroundings(NamedTuple):
             for found in package.robot_references(path.rpartition("/")[2])
         ]
 
+    def runs_xacro_beside(self, path: str) -> bool:
+        """Return whether a launch file runs xacro on a file of the same folder, or names xacro and
+        makes a path of variables that may be this one.
+        """
+        from grader.ros.package.made_paths import made_paths  # late: few robots need it
+
+        folder = posixpath.basename(posixpath.dirname(path))
+        for launch in chain.from_iterable(package.launches for package in self.packages):
+            for file in launch.named("urdf"):
+                beside = posixpath.basename(posixpath.dirname(file.path or ""))
+                if file.by == "xacro" and file.path is not None and beside == folder:
+                    return True
+            is_run = "xacro" in launch.source.text
+            if is_run and any(pattern.fullmatch(path) for pattern in made_paths(launch.source)):
+                return True
+        return False
+
     def other_arguments(self, path: str, references: "Sequence[NamedFile]") -> "OtherArguments":
         """Return what is known of arguments of xacro that neither the user nor the launch file
         gives.
@@ -231,6 +250,8 @@ class Surroundings(NamedTuple):
         similar path.
         """
         for own in self._named(package):
+            if self.assumes_defaults and inside in own.tree.files:
+                return own.path(inside)
             similar = any(f"/{path}".endswith(f"/{inside}") for path in own.tree.files)
             source, setup = own.installed.get(f"share/{package}/{inside}"), own.installation
             if (
@@ -290,11 +311,14 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
     programs = {reference.by for reference in launched}
     # Nothing loads a file of another name as a URDF; standard input is one.
     says_xacro = ".xacro" in name or (".urdf" not in name and name != "-")
-    if programs == {"xacro"} if programs else says_xacro:
+    is_xacro = programs == {"xacro"} if programs else says_xacro
+    if not programs and surroundings.assumes_defaults:
+        is_xacro = is_xacro or surroundings.runs_xacro_beside(path)
+    if is_xacro:
         return Read(
             path,
             data,
-            _expand_xacro(data, path, surroundings, launched),
+            _expanded(data, path, surroundings, launched),
             is_expanded=True,
             has_xacro=True,
         )
@@ -327,6 +351,19 @@ def _needs_xacro(data: bytes) -> bool:
     return (b"$" in data or b"xacro:" in data) and find_xacro(
         data.decode("utf-8", "replace")
     ) is not None
+
+
+def _expanded(
+    data: bytes, path: str, surroundings: Surroundings, references: "Sequence[NamedFile]"
+) -> Reading:
+    """Return the robot that xacro makes of a file; where it fails under arguments that are assumed,
+    that without them.
+    """
+    reading = _expand_xacro(data, path, surroundings, references)
+    fails = any(problem.kind.is_before_ros for problem in reading.problems)
+    if surroundings.assumes_defaults and fails:
+        return _expand_xacro(data, path, surroundings._replace(assumes_defaults=False), references)
+    return reading
 
 
 def _expand_xacro(

@@ -1,9 +1,12 @@
 """Read a workspace with all of its robots: every file that is one, and not a part of another."""
 
+import posixpath
 from collections.abc import Mapping, Sequence
 from typing import TypeGuard
 
 from grader.base.errors import InputError, NotDecided
+from grader.base.source import Source
+from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree
 from grader.ros.package.finding import (
     is_backup,
@@ -11,12 +14,14 @@ from grader.ros.package.finding import (
     package_around,
     read_packages,
 )
+from grader.ros.package.made_paths import made_paths
 from grader.ros.package.package import Package
 from grader.ros.package.robot_file import Absent, Read, Surroundings, Unreadable, read_as_ros
 from grader.ros.package.robots import RobotFile, find_robots, parts_of
 from grader.ros.python.budget import READING, Budget
 from grader.ros.urdf.urdf_problems import NO_LINKS, ROBOT_WITHOUT_NAME
 from grader.ros.workspace.opened import OpenedWorkspace
+from grader.ros.workspace.workspace import INCLUDED
 
 _MAX_PACKAGES, _MAX_ROBOTS = 1000, 200
 _MAX_PARTS = 20 * READING  # that all robots together may take
@@ -33,7 +38,7 @@ def read_workspace(
         max_size: The largest size of a robot, in bytes.
         arguments: The arguments of xacro that the user gives.
     """
-    packages = read_packages(tree, "", most=_MAX_PACKAGES)
+    packages = _outermost(read_packages(tree, "", most=_MAX_PACKAGES))
     ros1_packages = tuple(package for package in packages if package.is_of_ros1)
     return OpenedWorkspace(
         identity,
@@ -46,16 +51,27 @@ def read_workspace(
     )
 
 
+def _outermost(packages: tuple[Package, ...]) -> tuple[Package, ...]:
+    """Return the packages without those that are inside of others, where colcon looks for none."""
+    folders = [package.path("") for package in packages]
+    outermost = []
+    for package in packages:
+        path = package.path("")
+        if not any(path.startswith(folder) and path != folder for folder in folders):
+            outermost.append(package)
+    return tuple(outermost)
+
+
 def _read_robots(
     tree: Tree, packages: tuple[Package, ...], max_size: int, arguments: Mapping[str, str]
 ) -> list[Read | Unreadable]:
     found = find_robots(tree, max_size=max_size)
     launched = launched_paths(tree, packages, found)
-    included = parts_of(found)
+    included = parts_of(found) | _chosen_parts(tree, found)
     left = _MAX_PARTS
     robots: list[Read | Unreadable] = []
     parts: list[Read | Unreadable] = []
-    for file in _whole(found, launched)[:_MAX_ROBOTS]:
+    for file in _whole(found, launched, included)[:_MAX_ROBOTS]:
         budget = Budget(min(READING, left))
         around = package_around(packages, file.path)
         surroundings = Surroundings(
@@ -69,16 +85,28 @@ def _read_robots(
     return robots or [part for part in parts if not _is_empty(part)]
 
 
-def _whole(found: Sequence[RobotFile], launched: set[str]) -> list[RobotFile]:
+def _whole(
+    found: Sequence[RobotFile], launched: set[str], parts: frozenset[str]
+) -> list[RobotFile]:
     """Return the files that launch files load, or that are no backup and that no other one
     includes.
     """
-    parts = parts_of(found)
     return [
         file
         for file in found
         if file.path in launched or not (file.path in parts or is_backup(file.path))
     ]
+
+
+def _chosen_parts(tree: Tree, found: Sequence[RobotFile]) -> frozenset[str]:
+    """Return the paths of those files that another one includes by a name that it computes."""
+    parts: set[str] = set()
+    for file in found:
+        text = (tree.read(file.path, URDF_LIMIT) or b"").decode("utf-8", "replace")
+        names = [name for name in INCLUDED.findall(text) if "$" in posixpath.basename(name)]
+        for pattern in made_paths(Source(file.path, "\n".join(names))) if names else ():
+            parts |= {other.path for other in found if pattern.fullmatch(other.path)} - {file.path}
+    return frozenset(parts)
 
 
 def _read(

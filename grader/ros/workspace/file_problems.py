@@ -13,25 +13,26 @@ from grader.ros.known.releases import releases_with
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.found_problems import build_problems, launch_problems, sorted_problems
 from grader.ros.package.package import MANIFEST, Package
+from grader.ros.workspace.reading import read_agreement
 from grader.ros.workspace.workspace import Workspace
 
+_OF_MISSING_FILES = (kinds.SETUP_STOPS, kinds.EMPTY_GLOB)
 _COUNTED = (kinds.SETUP_UNKNOWN, kinds.LAUNCH_UNKNOWN)  # and not listed
 
 
 def _file_problems(workspace: Workspace) -> Iterator[Problem]:
     """Yield what is wrong in package.xml, setup.py, CMakeLists.txt, launch and RViz files."""
-    for package in workspace.packages:
-        lacks_submodule = any(map(package.holds, workspace.absent_submodules))
-        for problem in build_problems(package):
-            # A build needs what git has not fetched.
-            if not (lacks_submodule and problem.kind is kinds.SETUP_STOPS):
-                yield problem
+    yield from _build_problems(workspace)
     roots = {id(launch) for _, launch in workspace.roots}
+    mismatches = read_agreement(workspace).mismatches
+    wrong_programs = {it.location for it in mismatches if it.family == "programs"}
     for _, path, launch in workspace.launches:
         if launch.syntax is not None:
             yield Problem(kinds.LAUNCH_SYNTAX, launch.syntax.message, launch.syntax.location)
-        if id(launch) in roots:
-            yield from launch_problems(_started(workspace, path, launch))
+        found = launch_problems(_started(workspace, path, launch)) if id(launch) in roots else []
+        for problem in found:
+            if problem.location not in wrong_programs:  # which is also a name that does not agree
+                yield problem
     for package, paths in workspace.ros1_launches:
         files = counted(len(paths), "launch file")
         message = f"the package has {files} of ROS 1, which ros2 launch does not read"
@@ -39,6 +40,15 @@ def _file_problems(workspace: Workspace) -> Iterator[Problem]:
     for package in workspace.packages:
         for path in package.rviz_files:
             yield from _rviz_problems(package, path)
+
+
+def _build_problems(workspace: Workspace) -> Iterator[Problem]:
+    """Yield what stops a build, unless it needs what git has not fetched."""
+    for package in workspace.packages:
+        lacks_submodule = any(map(package.holds, workspace.absent_submodules))
+        for problem in build_problems(package):
+            if not (lacks_submodule and problem.kind in _OF_MISSING_FILES):
+                yield problem
 
 
 def listed_problems(workspace: Workspace) -> list[Problem]:

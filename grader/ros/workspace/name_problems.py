@@ -47,4 +47,9 @@ def name_problems(agreement: Agreement) -> tuple[Problem, ...]:
     for at in agreement.unused:
         message = "no other file of the workspace names this file"
         problems.append(Problem(_UNUSED, message, at, "files"))
-    return tuple(problems)
+    # Of a macro of xacro that several robots call, each place once.
+    by_place: dict[tuple[object, ...], Problem] = {}
+    for problem in problems:
+        at = problem.location
+        by_place.setdefault((problem.message, at.path, at.line, at.column), problem)
+    return tuple(by_place.values())

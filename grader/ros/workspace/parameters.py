@@ -260,7 +260,9 @@ def _declared(
         yield Open("parameter", owner)
     for parameter in python_node.parameters:
         if parameter.name is not None and not parameter.is_declared:
-            yield Use("parameter", parameter.name, parameter.location, "get_parameter", owner)
+            is_optional = not parameter.is_needed
+            at = parameter.location
+            yield Use("parameter", parameter.name, at, "get_parameter", owner, is_optional)
     yield from _given(workspace, package, node, python_node)
 
 

@@ -247,6 +247,7 @@ def _unheard(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator[Misma
     heard = {subscription.topic for subscription in subscriptions}
     published = {publisher.topic for publisher in publishers}
     unheard = [publisher for publisher in publishers if publisher.topic not in heard]
+    said: set[Location] = set()
     for waiting in subscriptions:
         if not waiting.is_of_controller or waiting.topic in published:
             continue
@@ -257,12 +258,17 @@ def _unheard(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator[Misma
             are_started = publisher.is_started and waiting.is_started
             is_certain = are_started and _is_known(workspace, publisher.launch)
             is_same = publisher.topic.rpartition("/")[2] == waiting.topic.rpartition("/")[2]
-            if is_same or (is_certain and len(fitting) == 1):
+            at = publisher.endpoint.location
+            ends = [it.topic.split("/")[-2:] for it in (publisher, waiting)]
+            if workspace.has_controllers_in_gazebo and ends[0] == ends[1]:
+                continue  # Gazebo may have the same controller in another namespace
+            if at not in said and (is_same or (is_certain and len(fitting) == 1)):
+                said.add(at)
                 message = (
                     f"nothing subscribes to {publisher.topic}; did you mean {waiting.topic} "
                     f"({place.file_and_line})?"
                 )
-                yield Mismatch("topics", message, publisher.endpoint.location, place, is_certain)
+                yield Mismatch("topics", message, at, place, is_certain)
 
 
 def _is_known(workspace: Workspace, launch: int) -> bool:

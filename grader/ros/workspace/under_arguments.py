@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from grader.base.source import Source
-from grader.ros.workspace.made_paths import made_paths
+from grader.ros.package.made_paths import made_paths
 from grader.ros.workspace.workspace import Workspace
 
 _TAG = re.compile(

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 from grader.base.source import Location
 from grader.files.tree import Tree
-from grader.ros.workspace.made_paths import made_paths
+from grader.ros.package.made_paths import made_paths
 from grader.ros.workspace.workspace import Workspace
 
 _KINDS = (".yaml", ".yml", ".xacro", ".urdf", ".rviz", ".srdf")
@@ -57,9 +57,14 @@ def _unnamed(workspace: Workspace) -> Iterator[str]:
     counts: Counter[bytes] = Counter()
     for words_of_file in words.values():
         counts.update(words_of_file)
+    configured: set[bytes] = set()  # the words of files that look for others by their usual names
+    for words_of_file in words.values():
+        if _BY_USUAL_NAMES in words_of_file:
+            configured |= words_of_file
     for package in workspace.packages:
         files = [package.path(path) for path in package.tree.files]
-        if any(_BY_USUAL_NAMES in words.get(file, ()) for file in files):
+        is_configured = package.name.encode() in configured
+        if is_configured or any(_BY_USUAL_NAMES in words.get(file, ()) for file in files):
             continue
         for path in sorted({*package.installed.values()} - {*package.launch_files}):
             if not path.endswith(_KINDS) or "test" in path.split("/"):

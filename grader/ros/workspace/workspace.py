@@ -45,7 +45,7 @@ MANAGER, SPAWNERS = "controller_manager", ("spawner", "spawner.py")
 _NAME = re.compile(r"\bname=[\"'](?:xacro:)?([\w.-]+)[\"']")
 _CALLED = re.compile(r"<xacro:(?:[\w-]+\.)*([\w-]+)")
 _PACKAGE_IN = re.compile("the package '([\\w-]+)'")  # in the reason why a path is not known
-_INCLUDED = re.compile(r"<xacro:include\b[^>]*?\bfilename\s*=\s*[\"']([^\"']+)[\"']")
+INCLUDED = re.compile(r"<xacro:include\b[^>]*?\bfilename\s*=\s*[\"']([^\"']+)[\"']")
 _FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
 _MAX_FILES = 60  # of one kind in a package
 _MAX_YAML = 512 * 1024  # bytes
@@ -251,10 +251,16 @@ class Workspace:
         """Return whether a launch file starts a controller manager, or the robot has one in
         Gazebo.
         """
+        is_started = any(node.executable == "ros2_control_node" for _, node in self.nodes)
+        return is_started or self.has_controllers_in_gazebo
+
+    @cached_property
+    def has_controllers_in_gazebo(self) -> bool:
+        """Whether a robot has a controller manager in Gazebo."""
         for robot in self.robots:
             if any("ros2_control" in it.get("filename", "") for it in robot.root.iter("plugin")):
                 return True
-        return any(node.executable == "ros2_control_node" for _, node in self.nodes)
+        return False
 
     @cached_property
     def python_nodes(self) -> Mapping[str, PythonNodes]:
@@ -554,7 +560,7 @@ class Workspace:
             sources += self.sources_of(package, (".xacro", ".urdf"))
         names: set[str] = set()
         for source in sources:
-            names |= {posixpath.basename(path) for path in _INCLUDED.findall(source.text)}
+            names |= {posixpath.basename(path) for path in INCLUDED.findall(source.text)}
         others = tuple(name for name in names if name and not name.endswith((".xacro", ".urdf")))
         for package in self.packages:
             sources += self.sources_of(package, others)
