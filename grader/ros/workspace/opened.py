@@ -34,7 +34,8 @@ class OpenedWorkspace:
     robots: tuple[Read | Unreadable, ...] = ()  # of a workspace, all of whose robots are read
     ros1_packages: tuple[Package, ...] = ()  # whose names are not compared
     besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes
-    stated: StatedReleases = NOT_STATED  # of ROS 2, in one of which names should be
+    distro: Release | None = None  # the release of ROS 2 that a lab is for
+    stated: StatedReleases = NOT_STATED  # those that a workspace is for
 
     @cached_property
     def workspace(self) -> "Workspace":
@@ -46,7 +47,7 @@ class OpenedWorkspace:
         )
         urdfs = tuple(it for it in (*self.robots, self.urdf) if isinstance(it, Read))
         has_unread = has_other_robots or any(isinstance(it, Unreadable) for it in self.robots)
-        releases = self.stated.releases
+        releases = (self.distro,) if self.distro is not None else self.stated.releases
         return Workspace(self.packages, urdfs, self.whole_tree, has_unread, releases)
 
     @property
