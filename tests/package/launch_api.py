@@ -31,7 +31,7 @@ LATER_CLASSES = {
     }
 }
 # Of later patches: since https://github.com/ros2/launch/pull/838 a part of a path may be a list.
-LATER_CHECKS = {(f"{_PATHS}.PathJoinSubstitution", "substitutions"): "texts"}
+LATER_CHECKS = {(f"{_PATHS}.PathJoinSubstitution", "substitutions"): "path"}
 # What the constructors require of arguments with these annotations: each stands for the check of this name.
 CHECKS = {
     "SomeSubstitutionsType": "text",

@@ -431,6 +431,16 @@ def _wrong_texts(value: Value) -> _Fault | None:
     return _first_fault(map(_wrong_text, items))
 
 
+def _wrong_path(value: Value) -> _Fault | None:
+    """Return what is wrong with the parts of a path: each is a text, or a list of its parts."""
+    if not isinstance(value, list | tuple):
+        return _wrong_text(value)
+    for part in value:
+        if not isinstance(part, list | tuple) and not _is_text(part):
+            return _wrong_in(part)
+    return _first_fault(map(_wrong_text, value))
+
+
 def _wrong_mapping(value: Value) -> _Fault | None:
     if isinstance(value, dict):
         return _first_fault(_wrong_text(item) for pair in value.items() for item in pair)
@@ -468,6 +478,7 @@ def _wrong_remappings(value: Value) -> _Fault | None:
 _CHECKS: Mapping[str, Callable[[Value], _Fault | None]] = {
     "text": _wrong_text,
     "texts": _wrong_texts,
+    "path": _wrong_path,
     "mapping": _wrong_mapping,
     "bool": _check_of_type(bool),
     "float": _wrong_period,
