@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from grader.app.ignoring import Selection, without_ignored
 from grader.app.saving import check_saves, save_texts
-from grader.app.settings import read_codes, read_settings
+from grader.app.settings import Settings, read_codes, read_settings
 from grader.base.errors import GraderError, InputError, MissingElement, NotDecided
 from grader.base.text import MAX_NAMED, enumerated, printable_path
 from grader.files.tree import overlaid
@@ -49,6 +49,12 @@ class InspectRequest(NamedTuple):
     def saves(self) -> Saves[InspectFormat]:
         """The files to write, with their formats. Raises GraderError."""
         return read_saves(self.save or (), InspectFormat)
+
+    def release(self, settings: Settings) -> tuple[Release | None, str]:
+        """Return the release that the option, or else a setting, gives, and its place."""
+        if self.distro is not None or settings.file is None:
+            return self.distro, "--distro"
+        return settings.distro, settings.file.name
 
     def selection(self, folder: Path) -> Selection:
         """Return which problems are shown, of files whose paths begin in a folder. Raises
@@ -124,7 +130,7 @@ def _inspect(request: InspectRequest, warn: Warn) -> Inspection:
     if (joints or relative_to is not None) and len(read) != 1:
         raise GraderError(_which_one(path, read))
     robots = tuple(_inspected(opened, it, joints, relative_to) for it in read)
-    opened = opened.of_release(request.distro or selection.settings.distro)
+    opened = opened.of_release(*request.release(selection.settings))
     found = tuple(opened.package_problems())
     inspection = Inspection(opened.id, robots, found, opened.extent(), opened.source, base)
     return without_ignored(inspection, opened.whole_tree, [*opened.whole_tree.files], selection)

@@ -32,11 +32,11 @@ from grader.report.criteria import answer_lines, counts_lines, is_manual
 from grader.report.drawing.picture import Picture, picture_of
 from grader.report.locations import location_text, source_lines
 from grader.report.writers.svg import callout_lines, drawing_element
-from grader.ros.build.package_problems import LAUNCH_UNKNOWN, SETUP_UNKNOWN
 from grader.ros.package.package import SETUP
 
 _MAX_PLACES, _AROUND = 3, 6  # places in files, and lines before and after each
-_UNKNOWN = {SETUP: SETUP_UNKNOWN, "launch": LAUNCH_UNKNOWN}  # by what a check looks at
+# The codes of what cannot be determined, by what a check looks at.
+_UNKNOWN = {SETUP: "PKG016", "launch": "LCH004"}
 _OF_ROBOT = ("urdf", "robot")  # subjects of checks
 
 
@@ -177,6 +177,6 @@ def _unknown_place(report: Report, criterion: Criterion) -> Location | None:
         found = [one for one in report.problems if one.kind.effect == "undetermined"]
     else:
         own = [_UNKNOWN[name] for name in criterion.check.about.looks_at if name in _UNKNOWN]
-        found = [one for one in report.problems if one.kind in _UNKNOWN.values()]
-        found.sort(key=lambda one: one.kind not in own)
+        found = [one for one in report.problems if one.code in _UNKNOWN.values()]
+        found.sort(key=lambda one: one.code not in own)
     return found[0].location if found else None

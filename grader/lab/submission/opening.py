@@ -275,7 +275,7 @@ def submission_of(
         no_package=chosen.no_package,
         lab_packages=chosen.lab_packages,
         whole_tree=tree,
-        stated=lab.stated,
+        distro=lab.distro,
         several=chosen.several,
         notes=chosen.notes,
         is_single=False,

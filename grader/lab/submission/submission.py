@@ -10,7 +10,7 @@ from grader.base.text import enumerated, was_not_committed
 from grader.files.limits import MAX_FILE_SIZE, ROBOT_ENDINGS
 from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.files.tree import File, Tree, make_tree
-from grader.ros.known.releases import Release, StatedReleases
+from grader.ros.known.releases import Release
 from grader.ros.launch.launch_cache import LaunchCache
 from grader.ros.package.package import NO_PACKAGE, Package
 from grader.ros.package.robot_file import (
@@ -49,11 +49,6 @@ class Lab(NamedTuple):
     # the packages of other people whose programs the lab asks for: they are on its machines
     installed: frozenset[str] = frozenset()
     distro: Release | None = None  # of ROS 2; None for any
-
-    @property
-    def stated(self) -> StatedReleases:
-        """The release of ROS 2 that it is for."""
-        return StatedReleases((self.distro,) if self.distro is not None else ())
 
     @property
     def package_names(self) -> tuple[str, ...]:

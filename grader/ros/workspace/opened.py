@@ -34,7 +34,8 @@ class OpenedWorkspace:
     robots: tuple[Read | Unreadable, ...] = ()  # of a workspace, all of whose robots are read
     ros1_packages: tuple[Package, ...] = ()  # whose names are not compared
     besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes
-    stated: StatedReleases = NOT_STATED  # of ROS 2, in one of which names should be
+    distro: Release | None = None  # the release of ROS 2 that a lab is for
+    stated: StatedReleases = NOT_STATED  # those that a workspace is for
 
     @cached_property
     def workspace(self) -> "Workspace":
@@ -46,7 +47,7 @@ class OpenedWorkspace:
         )
         urdfs = tuple(it for it in (*self.robots, self.urdf) if isinstance(it, Read))
         has_unread = has_other_robots or any(isinstance(it, Unreadable) for it in self.robots)
-        releases = self.stated.releases
+        releases = (self.distro,) if self.distro is not None else self.stated.releases
         return Workspace(self.packages, urdfs, self.whole_tree, has_unread, releases)
 
     @property
@@ -84,11 +85,15 @@ class OpenedWorkspace:
         found += compared_names(self.workspace)
         return found
 
-    def of_release(self, distro: Release | None) -> "OpenedWorkspace":
-        """Return it for a release of ROS 2; without one, for those that its files state."""
+    def of_release(self, distro: Release | None, place: str) -> "OpenedWorkspace":
+        """Return it for a release of ROS 2 that an option or a setting gives; without one, for
+        those that its files state.
+        """
         from grader.ros.workspace.stated_releases import stated_releases  # late: as above
 
-        return replace(self, stated=stated_releases(self.whole_tree, distro))
+        if distro is not None:
+            return replace(self, stated=StatedReleases((distro,), (place,)))
+        return replace(self, stated=stated_releases(self.whole_tree))
 
     def extent(self) -> "Extent":
         """Return how much of it was read."""

@@ -40,12 +40,10 @@ _COMMENT = re.compile(r"(?:^|(?<=\s))#[^\n]*")
 _MAX_FILES, _MAX_SIZE = 60, 128 * 1024  # of one kind; bytes
 
 
-def stated_releases(tree: Tree, distro: Release | None = None) -> StatedReleases:
-    """Return the release that the user gives, else those that files of a workspace state: its
-    containers, workflows and README, else other texts, else images of Ubuntu.
+def stated_releases(tree: Tree) -> StatedReleases:
+    """Return the releases that files of a workspace state: its containers, workflows and README,
+    else other texts, else images of Ubuntu.
     """
-    if distro is not None:
-        return StatedReleases((distro,), ("--distro",))
     settings = [file for file in tree.files.values() if _is_container(file.name.lower())]
     settings += tree.settings()
     readmes = [file for file in tree.files.values() if file.name.lower().startswith("readme")]
