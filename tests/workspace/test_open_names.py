@@ -529,14 +529,25 @@ def test_an_argument_may_choose_the_plugin_of_hardware() -> None:
 
 def test_a_package_inside_another_one_is_not_built() -> None:
     """Colcon looks for no packages in a package; CMake installs its files with the folder."""
-    old = "cmake_minimum_required(VERSION 3.8)\nproject(old)\nadd_executable(a a.cpp)\n"
-    more = {
-        "src/kit/parts/old/package.xml": _MANIFEST.replace(">kit<", ">old<"),
-        "src/kit/parts/old/CMakeLists.txt": old,
+    outer = (
+        "cmake_minimum_required(VERSION 3.8)\nproject(low)\nfind_package(ament_cmake REQUIRED)\n"
+        "install(DIRECTORY parts DESTINATION share/low)\nament_package()\n"
+    )
+    manifest = _MANIFEST.replace("ament_python", "ament_cmake")
+    files = {
+        "low/package.xml": manifest.replace(">kit<", ">low<"),
+        "low/CMakeLists.txt": outer,
+        "low/parts/old/package.xml": manifest.replace(">kit<", ">old<"),
+        "low/parts/old/CMakeLists.txt": "project(old)\nadd_executable(a a.cpp)\n",
+        "low/parts/old/config/a.yaml": "a: 1",
+        "low/parts/old/launch/a.launch.py": _LAUNCH,
     }
-    kit = _kit(more)
-    assert [package.name for package in kit.packages] == ["kit"]
-    assert not any(it.code == "PKG012" for it in listed_problems(kit.workspace))
+    tree = overlaid(make_tree("ws", (), ()), {path: text.encode() for path, text in files.items()})
+    low = read_workspace(tree, "ws", URDF_LIMIT, {})
+    [package] = low.packages
+    assert package.installed["share/low/parts/old/config/a.yaml"] == "parts/old/config/a.yaml"
+    assert not any(it.code == "PKG012" for it in listed_problems(low.workspace))
+    assert low.workspace.launches == ()
 
 
 def test_a_file_that_an_argument_chooses_is_a_part() -> None:

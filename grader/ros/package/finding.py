@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from functools import partial
 from itertools import product
 
 from grader.base.errors import InputError
@@ -85,6 +86,8 @@ def read_packages(
     launch_cache: LaunchCache | None = None,
     installed: frozenset[str] = frozenset(),
     most: int = _MAX_PACKAGES,
+    *,
+    are_whole: bool = False,
 ) -> tuple[Package, ...]:
     """Return the packages in a file tree, the one that matches best first.
 
@@ -100,6 +103,7 @@ def read_packages(
         launch_cache: The launch files that were read for the same lab.
         installed: The packages that are on the lab's machines.
         most: How many are read.
+        are_whole: Whether packages also have the files of those in them, as builds copy them.
     """
     known: dict[str, Package] = {}
     cache = launch_cache if launch_cache is not None else LaunchCache()
@@ -107,7 +111,10 @@ def read_packages(
     folders = find_packages(tree, wanted, most)
     packages = []
     for folder in folders:
-        files = _own_files(tree, folder, folders)
+        files = tree.below(folder)
+        inner = _inner_folders(files, folder, folders)
+        if inner and not are_whole:
+            files = files.only(partial(_is_outside, inner))
         package = Package(
             folder,
             files,
@@ -118,6 +125,7 @@ def read_packages(
             lab_packages=names,
             installed_besides=installed,
             ignored_by=_find_marker(tree, folder),
+            inner=inner,
             launch_cache=cache,
         )
         packages.append(package)
@@ -193,11 +201,12 @@ def _name_distance(package: Package, name: str) -> int:
     return _OTHER
 
 
-def _own_files(tree: Tree, folder: str, folders: Sequence[str]) -> Tree:
-    """Return the files of a package without those of packages in it. A stray package.xml makes
-    none.
-    """
-    files = tree.below(folder)
+def _is_outside(folders: tuple[str, ...], path: str) -> bool:
+    return not path.startswith(folders)
+
+
+def _inner_folders(files: Tree, folder: str, folders: Sequence[str]) -> tuple[str, ...]:
+    """Return the folders of packages in a package. A stray package.xml makes none."""
     prefix = f"{folder}/" if folder else ""
     inner = []
     for other in folders:
@@ -205,9 +214,7 @@ def _own_files(tree: Tree, folder: str, folders: Sequence[str]) -> Tree:
         is_inside = other.startswith(prefix) and other != folder
         if is_inside and (f"{path}/{SETUP}" in files.files or f"{path}/{CMAKE}" in files.files):
             inner.append(f"{path}/")
-    if not inner:
-        return files
-    return files.only(lambda path: not path.startswith(tuple(inner)))
+    return tuple(inner)
 
 
 def _read_manifest(files: Tree, path: str) -> Manifest | None:

@@ -75,6 +75,8 @@ class Package:
     lab_packages: tuple[str, ...] = ()  # the names of all packages of the lab, if there are several
     installed_besides: frozenset[str] = frozenset()  # packages that are on the lab's machines
     ignored_by: str = ""  # the path of a file for which colcon ignores it
+    # Folders of packages in it, each with a slash, whose files it has: a build copies them.
+    inner: tuple[str, ...] = ()
     launch_cache: LaunchCache = field(default_factory=LaunchCache)
     arguments: "Mapping[str, str]" = field(default_factory=dict)  # that its launch files are given
     # The package without other launch arguments: what a build installs does not depend on them.

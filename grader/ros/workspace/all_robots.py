@@ -38,7 +38,7 @@ def read_workspace(
         max_size: The largest size of a robot, in bytes.
         arguments: The arguments of xacro that the user gives.
     """
-    packages = _outermost(read_packages(tree, "", most=_MAX_PACKAGES))
+    packages = _outermost(read_packages(tree, "", most=_MAX_PACKAGES, are_whole=True))
     ros1_packages = tuple(package for package in packages if package.is_of_ros1)
     return OpenedWorkspace(
         identity,

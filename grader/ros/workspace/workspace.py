@@ -134,7 +134,7 @@ class Workspace:
         """
         launches: list[tuple[Package, str, Launch]] = []
         for package in self.packages:
-            paths = _without_tests(package.launch_files)
+            paths = _read_paths(package, package.launch_files)
             kinds = {path: self._kind_of_launch(package, path) for path in paths}
             paths = [path for path, kind in kinds.items() if kind == "launch"]
             launches += [(package, path, package.launch(path)) for path in paths]
@@ -150,7 +150,7 @@ class Workspace:
     def ros1_launches(self) -> Iterator[tuple[Package, list[str]]]:
         """The packages with launch files of ROS 1, and the paths of these."""
         for package in self.packages:
-            paths = _without_tests(package.launch_files)
+            paths = _read_paths(package, package.launch_files)
             of_ros1 = [it for it in paths if self._kind_of_launch(package, it) == "ROS 1"]
             if of_ros1:
                 yield package, of_ros1
@@ -191,7 +191,7 @@ class Workspace:
         for package in self.packages:
             paths = [path for path in package.tree.files if path.endswith((".yaml", ".yml"))]
             launched = {path for owner, path, _ in self.launches if owner is package}
-            for path in _without_tests(path for path in paths if path not in launched):
+            for path in _read_paths(package, (it for it in paths if it not in launched)):
                 whole_path, data = package.path(path), package.tree.read(path, _MAX_YAML)
                 if data is None:
                     continue
@@ -528,7 +528,7 @@ class Workspace:
         return self._sources(package, paths)
 
     def _sources(self, package: Package, paths: Iterable[str]) -> Iterator[Source]:
-        for path in _without_tests(paths):
+        for path in _read_paths(package, paths):
             if (package, path) not in self._texts:
                 self._texts[package, path] = _without_comments(package, path)
             source = self._texts[package, path]
@@ -595,9 +595,12 @@ def _without_comments(package: Package, path: str) -> Source | None:
     return Source(package.path(path), comment.sub(_blank, text))
 
 
-def _without_tests(paths: Iterable[str]) -> list[str]:
-    """Return the paths of a package's files that are read: no tests, and not too many."""
-    return [path for path in paths if not path.startswith("test/")][:_MAX_FILES]
+def _read_paths(package: Package, paths: Iterable[str]) -> list[str]:
+    """Return the paths of a package's files that are read: no tests, none of packages in it, and
+    not too many.
+    """
+    unread = ("test/", *package.inner)
+    return [path for path in paths if not path.startswith(unread)][:_MAX_FILES]
 
 
 def _spawned_by(node: StartedNode) -> Sequence[StartedNode]:
