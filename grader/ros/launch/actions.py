@@ -317,7 +317,7 @@ def _declare_argument(
         name in context.arguments and call.kwargs.get("condition") is not None
     )
     if default is None and not is_given:
-        context.arguments[name] = Unknown(f"the launch argument {name!r} is given", call.at)
+        context.arguments[name] = Unknown(f"the launch argument {name!r} has no default", call.at)
         raise MissingValue(
             f"the launch argument {name!r} has no default, and no value is given", call.at
         )
