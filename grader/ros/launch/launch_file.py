@@ -80,7 +80,7 @@ _WRITES = ("w", "wt", "a", "at", "x", "xt")
 _ENTRY = "generate_launch_description"
 _NODE = "launch_ros.actions.node.Node"
 _MOVEIT = "moveit_configs_utils"
-_MAX_INCLUDES = 10
+_MAX_INCLUDES = 40
 # What a launch file shares with those that it includes.
 _JOINED = ("nodes", "references", "faults", "unknown", "doubts", "declared", "values", "passed")
 

@@ -309,7 +309,7 @@ def _is_open(workspace: Workspace) -> bool:
             return True
     for file in workspace.sdf_files:
         for include in file.root.iter("include"):
-            model = (include.findtext("uri") or "").rpartition("/")[2]
+            model = (include.findtext("uri") or "").strip().rpartition("/")[2]
             if model.lower() not in _WITHOUT_SENSORS:
                 return True
     return False
