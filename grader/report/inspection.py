@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import islice
 from math import isfinite
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.problems import Problem
@@ -18,7 +19,9 @@ from grader.report.criteria import alike
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Joint
 from grader.ros.urdf.reader import Reading
-from grader.ros.workspace.extent import Extent
+
+if TYPE_CHECKING:
+    from grader.ros.workspace.extent import Extent
 
 MAX_LISTED = 500  # links, or problems on a page
 _MAX_INDENT = 60
@@ -93,7 +96,7 @@ class Inspection:
     path: str
     robots: tuple[InspectedRobot, ...] = ()
     package_problems: tuple[Problem, ...] = ()
-    extent: Extent | None = None
+    extent: "Extent | None" = None
     source_of: Callable[[str], Source | None] | None = None
     base: Base = _NO_BASE  # its place in a repository
     besides: tuple[Path, ...] = ()  # the files that were read besides a single one
