@@ -71,7 +71,7 @@ def _read_file(file: Path) -> Settings | None:
     keys: tuple[str, ...] = ()
     if file.name == _NAMES[1]:
         keys = ("tool", "grader")
-        if b"grader" not in data:  # also in one with mistakes, which are none of ours
+        if b"grader" not in data:  # its mistakes are not read
             return None
     text, table = read_toml(data, shown)
     for key in keys:
