@@ -161,12 +161,14 @@ class Files:
         """Return the error for a file that does not exist, with the one that it surely stands
         for.
         """
+        # a path that is not text, or has controls, cannot be written in the file
+        paths = [other for other in self._workspace.paths if other.isprintable()]
         self._budget.charge(len(self._workspace.paths))
         folder, name = posixpath.split(path)
-        beside = [other for other in self._workspace.paths if posixpath.dirname(other) == folder]
+        beside = [other for other in paths if posixpath.dirname(other) == folder]
         names = [posixpath.basename(other) for other in beside]
         self._budget.charge(_OF_NAME * len(names))
-        same = [other for other in self._workspace.paths if other.lower() == path.lower()]
+        same = [other for other in paths if other.lower() == path.lower()]
         if len(same) != 1:
             unknown = UnknownName(name, dict.fromkeys(names), "file", near(name, names))
             return FileFails(message, unknown)

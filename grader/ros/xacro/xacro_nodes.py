@@ -94,7 +94,7 @@ def _read(data: bytes, path: str, is_repaired: bool, edits: Edits) -> tuple[Xacr
     if is_repaired:
         xml = _MISPLACED.sub(lambda found: " " * len(found[0]), xml)
         xml = xml if "xmlns:xacro" in xml else _UNDECLARED.sub(r"\1xacro" + _STAND_IN, xml)
-    root = parse_xml(xml.encode())
+    root = parse_xml(xml.encode("utf-8", "surrogateescape"))
     definitions = root.getroottree().docinfo.internalDTD
     if definitions is not None and next(definitions.iterentities(), None) is not None:  # type: ignore[attr-defined]
         raise Undetermined("entities of a DOCTYPE are not supported")
