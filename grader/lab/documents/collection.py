@@ -13,7 +13,6 @@ from collections.abc import Collection, Mapping, Sequence
 from fnmatch import translate
 from functools import lru_cache
 from math import ceil
-from tempfile import TemporaryFile
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -244,6 +243,8 @@ class DocumentCollection:
 
     def _run(self, command: list[str], data: bytes) -> tuple[int, bytes]:
         """Return the exit code and the output of a converter."""
+        from tempfile import TemporaryFile  # late: few documents are converted
+
         with (
             TemporaryFile() as file
         ):  # not a pipe: after a timeout, `communicate` would not write the rest into it

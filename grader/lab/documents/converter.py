@@ -10,7 +10,6 @@ import os
 import signal
 import sys
 import threading
-import zipfile
 from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
@@ -117,10 +116,12 @@ def _elements(data: bytes) -> Iterator[tuple[str, str, bool]]:
     Copies that Word adds for older versions are omitted. Raises ValueError if the unpacked size
     exceeds the limit.
     """
+    from zipfile import ZipFile
+
     from lxml import etree
 
     around = {"tr": 0, "Fallback": 0}
-    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+    with ZipFile(io.BytesIO(data)) as archive:
         if sum(info.file_size for info in archive.infolist()) > _MAX_UNPACKED:
             raise ValueError("it unpacks to more than a text document")
         with archive.open("word/document.xml") as file:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from grader.base.errors import InputError
 from grader.base.problems import Problem, in_order
+from grader.base.slips import Slip
 from grader.base.text import counted_points, enumerated
 from grader.lab.checks.manual import MANUAL_CHECKS, evidence_shown
 from grader.lab.grading.deciding import another_robot, decide
@@ -60,9 +61,11 @@ def grade(
     results = tuple(decide(rubric, submission, wanted))
     meant = None
     if any(result.is_lost or result.is_open for result in results):
-        from grader.lab.grading.slips import judge_as_meant  # late: many submissions lose nothing
+        slips = _slips_of(submission)
+        if slips:
+            from grader.lab.grading.slips import judge_as_meant  # late: many submissions have none
 
-        results, meant = judge_as_meant(rubric, submission, results)
+            results, meant = judge_as_meant(rubric, submission, slips, results)
     results = without_gifts(results, submission)
     problems = _find_problems(rubric, submission, chosen, meant)
     evidence, other_pictures = _find_evidence(rubric, submission, chosen if is_whole else ())
@@ -91,6 +94,19 @@ def grade(
         by_convention=by_convention,
         meant=meant,
     )
+
+
+def _slips_of(submission: Submission) -> list[Slip]:
+    """Return the slips in the files of a submission that may explain points that are not given."""
+    if submission.is_costly:
+        return []
+    slips = submission.urdf.slips if isinstance(submission.urdf, Read) else []
+    packages = [submission.package, *submission.lab_packages.values()]
+    for package in dict.fromkeys(filter(None, packages)):
+        from grader.ros.package.package_slips import package_slips  # late: many have no package
+
+        slips += package_slips(package)
+    return slips
 
 
 def _find_problems(

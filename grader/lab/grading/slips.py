@@ -24,29 +24,15 @@ _Results = Mapping[str, Result]
 
 
 def judge_as_meant(
-    rubric: Rubric, submission: Submission, written: tuple[Result, ...]
+    rubric: Rubric, submission: Submission, slips: Sequence[Slip], written: tuple[Result, ...]
 ) -> tuple[tuple[Result, ...], Meant | None]:
-    """Return the results of criteria with each slip paid by one of them, and what they were judged
-    on. `written` are those on the words as they are written.
+    """Return the results of criteria with each slip of a submission paid by one of them, and what
+    they were judged on. `written` are those on the words as they are written.
 
     A slip in a file that ROS 2 loads counts only if no criterion fails with the meant word that
     passes with the written one: what ROS 2 ignores without harm is a comment.
     """
-    slips = [] if submission.is_costly else _slips_of(submission)
-    if not slips:
-        return written, None
     return _Readings(rubric, submission, written).judged(slips[:_MAX_SLIPS])
-
-
-def _slips_of(submission: Submission) -> list[Slip]:
-    """Return the slips in the files of a submission that may explain points that are not given."""
-    slips = submission.urdf.slips if isinstance(submission.urdf, Read) else []
-    packages = [submission.package, *submission.lab_packages.values()]
-    for package in dict.fromkeys(filter(None, packages)):
-        from grader.ros.package.package_slips import package_slips  # late: many have no package
-
-        slips += package_slips(package)
-    return slips
 
 
 class _Readings:

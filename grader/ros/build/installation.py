@@ -91,6 +91,12 @@ class Installation:
     ] = ()  # likewise, of files that CMake installs with the right to execute them
     packages: tuple[str, ...] = ()  # the Python packages, as far as they are known
 
+    @property
+    def console_scripts(self) -> Value:
+        """What setup() is given as console_scripts; None if that is not known."""
+        points = self.entry_points if self.entry_points is not None else {}
+        return points.get("console_scripts", []) if isinstance(points, dict) else None
+
     def empty_for(self, files: Sequence[str], word: str | None) -> EmptyGlob | None:
         """Return the pattern without a match that is meant for one of these files, by its folder
         or ending, or by a word in it.
@@ -120,8 +126,7 @@ class Installation:
             # CMake takes the right to execute from the files of install(FILES ...) and
             # install(DIRECTORY ...).
             return path in (*self.programs, *self.scripts) or not self.is_cmake
-        points = self.entry_points if self.entry_points is not None else {}
-        scripts = points.get("console_scripts", []) if isinstance(points, dict) else None
+        scripts = self.console_scripts
         if (
             not isinstance(scripts, list)
             or not all(isinstance(script, str) for script in scripts)

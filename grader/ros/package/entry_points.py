@@ -49,8 +49,7 @@ def entry_points(package: Package) -> list[_EntryPoint]:
     written as texts.
     """
     setup = package.installation
-    groups = setup.entry_points if setup is not None else None
-    scripts = groups.get("console_scripts") if isinstance(groups, dict) else None
+    scripts = setup.console_scripts if setup is not None else None
     if not isinstance(scripts, list | tuple):
         return []
     entries = []

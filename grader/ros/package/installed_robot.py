@@ -17,8 +17,6 @@ from grader.ros.package.package import Package
 from grader.ros.python.budget import Budget
 from grader.ros.urdf.model import Mesh, Robot
 from grader.ros.urdf.reader import read_robot, read_urdf
-from grader.ros.xacro.expansion import expand
-from grader.ros.xacro.xacro_problems import WRITTEN_TO_STDERR
 
 
 class InstalledRobot(NamedTuple):
@@ -106,6 +104,9 @@ def read_installed(
     if arguments is None:
         _note_meshes(read_urdf(data, path).robot, files, is_expanded=False)
         return InstalledRobot(tuple(files.missing))
+    from grader.ros.xacro.expansion import expand  # late: many robots are no xacro
+    from grader.ros.xacro.xacro_problems import WRITTEN_TO_STDERR
+
     expansion = expand(data, path, files, arguments)
     _note_meshes(read_robot(expansion.document).robot, files, is_expanded=True)
     warnings = (problem for problem in expansion.warnings if problem.kind in WRITTEN_TO_STDERR)

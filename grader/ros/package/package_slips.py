@@ -6,14 +6,11 @@ import ast
 from collections.abc import Iterator
 
 from grader.base.slips import Slip
-from grader.ros.build.cmake.cmake_slips import cmake_slips
 from grader.ros.build.installation import Installation
 from grader.ros.config.yaml_slips import yaml_slips
 from grader.ros.launch.launch_slips import launch_slips, name_slips
 from grader.ros.package.package import SETUP, Package
-from grader.ros.package.python_nodes import program_slips
 from grader.ros.python.parse import Code, location_in, parse, position_of
-from grader.ros.python.python_slips import python_slips
 
 _LIMIT = 32 * 1024  # bytes of a file, because what may be meant is tried by reading it again
 _MAX_FILES = 20
@@ -22,17 +19,26 @@ _YAML = (".yaml", ".yml", ".rviz")
 
 def package_slips(package: Package) -> Iterator[Slip]:
     """Yield the slips in the files of a package: those of its build, of launch files, of YAML."""
-    if package.installation is not None:
-        yield from _build_slips(package, package.installation)
+    installation = package.installation
+    if installation is not None:
+        yield from _build_slips(package, installation)
     for path in package.launch_files[:_MAX_FILES]:
         if not path.endswith((".xml", ".yaml", ".yml")):
             yield from _python_file(package, path, is_launch_file=True)
-    yield from program_slips(package)
+    if installation is not None and _has_programs(installation):
+        from grader.ros.package.python_nodes import program_slips  # late: many have no programs
+
+        yield from program_slips(package)
     paths = [path for path in package.tree.files if path.lower().endswith(_YAML)]
     for path in paths[:_MAX_FILES]:
         data = package.tree.read(path, _LIMIT)
         if data is not None:
             yield from yaml_slips(data, package.path(path))
+
+
+def _has_programs(installation: Installation) -> bool:
+    copies = (copy for copy in installation.copies if copy.target.startswith("lib/"))
+    return bool(installation.console_scripts) or any(copies)
 
 
 def _python_file(package: Package, path: str, *, is_launch_file: bool) -> Iterator[Slip]:
@@ -43,6 +49,8 @@ def _python_file(package: Package, path: str, *, is_launch_file: bool) -> Iterat
     if isinstance(parsed, Code):
         yield from launch_slips(parsed) if is_launch_file else name_slips(parsed)
     else:
+        from grader.ros.python.python_slips import python_slips  # late: most files are read
+
         yield from python_slips(data, package.path(path))
 
 
@@ -52,6 +60,8 @@ def _build_slips(package: Package, installation: Installation) -> Iterator[Slip]
     if package.is_cmake:
         if len(installation.source.text) > _LIMIT:
             return
+        from grader.ros.build.cmake.cmake_slips import cmake_slips
+
         needed = manifest.dependencies if manifest is not None else ()
         yield from cmake_slips(installation.source, package.tree, name, needed)
         return

@@ -20,7 +20,7 @@ from grader.ros.package.package import Package
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import Undetermined
 from grader.ros.urdf.reader import Reading, find_xacro, read_robot, read_urdf
-from grader.ros.urdf.urdf_problems import RAW_XACRO
+from grader.ros.urdf.urdf_problems import OF_SLIPS, RAW_XACRO
 from grader.ros.xml.xml_problems import DOCTYPE, NOT_WELL_FORMED
 
 if TYPE_CHECKING:
@@ -97,14 +97,16 @@ class Read(NamedTuple):
     @property
     def slips(self) -> list[Slip]:
         """The words of the file, and of those that xacro includes, that surely are others."""
-        from grader.ros.urdf.robot_slips import robot_slips  # late: most files have none
-
         slips: list[Slip] = []
         if self.reading.source.is_expanded:
             from grader.ros.xacro.xacro_slips import xacro_slips
 
             slips += xacro_slips(cast("ExpandedSource", self.reading.source))
-        return slips + robot_slips(self.reading)
+        if any(problem.kind in OF_SLIPS for problem in self.reading.problems):
+            from grader.ros.urdf.robot_slips import robot_slips  # late: most files have none
+
+            slips += robot_slips(self.reading)
+        return slips
 
 
 Urdf = Absent | Unreadable | Read

@@ -6,11 +6,9 @@ from collections.abc import Iterator
 from grader.base import markup
 from grader.base.element_edits import tag_edits
 from grader.base.names import near
-from grader.base.problems import Problem
 from grader.base.slips import Slip
 from grader.base.source import Edits, Source
 from grader.base.text import cut, quoted
-from grader.ros.urdf import urdf_problems
 from grader.ros.urdf.reader import Reading
 from grader.ros.urdf.words import meant_attribute, meant_tag, meant_value
 from grader.ros.xml.parsing import Element
@@ -19,25 +17,13 @@ from grader.ros.xml.urdf_format import ATTRIBUTES, CHILDREN
 _MAX_SLIPS = 20
 _MAX_ATTRIBUTES = 50  # of one element, because lxml searches each name from the first
 _MAX_SHOWN = 60  # characters of a value
-# The problems of which a slip may be the cause.
-_CAUSED = frozenset(
-    {
-        urdf_problems.MISSPELT,
-        urdf_problems.BAD_VISUAL,
-        urdf_problems.BAD_COLLISION,
-        urdf_problems.BAD_INERTIAL,
-        urdf_problems.BAD_COLOUR,
-        urdf_problems.COLOURLESS_MATERIAL,
-        urdf_problems.UNDEFINED_MATERIAL,
-    }
-)
 
 
 def robot_slips(reading: Reading) -> list[Slip]:
     """Return the slips of a URDF in the order of its elements, each place once. The words for which
     ROS 2 rejects a file are not among them.
     """
-    if not any(map(_may_be_slip, reading.problems)) or reading.elements is None:
+    if reading.elements is None:
         return []
     slips: dict[Edits, Slip] = {}
     for slip in _Slips(reading).found():
@@ -45,10 +31,6 @@ def robot_slips(reading: Reading) -> list[Slip]:
         if len(slips) == _MAX_SLIPS:
             break
     return [*slips.values()]
-
-
-def _may_be_slip(problem: Problem) -> bool:
-    return problem.kind in _CAUSED
 
 
 class _Slips:

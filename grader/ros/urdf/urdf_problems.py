@@ -62,3 +62,16 @@ HARDWARE_PLUGIN = warns("URDF097", "A <hardware> of ros2_control without <plugin
 UNLISTED = notes("URDF099", "More problems than are listed")
 
 CATALOGUE = kinds_in([*vars(xml_problems).values(), *globals().values()])
+
+# Those of which a slip may be the cause.
+OF_SLIPS = frozenset(
+    {
+        MISSPELT,
+        BAD_VISUAL,
+        BAD_COLLISION,
+        BAD_INERTIAL,
+        BAD_COLOUR,
+        COLOURLESS_MATERIAL,
+        UNDEFINED_MATERIAL,
+    }
+)
