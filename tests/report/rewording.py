@@ -47,10 +47,10 @@ def recast(report: Report, words: Words) -> Report:
         notes=tuple(words() for _ in report.notes),
         another_robot=f"a {words()}" if report.another_robot else "",
         evidence=tuple(
-            file._replace(files=tuple(replace(file, path=path()) for file in file.files))
+            file._replace(files=tuple(file._replace(path=path()) for file in file.files))
             for file in report.evidence
         ),
-        other_pictures=tuple(replace(other, path=path()) for other in report.other_pictures),
+        other_pictures=tuple(other._replace(path=path()) for other in report.other_pictures),
     )
 
 
@@ -70,7 +70,7 @@ def _submission(old: Submission, words: Words, path: Words) -> Submission:
 
 
 def _package(old: Package, words: Words, path: Words) -> Package:
-    manifest = replace(old.manifest, name=words()) if old.manifest is not None else None
+    manifest = old.manifest._replace(name=words()) if old.manifest is not None else None
     return replace(old, folder=path() if old.folder else "", manifest=manifest)
 
 

@@ -4,7 +4,6 @@ the robot.
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from math import dist
 from typing import Any, Literal
 
@@ -176,7 +175,7 @@ def _named_in_cpp(workspace: Workspace, name: str) -> Iterator[tuple[Package, St
     for package, node in _nameless(workspace):
         sources = workspace.sources_of(package, _OF_CPP)
         if any(written.search(source.text) for source in sources):
-            yield package, replace(node, node_name=name)
+            yield package, node._replace(node_name=name)
 
 
 def _equal(actual: Any, wanted: Any, tolerance: float) -> bool:

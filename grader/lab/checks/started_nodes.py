@@ -6,7 +6,6 @@ What cannot be determined is a fault that is not sure.
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.base.names import closest
@@ -63,8 +62,8 @@ def find_faults(
     """
     workspace = submission.workspace
     started = [node for node in launch.nodes if node.when is not False]
-    named = [replace(node, node_name=workspace.name_of(node)) for node in started]
-    launch = replace(launch, nodes=tuple(named))
+    named = [node._replace(node_name=workspace.name_of(node)) for node in started]
+    launch = launch._replace(nodes=tuple(named))
     faults: list[Fault | None] = [*_started_although(launch, wanted.absent or ())]
     if wanted.remap or wanted.arguments:
         faults += [_ill_started(launch, names, wanted) for names in choices]

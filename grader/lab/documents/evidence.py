@@ -4,7 +4,6 @@ described, never graded.
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from grader.base.text import cut
@@ -24,8 +23,7 @@ _PRELAB = re.compile(
 _MAX_SHOWN = 60  # characters of a heading
 
 
-@dataclass(frozen=True, slots=True)
-class EvidenceFile:
+class EvidenceFile(NamedTuple):
     """One file of evidence, and its size in bytes.
 
     Of evidence inside a document, `heading` is what it is below, and `page` where that is, if it is

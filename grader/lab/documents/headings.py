@@ -8,7 +8,6 @@ Task1_Step8, task 1 step 8, T1S8, lab6_task1_q8.
 import re
 from bisect import bisect_right
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice, takewhile
 from typing import NamedTuple
@@ -72,8 +71,7 @@ _FILLERS = r"[\W_]*(?:(?:of|the|in|to|for|and|required|optional|question|answer)
 _LABEL = re.compile(rf"(?<![^\W\d_])(?:{_TASK}|{_STEP})(?:{_FILLERS}(?:{_TASK}|{_STEP}))*")
 
 
-@dataclass(frozen=True, slots=True)
-class Label:
+class Label(NamedTuple):
     """The task and steps that a text names, and all of its words; None and empty where it names
     none.
     """

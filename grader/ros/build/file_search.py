@@ -6,7 +6,6 @@ import posixpath
 import re
 import warnings
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 from fnmatch import fnmatchcase, translate
 from functools import lru_cache, partial
 from io import StringIO
@@ -298,8 +297,7 @@ def _evaluate_search(
     return found
 
 
-@dataclass(frozen=True, slots=True)
-class _PackageFolder:
+class _PackageFolder(NamedTuple):
     """The package's folder, as the functions see it."""
 
     listing: PackageListing

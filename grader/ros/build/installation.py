@@ -4,7 +4,6 @@ CMakeLists.txt.
 
 import posixpath
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from grader.base.names import closest
@@ -56,8 +55,7 @@ class IgnoredArgument(NamedTuple):
         )
 
 
-@dataclass(frozen=True, slots=True)
-class Installation:
+class Installation(NamedTuple):
     """The result of a setup.py or CMakeLists.txt. `fault` is set if it cannot be parsed: nothing
     else is known then.
 

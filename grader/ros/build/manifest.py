@@ -1,7 +1,7 @@
 """package.xml: name, build type and problems of a package (REP 127, 140 and 149)."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from grader.base.merge_conflicts import resolve_conflicts
 from grader.base.problems import Problem
@@ -13,8 +13,7 @@ from grader.ros.build.manifest_rules import email_of, find_refusals, tag_of, tex
 from grader.ros.xml.parsing import Element, XmlFault, XmlFile, recover_xml
 
 
-@dataclass(frozen=True, slots=True)
-class Manifest:
+class Manifest(NamedTuple):
     """The content of a package.xml. `name` is None where it cannot be read; `build_type` is by
     default colcon's.
 
@@ -50,7 +49,7 @@ def read_manifest(data: bytes, path: str) -> Manifest:
             f"package.xml has {resolved.message}",
             Location(path, resolved.line, 1),
         )
-        return replace(manifest, problems=(problem, *manifest.problems))
+        return manifest._replace(problems=(problem, *manifest.problems))
     source = Source(path, data.decode("utf-8", "replace"))
     try:
         file = XmlFile(data, source)

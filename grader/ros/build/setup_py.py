@@ -11,7 +11,7 @@ import tomllib
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from configparser import ConfigParser, Error
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 
 from grader.base.errors import InputError
@@ -212,7 +212,7 @@ def read_setup(data: bytes, path: str, tree: Tree, budget: Budget | None = None)
     if doubts:
         doubt = doubts[0]
     unknown = tuple(dict.fromkeys([*setups[0].unknown, doubt]))
-    return replace(setups[0], name=None, copies=(), stops=(), unknown=unknown, doubt=doubt)
+    return setups[0]._replace(name=None, copies=(), stops=(), unknown=unknown, doubt=doubt)
 
 
 def _evaluate_setup(

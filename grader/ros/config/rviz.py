@@ -4,7 +4,7 @@ them.
 
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from grader.base.merge_conflicts import resolve_conflicts
 from grader.base.problems import Problem
@@ -17,8 +17,7 @@ from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
 _MAX_DISPLAYS = 500
 
 
-@dataclass(frozen=True, slots=True)
-class Display:
+class Display(NamedTuple):
     """One display; `kind` is its class without the package: RobotModel. `node` has its settings."""
 
     package: str
@@ -74,8 +73,7 @@ class Display:
         return (self.node.get("Class") or self.node).location
 
 
-@dataclass(frozen=True, slots=True)
-class RvizFile:
+class RvizFile(NamedTuple):
     """The content of an RViz file. `fault` is set where it cannot be read: nothing else is known
     then.
     """
@@ -115,7 +113,7 @@ def read_rviz(data: bytes, path: str) -> RvizFile:
     resolved = resolve_conflicts(data)
     if resolved is not None:
         problem = Problem(kinds.BAD_RVIZ, resolved.message, Location(path, resolved.line, 1))
-        return replace(read_rviz(resolved.data, path), conflict=problem)
+        return read_rviz(resolved.data, path)._replace(conflict=problem)
     source = Source(path, data.decode("utf-8", "replace"))
     start = Location(path, 1, 1)
     try:

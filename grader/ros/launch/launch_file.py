@@ -9,7 +9,7 @@ import re
 import shlex
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from operator import attrgetter
 from pathlib import PurePosixPath
 from typing import Any
@@ -148,7 +148,7 @@ class _LaunchReader:
         self.open.pop()
         for launch in included:
             joined = {name: getattr(own, name) + getattr(launch, name) for name in _JOINED}
-            own = replace(own, **joined)
+            own = own._replace(**joined)
         return own
 
     def include(self, target: str, context: Context, included: list[Launch]) -> NotIncluded | None:
@@ -164,11 +164,11 @@ class _LaunchReader:
         launch = self.read(*found, target, context)
         faults = launch.faults if launch.syntax is None else (*launch.faults, launch.syntax)
         if context.when is not True:  # an error in the file counts only if it is included
-            launch = replace(
-                launch, doubts=(*launch.doubts, *faults), unknown=(*launch.unknown, *faults)
+            launch = launch._replace(
+                doubts=(*launch.doubts, *faults), unknown=(*launch.unknown, *faults)
             )
             faults = ()
-        included.append(replace(launch, faults=faults))
+        included.append(launch._replace(faults=faults))
         return None
 
 

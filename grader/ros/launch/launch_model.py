@@ -176,8 +176,7 @@ class GivenParameters(NamedTuple):
     unknown: str = ""  # why they are not known
 
 
-@dataclass(frozen=True, slots=True)
-class StartedNode:
+class StartedNode(NamedTuple):
     """A program that is started. `when` is True, False where a condition prevents it, None if known
     at run time only.
 
@@ -234,8 +233,7 @@ class StartedNode:
         return f"{self.package}/{self.executable}"
 
 
-@dataclass(frozen=True, slots=True)
-class NamedFile:
+class NamedFile(NamedTuple):
     """A file that the launch file names. `path` begins with a stand-in where a folder depends on
     the machine.
     """
@@ -264,8 +262,7 @@ class PassedArguments(NamedTuple):
     when: bool | None = True
 
 
-@dataclass(frozen=True, slots=True)
-class LaunchFault:
+class LaunchFault(NamedTuple):
     """An error that stops the launch or a node, or something unknown, with its location."""
 
     message: str
@@ -274,8 +271,7 @@ class LaunchFault:
     argument: str = ""  # that a function does not have
 
 
-@dataclass(frozen=True, slots=True)
-class Launch:
+class Launch(NamedTuple):
     """The result of a launch file and of those that it includes."""
 
     source: Source

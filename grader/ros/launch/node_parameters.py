@@ -7,7 +7,6 @@ line, in order.
 import posixpath
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from itertools import chain, pairwise
 from math import inf, nan
 from pathlib import PurePosixPath
@@ -663,7 +662,7 @@ def controllers_of(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
     parameters = tuple(GivenParameters(spawner.location, path) for path in files)
     rules = remap_rules(" ".join(given.get("--controller-ros-args", ())).split())
     remaps = tuple((name, to) for name, _, to in rules)
-    started = replace(
-        spawner, namespace=namespace, parameters=parameters, arguments=(), remaps=remaps
+    started = spawner._replace(
+        namespace=namespace, parameters=parameters, arguments=(), remaps=remaps
     )
-    return tuple(replace(started, node_name=name) for name in names)
+    return tuple(started._replace(node_name=name) for name in names)

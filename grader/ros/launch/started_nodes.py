@@ -10,7 +10,6 @@ import re
 import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from typing import Any
 
 from grader.ros.build.places import PREFIX, ROS, SHARE
@@ -152,8 +151,7 @@ def _add_names(
     for given in parameters:
         if given.path:
             findings.refer("parameters", given.path, call)
-    node = replace(
-        node,
+    node = node._replace(
         has_description=has_description,
         node_name=_given_name(rules, call, context),
         arguments=tuple(None if PART_UNKNOWN in word else word for word in words),
@@ -183,14 +181,14 @@ def _add_remaps(
                 tuple(known_text(name, context, call.at) for name in items_in(rule) or ())
             )
     except EvaluationSignal:
-        return replace(node, namespace=None, remaps=None)
+        return node._replace(namespace=None, remaps=None)
     for name, _, value in reversed(rules):
         if name == "__ns":  # the first rule counts
             namespace = value
     known = tuple(rule for rule in remaps if rule is not None)
     if len(known) < len(remaps) or any(PART_UNKNOWN in word for word in words):
-        return replace(node, namespace=namespace, remaps=None)
-    return replace(node, namespace=namespace, remaps=known)
+        return node._replace(namespace=namespace, remaps=None)
+    return node._replace(namespace=namespace, remaps=known)
 
 
 def _given_name(rules: Iterable[tuple[str, str, str]], call: Call, context: Context) -> str | None:

@@ -7,7 +7,6 @@ What is opened under a condition is listed as well; actions and the topics of tf
 
 import ast
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Literal, NamedTuple
 
@@ -166,8 +165,7 @@ class _Name(NamedTuple):
 _Fact = Endpoint | NodeParameter | Timer | _Doubt | _Name
 
 
-@dataclass(frozen=True, slots=True)
-class PythonNode:
+class PythonNode(NamedTuple):
     """A node: a subclass of rclpy's Node, or what rclpy.create_node makes; then `class_name` is
     empty.
 

@@ -6,7 +6,6 @@ import sys
 import tokenize
 import warnings
 from codecs import lookup
-from dataclasses import dataclass, replace
 from io import BytesIO
 from typing import NamedTuple
 
@@ -51,8 +50,7 @@ def position_of(
 _TOO_DEEP = "too deeply nested for Python to read"
 
 
-@dataclass(frozen=True, slots=True)
-class Code:
+class Code(NamedTuple):
     """A parsed file with its text."""
 
     source: Source
@@ -60,8 +58,7 @@ class Code:
     conflict: tuple[str, Position] | None = None  # of git, without which it was parsed
 
 
-@dataclass(frozen=True, slots=True)
-class SyntaxFault:
+class SyntaxFault(NamedTuple):
     """A file that Python cannot parse, with Python's message; `sure` is False where a newer
     Python may parse it.
     """
@@ -93,8 +90,8 @@ def parse(data: bytes, path: str) -> Code | SyntaxFault:
         if resolved is None:
             return found
         if isinstance(found, Code):
-            return replace(found, conflict=(resolved.message, Position(resolved.line, 1)))
-        return replace(found, message=resolved.message, location=Location(path, resolved.line, 1))
+            return found._replace(conflict=(resolved.message, Position(resolved.line, 1)))
+        return found._replace(message=resolved.message, location=Location(path, resolved.line, 1))
     except (RecursionError, MemoryError):  # these depend on the process, so they are not kept
         return SyntaxFault(
             Source(path, data.decode("utf-8", "replace")), _TOO_DEEP, Location(path, 1, 1)

@@ -3,7 +3,6 @@ joints.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -112,7 +111,7 @@ def controller_endpoints(
         name = controller.name
         if name not in remaps:
             continue
-        started = replace(node, node_name=name, remaps=(*remaps[name], *node.remaps))
+        started = node._replace(node_name=name, remaps=(*remaps[name], *node.remaps))
         for kind, topics in known()["controller_topics"].get(controller.type.text, {}).items():
             for own_name, message in topics.items():
                 topic = started.topic(f"~/{own_name}")

@@ -3,7 +3,6 @@ launch file, and RViz files.
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from grader.base.problems import Problem
 from grader.base.source import Location
@@ -79,7 +78,7 @@ def _started(workspace: Workspace, path: str, launch: Launch) -> Launch:
             continue
         if fault.lacks == "" or (fault.lacks == "declaration" and is_closed):
             faults.append(fault)
-    return replace(launch, faults=tuple(faults), syntax=None)
+    return launch._replace(faults=tuple(faults), syntax=None)
 
 
 def _rviz_problems(package: Package, path: str) -> Iterator[Problem]:

@@ -6,7 +6,7 @@ import posixpath
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, partial
 
 from grader.base.errors import InputError
@@ -407,7 +407,7 @@ class Workspace:
                     owners.setdefault(name, []).append(given)
                 for controller in _spawned_by(node):
                     files = (*shared, *(controller.parameters or ()))
-                    started = replace(controller, parameters=files)
+                    started = controller._replace(parameters=files)
                     given = parameters_of(started, opened)
                     owners.setdefault(controller.node_name or "", []).append(given)
         return owners
