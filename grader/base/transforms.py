@@ -62,10 +62,10 @@ class Transform:
 
     def apply(self, point: Iterable[float]) -> Vector:
         """Return a point given in b, as any three numbers, in frame a."""
-        first, second, third = point if isinstance(point, tuple) else map(float, point)
-        x, y, z = self.rotate((first, second, third))
+        a, b, c, d, e, f, g, h, i = self.rotation
+        x, y, z = point if isinstance(point, tuple) else map(float, point)
         u, v, w = self.translation
-        return (x + u, y + v, z + w)
+        return (a * x + b * y + c * z + u, d * x + e * y + f * z + v, g * x + h * y + i * z + w)
 
     def rotate(self, direction: Vector) -> Vector:
         """Return a direction given in b in frame a: no translation."""

@@ -7,7 +7,7 @@ import re
 import sys
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from itertools import takewhile
-from keyword import iskeyword
+from keyword import iskeyword, kwlist
 from typing import Any, Literal, NamedTuple, get_args, get_type_hints
 
 from grader.base.errors import InputError
@@ -102,6 +102,9 @@ class _CheckParameter(NamedTuple):
         return toml_type(self.annotation)
 
 
+_KEYWORDS = frozenset(kwlist)
+
+
 class Check(NamedTuple):
     """A check, as a rubric names it."""
 
@@ -127,8 +130,9 @@ class Check(NamedTuple):
 
     def outcome(self, examined: Iterable[object], arguments: Mapping[str, Any]) -> Outcome:
         """Return what it finds in the objects that it examines, with the arguments of a rubric."""
-        given = {f"{key}_" if iskeyword(key) else key: value for key, value in arguments.items()}
-        return self.function(*examined, **given)
+        if not _KEYWORDS.isdisjoint(arguments):
+            arguments = {f"{key}_" if iskeyword(key) else key: it for key, it in arguments.items()}
+        return self.function(*examined, **arguments)
 
     @property
     def subject(self) -> Subject:

@@ -72,7 +72,11 @@ class _Grading:
         self._subjects = Subjects(rubric, submission)
         self.results: dict[str, Result] = {}
         self.missed: dict[tuple[str, str, str], str] = {}
-        self._lost: list[str] = []  # criteria whose points a later one may carry forward
+        # by each criterion, those whose points its failure may carry forward
+        self._excused_by: dict[str, list[str]] = {}
+        for criterion in rubric.criteria:
+            for cause in {cause for carried in criterion.carried for cause in carried.causes}:
+                self._excused_by.setdefault(cause, []).append(criterion.id)
 
     def decide(self, criterion: Criterion) -> None:
         """Run the check of a criterion, or skip it because of another that failed."""
@@ -82,20 +86,18 @@ class _Grading:
         else:
             result = self._decide_by_check(criterion)
         self.results[criterion.id] = self._carry_from_any(result)
-        for other in [self.results[name] for name in self._lost]:
-            if _is_carried_from(other.criterion, criterion.id):
-                self.results[other.criterion.id] = self._carry_from_any(other)
-        if criterion.carried and self.results[criterion.id].is_lost:
-            self._lost.append(criterion.id)
+        for name in self._excused_by.get(criterion.id, ()):
+            if name in self.results:
+                self.results[name] = self._carry_from_any(self.results[name])
 
-    def may_be_excused(self, name: str, undecided: Collection[str]) -> bool:
+    def may_be_excused(self, name: str, undecided: set[str]) -> bool:
         """Return whether the mistake of a criterion that is not decided yet may be why this one is
         lost.
         """
         result = self.results[name]
         if not result.criterion.carried or not result.is_lost:
             return False
-        return any(_is_carried_from(result.criterion, other) for other in undecided)
+        return any(not undecided.isdisjoint(it.causes) for it in result.criterion.carried)
 
     def _carry_from_any(self, result: Result) -> Result:
         for carried in result.criterion.carried:
@@ -333,10 +335,6 @@ class _Grading:
         if criterion.adjustment is None:
             self.missed[thing] = first
         return first
-
-
-def _is_carried_from(criterion: Criterion, name: str) -> bool:
-    return any(name in carried.causes for carried in criterion.carried)
 
 
 def _skip_outcome(cause: str) -> Outcome:
