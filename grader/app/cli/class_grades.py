@@ -158,8 +158,9 @@ def diff(
 ) -> str:
     """Show whose grade changed between two runs, and why.
 
-    Compares the last two runs of a gradebook, or two gradebooks. A grade changes with the
-    submission, the rubric, the grader, marks, the roster or the deadline. Runs count from 1.
+    Compares the current grades with the newest run that had other ones, or two gradebooks. A grade
+    changes with the submission, the rubric, the grader, marks, the roster or the deadline. It is
+    provisional while something is open. Runs count from 1.
 
     Examples:
 

@@ -55,6 +55,11 @@ _OBSTACLES = {
 }
 
 
+def pending_words(points: Decimal) -> str:
+    """Return that points need manual grading."""
+    return f"{counted_points(points)} {'needs' if points == 1 else 'need'} manual grading"
+
+
 class SharedResult(Result):
     """The result of a criterion in a class: most students share it, so what follows from it is
     computed once.
@@ -275,10 +280,7 @@ class StudentGrade:
     def why_open(self) -> str:
         """Why this grade must not be published yet; empty if it is final."""
         if self.obstacle is Reason.PENDING:
-            return (
-                f"{counted_points(self.pending)} {'needs' if self.pending == 1 else 'need'} "
-                "manual grading"
-            )
+            return pending_words(self.pending)
         if self.obstacle is None:
             return ""
         detail = self.concerns.get(self.obstacle)
