@@ -400,7 +400,8 @@ def _grade(
             present,
             sorted(intake.unclear),
         )
-        book, table = Gradebook(folder, run=run), ClassTable(rubric, verbose=request.verbose)
+        book = Gradebook(folder, run=run)
+        table = ClassTable(rubric.title, book.maximum, verbose=request.verbose)
         recorded = dict[str, RunGrade]()
 
         def passing() -> Iterator[StudentGrade]:

@@ -33,7 +33,7 @@ from grader.classroom.tables import SIZE_LIMIT, CellValue
 from grader.files.reading import read_capped
 from grader.lab.checks.outcome import Outcome, Status
 from grader.lab.grading.report import ManualComment, ManualMark, Report, without_gifts
-from grader.lab.rubric.criterion import DEADLINE, TOTAL, Criterion
+from grader.lab.rubric.criterion import DEADLINE, GRADE, TOTAL, Criterion
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.submission import Opening, Submission
 from grader.ros.package.robot_file import Absent, Unreadable
@@ -41,7 +41,7 @@ from grader.ros.package.robot_file import Absent, Unreadable
 _NOT_SUBMITTED = Outcome("skipped", "not graded: this part was not submitted")
 _MAX_SHARED = 10_000  # results
 # The columns before and after those of the criteria; `submission` is the digest of what was graded.
-_FIRST = ("id", "name", "section", "status", "total")
+_FIRST = ("id", "name", "section", "status", GRADE)
 _LAST = (
     "score",
     "max_score",

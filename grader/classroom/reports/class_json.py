@@ -13,6 +13,7 @@ from grader.classroom.gradebook.grade_changes import Change, why_open
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.statistics import COUNTS, CriterionFigures, statistics
 from grader.classroom.results.results import Run
+from grader.lab.rubric.criterion import GRADE
 from grader.report.json_data import (
     COUNT,
     FLAG,
@@ -120,7 +121,7 @@ _STUDENT = JsonObject(
         "max_score": _report_points("max_score"),
         "pending": (POINTS, "pending"),
         "late": JsonObject({"days": TOTAL, "points": _PENALTY, "reason": TEXT}),
-        "total": (nullable(POINTS), "shown_total"),
+        GRADE: (nullable(POINTS), "shown_total"),
         "final_mark": (nullable(POINTS), "final_points"),
         "is_excused": FLAG,
         "not_final_because": (TEXT, "why_open"),

@@ -31,19 +31,19 @@ from grader.classroom.reports.class_words import (
     EQUAL_NOTE,
     SHARE_NOTE,
     family_name_order,
+    grades_text,
     head_lines,
     late_text,
-    means,
     percent,
     span,
 )
 from grader.classroom.results.results import RunGrade
 from grader.classroom.roster.lateness import time_text
-from grader.lab.rubric.rubric import Rubric
+from grader.lab.rubric.criterion import GRADE
 from grader.report.criteria import alike
 from grader.report.writers.terminal import INDENT, Page
 
-_LOST, _OTHER_COLUMNS = 3, 42  # the column of lost points, and the characters of the others
+_LOST, _OTHER_COLUMNS = 3, 41  # the column of lost points, and the characters of the others
 _MAX_ROWS = 40
 _MAX_COSTS = 3  # criteria named in a row
 _BAR_WIDTH = 40
@@ -58,8 +58,8 @@ class ClassTable:
     `add` takes the grades one by one, so that a large class is never held whole.
     """
 
-    def __init__(self, rubric: Rubric, *, verbose: bool = False) -> None:
-        self.rubric, self.verbose = rubric, verbose
+    def __init__(self, title: str, maximum: Decimal, *, verbose: bool = False) -> None:
+        self.title, self.maximum, self.verbose = title, maximum, verbose
         self.rows: list[
             tuple[bool, tuple[str, ...], Sequence[str]]
         ] = []  # in the order of the first two
@@ -96,7 +96,7 @@ class ClassTable:
     def _table(self, width: int) -> Table:
         """Return the rows without empty columns, lost points in so many characters."""
         table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
-        titles = ("student", f"of {format_points(self.rubric.points)}", "late", "lost", "open")
+        titles = ("student", GRADE, "late", "lost", "open")
         rows = [row for *_, row in self.rows]
         filled = sorted({at for row in rows for at, cell in enumerate(row) if cell})
         for at in filled:
@@ -111,7 +111,7 @@ class ClassTable:
         """Print the table."""
         self._keep_first()
         page = Page(console, [])
-        page.inset(printable(self.rubric.title), "bold", 0)
+        page.inset(printable(self.title), "bold", 0)
         page.table(self._table(console.width - _OTHER_COLUMNS))
         rest = self.count - len(self.rows)
         if rest:
@@ -119,7 +119,7 @@ class ClassTable:
         page.leave_row()
         if self._totals:
             figures = summary(self._totals.elements())
-            words = means(figures.mean, figures.median).capitalize()
+            words = grades_text(self.maximum, figures, is_open=bool(self.open))
             page.inset(f"{words} ({counted(figures.students, 'student')})", indent=0)
         for reason in Reason:
             if reason in self._concerns:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from decimal import Decimal
 
 from grader.base.text import counted, format_points
-from grader.classroom.gradebook.statistics import ClassStatistics
+from grader.classroom.gradebook.statistics import ClassStatistics, Summary
 from grader.classroom.gradebook.student_grade import StudentGrade
 
 _LETTERS = str.maketrans(
@@ -61,9 +61,7 @@ def head_lines(found: ClassStatistics) -> Iterator[str]:
         counts.append(f"{found.late} late")
     yield ", ".join(counts) or "no students"
     if found.all is not None:
-        yield (
-            f"Grades of {format_points(found.maximum)}: {means(found.all.mean, found.all.median)}"
-        )
+        yield grades_text(found.maximum, found.all, is_open=bool(found.open))
     if found.open:
         yield (
             f"{counted(found.open, 'grade')} still {'needs' if found.open == 1 else 'need'} "
@@ -74,6 +72,14 @@ def head_lines(found: ClassStatistics) -> Iterator[str]:
             f"Section {name or '(none)'}: {means(one.mean, one.median)} "
             f"({counted(one.students, 'student')})"
         )
+
+
+def grades_text(maximum: Decimal, figures: Summary, *, is_open: bool) -> str:
+    """Return the mean and the median of the grades; those that are open count with the points so
+    far.
+    """
+    so_far = " so far" if is_open else ""
+    return f"Grades of {format_points(maximum)}{so_far}: {means(figures.mean, figures.median)}"
 
 
 def means(mean: Decimal | float, median: Decimal | float) -> str:
