@@ -25,7 +25,7 @@ _STRICT = (
 _PENDING = "Also export grades with points that need manual grading."
 _MAXIMUM = "Export points unchanged, even if the LMS has another maximum."
 _ONLY = "Omit the columns of other assignments."
-_EXCEL = "Write CSV that Excel opens with a double click."
+_EXCEL = "Write CSV that Excel opens with a double click; a file .xlsx is a spreadsheet."
 _FEEDBACK = "Write each student's report into a zip for Moodle or Canvas."
 
 

@@ -24,6 +24,7 @@ from grader.classroom.lms.fill import Filled, FillOptions, PublishedGrade, by_re
 from grader.classroom.lms.forms import FORMS
 from grader.classroom.marks import gradebook_folder as names
 from grader.classroom.reports.class_figures import record_run, warn_of_ignored
+from grader.classroom.spreadsheet import SPREADSHEET, write_spreadsheet
 from grader.classroom.tables import SIZE_LIMIT, write_table
 from grader.files.reading import read_capped
 from grader.report.formats import Format
@@ -35,6 +36,7 @@ _DOUBTS = (
     Reason.EARLY_MARK,
     Reason.UNKNOWN_TIME,
 )  # about grades that are exported
+_SPREADSHEETS = (SPREADSHEET, ".xls", ".ods")
 _BOM = b"\xef\xbb\xbf"  # by which Excel recognises UTF-8
 # The targets of each option that not all targets take.
 _TARGETS = {"--into": tuple(FORMS), "--feedback": ("moodle", "canvas"), "--excel": ("csv",)}
@@ -114,7 +116,10 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
 def _exported(request: ExportRequest, book: Gradebook, terminal: Terminal) -> Filled:
     """Return the exported file, empty if only feedback is asked for."""
     if request.target == "csv":
-        data = write_table(*grade_table(book, book, is_exported=True)).encode()
+        table = grade_table(book, book, is_exported=True)
+        if request.output is not None and request.output.suffix.lower() == SPREADSHEET:
+            return Filled(write_spreadsheet(*table))
+        data = write_table(*table).encode()
         return Filled(_BOM + data if request.excel else data)
     if request.target == "json":
         from grader.classroom.reports.class_json import render_class_json
@@ -217,6 +222,13 @@ def _refuse_options(request: ExportRequest) -> None:
             raise GraderError(
                 f"export {request.target} takes no {option}: it is for {enumerated(targets)}"
             )
+    written = ".csv or .xlsx" if request.target == "csv" else "no spreadsheet"
+    ending = output.suffix.lower() if output is not None and request.target != "html" else ""
+    if output is not None and ending in _SPREADSHEETS and ending not in written:
+        raise GraderError(
+            f"cannot write {printable_path(output)}: export {request.target} writes {written}; "
+            "choose another file"
+        )
     if request.target in FORMS and into is None and (output or not feedback):
         raise GraderError(
             f"export {request.target} fills in a file that the LMS exported: give it with --into"

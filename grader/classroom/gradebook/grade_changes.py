@@ -15,10 +15,8 @@ from grader.classroom.results.results import Results, Run, RunGrade, StoredResul
 from grader.classroom.roster.typed_names import number_in
 from grader.lab.rubric.criterion import TOTAL
 
-_NONE = RunGrade()
 
-
-class PointsChange(NamedTuple):
+class _PointsChange(NamedTuple):
     """The points of a criterion before and after; None if it was not graded, or not decided."""
 
     id: str
@@ -33,7 +31,7 @@ class Change(NamedTuple):
     name: str
     old: RunGrade
     new: RunGrade
-    criteria: list[PointsChange]
+    criteria: list[_PointsChange]
     why: tuple[str, ...]
 
     @property
@@ -110,18 +108,30 @@ def changes(before: Snapshot, after: Snapshot) -> Iterator[Change]:
     results = zip(order, before.results.each(order), after.results.each(order), strict=True)
     for key, old, new in results:
         first, last = before.run.grade(key), after.run.grade(key)
-        criteria = list[PointsChange]()
+        criteria = list[_PointsChange]()
         if old is not None and new is not None:
-            criteria += _points_changes(old, new, first or _NONE, last or _NONE)
-        if criteria or first != last or (old is None) != (new is None):
-            why = list(_reasons(old, new, before.run, after.run))
-            why += _reasons_beside(first or _NONE, last or _NONE, before.run, after.run)
-            if key in after.early:
-                why.append(Reason.EARLY_MARK)
-            if not why:
-                why.append(_guessed_reason(first or _NONE, last or _NONE, criteria))
+            criteria += _points_changes(old, new, first, last)
+        is_changed = first != last or (old is None) != (new is None)
+        if criteria or is_changed:
             name = after.names.get(key) or before.names.get(key, "")
-            yield Change(key, name, first or _NONE, last or _NONE, criteria, tuple(why))
+            change = Change(key, name, first, last, criteria, ())
+            yield change._replace(why=_why(change, (old, new), before, after))
+
+
+def _why(
+    change: Change,
+    stored: tuple[StoredResult | None, StoredResult | None],
+    before: Snapshot,
+    after: Snapshot,
+) -> tuple[str, ...]:
+    """Return why a grade changed, at least one reason."""
+    reasons = list(_reasons(*stored, before.run, after.run))
+    reasons += _reasons_beside(change.old, change.new, before.run, after.run)
+    if change.key in after.early:
+        reasons.append(Reason.EARLY_MARK)
+    if not reasons:
+        reasons.append(_guessed_reason(change.old, change.new, change.criteria))
+    return tuple(reasons)
 
 
 def why_open(grade: RunGrade) -> str:
@@ -150,13 +160,13 @@ def _counted_points(stored: StoredResult, grade: RunGrade, name: str) -> Decimal
 
 def _points_changes(
     old: StoredResult, new: StoredResult, first: RunGrade, last: RunGrade
-) -> Iterator[PointsChange]:
+) -> Iterator[_PointsChange]:
     marked = {**first.marks, **last.marks}
     marked.pop(TOTAL, None)
     for name in dict.fromkeys((*old.results, *new.results, *marked)):
         before, after = _counted_points(old, first, name), _counted_points(new, last, name)
         if before != after:
-            yield PointsChange(name, before, after)
+            yield _PointsChange(name, before, after)
 
 
 def _reasons(
@@ -204,7 +214,7 @@ def _reasons_beside(first: RunGrade, last: RunGrade, before: Run, after: Run) ->
         yield "the deadline changed"
 
 
-def _guessed_reason(first: RunGrade, last: RunGrade, criteria: Sequence[PointsChange]) -> str:
+def _guessed_reason(first: RunGrade, last: RunGrade, criteria: Sequence[_PointsChange]) -> str:
     """Return the reason for a change that no file states."""
     if first.days_late != last.days_late:
         return "the time of the submission changed"

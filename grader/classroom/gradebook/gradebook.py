@@ -331,8 +331,9 @@ def _table_row(book: Gradebook, grade: StudentGrade, is_exported: bool) -> list[
         digest = grade.stored.digest
         if not grade.is_excused:
             numbers = [grade.score, grade.report.max_score, grade.pending, late.days, late.points]
-    row: list[CellValue] = [student.key, student.name, student.section, grade.status, points[TOTAL]]
-    row += [points[name.id] for name in book.rubric.criteria]
+    row: list[CellValue] = [student.key, student.name, student.section, grade.status]
+    for name in (TOTAL, *(criterion.id for criterion in book.rubric.criteria)):
+        row.append(Decimal(points[name]) if points[name] else None)
     row += [*numbers, grade.why_open, student.email, digest]
     if is_exported:
         return [*row, exported_text(points)]

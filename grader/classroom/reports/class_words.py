@@ -69,7 +69,7 @@ def head_lines(found: ClassStatistics) -> Iterator[str]:
         )
     for name, one in found.sections.items():
         yield (
-            f"Section {name or '(none)'}: {means(one.mean, one.median)} "
+            f"Section {name or '(none)'}: {_means(one.mean, one.median)} "
             f"({counted(one.students, 'student')})"
         )
 
@@ -79,10 +79,10 @@ def grades_text(maximum: Decimal, figures: Summary, *, is_open: bool) -> str:
     far.
     """
     so_far = " so far" if is_open else ""
-    return f"Grades of {format_points(maximum)}{so_far}: {means(figures.mean, figures.median)}"
+    return f"Grades of {format_points(maximum)}{so_far}: {_means(figures.mean, figures.median)}"
 
 
-def means(mean: Decimal | float, median: Decimal | float) -> str:
+def _means(mean: Decimal | float, median: Decimal | float) -> str:
     """Return a mean and a median to one decimal."""
     return f"mean {mean:.1f}, median {median:.1f}"
 

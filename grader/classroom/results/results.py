@@ -112,10 +112,8 @@ class Run(NamedTuple):
         """The students who submitted, and those who have a total without a submission."""
         return chain(self.totals, self.others)
 
-    def grade(self, student: str) -> RunGrade | None:
-        """Return the grade of a student; None if the run has none."""
-        if student not in self.totals and student not in self.others:
-            return None
+    def grade(self, student: str) -> RunGrade:
+        """Return the grade of a student, without anything if the run has none."""
         total = self.totals.get(student, self.others.get(student))
         return RunGrade(total, **self.details.get(student, {}))
 
