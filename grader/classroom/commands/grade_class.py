@@ -344,6 +344,7 @@ def _read_class(inputs: _ClassInputs, warn: Warn) -> Intake:
         rubric.id,
         rubric.folders,
         settings.ignore,
+        inputs.folder,
     )
     works = {(submission.root, submission.paths) for submission in intake.submissions}
     warn(f"{counted(len(works), 'submission')}, layout {intake.layout}")
