@@ -65,6 +65,7 @@ ROOMS = {
     ),
     "classroom": (
         "tables",
+        "spreadsheet",
         "roster",
         "results",
         "marks",
@@ -102,6 +103,7 @@ LIBRARIES = {
     "pebble": {"workers"},
     "distributed": {"workers"},
     "csv": {"classroom.tables"},
+    "xlsxwriter": {"classroom.spreadsheet"},
 }
 
 

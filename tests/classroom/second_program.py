@@ -68,7 +68,7 @@ def cells_of(
     }
     if report is None:
         status = "excused" if final == "excused" else "missing"
-        return {**cells, "status": status, "total": final if final != "excused" else ""}
+        return {**cells, "status": status, "grade": final if final != "excused" else ""}
     points, maximum, pending = dict[str, str](), Decimal(0), Decimal(0)
     for one in report["results"]:
         maximum += Decimal(str(one["max_points"]))
@@ -100,16 +100,16 @@ def cells_of(
         **cells,
         **points,
         "status": "graded",
-        "total": total,
+        "grade": total,
         **{key: plain(one) for key, one in numbers.items()},
     }
 
 
 def published(cells: Mapping[str, str]) -> str:
     """Return the grade that an LMS gets: two decimals, rounded down; empty while something is open."""
-    if not cells.get("total") or cells.get("pending", "0") != "0":
+    if not cells.get("grade") or cells.get("pending", "0") != "0":
         return ""
-    return str(Decimal(cells["total"]).quantize(Decimal("0.01"), ROUND_FLOOR))
+    return str(Decimal(cells["grade"]).quantize(Decimal("0.01"), ROUND_FLOOR))
 
 
 def summary(totals: Sequence[Decimal]) -> tuple[float, float]:

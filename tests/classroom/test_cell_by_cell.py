@@ -199,9 +199,9 @@ def test_each_figure(made: Class150) -> None:
         "statistics"
     ]
     rows = [*made.expected()]
-    counted = [row for row in rows if row["status"] == "graded" or "total" in row]
+    counted = [row for row in rows if row["status"] == "graded" or "grade" in row]
     for name in (None, *SECTIONS):
-        totals = [Decimal(row["total"]) for row in counted if name in (None, row["section"])]
+        totals = [Decimal(row["grade"]) for row in counted if name in (None, row["section"])]
         found = data["grades"] if name is None else data["sections"][name]
         mean, middle = second_program.summary(totals)
         assert (found["students"], found["mean"], found["median"]) == (
@@ -209,7 +209,7 @@ def test_each_figure(made: Class150) -> None:
             pytest.approx(mean),
             pytest.approx(middle),
         )
-    tenths = [min(9, int(Decimal(row["total"]) // 10)) for row in counted]
+    tenths = [min(9, int(Decimal(row["grade"]) // 10)) for row in counted]
     assert data["tenths"] == [tenths.count(tenth) for tenth in range(10)]
     statuses = [row["status"] for row in rows]
     assert data["counts"] == {name: statuses.count(name) for name in sorted({*statuses})}

@@ -47,7 +47,15 @@ def read_row(row: dict[str, Any], top: Path) -> Intake:
     """Return the submissions of a row's class."""
     roster = read_roster(row["roster"].encode(), "roster.csv") if "roster" in row else None
     paths = write_class(row, top)
-    return read_class(paths, roster, row.get("layout", "auto"), row.get("assignment", ""), "lab6")
+    gradebook = top / row["gradebook"] if "gradebook" in row else None
+    return read_class(
+        paths,
+        roster,
+        row.get("layout", "auto"),
+        row.get("assignment", ""),
+        "lab6",
+        gradebook=gradebook,
+    )
 
 
 def lines_of(intake: Intake) -> list[str]:

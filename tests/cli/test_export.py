@@ -109,7 +109,7 @@ def test_a_crash_costs_one_page(
     """The others have theirs, the class's page has no link to it, and standard error says why."""
     assert pages(error, top, monkeypatch) == [
         f"3 reports written to {top / 'pages'}",
-        f"no report for ben: {why}",
+        f"no report for Ben Oh (ben): {why}",
     ]
     assert sorted(ClassPageReader(top / "pages/index.html").links()) == [
         "anna.html",

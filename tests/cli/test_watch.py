@@ -16,6 +16,8 @@ from typing import NamedTuple
 
 import pytest
 
+from grader.app.cli.streams import TERMINAL
+from grader.app.commands.repeating import repeat_on_change
 from tests.classroom.class_runs import shell_code, started
 from tests.command_line import HANG_TIMEOUT, ROOT, clean_environment, run
 
@@ -192,6 +194,48 @@ def test_an_included_file_is_watched(tmp_path: Path, watch: Watch) -> None:
     done = watch([robot], partial(put_parts, URDF))
     assert BETTER in done.out[1]
     assert done.code == 130
+
+
+@pytest.mark.parametrize(("look", "pause"), [(0.001, 0.2), (0.02, 0.2), (0.05, 0.5), (0.5, 5)])
+def test_a_pause_follows_the_time_of_a_look_alone(
+    robot: Path, monkeypatch: pytest.MonkeyPatch, look: float, pause: float
+) -> None:
+    """However long the work and its report take, the next change is seen as soon as after a rest."""
+    now, pauses, rounds = 0.0, [], []
+
+    def monotonic() -> float:
+        nonlocal now
+        now += look  # between two readings of the clock
+        return now
+
+    def take(seconds: float) -> None:
+        nonlocal now
+        now += seconds
+
+    def sleep(seconds: float) -> None:
+        take(seconds)
+        pauses.append(seconds)
+        if len(pauses) == 7:
+            raise KeyboardInterrupt
+        if len(pauses) in (1, 4):
+            put(f"<robot name='{len(pauses)}'/>", robot)
+
+    def work() -> tuple[str, list[Path]]:
+        take(60)
+        return robot.read_text(), []
+
+    def show(text: str) -> None:
+        take(3)
+        rounds.append((text, len(pauses)))
+
+    clock = SimpleNamespace(sleep=sleep, monotonic=monotonic)
+    monkeypatch.setattr("grader.app.commands.repeating.time", clock)
+    first = robot.read_text()
+    with pytest.raises(KeyboardInterrupt):
+        repeat_on_change([robot.parent], [], TERMINAL, work, show)
+    assert pauses == pytest.approx([pause] * 7)
+    # A change is graded at the second look after it.
+    assert rounds == [(first, 0), ("<robot name='1'/>", 2), ("<robot name='4'/>", 5)]
 
 
 def test_ctrl_c_and_a_closed_standard_output_end_the_process(robot: Path) -> None:

@@ -41,7 +41,7 @@ def _student(row: Mapping[str, Any]) -> str:
         f"{row['pending']:g} pending" if row["pending"] and not is_unread else "",
         f"late {late['days']:g}: {late['points']:g}" if late["days"] else "",
         late["reason"],
-        f"total {row['total']:g}" if row["total"] not in (None, row["score"]) else "",
+        f"grade {row['grade']:g}" if row["grade"] not in (None, row["score"]) else "",
         f"final mark {row['final_mark']:g}" if row["final_mark"] is not None else "",
         "excused" if row["is_excused"] else "",
         f"{row['manual_marks']} manual" if row["manual_marks"] else "",

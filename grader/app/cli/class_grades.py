@@ -25,7 +25,7 @@ _STRICT = (
 _PENDING = "Also export grades with points that need manual grading."
 _MAXIMUM = "Export points unchanged, even if the LMS has another maximum."
 _ONLY = "Omit the columns of other assignments."
-_EXCEL = "Write CSV that Excel opens with a double click."
+_EXCEL = "Write CSV that Excel opens with a double click; a file .xlsx is a spreadsheet."
 _FEEDBACK = "Write each student's report into a zip for Moodle or Canvas."
 
 
@@ -158,8 +158,9 @@ def diff(
 ) -> str:
     """Show whose grade changed between two runs, and why.
 
-    Compares the last two runs of a gradebook, or two gradebooks. A grade changes with the
-    submission, the rubric, the grader, marks, the roster or the deadline. Runs count from 1.
+    Compares the current grades with the newest run that had other ones, or two gradebooks. A grade
+    changes with the submission, the rubric, the grader, marks, the roster or the deadline. It is
+    provisional while something is open. Runs count from 1.
 
     Examples:
 

@@ -18,7 +18,7 @@ from grader.report.screen import Screen, draw
 from grader.report.writers.terminal import Page
 from grader.report.writing import Terminal
 
-_POLL = 0.1  # seconds between two looks
+_POLL = 0.2  # seconds between two looks, at least
 _SHARE = 10  # a look at many files is followed by a pause of this many times its own time
 _Stamps = dict[str, tuple[int, ...] | None]
 _Result = TypeVar("_Result")
@@ -96,13 +96,14 @@ def _changes(watched: Sequence[Path], own: Collection[str] = ()) -> Iterator[lis
     while True:
         start = time.monotonic()
         now = _stamps([*watched, *besides], own)
+        pause = max(_POLL, _SHARE * (time.monotonic() - start))
         if (
             seen is None or before == now != seen
         ):  # what changed since the last look may be half written
             yield besides
             seen = {**_stamps(besides, own), **now}
         before = now
-        time.sleep(max(_POLL, _SHARE * (time.monotonic() - start)))
+        time.sleep(pause)
 
 
 def _stamps(paths: Iterable[Path], own: Collection[str] = ()) -> _Stamps:

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 from zipfile import is_zipfile
 
 from grader.base.errors import GraderError, InputError
-from grader.base.text import counted, enumerated, format_points, printable_path
+from grader.base.text import counted, enumerated, format_points, named, printable_path
 from grader.classroom.gradebook.gradebook import Gradebook, grade_table
 from grader.classroom.gradebook.student_grade import Reason, StudentGrade
 from grader.classroom.lms.feedback import (
@@ -24,17 +24,26 @@ from grader.classroom.lms.fill import Filled, FillOptions, PublishedGrade, by_re
 from grader.classroom.lms.forms import FORMS
 from grader.classroom.marks import gradebook_folder as names
 from grader.classroom.reports.class_figures import record_run, warn_of_ignored
+from grader.classroom.spreadsheet import SPREADSHEET, write_spreadsheet
 from grader.classroom.tables import SIZE_LIMIT, write_table
 from grader.files.reading import read_capped
 from grader.report.formats import Format
 from grader.report.invocation import ExitCode
-from grader.report.writing import Terminal, is_same_file, is_stdout, refuse_symlinks, save_bytes
+from grader.report.writing import (
+    Terminal,
+    is_same_file,
+    is_stdout,
+    make_folder,
+    refuse_symlinks,
+    save_bytes,
+)
 
 _DOUBTS = (
     Reason.OLDER_MARKS,
     Reason.EARLY_MARK,
     Reason.UNKNOWN_TIME,
 )  # about grades that are exported
+_SPREADSHEETS = (SPREADSHEET, ".xls", ".ods")
 _BOM = b"\xef\xbb\xbf"  # by which Excel recognises UTF-8
 # The targets of each option that not all targets take.
 _TARGETS = {"--into": tuple(FORMS), "--feedback": ("moodle", "canvas"), "--excel": ("csv",)}
@@ -87,7 +96,7 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
     warn_of_ignored(book, terminal.warn)
     exported = _exported(request, book, terminal)
     doubts = [
-        (why, one.student.key, detail)
+        (why, named(one.student.key, one.student.name), detail)
         for one in book
         for why, detail in one.concerns.items()
         if why in _DOUBTS
@@ -114,7 +123,10 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
 def _exported(request: ExportRequest, book: Gradebook, terminal: Terminal) -> Filled:
     """Return the exported file, empty if only feedback is asked for."""
     if request.target == "csv":
-        data = write_table(*grade_table(book, book, is_exported=True)).encode()
+        table = grade_table(book, book, is_exported=True)
+        if request.output is not None and request.output.suffix.lower() == SPREADSHEET:
+            return Filled(write_spreadsheet(*table))
+        data = write_table(*table).encode()
         return Filled(_BOM + data if request.excel else data)
     if request.target == "json":
         from grader.classroom.reports.class_json import render_class_json
@@ -166,6 +178,8 @@ def _feedback(
 ) -> bytes:
     """Return the zip of the reports, named as the LMS gives them to its students; `numbers` are of
     --into.
+
+    The reports for which the LMS has no way are written into the gradebook.
     """
     from grader.classroom.reports import class_reports
 
@@ -173,17 +187,25 @@ def _feedback(
     report_name = f"report.{kind.ending}"
     grades = [grade for grade in book if grade.stored is not None or grade.has_final]
     names_in_zip, without = _names_in_zip(request, grades, numbers, report_name)
-    files = {key: str(number) for number, key in enumerate(names_in_zip)}
+    reports_folder = book.folder / names.REPORTS
+    files = class_reports.file_names([grade.student.key for grade in grades])
+    reports = dict[str, bytes]()
     with TemporaryDirectory() as folder:
         run = class_reports.ReportRun(book.folder, Path(folder), (kind,))
-        without |= class_reports.render_reports(run, files, terminal)
-        reports = dict[str, bytes]()
+        lost = class_reports.render_reports(run, files, terminal)
         for key, file in files.items():
-            if key not in without:
+            if key not in lost:
                 reports[key] = Path(folder, f"{file}.{kind.ending}").read_bytes()
+    if without:
+        make_folder(reports_folder)
+    for key, why in without.items():
+        if key in reports:
+            save_bytes(reports_folder / f"{files[key]}.{kind.ending}", reports.pop(key))
+            without[key] = f"{why}; see {printable_path(reports_folder)}"
     zipped, different = write_feedback(reports, names_in_zip, report_name)
-    without |= different
-    for line in by_reason(("without feedback", key, why) for key, why in without.items()):
+    people = {grade.student.key: named(grade.student.key, grade.student.name) for grade in grades}
+    missing = {**without, **lost, **different}
+    for line in by_reason(("without feedback", people[key], missing[key]) for key in missing):
         terminal.warn(line)
     written = counted(len(reports) - len(different), "report")
     terminal.warn(f"{written} in {printable_path(request.feedback or Path())}")
@@ -217,6 +239,13 @@ def _refuse_options(request: ExportRequest) -> None:
             raise GraderError(
                 f"export {request.target} takes no {option}: it is for {enumerated(targets)}"
             )
+    written = ".csv or .xlsx" if request.target == "csv" else "no spreadsheet"
+    ending = output.suffix.lower() if output is not None and request.target != "html" else ""
+    if output is not None and ending in _SPREADSHEETS and ending not in written:
+        raise GraderError(
+            f"cannot write {printable_path(output)}: export {request.target} writes {written}; "
+            "choose another file"
+        )
     if request.target in FORMS and into is None and (output or not feedback):
         raise GraderError(
             f"export {request.target} fills in a file that the LMS exported: give it with --into"

@@ -10,7 +10,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
-from decimal import Decimal
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -43,7 +42,14 @@ from grader.classroom.reports.class_figures import append_run, warn_of_ignored
 from grader.classroom.reports.class_reports import ReportRun, refuse_report_folder, write_reports
 from grader.classroom.reports.class_terminal import ClassTable
 from grader.classroom.results.equal_work import hashes_of
-from grader.classroom.results.results import Results, ResultsWriter, Run, digest_of, time_of_run
+from grader.classroom.results.results import (
+    Results,
+    ResultsWriter,
+    Run,
+    RunGrade,
+    digest_of,
+    time_of_run,
+)
 from grader.classroom.roster.lateness import read_time, time_text
 from grader.classroom.roster.roster import Roster, read_roster
 from grader.classroom.run.batch_run import Batch
@@ -338,6 +344,7 @@ def _read_class(inputs: _ClassInputs, warn: Warn) -> Intake:
         rubric.id,
         rubric.folders,
         settings.ignore,
+        inputs.folder,
     )
     works = {(submission.root, submission.paths) for submission in intake.submissions}
     warn(f"{counted(len(works), 'submission')}, layout {intake.layout}")
@@ -394,17 +401,18 @@ def _grade(
             present,
             sorted(intake.unclear),
         )
-        book, table = Gradebook(folder, run=run), ClassTable(rubric, verbose=request.verbose)
-        published: dict[str, Decimal | None] = {}
+        book = Gradebook(folder, run=run)
+        table = ClassTable(rubric.title, book.maximum, verbose=request.verbose)
+        recorded = dict[str, RunGrade]()
 
         def passing() -> Iterator[StudentGrade]:
             for grade in book:
                 table.add(grade)
-                published[grade.student.key] = grade.published
+                recorded[grade.student.key] = book.run_grade(grade)
                 yield grade
 
         write_grades(book, passing())
-        writer.append(book.run_with(published)._replace(written=sorted(batch.written)).line)
+        writer.append(book.run_with(recorded)._replace(written=sorted(batch.written)).line)
         writer.sync()
     warn_of_ignored(book, terminal.warn)
     return table, done

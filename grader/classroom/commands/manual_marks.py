@@ -92,7 +92,10 @@ def _unassigned(grades: Sequence[StudentGrade]) -> Iterator[str]:
             f"still unassigned: {people_text(paths)}: a student with this mark may "
             "have submitted it"
         )
-    if unclear := [one.student.key for one in grades if Reason.UNCLEAR in one.concerns]:
+    unclear = [
+        named(one.student.key, one.student.name) for one in grades if Reason.UNCLEAR in one.concerns
+    ]
+    if unclear:
         yield f"no mark for {people_text(unclear)}: {Reason.UNCLEAR}"
 
 

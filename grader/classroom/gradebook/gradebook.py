@@ -20,14 +20,20 @@ from grader.classroom.marks import gradebook_folder as names
 from grader.classroom.marks.gradebook_folder import read_settings
 from grader.classroom.marks.mark_import import exported_text
 from grader.classroom.marks.marks import Mark, Marks, read_marks
-from grader.classroom.results.results import Results, Run, StoredResult, digest_of
+from grader.classroom.results.results import (
+    Results,
+    Run,
+    RunGrade,
+    StoredResult,
+    digest_of,
+)
 from grader.classroom.roster.lateness import Lateness, lateness
 from grader.classroom.roster.roster import Roster, Student, read_roster
 from grader.classroom.tables import SIZE_LIMIT, CellValue
 from grader.files.reading import read_capped
 from grader.lab.checks.outcome import Outcome, Status
 from grader.lab.grading.report import ManualComment, ManualMark, Report, without_gifts
-from grader.lab.rubric.criterion import DEADLINE, TOTAL, Criterion
+from grader.lab.rubric.criterion import DEADLINE, GRADE, TOTAL, Criterion
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.submission import Opening, Submission
 from grader.ros.package.robot_file import Absent, Unreadable
@@ -35,7 +41,7 @@ from grader.ros.package.robot_file import Absent, Unreadable
 _NOT_SUBMITTED = Outcome("skipped", "not graded: this part was not submitted")
 _MAX_SHARED = 10_000  # results
 # The columns before and after those of the criteria; `submission` is the digest of what was graded.
-_FIRST = ("id", "name", "section", "status", "total")
+_FIRST = ("id", "name", "section", "status", GRADE)
 _LAST = (
     "score",
     "max_score",
@@ -112,11 +118,54 @@ class Gradebook:
         """The most points that are no extra credit."""
         return sum((row.maximum for row in self.criteria), Decimal(0))
 
-    def run_with(self, published: Mapping[str, Decimal | None]) -> Run:
-        """Return the newest run with these grades, as they are published."""
-        texts = {key: format_points(total) for key, total in published.items() if total is not None}
-        totals = {key: texts.pop(key, None) for key in self.run.totals}
-        return self.run._replace(totals=totals, others=texts, maximum=format_points(self.maximum))
+    def run_with(self, grades: Mapping[str, RunGrade]) -> Run:
+        """Return the newest run with these grades."""
+        totals = {key: grades[key].total if key in grades else None for key in self.run.totals}
+        others = dict[str, str]()
+        details = dict[str, Mapping[str, Any]]()
+        for key, (total, *more) in grades.items():
+            if key not in totals:
+                if total is None:
+                    continue
+                others[key] = total
+            named = zip(RunGrade._fields[1:], more, strict=True)
+            if found := {name: value for name, value in named if value}:
+                details[key] = found
+        return self.run._replace(
+            totals=totals,
+            others=others,
+            details=details,
+            maximum=format_points(self.maximum),
+            due=self.due.isoformat() if self.due is not None else "",
+        )
+
+    def run_grade(self, grade: StudentGrade) -> RunGrade:
+        """Return a grade as a run records it."""
+        student, late, pending = grade.student, grade.late, ""
+        marks = {
+            one.criterion.id: format_points(one.manual_mark.points)
+            for one in grade.results
+            if one.manual_mark is not None
+        }
+        if grade.final is not None and grade.has_final:
+            marks[TOTAL] = grade.final.value
+        if grade.obstacle is Reason.PENDING:
+            pending = format_points(grade.pending)
+        own_deadline = self.marks.counting.get((student.key, DEADLINE))
+        deadline = student.due
+        if own_deadline is not None:
+            deadline = own_deadline.value
+        elif student.extension_days:
+            deadline = f"{deadline} extension {student.extension_days:g}".lstrip()
+        return RunGrade(
+            grade.total_text or None,
+            grade.obstacle.name if grade.obstacle is not None else "",
+            pending,
+            late.days,
+            format_points(late.points) if late.points else "",
+            deadline,
+            marks,
+        )
 
     def grade(self, key: str) -> StudentGrade:
         """Return the grade of the student with a key."""
@@ -282,8 +331,9 @@ def _table_row(book: Gradebook, grade: StudentGrade, is_exported: bool) -> list[
         digest = grade.stored.digest
         if not grade.is_excused:
             numbers = [grade.score, grade.report.max_score, grade.pending, late.days, late.points]
-    row: list[CellValue] = [student.key, student.name, student.section, grade.status, points[TOTAL]]
-    row += [points[name.id] for name in book.rubric.criteria]
+    row: list[CellValue] = [student.key, student.name, student.section, grade.status]
+    for name in (TOTAL, *(criterion.id for criterion in book.rubric.criteria)):
+        row.append(Decimal(points[name]) if points[name] else None)
     row += [*numbers, grade.why_open, student.email, digest]
     if is_exported:
         return [*row, exported_text(points)]

@@ -26,7 +26,7 @@ class _Mistake(NamedTuple):
     off: float = 0.0  # by how much, in metres, where this is measured
 
 
-class _Summary(NamedTuple):
+class Summary(NamedTuple):
     """The grades of some students: their number, mean and median."""
 
     students: int
@@ -65,7 +65,7 @@ class ClassStatistics(NamedTuple):
     rubric: Rubric
     maximum: Decimal
     statuses: dict[str, int]  # students by status
-    all: _Summary | None  # None if no grade counts
+    all: Summary | None  # None if no grade counts
     open: int  # grades with points that still need manual grading
     late: int  # students
     tenths: Sequence[
@@ -73,7 +73,7 @@ class ClassStatistics(NamedTuple):
     ]  # students in each tenth of the maximum, which itself is in the last one
     criteria: Sequence[CriterionFigures]
     mistakes: Sequence[_CommonMistake]
-    sections: dict[str, _Summary]  # without any if there is only one
+    sections: dict[str, Summary]  # without any if there is only one
     attention: dict[Reason, list[tuple[str, str]]]  # students who need attention, each with details
     equal: Sequence[EqualWork]
     names: dict[str, str]  # of all students, by key
@@ -118,7 +118,7 @@ def _tenths(grades: Iterable[StudentGrade], maximum: Decimal) -> list[list[str]]
     return tenths
 
 
-def _sections(grades: Iterable[StudentGrade]) -> dict[str, _Summary]:
+def _sections(grades: Iterable[StudentGrade]) -> dict[str, Summary]:
     """Return the figures of each section; of none if there is only one."""
     totals = defaultdict[str, list[Decimal]](list)
     for grade in grades:
@@ -139,12 +139,12 @@ def _attention(grades: Iterable[StudentGrade]) -> dict[Reason, list[tuple[str, s
     return {reason: concerned[reason] for reason in Reason if reason in concerned}
 
 
-def summary(totals: Iterable[Decimal]) -> _Summary:
+def summary(totals: Iterable[Decimal]) -> Summary:
     """Return the figures of some grades, of at least one."""
     values = sorted(totals)
     count = len(values)
     median = (values[(count - 1) // 2] + values[count // 2]) / 2
-    return _Summary(count, sum(values, Decimal(0)) / count, median)
+    return Summary(count, sum(values, Decimal(0)) / count, median)
 
 
 def _criteria_figures(

@@ -55,6 +55,11 @@ _OBSTACLES = {
 }
 
 
+def pending_words(points: Decimal) -> str:
+    """Return that points need manual grading."""
+    return f"{counted_points(points)} {'needs' if points == 1 else 'need'} manual grading"
+
+
 class SharedResult(Result):
     """The result of a criterion in a class: most students share it, so what follows from it is
     computed once.
@@ -208,15 +213,24 @@ class StudentGrade:
             return self.report.pending
         return Decimal(0)
 
+    @cached_property
+    def is_undecided(self) -> bool:
+        """Whether nothing is decided yet: all criteria need manual grading, or nothing could be
+        graded.
+        """
+        if self.obstacle is None or self.has_final or self.total:
+            return False
+        is_ungraded = self.status in ("unreadable", "errored")
+        return is_ungraded or all(one.is_open or one.is_faulty for one in self.results)
+
     @property
     def shown_total(self) -> Decimal | None:
-        """The grade; None where there is none or nothing could be graded."""
-        is_ungraded = self.status in ("unreadable", "errored") and self.obstacle and not self.total
-        return None if is_ungraded else self.total
+        """The grade; None where there is none or nothing is decided yet."""
+        return None if self.is_undecided else self.total
 
     @property
     def total_text(self) -> str:
-        """The grade; empty where there is none or nothing could be graded."""
+        """The grade; empty where there is none or nothing is decided yet."""
         if self.shown_total is None:
             return ""
         return format_points(self.shown_total)
@@ -275,10 +289,7 @@ class StudentGrade:
     def why_open(self) -> str:
         """Why this grade must not be published yet; empty if it is final."""
         if self.obstacle is Reason.PENDING:
-            return (
-                f"{counted_points(self.pending)} {'needs' if self.pending == 1 else 'need'} "
-                "manual grading"
-            )
+            return pending_words(self.pending)
         if self.obstacle is None:
             return ""
         detail = self.concerns.get(self.obstacle)
@@ -293,8 +304,8 @@ class StudentGrade:
 
     @property
     def is_counted(self) -> bool:
-        """Whether the grade is in the figures of the class: also one that is open, if the
-        submission was graded.
+        """Whether the grade is in the figures of the class: also one that is open, if something
+        of it is decided.
         """
-        is_graded = self.status == "graded" and not self.is_gone
+        is_graded = self.status == "graded" and not self.is_gone and not self.is_undecided
         return self.student.is_on_roster and (is_graded or self.published is not None)

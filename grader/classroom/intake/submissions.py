@@ -77,13 +77,14 @@ def read_class(
     rubric_id: str = "",
     folders: tuple[str, ...] = (),
     ignore: Sequence[str] = (),
+    gradebook: Path | None = None,
 ) -> Intake:
     """Return the submissions in class folders or zips, the sections of one class; raises InputError
     if there are none.
 
     `assignment` is the one to grade in nbgrader; `rubric_id` is the name of the lab in names of
     folders, and `folders` are the names of its own (default: its id). `ignore` names entries that
-    are no student's, such as a template.
+    are no student's, such as a template; so is the `gradebook` of the run.
     """
     if layout not in ("auto", *_LAYOUTS):
         raise InputError(
@@ -101,7 +102,7 @@ def read_class(
         top = ClassFolder(
             listing, listing.children(""), "", owners.people, labs, lab, is_explicit, owners.ignored
         )
-        folder = _inner_class(_without_gradebooks(top))
+        folder = _inner_class(_without_gradebook(top, path, gradebook))
         chosen = layout
         if not is_explicit:
             chosen = "nbgrader" if assignment else _layout_of(folder)
@@ -162,16 +163,17 @@ def _without_ignored(
             folder.ignore([one.path], "has a name to be ignored")
 
 
-def _without_gradebooks(folder: ClassFolder) -> ClassFolder:
-    """Return a folder without the gradebooks in it."""
-    has, folders = folder.listing.has, folder.children.folders
-    found = {name for name in folders if has(f"{name}/class.toml")}
-    books = {name for name in found if has(f"{name}/results.jsonl") or has(f"{name}/marks")}
-    folder.ignore(books, "is a gradebook")
-    return replace(
-        folder,
-        children=folder.children._replace(folders=[name for name in folders if name not in books]),
-    )
+def _without_gradebook(folder: ClassFolder, path: Path, gradebook: Path | None) -> ClassFolder:
+    """Return the class folder at a path without the gradebook of the run, if it is in it.
+
+    A student may submit a folder that looks like one.
+    """
+    if gradebook is None or gradebook.resolve().parent != path.resolve():
+        return folder
+    own = [name for name in folder.children.folders if name == gradebook.resolve().name]
+    folder.ignore(own, "is the gradebook")
+    others = [name for name in folder.children.folders if name not in own]
+    return replace(folder, children=folder.children._replace(folders=others))
 
 
 def _layout_of(folder: ClassFolder) -> str:

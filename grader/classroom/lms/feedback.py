@@ -129,19 +129,22 @@ def canvas_names(submissions: Collection[tuple[Student, tuple[str, ...]]], repor
         users[paths].add(student.canvas)
     names, without = dict[str, str](), dict[str, str]()
     for student, paths in submissions:
-        files = []
-        for path in paths:
-            file = PurePosixPath(path).name
-            if path.lower().endswith((ending, *_ARCHIVES)) and _is_certain(file, users[paths]):
-                files.append(file)
+        certain = [
+            file for path in paths if _is_certain(file := PurePosixPath(path).name, users[paths])
+        ]
+        files = [file for file in certain if file.lower().endswith((ending, *_ARCHIVES))]
         if files:  # a report rather than an archive
             names[student.key] = min(
                 files, key=lambda file: (not file.lower().endswith(ending), file)
             )
-        elif paths:
+        elif certain:
+            endings = ", ".join([ending, *_ARCHIVES])
             without[student.key] = (
-                f"submitted no {ending} file or archive with the Canvas user id in its name"
+                "Canvas shows a report under the name of the submitted file, which must end in "
+                f"one of {endings}"
             )
+        elif paths:
+            without[student.key] = "no submitted file has the Canvas user id in its name"
         else:
             without[student.key] = "nothing was submitted"
     return names, without

@@ -32,7 +32,7 @@ from grader.classroom.roster.typed_names import (
     known,
     number_in,
 )
-from grader.lab.rubric.criterion import DEADLINE, TOTAL
+from grader.lab.rubric.criterion import DEADLINE, GRADE, TOTAL
 from grader.lab.rubric.rubric import Rubric
 
 _EXPORTED = re.compile("(d[0-9a-f]{16})(d[0-9a-f]{16})")
@@ -135,7 +135,8 @@ class MarkImport(NamedTuple):
         student = known("student", row["id"], {one.key: one for one in self.students})
         now = self.points[student]
         *criteria, total = now
-        given = {name: row.get(name, text) for name, text in now.items()}
+        columns = {name: GRADE if name == TOTAL else name for name in now}
+        given = {name: row.get(columns[name], text) for name, text in now.items()}
         for names, hashed in ((criteria, exported[1]), ([total], exported[2])):
             changed = [name for name in names if _plain(given[name]) != _plain(now[name])]
             if not changed or _hash_of(given, names) == hashed:
@@ -148,7 +149,8 @@ class MarkImport(NamedTuple):
             for name in changed:
                 if not given[name]:
                     raise InputError(
-                        f"{name} was {now[name]} and is empty: write `-` to withdraw a mark"
+                        f"{columns[name]} was {now[name]} and is empty: write `-` to withdraw a "
+                        "mark"
                     )
                 mark = self.marks.counting.get((student, name))
                 comment = mark.comment if mark is not None else ""

@@ -7,7 +7,7 @@ from grader.base.errors import InputError
 from grader.base.text import first_lines
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.statistics import statistics
-from grader.classroom.marks.gradebook_folder import RESULTS, batch_lock, check_gradebook
+from grader.classroom.marks.gradebook_folder import RESULTS, batch_lock
 from grader.classroom.results.results import Results, ResultsWriter, time_of_run
 from grader.report.formats import OutputFormat
 from grader.report.screen import Screen, draw
@@ -39,12 +39,8 @@ def append_run(book: Gradebook) -> Results | None:
     """Append a run with the current grades, and return the results with it; None if there is no
     need, or no way.
     """
-    now = book.run_with({one.student.key: one.published for one in book})
-    if (
-        book.results.unfinished
-        or book.is_outdated
-        or (now.totals, now.others) == (book.run.totals, book.run.others)
-    ):
+    now = book.run_with({one.student.key: book.run_grade(one) for one in book})
+    if book.results.unfinished or book.is_outdated or now.has_grades_of(book.run):
         return None
     with ResultsWriter(book.folder / RESULTS, book.results.end) as writer:
         writer.append(now._replace(run=book.results.next_run, time=time_of_run(), written=()).line)
@@ -75,21 +71,19 @@ def compare(
     screen: Screen,
 ) -> str:
     """Return what changed between two runs of a gradebook, or two gradebooks. Raises InputError."""
-    from grader.classroom.gradebook.grade_changes import changes, snapshot
+    from grader.classroom.gradebook.grade_changes import changes, newest_changes, snapshot
 
     if len(books) > 2:
         raise InputError("name one gradebook, or two")
     if len(books) == 1 and before is None:
-        check_gradebook(books[0])
-        before = (after or len(Results(books[0] / RESULTS).runs)) - 1
-        if before < 1:
-            raise InputError(f"{books[0]} has one run: grade the class again, and compare then")
-    old, new = snapshot(books[0], before), snapshot(books[-1], after)
-    found, runs = [*changes(old, new)], (old.run, new.run)
+        old, new, found = newest_changes(books[0], after)
+    else:
+        old, new = snapshot(books[0], before), snapshot(books[-1], after)
+        found = list(changes(old, new))
     if kind is OutputFormat.JSON:
         from grader.classroom.reports.class_json import render_changes_json
 
-        return render_changes_json(found, runs)
+        return render_changes_json(found, (old.run, new.run))
     from grader.classroom.reports.class_terminal import render_changes
 
-    return draw(partial(render_changes, found, runs), screen)
+    return draw(partial(render_changes, found, old, new), screen)

@@ -9,10 +9,11 @@ from operator import itemgetter
 from types import SimpleNamespace
 
 from grader import __version__
-from grader.classroom.gradebook.grade_changes import Change
+from grader.classroom.gradebook.grade_changes import Change, why_open
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.statistics import COUNTS, CriterionFigures, statistics
 from grader.classroom.results.results import Run
+from grader.lab.rubric.criterion import GRADE
 from grader.report.json_data import (
     COUNT,
     FLAG,
@@ -56,10 +57,20 @@ _RUN = JsonObject(
             nullable(POINTS),
             lambda run: exact(Decimal(run.maximum)) if run.maximum else None,
         ),
+        "deadline": (TEXT, "due"),
     }
 )
 _SPAN = each(nullable(POINTS), "before after")
 _STEP = JsonObject({"id": TEXT, **_SPAN})
+_PENALTY = {"type": "number", "maximum": 0}
+_RECORDED = JsonObject(
+    {
+        "not_final_because": (TEXT, why_open),
+        "late_days": (TOTAL, "days_late"),
+        "late_points": (_PENALTY, lambda grade: exact(Decimal(grade.penalty or 0))),
+        "deadline": TEXT,
+    }
+)
 
 
 def _count(name: str, row: CriterionFigures) -> int:
@@ -109,10 +120,8 @@ _STUDENT = JsonObject(
         "score": _report_points("score"),
         "max_score": _report_points("max_score"),
         "pending": (POINTS, "pending"),
-        "late": JsonObject(
-            {"days": TOTAL, "points": {"type": "number", "maximum": 0}, "reason": TEXT}
-        ),
-        "total": (nullable(POINTS), "shown_total"),
+        "late": JsonObject({"days": TOTAL, "points": _PENALTY, "reason": TEXT}),
+        GRADE: (nullable(POINTS), "shown_total"),
         "final_mark": (nullable(POINTS), "final_points"),
         "is_excused": FLAG,
         "not_final_because": (TEXT, "why_open"),
@@ -165,6 +174,8 @@ _CHANGE = JsonObject(
         "id": (TEXT, "key"),
         "name": TEXT,
         **_SPAN,
+        "from": (_RECORDED, "old"),
+        "to": (_RECORDED, "new"),
         "reasons": (array(TEXT), "why"),
         "criteria": Many(_STEP),
     }

@@ -16,12 +16,13 @@ from grader.base.text import (
     counted_points,
     enumerated,
     format_points,
+    named,
     printable,
     printable_path,
     without_commands,
 )
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.student_grade import StudentGrade
+from grader.classroom.gradebook.student_grade import Reason, StudentGrade
 from grader.classroom.marks import gradebook_folder as names
 from grader.classroom.results.results import StoredResult
 from grader.classroom.run.preloading import PRELOAD
@@ -45,6 +46,7 @@ _CLASS_PAGE = "index.html"
 _TASK_SIZE = 4  # reports
 _SECONDS = 60.0  # in which hints are searched, and a few reports written
 _NOTHING = Outcome("skipped", "not graded, because nothing was submitted")
+_SUBMIT_AGAIN = "Nothing could be graded: pack the files as .zip or .tar.gz, and submit them again."
 _MOVED = (
     "The submission has moved or changed since it was graded, so this report has no details: "
     "run `grader batch` again."
@@ -100,6 +102,8 @@ def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
     graders, and lateness.
     """
     mark, late = grade.final, grade.late
+    if Reason.UNREADABLE in grade.concerns:
+        yield f"{grade.concerns[Reason.UNREADABLE]}. {_SUBMIT_AGAIN}"
     if mark is not None:
         by = by_name(mark.by)
         what = f"Excused{by}." if grade.is_excused else f"Comment{by}:"
@@ -181,7 +185,8 @@ def write_reports(
     written = counted(len(files) - len(lost), "report")
     terminal.warn(f"{written} written to {printable_path(run.folder)}")
     for key, why in lost.items():
-        terminal.warn(printable(f"no report for {key}: {why}"))
+        who = named(key, book.grade(key).student.name)
+        terminal.warn(printable(f"no report for {who}: {why}"))
 
 
 def render_reports(

@@ -5,7 +5,7 @@ Text of submissions is never interpreted as markup or control codes.
 """
 
 from collections import Counter, defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from decimal import Decimal
 
 from rich.console import Console
@@ -24,26 +24,26 @@ from grader.base.text import (
     printable,
     signed_points,
 )
-from grader.classroom.gradebook.grade_changes import Change, PointsChange
+from grader.classroom.gradebook.grade_changes import Change, Snapshot, why_open
 from grader.classroom.gradebook.statistics import ClassStatistics, CriterionFigures, summary
 from grader.classroom.gradebook.student_grade import Reason, StudentGrade
 from grader.classroom.reports.class_words import (
     EQUAL_NOTE,
     SHARE_NOTE,
     family_name_order,
+    grades_text,
     head_lines,
     late_text,
-    means,
     percent,
     span,
 )
-from grader.classroom.results.results import Run
+from grader.classroom.results.results import RunGrade
 from grader.classroom.roster.lateness import time_text
-from grader.lab.rubric.rubric import Rubric
+from grader.lab.rubric.criterion import GRADE
 from grader.report.criteria import alike
 from grader.report.writers.terminal import INDENT, Page
 
-_LOST, _OTHER_COLUMNS = 3, 42  # the column of lost points, and the characters of the others
+_LOST, _OTHER_COLUMNS = 3, 41  # the column of lost points, and the characters of the others
 _MAX_ROWS = 40
 _MAX_COSTS = 3  # criteria named in a row
 _BAR_WIDTH = 40
@@ -58,8 +58,8 @@ class ClassTable:
     `add` takes the grades one by one, so that a large class is never held whole.
     """
 
-    def __init__(self, rubric: Rubric, *, verbose: bool = False) -> None:
-        self.rubric, self.verbose = rubric, verbose
+    def __init__(self, title: str, maximum: Decimal, *, verbose: bool = False) -> None:
+        self.title, self.maximum, self.verbose = title, maximum, verbose
         self.rows: list[
             tuple[bool, tuple[str, ...], Sequence[str]]
         ] = []  # in the order of the first two
@@ -96,7 +96,7 @@ class ClassTable:
     def _table(self, width: int) -> Table:
         """Return the rows without empty columns, lost points in so many characters."""
         table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
-        titles = ("student", f"of {format_points(self.rubric.points)}", "late", "lost", "open")
+        titles = ("student", GRADE, "late", "lost", "open")
         rows = [row for *_, row in self.rows]
         filled = sorted({at for row in rows for at, cell in enumerate(row) if cell})
         for at in filled:
@@ -111,7 +111,7 @@ class ClassTable:
         """Print the table."""
         self._keep_first()
         page = Page(console, [])
-        page.inset(printable(self.rubric.title), "bold", 0)
+        page.inset(printable(self.title), "bold", 0)
         page.table(self._table(console.width - _OTHER_COLUMNS))
         rest = self.count - len(self.rows)
         if rest:
@@ -119,7 +119,7 @@ class ClassTable:
         page.leave_row()
         if self._totals:
             figures = summary(self._totals.elements())
-            words = means(figures.mean, figures.median).capitalize()
+            words = grades_text(self.maximum, figures, is_open=bool(self.open))
             page.inset(f"{words} ({counted(figures.students, 'student')})", indent=0)
         for reason in Reason:
             if reason in self._concerns:
@@ -216,14 +216,21 @@ def _show_criteria(rows: Sequence[CriterionFigures], page: Page) -> None:
     page.inset(SHARE_NOTE, "dim", 0)
 
 
-def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Console) -> None:
+def render_changes(
+    changes: Sequence[Change], before: Snapshot, after: Snapshot, console: Console
+) -> None:
     """Print the two runs, and by reason whose grade changed, by how much, and in which criteria."""
-    before, after = runs
+    first, last = before.run, after.run
     page = Page(console, [])
-    times = [f"run {run.run} of {time_text(run.time)}" for run in runs]
+    times = [f"run {run.run} of {time_text(run.time)}" for run in (first, last)]
+    if not after.is_recorded:
+        times[1] = "now"
     page.inset(printable(f"From {times[0]} to {times[1]}"), "dim", 0)
-    if before.maximum and after.maximum and before.maximum != after.maximum:
-        page.inset(f"the maximum changed from {before.maximum} to {after.maximum} points", indent=0)
+    if first.maximum and last.maximum and first.maximum != last.maximum:
+        page.inset(f"the maximum changed from {first.maximum} to {last.maximum} points", indent=0)
+    if first.due != last.due:
+        dues = [time_text(run.due) if run.due else "none" for run in (first, last)]
+        page.inset(printable(f"the deadline changed from {dues[0]} to {dues[1]}"), indent=0)
     if not changes:
         page.inset("nothing changed", indent=0)
     by_reasons = alike(changes, lambda change: change.why)
@@ -232,18 +239,50 @@ def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Co
         students = counted(len(alike_changes), "student")
         page.inset(printable(f"{'; '.join(why)} ({students})"), "bold", 0)
         for change in alike_changes:
-            total = f"{named(change.key, change.name)}: {_before_and_after(change, 'not final')}"
-            steps = [f"{step.id} {_before_and_after(step, 'none')}" for step in change.criteria]
-            line = "; ".join([total, *first_lines(steps, _MAX_STEPS)])
+            steps = list(_changed_grade(change))
+            for step in change.criteria:
+                steps.append(f"{step.id} {_before_and_after(step.before, step.after)}")
+            line = f"{named(change.key, change.name)}: {'; '.join(first_lines(steps, _MAX_STEPS))}"
             page.inset(printable(line), indent=4, head=Text("  "))
     page.print()
 
 
-def _before_and_after(change: Change | PointsChange, nothing: str) -> str:
+def _changed_grade(change: Change) -> Iterator[str]:
+    """Yield the grade before and after, and what else its student sees of the change."""
+    old, new = change.old, change.new
+    grade = _before_and_after(
+        change.before, change.after, (_without_points(old), _without_points(new))
+    )
+    if new.total is not None and new.pending:
+        grade += f", provisional ({counted_points(Decimal(new.pending))} open)"
+    elif new.total is not None and why_open(new):
+        grade += f", provisional ({why_open(new)})"
+    elif new.total is not None and old.total is not None and why_open(old):
+        grade += ", now final"
+    yield grade
+    if (old.days_late, old.penalty) != (new.days_late, new.penalty):
+        yield f"{_days_late(old)} to {_days_late(new)}"
+    if old.deadline != new.deadline:
+        yield f"own deadline {old.deadline or 'none'} to {new.deadline or 'none'}"
+
+
+def _without_points(grade: RunGrade) -> str:
+    """Return what stands for a grade that has no points."""
+    return grade.obstacle.lower().replace("_", " ") or "none"
+
+
+def _days_late(grade: RunGrade) -> str:
+    if not grade.days_late:
+        return "on time"
+    return f"{counted(grade.days_late, 'day')} late{grade.penalty and f', {grade.penalty}'}"
+
+
+def _before_and_after(
+    before: Decimal | None, after: Decimal | None, nothing: tuple[str, str] = ("none", "none")
+) -> str:
     """Return points before and after: "50 to 60 (+10)"."""
-    before, after = change.before, change.after
-    first = nothing if before is None else format_points(before)
-    last = nothing if after is None else format_points(after)
+    first = nothing[0] if before is None else format_points(before)
+    last = nothing[1] if after is None else format_points(after)
     if first == last:
         return f"{first}, as before"
     if before is None or after is None:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from decimal import Decimal
 
 from grader.base.text import counted, format_points
-from grader.classroom.gradebook.statistics import ClassStatistics
+from grader.classroom.gradebook.statistics import ClassStatistics, Summary
 from grader.classroom.gradebook.student_grade import StudentGrade
 
 _LETTERS = str.maketrans(
@@ -61,9 +61,7 @@ def head_lines(found: ClassStatistics) -> Iterator[str]:
         counts.append(f"{found.late} late")
     yield ", ".join(counts) or "no students"
     if found.all is not None:
-        yield (
-            f"Grades of {format_points(found.maximum)}: {means(found.all.mean, found.all.median)}"
-        )
+        yield grades_text(found.maximum, found.all, is_open=bool(found.open))
     if found.open:
         yield (
             f"{counted(found.open, 'grade')} still {'needs' if found.open == 1 else 'need'} "
@@ -71,12 +69,20 @@ def head_lines(found: ClassStatistics) -> Iterator[str]:
         )
     for name, one in found.sections.items():
         yield (
-            f"Section {name or '(none)'}: {means(one.mean, one.median)} "
+            f"Section {name or '(none)'}: {_means(one.mean, one.median)} "
             f"({counted(one.students, 'student')})"
         )
 
 
-def means(mean: Decimal | float, median: Decimal | float) -> str:
+def grades_text(maximum: Decimal, figures: Summary, *, is_open: bool) -> str:
+    """Return the mean and the median of the grades; those that are open count with the points so
+    far.
+    """
+    so_far = " so far" if is_open else ""
+    return f"Grades of {format_points(maximum)}{so_far}: {_means(figures.mean, figures.median)}"
+
+
+def _means(mean: Decimal | float, median: Decimal | float) -> str:
     """Return a mean and a median to one decimal."""
     return f"mean {mean:.1f}, median {median:.1f}"
 

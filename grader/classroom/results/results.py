@@ -73,6 +73,18 @@ class StoredResult(NamedTuple):
         return line
 
 
+class RunGrade(NamedTuple):
+    """The grade of a student in a run, as all tables show it, and what it follows from."""
+
+    total: str | None = None  # points; None where nothing could be graded
+    obstacle: str = ""  # the name of the reason for which it is not final
+    pending: str = ""  # points that need manual grading
+    days_late: int = 0
+    penalty: str = ""  # points
+    deadline: str = ""  # the student's own
+    marks: Mapping[str, str] = {}  # by criterion
+
+
 class Run(NamedTuple):
     """A finished run, the first of which has the number 1."""
 
@@ -81,11 +93,14 @@ class Run(NamedTuple):
     version: str  # of the grader
     rubric: str  # its hash
     context: str  # the hash of all that results depend on besides the submissions
-    totals: Mapping[str, str | None]  # of the students who submitted, None while it is open
+    totals: Mapping[str, str | None]  # of the students who submitted
     unclear: Sequence[str] = ()  # students with possible submissions of which none was graded
     others: Mapping[str, str] = {}  # totals of the students without a submission
     written: Sequence[str] = ()  # the students whose results were written since the run before
     maximum: str = ""  # of the grades
+    # By student, what its RunGrade has besides the total.
+    details: Mapping[str, Mapping[str, Any]] = {}
+    due: str = ""  # the deadline of the class, ISO 8601
 
     @property
     def line(self) -> bytes:
@@ -97,9 +112,14 @@ class Run(NamedTuple):
         """The students who submitted, and those who have a total without a submission."""
         return chain(self.totals, self.others)
 
-    def total(self, student: str) -> str | None:
-        """Return the total of a student; None if there was none, or it was open."""
-        return self.totals.get(student, self.others.get(student))
+    def grade(self, student: str) -> RunGrade:
+        """Return the grade of a student, without anything if the run has none."""
+        total = self.totals.get(student, self.others.get(student))
+        return RunGrade(total, **self.details.get(student, {}))
+
+    def has_grades_of(self, other: "Run") -> bool:
+        """Return whether another run has the same grades, computed by the same rubric and rules."""
+        return self._replace(run=other.run, time=other.time, written=other.written) == other
 
 
 def _json_line(values: Mapping[str, Any]) -> bytes:
@@ -144,6 +164,7 @@ class Results:
         self._file = file
         self.end = 0  # where the last whole line ends
         self.runs: list[Run] = []
+        self.turns: list[int] = []  # the numbers of the runs that changed something
         self.damaged: list[int] = []  # the numbers of lines, from 1
         self.unfinished = set[str]()  # the students whose results were written since the newest run
         # whether a line since the newest run is damaged, which may be that of a run
@@ -184,9 +205,11 @@ class Results:
             self._places.pop(key, None)
         self.unfinished.clear()
         self._is_torn = False
+        if run.written or not self.runs or not run.has_grades_of(self.runs[-1]):
+            self.turns.append(run.run)
         # Only the newest are compared.
         self.runs[-1:] = [
-            older._replace(totals={}, others={}, written=()) for older in self.runs[-1:]
+            older._replace(totals={}, others={}, details={}, written=()) for older in self.runs[-1:]
         ]
         self.runs.append(run)
 

@@ -12,6 +12,7 @@ from grader.lab.checks.check import Check
 from grader.lab.checks.outcome import WRONG, Outcome
 
 TOTAL = "total"  # in place of a criterion's id, in manual marks: the whole submission
+GRADE = "grade"  # the column of a table for that
 DEADLINE = "deadline"  # likewise: a deadline of the student
 
 

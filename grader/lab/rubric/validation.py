@@ -11,11 +11,12 @@ from grader.lab.checks.check import LINK_ARGUMENTS, Check
 from grader.lab.checks.registry import check_names, find_check
 from grader.lab.checks.toml_types import WrongValue
 from grader.lab.rubric import keys
-from grader.lab.rubric.criterion import DEADLINE, TOTAL
+from grader.lab.rubric.criterion import DEADLINE, GRADE, TOTAL
 from grader.lab.rubric.toml_file import KeyTable, TomlPath, TomlRow, TomlRowReader, shorten_value
 from grader.ros.urdf.link_tree import JOINT_OF, is_selector
 
 _MAX_LISTED = 20  # names in one message
+_RESERVED = {TOTAL: "final marks", GRADE: "grades", DEADLINE: "deadlines"}  # ids
 
 BoundCheck = tuple[Check, TomlRow]
 BoundCarried = tuple[
@@ -89,7 +90,7 @@ class Validation:
                 if bound_table:
                     carried.append(bound_table)
             self.carried.append(carried)
-            if use := {TOTAL: "final marks", DEADLINE: "deadlines"}.get(row.get("id", "")):
+            if use := _RESERVED.get(row.get("id", "")):
                 self._complain(
                     (*where, "id"),
                     f"the id {row['id']!r} is reserved for {use}: choose another one",
