@@ -31,7 +31,8 @@ if TYPE_CHECKING:
 
 
 ClassListing = ClassDirectory | ClassZip
-_DOCUMENTS = (*EVIDENCE, ".docx", ".doc", ".odt", ".pages", ".ipynb", ".md", ".txt", ".rst", ".rtf")
+_TEXTS = (".docx", ".doc", ".odt", ".pages", ".ipynb", ".md", ".txt", ".rst", ".rtf")
+_DOCUMENTS = (*EVIDENCE, *_TEXTS)
 _MAX_HASHED = (
     64 * 1024 * 1024
 )  # bytes of a file that go into the digest; of a larger file its size does
@@ -68,6 +69,12 @@ class _OpenedSubmission(NamedTuple):
     data: bytes | None  # of a single URDF
     tree: Tree | None  # else
     max_size: int = URDF_LIMIT  # of a URDF, in bytes
+
+    @property
+    def has_documents(self) -> bool:
+        """Whether it has files whose text may be read for answers."""
+        files = self.tree.files if self.tree is not None else ()
+        return any(path.lower().endswith((*_TEXTS, ".pdf")) for path in files)
 
     def submission(self, rubric: Rubric, opening: Opening = DEFAULTS) -> Submission:
         """Return the submission; raises InputError if it is empty."""
