@@ -60,7 +60,7 @@ def listing_of(path: Path) -> ClassListing:
     return ClassZip(path)
 
 
-class _OpenedSubmission(NamedTuple):
+class OpenedSubmission(NamedTuple):
     """A submission before it is graded."""
 
     name: str
@@ -94,7 +94,7 @@ class _OpenedSubmission(NamedTuple):
 
 def open_class_submission(
     root: str, paths: tuple[str, ...], names: tuple[str, ...], name: str, max_size: int = URDF_LIMIT
-) -> _OpenedSubmission:
+) -> OpenedSubmission:
     """Open what is at `paths` below a class folder, or in a class zip; raises InputError.
 
     Several files become one submission, called `name`, that contains them as `names`; so does a
@@ -139,7 +139,7 @@ def _listing(root: str, _stamp: tuple[int, ...]) -> ClassListing:
     return listing_of(Path(root))
 
 
-def _open_single(source: ClassListing, path: str, max_size: int) -> _OpenedSubmission:
+def _open_single(source: ClassListing, path: str, max_size: int) -> OpenedSubmission:
     """Open a folder, an archive, or a URDF under any name."""
     last, shown = printable_path(path.rpartition("/")[2]), printable_path(path)
     if source.is_folder(path):
@@ -148,12 +148,12 @@ def _open_single(source: ClassListing, path: str, max_size: int) -> _OpenedSubmi
         name = without_endings(last)
         digest = _digest(name, max_size)
         if (archive := source.archive(path, digest)) is not None:
-            return _OpenedSubmission(name, shown, digest.hexdigest(), None, archive, max_size)
+            return OpenedSubmission(name, shown, digest.hexdigest(), None, archive, max_size)
     if not last.lower().endswith(ROBOT_ENDINGS) and not _is_robot(source, path):
         raise InputError(f"{last} is neither a URDF nor a folder, an archive or a document")
     data, digest = source.read(path, max_size), _digest(last, max_size)
     digest.update(data)
-    return _OpenedSubmission(last.rpartition(".")[0] or last, last, digest.hexdigest(), data, None)
+    return OpenedSubmission(last.rpartition(".")[0] or last, last, digest.hexdigest(), data, None)
 
 
 def _is_document(source: ClassListing, path: str) -> bool:
@@ -180,7 +180,7 @@ def _digest(name: str, max_size: int) -> "hashlib._Hash":
     return sha256(repr(name if max_size == URDF_LIMIT else (name, max_size)).encode())
 
 
-def _opened_tree(name: str, shown: str, tree: Tree, max_size: int) -> _OpenedSubmission:
+def _opened_tree(name: str, shown: str, tree: Tree, max_size: int) -> OpenedSubmission:
     """Return a submission of files, with the hash of all that it is read from: the files, the
     ignored files, its name.
 
@@ -199,4 +199,4 @@ def _opened_tree(name: str, shown: str, tree: Tree, max_size: int) -> _OpenedSub
             digest.update(file.read(_MAX_HASHED, first=True))
         except InputError as error:
             digest.update(str(error).encode())
-    return _OpenedSubmission(name, shown, digest.hexdigest(), None, tree, max_size)
+    return OpenedSubmission(name, shown, digest.hexdigest(), None, tree, max_size)
