@@ -185,7 +185,15 @@ LIMITS: dict[str, dict[str, tuple[float, ...]]] = {
         "| `setup.py`, a launch file | {} KiB |": (budget.PYTHON_LIMIT / 1024,),
         "| 1 MiB, and its first {:,} lines |": (collection.MAX_LINES,),
         "| its first {} pages |": (converter.MAX_PAGES,),
-        "| {} s; {} GiB of memory |": (collection.MAX_SECONDS, converter._MAX_MEMORY / MIB / 1024),
+        "| {:,} elements; {:,} texts, {} MiB |": (
+            converter._MAX_ELEMENTS,
+            converter._MAX_PIECES,
+            converter._MAX_CONTENT / MIB,
+        ),
+        "| {} s of processor time; {} MiB of memory |": (
+            collection.MAX_SECONDS,
+            converter._MAX_MEMORY / MIB,
+        ),
         "| `package.xml`; an RViz file | {} KiB; {} KiB |": (
             finding._MAX_MANIFEST_SIZE / 1024,
             package._RVIZ_LIMIT / 1024,
