@@ -223,6 +223,7 @@ class DocumentCollection:
         try:  # an interruption ends the process as well
             code, output = self._run(command, data)
         except subprocess.TimeoutExpired:
+            self._seconds = 0.0
             raise late from None
         except OSError as error:
             MachineError.check(error, file.path)
@@ -232,6 +233,7 @@ class DocumentCollection:
         finally:
             self._seconds -= _time_of_converters() - began
         if converter.is_out_of_time(code):
+            self._seconds = 0.0
             raise late
         if code == converter.TOO_LARGE:
             raise InputError(
