@@ -30,7 +30,7 @@ LAYERS = (
 ROOMS = {
     "base": (
         "errors markup merge_conflicts text reuse pairing transforms",
-        "source names",
+        "source names processor_time",
         "problems element_edits slips",
         "ignore_comments",
     ),

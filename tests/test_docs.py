@@ -1,5 +1,6 @@
 """The documentation matches the code, and its commands and links work."""
 
+import inspect
 import json
 import re
 import runpy
@@ -14,8 +15,9 @@ import yaml
 from typer.main import get_command
 
 from grader import __version__
-from grader.app.cli import ending
+from grader.app.cli import app, ending
 from grader.app.cli.app import COMMANDS, make_app
+from grader.app.cli.batch import batch
 from grader.files import limits
 from grader.lab.authoring import rubric_test
 from grader.lab.documents import collection, converter, pictures
@@ -183,19 +185,31 @@ LIMITS: dict[str, dict[str, tuple[float, ...]]] = {
         "| `setup.py`, a launch file | {} KiB |": (budget.PYTHON_LIMIT / 1024,),
         "| 1 MiB, and its first {:,} lines |": (collection.MAX_LINES,),
         "| its first {} pages |": (converter.MAX_PAGES,),
-        "| {} s; {} GiB of memory |": (collection.MAX_SECONDS, converter._MAX_MEMORY / MIB / 1024),
+        "| {:,} elements; {:,} texts, {} MiB |": (
+            converter._MAX_ELEMENTS,
+            converter._MAX_PIECES,
+            converter._MAX_CONTENT / MIB,
+        ),
+        "| {} s of processor time; {} MiB of memory |": (
+            collection.MAX_SECONDS,
+            converter._MAX_MEMORY / MIB,
+        ),
         "| `package.xml`; an RViz file | {} KiB; {} KiB |": (
             finding._MAX_MANIFEST_SIZE / 1024,
             package._RVIZ_LIMIT / 1024,
         ),
-        "| {} s of processor time; {} GiB of memory |": (
-            ending._SECONDS,
+        "| {} s; {} s of processor time, or what `ulimit -t` allows; {} GiB of memory |": (
+            app._LIMITED["grade"],
+            app._LIMITED["inspect"],
             ending._MEMORY / MIB / 1024,
         ),
         "| problems of a URDF; links that `inspect` prints | {:,}; 500 |": (
             diagnostics._MAX_PROBLEMS,
         ),
-        "{} GiB of memory | graded again": (pool.MAX_MEMORY / MIB / 1024,),
+        "{} s of processor time (`--timeout`); {} GiB of memory | graded again": (
+            inspect.signature(batch).parameters["timeout"].default,
+            pool.MAX_MEMORY / MIB / 1024,
+        ),
     },
     "xacro.md": {
         "| work to read one submission | {:,} parts |": (budget.READING,),

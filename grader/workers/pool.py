@@ -17,7 +17,8 @@ from typing import Any
 
 from pebble import CONSTS, ProcessExpired, ProcessPool
 
-from grader.base.errors import GraderError
+from grader.base.errors import GraderError, OutOfTime
+from grader.base.processor_time import CAN_LIMIT, lift_processor_time, limit_processor_time
 from grader.workers import forks
 
 MAX_MEMORY = 2 * 1024**3  # bytes for each worker
@@ -33,24 +34,36 @@ _EXIT_ENDED = 70  # the exit code of a worker that exited unexpectedly with exit
 # seconds to wait for the channel: a worker that is killed while it sends never releases it
 _CHANNEL_TIMEOUT = 3.0
 _CHECK_INTERVAL = 0.5  # seconds
-_MAX_IDLE = 30.0  # seconds beyond the timeout in which a task must be completed
+# A task ends after this many times its limit of processor time, also if it waits for something.
+_WAITING = 3 if CAN_LIMIT else 1
+_EXIT_OUT_OF_TIME = -getattr(signal, "SIGXCPU", 0)
+_MAX_IDLE = 30.0  # seconds beyond that in which a task must be completed
 _MAX_END = 5.0  # seconds in which a pool must end
 _MAX_TRIES = 3  # to submit a task to a pool, which may break at any moment
 
 
 class WorkerError(GraderError):
     """Why a task has no result, as a message for a report. `is_own_fault` is False if another task
-    may be the cause.
+    may be the cause; `timeout` is the limit of processor time that it reached, 0 if it did not.
     """
 
-    def __init__(self, reason: str, *, is_own_fault: bool = True) -> None:
+    def __init__(self, reason: str, *, is_own_fault: bool = True, timeout: float = 0) -> None:
         super().__init__(reason)
         self.is_own_fault = is_own_fault
+        self.timeout = timeout
+
+
+def out_of_time(timeout: float) -> WorkerError:
+    """Return the error for a task that used up its processor time."""
+    return WorkerError(
+        f"grading it took longer than {timeout:g} s of processor time (--timeout raises the limit)",
+        timeout=timeout,
+    )
 
 
 class Processes(Executor):
-    """Worker processes. The future of a task that exceeds `timeout` seconds, or ends its worker,
-    raises WorkerError.
+    """Worker processes. The future of a task that exceeds `timeout` seconds of processor time, or
+    ends its worker, raises WorkerError.
 
     Another worker then replaces the one that ended. All of them end with the process that started
     them, however that ends. `memory` is the limit for each worker, in bytes; workers start with
@@ -89,21 +102,22 @@ class Processes(Executor):
         arguments: tuple[Any, ...],
         named: dict[str, Any],
     ) -> "Future[Any]":
-        """Run a function in a worker with its own timeout, in seconds."""
+        """Run a function in a worker with its own timeout, in seconds of processor time."""
         outer: Future[Any] = Future()
         with self._lock:
             forks.start_server(self._preload)  # again if it has ended
             for tries_left in reversed(range(_MAX_TRIES)):
                 try:
                     self._replace_broken_pool()
-                    inner = self._pool.schedule(function, arguments, named, timeout)
+                    task = (timeout, function, arguments, named)
+                    inner = self._pool.schedule(_run_limited, task, {}, _WAITING * timeout)
                     break
                 except (RuntimeError, OSError, BrokenProcessPool) as error:  # it broke just now
                     if not tries_left or self._is_shut.is_set():
                         raise WorkerError(_NOT_STARTED, is_own_fault=False) from error
                     time.sleep(_CHECK_INTERVAL)  # a fork server that could not fork is about to end
             self._progress = self._progress if self._pending else time.monotonic()
-            self._pending[outer] = timeout
+            self._pending[outer] = _WAITING * timeout
         inner.add_done_callback(lambda future: self._pass_on(future, outer, timeout))
         return outer
 
@@ -152,12 +166,12 @@ class Processes(Executor):
             self._complete(outer, result=inner.result())
         except TimeoutError:
             self._complete(
-                outer,
-                WorkerError(
-                    f"grading it took longer than {timeout:g} s (--timeout raises the limit)"
-                ),
+                outer, WorkerError(f"grading it did not end within {_WAITING * timeout:g} s")
             )
         except ProcessExpired as error:
+            if error.exitcode == _EXIT_OUT_OF_TIME:
+                self._complete(outer, out_of_time(timeout))
+                return
             is_own_fault = error.exitcode not in _EXIT_CHANNEL_LOST
             reason = f"the process that graded it {_exit_words(error.exitcode)}"
             self._complete(outer, WorkerError(reason, is_own_fault=is_own_fault))
@@ -181,6 +195,22 @@ class Processes(Executor):
             outer.set_exception(error)
         else:
             outer.set_result(result)
+
+
+def _run_limited(
+    timeout: float,
+    function: Callable[..., Any],
+    arguments: tuple[Any, ...],
+    named: dict[str, Any],
+) -> Any:
+    """Run a function in this worker within a limit of processor time."""
+    limit_processor_time(timeout)
+    try:
+        return function(*arguments, **named)
+    except OutOfTime:
+        raise out_of_time(timeout) from None
+    finally:
+        lift_processor_time()
 
 
 def processors() -> int:

@@ -24,11 +24,14 @@ from tests.classroom.class_runs import (
 from tests.command_line import HANG_TIMEOUT
 
 GOOD = tuple(f"fine-{number}" for number in range(20))
-SLOW = r"grading it took longer than 4 s \(--timeout raises the limit\)"
+SLOW = r"grading it took longer than 4 s of processor time \(--timeout raises the limit\)"
+WAITED = "grading it did not end within 12 s"
 REASONS = {
-    "hangs": SLOW,
-    "hangs_in_c": SLOW,
-    "stops": SLOW,
+    "loops": SLOW,
+    "loops_in_c": rf"{SLOW}|{WAITED}",
+    "hangs": WAITED,
+    "hangs_in_c": WAITED,
+    "stops": WAITED,
     "dies": "the process that graded it was ended by signal 9",
     "crashes": "the process that graded it was ended by signal 11",
     "leaves": "the process that graded it exited unexpectedly",
@@ -58,7 +61,7 @@ def test_each_misbehaviour_affects_one_submission(tmp_path: Path) -> None:
     assert verdicts(book) == {**dict.fromkeys(REASONS, "errored"), **dict.fromkeys(GOOD, "graded")}
     found = reasons(book)
     for key, reason in REASONS.items():
-        allowed = f"{reason}|{SLOW}" if key in ENDED else reason
+        allowed = f"{reason}|{WAITED}" if key in ENDED else reason
         assert re.fullmatch(allowed, found[key]), (key, found[key])
     assert {sum(entry[0] for entry in newest(book)[key]["results"].values()) for key in GOOD} == {3}
 
@@ -71,6 +74,34 @@ def test_each_misbehaviour_affects_one_submission(tmp_path: Path) -> None:
     assert counted(grader(*command, **WITH_HOSTILE)) == (
         f"1 graded (1 errored), {len(GOOD) + len(REASONS) - 1} unchanged"
     )
+
+
+@pytest.mark.slow
+def test_what_takes_too_long_is_kept(tmp_path: Path) -> None:
+    """It is named in each run with the command that tries it again, and tried only if it is asked for or has changed."""
+    folder, book = hostile_class(tmp_path / "class", "loops", "fine"), tmp_path / "lab"
+    command = ("batch", folder, "--gradebook", book, *RUBRIC, "--jobs", "1", "--timeout")
+    slow = "not graded again, because it takes too long: loops"
+
+    def run(*options: str) -> tuple[str, bool]:
+        done = grader(*command, *options, **WITH_HOSTILE)
+        assert (done.returncode, verdicts(book)["loops"]) == (0, "errored")
+        return counted(done), slow in done.stderr
+
+    assert run("1") == ("2 graded (1 errored), 0 unchanged", True)
+    kept = newest(book)["loops"]
+    assert (kept["timeout"], kept["reason"]) == (1, SLOW.replace("\\", "").replace("4 s", "1 s"))
+    assert run("1") == run("0.5") == ("0 graded, 2 unchanged", True)
+    assert newest(book)["loops"] == kept
+    assert run("2") == ("1 graded (1 errored), 1 unchanged", True)
+    assert run("1") == ("0 graded, 2 unchanged", True)
+    assert run("1", "--force") == ("2 graded (1 errored), 0 unchanged", True)
+    done = grader(*command, "1", **WITH_HOSTILE)
+    assert f"`grader batch --gradebook {book} --timeout 2` tries it" in done.stderr
+    (folder / "loops.urdf").write_text('<robot name="fine"><link name="a"/></robot>')
+    done = grader(*command, "1", **WITH_HOSTILE)
+    assert (counted(done), slow in done.stderr) == ("1 graded, 1 unchanged", False)
+    assert set(verdicts(book).values()) == {"graded"}
 
 
 @pytest.mark.exhaustive

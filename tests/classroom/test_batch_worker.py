@@ -147,6 +147,7 @@ def test_several_archives_are_counted(tmp_path: Path) -> None:
 def test_a_submission_without_its_documents(tmp_path: Path) -> None:
     """Answers need manual grading, and the result says why; all other criteria have their points."""
     shutil.copytree(ROOT / "submissions/lab6/several-mistakes", tmp_path / "ann")
+    (tmp_path / "ann/answers.md").write_text("Task 1 step 15: It vanishes.\n")
     context = ClassContext((str(tmp_path),), LAB6.data, str(LAB6.path))
     whole, without = (
         grade_all(context, [Task("ann", 0, ("ann",), no_documents=why)])[0]
@@ -157,6 +158,21 @@ def test_a_submission_without_its_documents(tmp_path: Path) -> None:
         name: entry[0] for name, entry in without.results.items() if name != "evidence-webcam"
     } == {name: entry[0] for name, entry in whole.results.items() if name != "evidence-webcam"}
     assert without.results["answer-launch-nodes"][:2] == (None, "pending")
+
+
+def test_a_submission_that_has_no_documents_is_not_tried_without(tmp_path: Path) -> None:
+    """Nothing would be different: the reason is that of the first time, and so is its limit of time."""
+    (tmp_path / "ann.urdf").write_bytes(URDF)
+    context = ClassContext((str(tmp_path),), LAB6.data, str(LAB6.path))
+    [whole, lost] = grade_all(
+        context,
+        [
+            Task("ann", 0, ("ann.urdf",)),
+            Task("ann", 0, ("ann.urdf",), no_documents="it took long", reached=20),
+        ],
+    )
+    assert (lost.verdict, lost.reason, lost.timeout) == ("errored", "it took long", 20)
+    assert (lost.digest, lost.no_documents) == (whole.digest, "")
 
 
 @pytest.mark.parametrize(

@@ -132,7 +132,7 @@ def test_a_manual_mark_replaces_a_hint(top: Path) -> None:
 
 def test_a_lost_search_costs_only_its_own_hints(tmp_path: Path) -> None:
     """A crash and a timeout while edits are tried: every report is written, and the others have hints."""
-    names = {"ash": "dies_when_tried", "birch": "fine", "cedar": "hangs_when_tried"}
+    names = {"ash": "dies_when_tried", "birch": "fine", "cedar": "loops_when_tried"}
     body = '<link name="base"><visual><geometry><box size="1 1 2"/></geometry></visual></link>'
     make(
         tmp_path / "class",

@@ -1,6 +1,7 @@
 """`grade` and `inspect` end by themselves, whatever a file makes them do: limits of processor time and of memory."""
 
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -14,7 +15,7 @@ import grader.app.hints_and_fix
 import grader.lab.grading.subjects
 import grader.lab.hints.hinting
 import grader.lab.submission.opening
-from grader.app.cli import ending
+from grader.app.cli import app, ending
 from grader.base.errors import OutOfTime
 from tests.command_line import ROOT, run
 
@@ -48,7 +49,7 @@ def test_reading_ends(
     command: str, what: Callable[..., object], said: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """One line says which limit it was, and nothing was graded: exit code 2."""
-    monkeypatch.setattr(ending, "_SECONDS", 1 if what is hang else 60)
+    monkeypatch.setitem(app._LIMITED, command, 1 if what is hang else 60)
     monkeypatch.setattr(ending, "_MEMORY", 512 * 1024**2)
     monkeypatch.setattr(grader.lab.submission.opening, "read_as_ros", what)
     done = run((command, URDF))
@@ -57,7 +58,7 @@ def test_reading_ends(
 
 def test_a_check_that_hangs_is_no_faulty_check(monkeypatch: pytest.MonkeyPatch) -> None:
     """The limit of time ends the command, not only the check."""
-    monkeypatch.setattr(ending, "_SECONDS", 1)
+    monkeypatch.setitem(app._LIMITED, "grade", 1)
     monkeypatch.setattr(grader.lab.grading.subjects.Subjects, "of", hang)
     done = run(("grade", URDF))
     assert (done.returncode, done.stderr) == (
@@ -103,8 +104,9 @@ def test_what_ignores_the_limit_is_ended(tmp_path: Path) -> None:
     program = tmp_path / "stuck.py"
     program.write_text(
         "from grader.app.cli import ending\n"
-        "ending._SECONDS, ending._GRACE = 1, 1\n"
-        "with ending.outer_limits():\n"
+        "from grader.base import processor_time\n"
+        "processor_time._GRACE = 1\n"
+        "with ending.outer_limits(1):\n"
         "    sum(range(10**12))\n"
     )
     done = subprocess.run(
@@ -113,4 +115,27 @@ def test_what_ignores_the_limit_is_ended(tmp_path: Path) -> None:
         capture_output=True,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
     )
-    assert done.returncode < 0
+    assert done.returncode == -signal.SIGXCPU
+
+
+@pytest.mark.exhaustive
+@pytest.mark.parametrize("limit", ["-St 2", "-t 2"])
+def test_a_lower_limit_of_the_shell_is_named(limit: str, tmp_path: Path) -> None:
+    """The process says which limit it was, before the system ends it."""
+    program = tmp_path / "hang.py"
+    program.write_text(
+        "import sys\n"
+        "import grader.lab.submission.opening as opening\n"
+        "from grader.app.cli.app import run\n"
+        "from tests.cli.test_outer_limits import hang\n"
+        "opening.read_as_ros = hang\n"
+        "sys.exit(run(sys.argv[1:]))\n"
+    )
+    done = subprocess.run(
+        ["sh", "-c", f'ulimit {limit}; exec "$@"', "sh", sys.executable, program, "grade", URDF],
+        check=False,
+        capture_output=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )
+    said = b"this takes more than the 2 s of processor time that `ulimit -t` allows"
+    assert (done.returncode, done.stdout, done.stderr) == (2, b"", b"grader: " + said + b"\n")

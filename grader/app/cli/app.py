@@ -35,7 +35,8 @@ COMMANDS = {
     "schema": "explain",
     "rubric": "rubric",
 }
-_LIMITED = ("grade", "inspect")  # the commands that read one submission
+# The commands that read one submission or workspace, with their limit of processor time in seconds.
+_LIMITED = {"grade": 20, "inspect": 60}
 # Of options that take a file, for one that is given without.
 _EXAMPLES = {
     "--fix": "my_robot.urdf --fix fixed.urdf",
@@ -115,8 +116,8 @@ def _run(arguments: Sequence[str]) -> int:
         if os.environ.get("_GRADER_COMPLETE"):
             return _complete()
         app = make_app(_command(arguments) or COMMANDS)
-        is_limited = arguments and arguments[0] in _LIMITED and "--watch" not in arguments
-        with outer_limits() if is_limited else nullcontext():
+        seconds = _LIMITED.get(arguments[0]) if arguments else None
+        with outer_limits(seconds) if seconds and "--watch" not in arguments else nullcontext():
             result = app(list(arguments), standalone_mode=False, prog_name="grader")
         if isinstance(result, str):
             write_stdout(result)

@@ -31,7 +31,7 @@ _RUBRIC = (
 _IGNORE = "An entry of PATH that is no student's, such as template; repeatable."
 _IGNORE_FILE = "A starter file, excluded from equal work; repeatable."
 _REPORTS = "The folder of the reports; default: reports in the gradebook."
-_TIMEOUT = "Time limit for each submission."
+_TIMEOUT = "Limit of processor time for each submission."
 
 
 def batch(
@@ -49,7 +49,7 @@ def batch(
         int | None,
         typer.Option(metavar="N", min=1, help="Worker processes; default: one per processor."),
     ] = None,
-    timeout: Annotated[float, typer.Option(metavar="SECONDS", min=0.1, help=_TIMEOUT)] = 60.0,
+    timeout: Annotated[float, typer.Option(metavar="SECONDS", min=0.1, help=_TIMEOUT)] = 20.0,
     roster: Annotated[
         Path | None, typer.Option(metavar="CSV", help="The students of the class, as CSV.")
     ] = None,

@@ -12,17 +12,14 @@ from _thread import interrupt_main
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from importlib.util import find_spec
-from math import ceil
 from pathlib import Path
 from threading import Timer, current_thread, main_thread
 from types import FrameType
-from typing import Any
 
 from grader.base.errors import GraderError, OutOfTime
+from grader.base.processor_time import lift_processor_time, limit_processor_time
 
 _DELAY = 0.01  # seconds until an interrupt is repeated
-_SECONDS = 60  # of processor time, after which the command ends with a message
-_GRACE = 30  # more seconds, after which the process is ended, whatever it does
 _MEMORY = 2 * 1024**3  # bytes more than at the start
 
 
@@ -76,7 +73,7 @@ def _interrupt() -> None:
 
 
 @contextmanager
-def outer_limits() -> Iterator[None]:
+def outer_limits(seconds: float) -> Iterator[None]:
     """Limit the processor time and the memory of what follows. Raises GraderError."""
     if (
         sys.platform == "win32"
@@ -87,36 +84,22 @@ def outer_limits() -> Iterator[None]:
         return
     import resource
 
-    def stop(*_: Any) -> None:
-        signal.signal(signal.SIGXCPU, signal.SIG_IGN)  # it is sent again every second
-        raise OutOfTime
-
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # each thread reserves memory
-    used = resource.getrusage(resource.RUSAGE_SELF)
-    wanted = {
-        resource.RLIMIT_CPU: ceil(used.ru_utime + used.ru_stime) + _SECONDS,
-        resource.RLIMIT_AS: _size() + _MEMORY,
-    }
-    before = {limit: resource.getrlimit(limit) for limit in wanted}
-    handler = signal.signal(signal.SIGXCPU, stop)
-    signal.setitimer(signal.ITIMER_PROF, _SECONDS + _GRACE)
+    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+    memory = _size() + _MEMORY
     try:
-        for limit, value in wanted.items():
-            soft, hard = before[limit]
-            with suppress(ValueError, OSError):  # one that is lower already stays
-                resource.setrlimit(
-                    limit, (value if soft == resource.RLIM_INFINITY else min(soft, value), hard)
-                )
+        limit_processor_time(seconds)
+        with suppress(ValueError, OSError):  # one that is lower already stays
+            limit = memory if soft == resource.RLIM_INFINITY else min(soft, memory)
+            resource.setrlimit(resource.RLIMIT_AS, (limit, hard))
         yield
-    except OutOfTime:
-        raise GraderError(f"this takes more than {_SECONDS} s of processor time") from None
+    except OutOfTime as error:
+        raise GraderError(str(error)) from None
     except MemoryError:
         raise GraderError(f"this needs more than {_MEMORY // 1024**2} MiB of memory") from None
     finally:
-        for limit, values in before.items():
-            resource.setrlimit(limit, values)
-        signal.setitimer(signal.ITIMER_PROF, 0)
-        signal.signal(signal.SIGXCPU, handler)
+        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
+        lift_processor_time()
 
 
 def _size() -> int:

@@ -95,7 +95,7 @@ class ClassRequest:
     ignore_file: Sequence[Path] | None  # starter files
     max_size: int | None  # of a URDF, in bytes
     jobs: int | None  # worker processes
-    timeout: float  # for a submission, in seconds
+    timeout: float  # for a submission, in seconds of processor time
     force: bool  # whether unchanged submissions are graded again
     cluster: str | None  # the address of a Dask scheduler
     reports: Path | None  # the folder to write reports into
@@ -386,6 +386,7 @@ def _grade(
         settings.max_size,
         settings.parts,
         dict(settings.arguments),
+        request.timeout,
     )
     context = _context(inputs)
     present = dict.fromkeys(submission.student.key for submission in intake.submissions)
@@ -404,17 +405,25 @@ def _grade(
         book = Gradebook(folder, run=run)
         table = ClassTable(rubric.title, book.maximum, verbose=request.verbose)
         recorded = dict[str, RunGrade]()
+        timeouts: dict[str, float] = {}
 
         def passing() -> Iterator[StudentGrade]:
             for grade in book:
                 table.add(grade)
                 recorded[grade.student.key] = book.run_grade(grade)
+                if grade.stored is not None and grade.stored.timeout:
+                    timeouts[grade.student.key] = grade.stored.timeout
                 yield grade
 
         write_grades(book, passing())
         writer.append(book.run_with(recorded)._replace(written=sorted(batch.written)).line)
         writer.sync()
     warn_of_ignored(book, terminal.warn)
+    if timeouts:
+        shown = printable(enumerated(sorted(timeouts), MAX_NAMED))
+        seconds = 2 * max(timeouts.values())
+        again = f"grader batch --gradebook {shell_quoted(folder)} --timeout {seconds:g}"
+        terminal.warn(f"not graded again, because it takes too long: {shown}; `{again}` tries it")
     return table, done
 
 

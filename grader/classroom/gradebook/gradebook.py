@@ -15,7 +15,7 @@ from grader import __version__
 from grader.base.errors import InputError
 from grader.base.text import format_points, printable_path
 from grader.classroom.gradebook.student_grade import Reason, SharedResult, StudentGrade
-from grader.classroom.intake.class_files import open_class_submission
+from grader.classroom.intake.class_files import OpenedSubmission, open_class_submission
 from grader.classroom.marks import gradebook_folder as names
 from grader.classroom.marks.gradebook_folder import read_settings
 from grader.classroom.marks.mark_import import exported_text
@@ -202,15 +202,10 @@ class Gradebook:
         """Return a submission as it was graded; None if it has moved or changed since, or cannot be
         read.
         """
-        settings, roots = self.settings, self.settings.roots(self.folder)
-        if stored.root >= len(roots) or not stored.paths:
-            return None
-        root = str(roots[stored.root].resolve())
+        settings = self.settings
         try:
-            opened = open_class_submission(
-                root, stored.paths, stored.names, stored.student, settings.max_size
-            )
-            if digest_of(opened.digest) != stored.digest:
+            opened = self._opened(stored)
+            if opened is None:
                 return None
             known = Opening(
                 0, settings.arguments, stored.no_documents, converted=self.results.texts(stored)
@@ -218,6 +213,24 @@ class Gradebook:
             return opened.submission(self.rubric, known)
         except InputError:
             return None
+
+    def is_unchanged(self, stored: StoredResult) -> bool:
+        """Return whether a submission is still there as it was graded."""
+        try:
+            return self._opened(stored) is not None
+        except InputError:
+            return False
+
+    def _opened(self, stored: StoredResult) -> OpenedSubmission | None:
+        """Open a submission that is as it was graded. Raises InputError."""
+        settings, roots = self.settings, self.settings.roots(self.folder)
+        if stored.root >= len(roots) or not stored.paths:
+            return None
+        root = str(roots[stored.root].resolve())
+        opened = open_class_submission(
+            root, stored.paths, stored.names, stored.student, settings.max_size
+        )
+        return opened if digest_of(opened.digest) == stored.digest else None
 
     def _new_result(
         self, name: str, status: Status, words: str, carried: str, off: float | None = None

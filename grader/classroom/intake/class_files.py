@@ -31,7 +31,8 @@ if TYPE_CHECKING:
 
 
 ClassListing = ClassDirectory | ClassZip
-_DOCUMENTS = (*EVIDENCE, ".docx", ".doc", ".odt", ".pages", ".ipynb", ".md", ".txt", ".rst", ".rtf")
+_TEXTS = (".docx", ".doc", ".odt", ".pages", ".ipynb", ".md", ".txt", ".rst", ".rtf")
+_DOCUMENTS = (*EVIDENCE, *_TEXTS)
 _MAX_HASHED = (
     64 * 1024 * 1024
 )  # bytes of a file that go into the digest; of a larger file its size does
@@ -59,7 +60,7 @@ def listing_of(path: Path) -> ClassListing:
     return ClassZip(path)
 
 
-class _OpenedSubmission(NamedTuple):
+class OpenedSubmission(NamedTuple):
     """A submission before it is graded."""
 
     name: str
@@ -68,6 +69,12 @@ class _OpenedSubmission(NamedTuple):
     data: bytes | None  # of a single URDF
     tree: Tree | None  # else
     max_size: int = URDF_LIMIT  # of a URDF, in bytes
+
+    @property
+    def has_documents(self) -> bool:
+        """Whether it has files whose text may be read for answers."""
+        files = self.tree.files if self.tree is not None else ()
+        return any(path.lower().endswith((*_TEXTS, ".pdf")) for path in files)
 
     def submission(self, rubric: Rubric, opening: Opening = DEFAULTS) -> Submission:
         """Return the submission; raises InputError if it is empty."""
@@ -87,7 +94,7 @@ class _OpenedSubmission(NamedTuple):
 
 def open_class_submission(
     root: str, paths: tuple[str, ...], names: tuple[str, ...], name: str, max_size: int = URDF_LIMIT
-) -> _OpenedSubmission:
+) -> OpenedSubmission:
     """Open what is at `paths` below a class folder, or in a class zip; raises InputError.
 
     Several files become one submission, called `name`, that contains them as `names`; so does a
@@ -132,7 +139,7 @@ def _listing(root: str, _stamp: tuple[int, ...]) -> ClassListing:
     return listing_of(Path(root))
 
 
-def _open_single(source: ClassListing, path: str, max_size: int) -> _OpenedSubmission:
+def _open_single(source: ClassListing, path: str, max_size: int) -> OpenedSubmission:
     """Open a folder, an archive, or a URDF under any name."""
     last, shown = printable_path(path.rpartition("/")[2]), printable_path(path)
     if source.is_folder(path):
@@ -141,12 +148,12 @@ def _open_single(source: ClassListing, path: str, max_size: int) -> _OpenedSubmi
         name = without_endings(last)
         digest = _digest(name, max_size)
         if (archive := source.archive(path, digest)) is not None:
-            return _OpenedSubmission(name, shown, digest.hexdigest(), None, archive, max_size)
+            return OpenedSubmission(name, shown, digest.hexdigest(), None, archive, max_size)
     if not last.lower().endswith(ROBOT_ENDINGS) and not _is_robot(source, path):
         raise InputError(f"{last} is neither a URDF nor a folder, an archive or a document")
     data, digest = source.read(path, max_size), _digest(last, max_size)
     digest.update(data)
-    return _OpenedSubmission(last.rpartition(".")[0] or last, last, digest.hexdigest(), data, None)
+    return OpenedSubmission(last.rpartition(".")[0] or last, last, digest.hexdigest(), data, None)
 
 
 def _is_document(source: ClassListing, path: str) -> bool:
@@ -173,7 +180,7 @@ def _digest(name: str, max_size: int) -> "hashlib._Hash":
     return sha256(repr(name if max_size == URDF_LIMIT else (name, max_size)).encode())
 
 
-def _opened_tree(name: str, shown: str, tree: Tree, max_size: int) -> _OpenedSubmission:
+def _opened_tree(name: str, shown: str, tree: Tree, max_size: int) -> OpenedSubmission:
     """Return a submission of files, with the hash of all that it is read from: the files, the
     ignored files, its name.
 
@@ -192,4 +199,4 @@ def _opened_tree(name: str, shown: str, tree: Tree, max_size: int) -> _OpenedSub
             digest.update(file.read(_MAX_HASHED, first=True))
         except InputError as error:
             digest.update(str(error).encode())
-    return _OpenedSubmission(name, shown, digest.hexdigest(), None, tree, max_size)
+    return OpenedSubmission(name, shown, digest.hexdigest(), None, tree, max_size)

@@ -6,10 +6,11 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache, partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from urllib.parse import quote
 
-from grader.base.errors import InputError, MachineError, OutOfTime, RubricError
+from grader import __version__
+from grader.base.errors import InputError, MachineError, RubricError
 from grader.base.text import (
     by_name,
     counted,
@@ -24,13 +25,13 @@ from grader.base.text import (
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.student_grade import Reason, StudentGrade
 from grader.classroom.marks import gradebook_folder as names
-from grader.classroom.results.results import StoredResult
+from grader.classroom.reports.kept_reports import KeptReports, WrittenReport
+from grader.classroom.results.results import StoredResult, digest_of
 from grader.classroom.run.preloading import PRELOAD
 from grader.files.reading import sha256_of
 from grader.lab.checks.outcome import Outcome
 from grader.lab.grading.grade import grade as grade_submission
 from grader.lab.grading.report import Grade, Report, Result
-from grader.lab.hints.hinting import hinted
 from grader.lab.submission.submission import Submission
 from grader.report.formats import Format, render
 from grader.report.writing import Terminal, make_folder, refuse_symlinks, save
@@ -64,6 +65,16 @@ class ReportRun(NamedTuple):
     time: str = ""  # of the newest run: workers read the gradebook once for it
 
 
+class _Done(NamedTuple):
+    """A report that was written, or why it was not; with the hints that were searched for it."""
+
+    key: str  # of the student
+    why_lost: str = ""
+    hints: str = ""  # their key
+    new_hints: Mapping[str, Mapping[str, Any]] = {}
+    is_final: bool = False  # whether it would be the same in the next run
+
+
 class _ReportTask(NamedTuple):
     """A report to write: the student and the name of the file; without hints if their search was
     lost.
@@ -74,15 +85,22 @@ class _ReportTask(NamedTuple):
     has_hints: bool = True
 
 
-def report_of(book: Gradebook, grade: StudentGrade, *, has_hints: bool = True) -> Report:
+def report_of(
+    book: Gradebook,
+    grade: StudentGrade,
+    *,
+    has_hints: bool = True,
+    kept: KeptReports | None = None,
+) -> Report:
     """Return the report on a student's submission, with the marks, the grade and notes.
 
     There is a note for a final mark, an excuse, a comment, a late penalty, and who graded if a
     person did. Without notes, the report is the same as that of `grader grade`. A submission that
-    has changed since has its points only.
+    has changed since has its points only. Hints that are `kept` are not searched again.
     """
     if grade.stored is not None:
-        again = _graded_again(book, grade.stored, has_hints=has_hints)
+        kept = kept or KeptReports(book.folder)
+        again = _graded_again(book, grade.stored, kept if has_hints else None)
         report, _ = book.with_marks(again, grade.stored)
     else:
         results = tuple(Result(criterion, _NOTHING) for criterion in book.criteria)
@@ -126,8 +144,10 @@ def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
         yield late.reason
 
 
-def _graded_again(book: Gradebook, stored: StoredResult, *, has_hints: bool) -> Report:
-    """Return the report on a submission as it was graded, with its details if it is still there."""
+def _graded_again(book: Gradebook, stored: StoredResult, kept: KeptReports | None) -> Report:
+    """Return the report on a submission as it was graded, with its details if it is still there,
+    and with hints if what is kept of them is given.
+    """
     submission = book.reopened(stored) if stored.verdict != "errored" else None
     if submission is None:
         report = book.report(stored)
@@ -135,12 +155,9 @@ def _graded_again(book: Gradebook, stored: StoredResult, *, has_hints: bool) -> 
             return report._replace(notes=(_MOVED,))
         return report
     report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
-    if not has_hints or book.rubric.hints == "none" or not report.has_failures:
+    if kept is None or book.rubric.hints == "none" or not report.has_failures:
         return report
-    try:
-        return hinted(report, submission, book.rubric.hints).report
-    except (Exception, OutOfTime):  # noqa: BLE001  a fault of the search must not cost the report
-        return report
+    return kept.with_hints(report, submission, digest_of(stored.context, book.rubric.sha256))
 
 
 def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
@@ -168,16 +185,35 @@ def write_reports(
     Raises InputError and RubricError, which concern all reports.
     """
     make_folder(run.folder)
-    book = Gradebook(run.gradebook)
-    keys = [grade.student.key for grade in book if grade.stored is not None or grade.has_final]
-    files = file_names(keys)
+    book, kept = Gradebook(run.gradebook), KeptReports(run.gradebook)
+    grades = [grade for grade in book if grade.stored is not None or grade.has_final]
+    files = file_names([grade.student.key for grade in grades])
     # Beside the reports, but in the gradebook above those in its own folder.
     is_in_gradebook = run.folder == run.gradebook / names.REPORTS
     run = run._replace(time=book.run.time)
     if Format.HTML in run.formats:
         class_page = f"../{_CLASS_PAGE}" if is_in_gradebook else _CLASS_PAGE
         run = run._replace(class_page=class_page)
-    lost = render_reports(run, files, terminal, jobs, timeout)
+    paths = {key: _paths_of(run, name) for key, name in files.items()}
+    context = _context(book, run)
+    shown, changed = dict[str, str](), dict[str, str]()
+    for grade in grades:
+        key = grade.student.key
+        shown[key] = _shown_in(book, grade, context)
+        if not all(kept.is_current(path, shown[key]) for path in paths[key]):
+            changed[key] = files[key]
+    done = _render_reports(run, changed, terminal, jobs, timeout) if changed else {}
+    new = dict[str, Mapping[str, Any]]()
+    for key, one in done.items():
+        new |= one.new_hints
+        for path in paths[key]:
+            kept.written.pop(str(path), None)
+            if one.is_final:
+                data = sha256_of(path.read_bytes())
+                kept.written[str(path)] = WrittenReport(shown[key], data, one.hints)
+    if done:
+        kept.save(new, book.settings.roots(book.folder))
+    lost = {key: one.why_lost for key, one in done.items() if one.why_lost}
     if Format.HTML in run.formats:
         below = f"{names.REPORTS}/" if is_in_gradebook else ""
         pages = {key: below + name for key, name in files.items() if key not in lost}
@@ -189,30 +225,64 @@ def write_reports(
         terminal.warn(printable(f"no report for {who}: {why}"))
 
 
-def render_reports(
+def _paths_of(run: ReportRun, name: str) -> list[Path]:
+    """Return the paths of the files of a student's report."""
+    return [run.folder.resolve() / f"{name}.{kind.ending}" for kind in run.formats]
+
+
+def _context(book: Gradebook, run: ReportRun) -> str:
+    """Return the hash of all that reports depend on besides the students and their submissions."""
+    answers = run.answers.read_bytes() if run.answers is not None else b""
+    files = sorted(path for path in (book.folder / names.RUBRIC).rglob("*") if path.is_file())
+    rubric = [(str(path), sha256_of(path.read_bytes())) for path in files]
+    return digest_of(__version__, run.class_page, answers, rubric)
+
+
+def _shown_in(book: Gradebook, grade: StudentGrade, context: str) -> str:
+    """Return the hash of all that the report on a student shows."""
+    by_people = []
+    for result in grade.report.results:
+        if result.manual_mark or result.comment:
+            by_people.append((result.criterion.id, result.manual_mark, result.comment))
+    stored, is_there = grade.stored, False
+    if stored is not None:
+        is_there = book.is_unchanged(stored)
+        stored = stored._replace(run=0)
+    facts = grade.student, stored, is_there, grade.late, grade.final, by_people
+    return digest_of(context, *facts)
+
+
+def render_reports(run: ReportRun, files: Mapping[str, str], terminal: Terminal) -> dict[str, str]:
+    """Write the reports of students, by their file names; return who has none, and why. Raises as
+    `write_reports`.
+    """
+    done = _render_reports(run, files, terminal)
+    return {key: one.why_lost for key, one in done.items() if one.why_lost}
+
+
+def _render_reports(
     run: ReportRun,
     files: Mapping[str, str],
     terminal: Terminal,
     jobs: int | None = None,
     timeout: float = _SECONDS,
-) -> dict[str, str]:
-    """Write the reports of students, by their file names; return who has none, and why. Raises as
-    `write_reports`.
-    """
-    lost, workers, done = dict[str, str](), jobs or processors(), 0
+) -> dict[str, _Done]:
+    """Write the reports of students, by their file names; return what became of each."""
+    _opened_gradebook.cache_clear()  # where the workers are in this process
+    written, workers = dict[str, _Done](), jobs or processors()
+    write = partial(_write_some, run)
+    tasks = [_ReportTask(key, name) for key, name in files.items()]
     with (
         Processes(workers, timeout, preload=PRELOAD) as executor,
         terminal.show_class("writing reports") as show,
     ):
         show(Progress(len(files)))
-        queue = Queue(
-            executor, workers, partial(_write_some, run), _without_hints, _not_written, _TASK_SIZE
-        )
-        for results in queue.results(_ReportTask(*item) for item in files.items()):
-            lost |= {key: why for key, why in results if why}
-            done += len(results)
-            show(Progress(len(files), graded=done))
-    return {key: lost[key] for key in files if key in lost}
+        queue = Queue(executor, workers, write, _without_hints, _not_written, _TASK_SIZE)
+        for results in queue.results(tasks):
+            for one in results:
+                written[one.key] = one
+            show(Progress(len(files), graded=len(written)))
+    return {key: written[key] for key in files}
 
 
 def _without_hints(task: _ReportTask, _: WorkerError) -> _ReportTask | None:
@@ -220,31 +290,34 @@ def _without_hints(task: _ReportTask, _: WorkerError) -> _ReportTask | None:
     return task._replace(has_hints=False) if task.has_hints else None
 
 
-def _not_written(task: _ReportTask, error: Exception) -> tuple[str, str]:
-    """Return the student without a report, and why."""
+def _not_written(task: _ReportTask, error: Exception) -> _Done:
+    """Return that a student has no report, and why."""
     if isinstance(error, InputError | RubricError):
         raise error
     if isinstance(error, WorkerError | MachineError):
-        return task.key, str(error)
-    return task.key, f"the grader itself failed: {type(error).__name__}: {error}"
+        return _Done(task.key, str(error))
+    return _Done(task.key, f"the grader itself failed: {type(error).__name__}: {error}")
 
 
-def _write_some(run: ReportRun, tasks: Sequence[_ReportTask]) -> list[tuple[str, str]]:
-    """Write the reports of some students, in a worker; return the students."""
-    book = _opened_gradebook(run)
+def _write_some(run: ReportRun, tasks: Sequence[_ReportTask]) -> list[_Done]:
+    """Write the reports of some students, in a worker; return what became of them."""
+    book, kept = _opened_gradebook(run)
+    done = list[_Done]()
     for task in tasks:
-        report = report_of(book, book.grade(task.key), has_hints=task.has_hints)
+        kept.used, kept.is_lost, known = "", not task.has_hints, {*kept.new}
+        report = report_of(book, book.grade(task.key), has_hints=task.has_hints, kept=kept)
         report = report._replace(class_page=run.class_page)
         for kind in run.formats:
             save(Path(run.folder, f"{task.name}.{kind.ending}"), render(report, kind))
-    return [(task.key, "") for task in tasks]
+        new = {key: kept.new[key] for key in kept.new if key not in known}
+        done.append(_Done(task.key, "", kept.used, new, not kept.is_lost))
+    return done
 
 
 @lru_cache(maxsize=1)
-def _opened_gradebook(run: ReportRun) -> Gradebook:
-    return Gradebook(
-        run.gradebook.absolute(), answers=run.answers
-    )  # no report names a rubric by its place in a gradebook
+def _opened_gradebook(run: ReportRun) -> tuple[Gradebook, KeptReports]:
+    folder = run.gradebook.absolute()  # no report names a rubric by its place in a gradebook
+    return Gradebook(folder, answers=run.answers), KeptReports(folder)
 
 
 def file_names(keys: Sequence[str]) -> dict[str, str]:

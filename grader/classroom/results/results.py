@@ -58,6 +58,7 @@ class StoredResult(NamedTuple):
         str, str
     ] = {}  # by criterion: students with the same answer have the same key, empty without one
     no_documents: str = ""  # why its documents were not read
+    timeout: float = 0  # the limit of processor time that it reached, in seconds
     texts: Mapping[str, str] = {}  # those of Word and PDF files by path, in a new result only
 
     @property
@@ -65,11 +66,11 @@ class StoredResult(NamedTuple):
         """The line of the file, without what is empty, and before it that of the texts."""
         values = self._asdict()
         files = values.pop("texts")
-        line = _json_line(
+        line = json_line(
             {name: value for name, value in values.items() if value or name in ("student", "run")}
         )
         if files:
-            return _json_line({"texts": self.student, "digest": self.digest, "files": files}) + line
+            return json_line({"texts": self.student, "digest": self.digest, "files": files}) + line
         return line
 
 
@@ -105,7 +106,7 @@ class Run(NamedTuple):
     @property
     def line(self) -> bytes:
         """The line of the file."""
-        return _json_line(self._asdict())
+        return json_line(self._asdict())
 
     @property
     def students(self) -> Iterable[str]:
@@ -122,7 +123,8 @@ class Run(NamedTuple):
         return self._replace(run=other.run, time=other.time, written=other.written) == other
 
 
-def _json_line(values: Mapping[str, Any]) -> bytes:
+def json_line(values: Mapping[str, Any]) -> bytes:
+    """Return values as a line of a file, with its checksum."""
     line = json.dumps(values, separators=(",", ":")).encode()[:-1]
     return line + _checksum(line)
 
@@ -131,13 +133,13 @@ def _checksum(line: bytes) -> bytes:
     return b"%s%d}\n" % (_CHECKSUM, crc32(line))
 
 
-def _is_whole(line: bytes) -> bool:
+def is_whole(line: bytes) -> bool:
     """Return whether a line is as it was written."""
     values, _, _ = line.rpartition(_CHECKSUM)
     return line == values + _checksum(values)
 
 
-def _values_in(line: bytes) -> dict[str, Any]:
+def values_in(line: bytes) -> dict[str, Any]:
     """Return the values in a whole line, lists as tuples."""
     values = json.loads(line.rpartition(_CHECKSUM)[0] + b"}")
     return {
@@ -177,11 +179,11 @@ class Results:
     def _find(self, until: int | None) -> None:
         """Find the place of each line, up to the end of a run."""
         for number, line in enumerate(self._whole_lines(), 1):
-            if not _is_whole(line):
+            if not is_whole(line):
                 self.damaged.append(number)
                 self._is_torn = True
             elif line.startswith(_RUN):
-                self._end_run(Run(**_values_in(line)))
+                self._end_run(Run(**values_in(line)))
             else:
                 self._place(line)
             self.end += len(line)
@@ -298,7 +300,7 @@ class Results:
                 for key in keys:
                     if key in places:
                         file.seek(places[key])
-                    yield _values_in(file.readline()) if key in places else {}
+                    yield values_in(file.readline()) if key in places else {}
         except OSError as error:
             raise read_error(error, printable_path(self._file)) from None
 

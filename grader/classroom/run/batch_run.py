@@ -8,7 +8,13 @@ from functools import partial
 
 from grader.classroom.intake.submissions import ClassSubmission
 from grader.classroom.results.results import Results, ResultsWriter, StoredResult
-from grader.classroom.run.batch_worker import ClassContext, Task, grade_all, undecided
+from grader.classroom.run.batch_worker import (
+    ClassContext,
+    Task,
+    given_up,
+    grade_all,
+    unopened_digest,
+)
 from grader.workers.pool import WorkerError
 from grader.workers.queue import Progress, Queue
 
@@ -49,8 +55,8 @@ class Batch:
         """Grade all submissions that have no current result, and empty the list: a large class
         takes memory.
 
-        One whose grading is lost is graded without its documents; if that is lost as well, it is
-        `errored`.
+        One whose grading is lost is graded without its documents, if it has any; if that is lost as
+        well, it is `errored`. One that used up its processor time is kept like a grade.
         """
         self.progress = Progress(len({(one.root, one.paths) for one in submissions}))
         show(self.progress)  # before the first result
@@ -84,10 +90,10 @@ class Batch:
 
     def _task(self, one: ClassSubmission, *, force: bool) -> Task:
         newest = self._results.of(one.student.key)
-        is_current = (
-            newest is not None and newest.context == self._context and newest.verdict != "errored"
-        )
-        current = newest if is_current and not force else None
+        current = None
+        if newest is not None and newest.context == self._context and not force:
+            is_final = newest.verdict != "errored" or newest.timeout >= self._shared.timeout
+            current = newest if is_final else None
         self._at_work[one.student.key] = one, current
         return Task(
             one.student.key,
@@ -95,14 +101,16 @@ class Batch:
             one.paths,
             one.names,
             current.digest if current is not None else "",
+            current is not None and current.timeout > 0,
         )
 
     def _errored(self, task: Task, error: Exception) -> StoredResult:
-        if isinstance(error, WorkerError):
-            reason = str(error)
-        else:
-            reason = f"{type(error).__name__}: {error}"
-        return undecided(self._shared, StoredResult(task.key, 0, "errored", reason=reason))
+        if not isinstance(error, WorkerError):
+            error = WorkerError(f"{type(error).__name__}: {error}")
+        digest = ""
+        if error.timeout:
+            digest = unopened_digest(self._shared.roots[task.root], task.paths)
+        return given_up(self._shared, task, error, digest)
 
     def _line(
         self, result: StoredResult, submission: ClassSubmission, current: StoredResult | None
@@ -131,4 +139,4 @@ def _without_documents(task: Task, error: WorkerError) -> Task | None:
     """Return a lost task without its documents, which may be the cause."""
     if task.no_documents:
         return None
-    return task._replace(no_documents=str(error))
+    return task._replace(no_documents=str(error), reached=error.timeout)

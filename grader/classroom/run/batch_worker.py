@@ -5,10 +5,12 @@ any process.
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import lru_cache
+from math import inf, isfinite
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.base.errors import InputError, MachineError
+from grader.base.errors import InputError, MachineError, OutOfTime
+from grader.base.processor_time import limit_processor_time
 from grader.base.text import cut
 from grader.classroom.intake.class_files import digest_of_unread, open_class_submission
 from grader.classroom.results.equal_work import forms_of, hashes_of
@@ -22,7 +24,7 @@ from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.rubric import Rubric, read_rubric
 from grader.lab.submission.submission import Opening, Submission
 from grader.ros.package.robot_file import Absent, Unreadable
-from grader.workers.pool import NO_MEMORY
+from grader.workers.pool import NO_MEMORY, WorkerError, out_of_time
 
 _MAX_CAUSE = 200  # characters
 
@@ -36,6 +38,7 @@ class ClassContext(NamedTuple):
     max_size: int = URDF_LIMIT  # of a URDF, in bytes
     parts: tuple[str, ...] = ()  # the ids of those to grade; without any all
     arguments: Mapping[str, str] = {}  # of xacro
+    timeout: float = inf  # for a submission, in seconds of processor time
 
 
 class Task(NamedTuple):
@@ -46,14 +49,43 @@ class Task(NamedTuple):
     paths: tuple[str, ...]  # below it
     names: tuple[str, ...] = ()  # the student's own of several files
     graded: str = ""  # the digest, if it has a result that is current
+    has_timed_out: bool = False  # whether that result is that it took too long
     no_documents: str = ""  # why its documents are not read: its grading was lost with them
+    reached: float = 0  # the limit of processor time that it reached with them, in seconds
 
 
 def grade_all(context: ClassContext, tasks: Sequence[Task]) -> list[StoredResult]:
     """Grade submissions one after the other, in isolation: an error affects only its own
     submission.
     """
-    return [_grade_one(context, task) for task in tasks]
+    return [_grade_within_limits(context, task) for task in tasks]
+
+
+def _grade_within_limits(context: ClassContext, task: Task) -> StoredResult:
+    """Grade a submission, and again without its documents if it exceeds a limit with them."""
+    if task.has_timed_out:
+        unopened = unopened_digest(context.roots[task.root], task.paths)
+        if unopened == task.graded:
+            return StoredResult(task.key, 0, "unchanged")
+    lost = WorkerError(NO_MEMORY)
+    try:
+        if isfinite(context.timeout):
+            limit_processor_time(context.timeout)  # in place of that of all tasks together
+        return _grade_one(context, task)
+    except MemoryError:
+        pass
+    except OutOfTime:
+        lost = out_of_time(context.timeout)
+    if not task.no_documents:
+        without = task._replace(no_documents=str(lost), reached=lost.timeout)
+        return _grade_within_limits(context, without)
+    digest = ""
+    with suppress(InputError, MemoryError):
+        opened = open_class_submission(
+            context.roots[task.root], task.paths, task.names, task.key, context.max_size
+        )
+        digest = digest_of(opened.digest)
+    return given_up(context, task, lost, digest)
 
 
 def _grade_one(context: ClassContext, task: Task) -> StoredResult:
@@ -64,6 +96,9 @@ def _grade_one(context: ClassContext, task: Task) -> StoredResult:
         result = result._replace(digest=digest_of(opened.digest))
         if result.digest == task.graded:
             return result
+        if task.no_documents and not opened.has_documents:  # nothing would be different this time
+            lost = WorkerError(task.no_documents, timeout=task.reached)
+            return given_up(context, task, lost, result.digest)
         submission = opened.submission(
             rubric, Opening(arguments=context.arguments, no_documents=task.no_documents)
         )
@@ -73,18 +108,17 @@ def _grade_one(context: ClassContext, task: Task) -> StoredResult:
             digest=result.digest or digest_of(str(error), digest_of_unread(root, task.paths))
         )
         if result.digest != task.graded:
-            result = undecided(context, result._replace(verdict="unreadable", reason=str(error)))
+            result = _undecided(context, result._replace(verdict="unreadable", reason=str(error)))
         return result
+    except MemoryError:
+        raise
     except (Exception, SystemExit) as error:  # noqa: BLE001  a fault of the grader affects only this submission
-        if isinstance(error, MemoryError) and not task.no_documents:
-            return _grade_one(context, task._replace(no_documents=NO_MEMORY))
         is_known = isinstance(error, MachineError)  # in the next run it may be over
         if is_known:
             reason = str(error)
         else:
             reason = f"the grader itself failed: {type(error).__name__}: {error}"
-        reason = NO_MEMORY if isinstance(error, MemoryError) else reason
-        return undecided(context, result._replace(verdict="errored", reason=reason))
+        return _undecided(context, result._replace(verdict="errored", reason=reason))
     entries = {one.criterion.id: _stored_criterion(one) for one in report.results}
     result = result._replace(
         parts=report.parts, results=entries, answers=_answers_of(report, result.digest)
@@ -130,7 +164,24 @@ def _answers_of(report: Report, digest: str) -> dict[str, str]:
     return found
 
 
-def undecided(context: ClassContext, result: StoredResult) -> StoredResult:
+def given_up(context: ClassContext, task: Task, error: WorkerError, digest: str) -> StoredResult:
+    """Return the result of a submission that cannot be graded.
+
+    Where it reached the limit of processor time it is kept as long as its digest is the same and
+    the limit is not larger; without a digest it cannot be compared, and is graded in every run.
+    """
+    timeout = error.timeout if digest else 0
+    result = StoredResult(task.key, 0, "errored", digest, reason=str(error), timeout=timeout)
+    return _undecided(context, result)
+
+
+def unopened_digest(root: str, paths: tuple[str, ...]) -> str:
+    """Return the digest of files that are too slow to open; empty for folders."""
+    unread = digest_of_unread(root, paths)
+    return digest_of(unread) if unread else ""
+
+
+def _undecided(context: ClassContext, result: StoredResult) -> StoredResult:
     """Return the result of a submission that could not be graded: every criterion is undecided."""
     rubric = _rubric_from(context.rubric, context.rubric_path)
     status: Status = "errored" if result.verdict == "errored" else "pending"

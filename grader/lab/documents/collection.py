@@ -7,12 +7,10 @@ import os
 import re
 import subprocess
 import sys
-import time
 from bisect import bisect_right
 from collections.abc import Collection, Mapping, Sequence
 from fnmatch import translate
 from functools import lru_cache
-from math import ceil
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -24,7 +22,8 @@ from grader.lab.documents.headings import Heading, Pattern, find_headings, stem
 
 MAX_LINES = 2000  # of one document
 CONVERTED = (".docx", ".pdf")  # whose text a separate process reads
-MAX_SECONDS = 20.0  # for all Word and PDF files of a submission
+MAX_SECONDS = 3.0  # of processor time, for all Word and PDF files of a submission
+_WAITING = 10  # a converter ends after this many times its limit, also if it waits for something
 _TEXT_LIMIT, _DOCUMENT_LIMIT = 1024 * 1024, 32 * 1024 * 1024  # bytes
 _MAX_FILES, _MAX_CONVERTED = 40, 8
 _NO_ANSWERS = {
@@ -217,12 +216,13 @@ class DocumentCollection:
         data = file.read(_DOCUMENT_LIMIT)
         # -P: modules are imported neither from the current folder, which may be the student's, nor
         # from our own.
-        limits = str(ceil(self._seconds)), str(os.getpid())
+        limits = str(self._seconds), str(os.getpid())
         command = [sys.executable, "-P", str(converter.__file__), file.suffix[1:], *limits]
-        began = time.monotonic()
+        began = _time_of_converters()
         try:  # an interruption ends the process as well
             code, output = self._run(command, data)
         except subprocess.TimeoutExpired:
+            self._seconds = 0.0
             raise late from None
         except OSError as error:
             MachineError.check(error, file.path)
@@ -230,9 +230,15 @@ class DocumentCollection:
                 f"{file.path} could not be read on this machine: open it yourself"
             ) from None
         finally:
-            self._seconds -= time.monotonic() - began
+            self._seconds -= _time_of_converters() - began
         if converter.is_out_of_time(code):
+            self._seconds = 0.0
             raise late
+        if code == converter.TOO_LARGE:
+            raise InputError(
+                f"{file.path} was not read: it has far more content than an answer; needs manual "
+                "grading"
+            )
         if code == converter.MISSING:
             raise InputError(
                 f"{file.path} is read only with the grader's extra `documents`: open it yourself"
@@ -255,10 +261,20 @@ class DocumentCollection:
                 stdin=file,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
-                timeout=self._seconds,
+                timeout=_WAITING * self._seconds,
                 check=False,
             )
         return done.returncode, done.stdout
+
+
+def _time_of_converters() -> float:
+    """Return the processor time of the processes that have ended, in seconds; on Windows the time
+    of the clock.
+    """
+    times = os.times()
+    if sys.platform == "win32":
+        return times.elapsed
+    return times.children_user + times.children_system
 
 
 def _document_of(file: File, text: str) -> TextDocument:

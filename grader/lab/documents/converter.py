@@ -14,7 +14,8 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
-MISSING = 3  # exit code where the package that reads the format is not installed
+# Exit codes: where the package that reads the format is not installed, and for more than an answer.
+MISSING, TOO_LARGE = 3, 4
 MAX_PAGES = 100
 PAGE_BREAK = "\f"  # a line of its own before every page but the first
 # a line of its own after the text that a picture is below, or at the end of its page
@@ -24,8 +25,11 @@ _MIN_WORDS = 2  # in a line, on average
 _MAX_PLACED = 20_000  # characters of a page whose words are joined by their positions
 _WEIGHT = 4.0  # of the length of texts, by which pypdf divides to get the width of a column
 _MOST = 0.9  # of the characters of a page
-_MAX_MEMORY = 1024 * 1024 * 1024
+_MAX_MEMORY = 200 * 1024 * 1024
 _MAX_UNPACKED = 64 * 1024 * 1024
+_MAX_ELEMENTS = 500_000  # of a Word file
+_MAX_CONTENT = 16 * 1024 * 1024  # bytes of the pages of a PDF
+_MAX_PIECES = 100_000  # texts on them
 _PR_SET_PDEATHSIG = 1
 
 
@@ -33,7 +37,7 @@ def main() -> int:
     """Convert one document. Arguments: `docx` or `pdf`, seconds of processor time, process id of
     the parent.
     """
-    kind, seconds, parent = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+    kind, seconds, parent = sys.argv[1], float(sys.argv[2]), int(sys.argv[3])
     _end_with_parent(parent, seconds)
     _limit(seconds)
     data = sys.stdin.buffer.read()
@@ -41,6 +45,8 @@ def main() -> int:
         output = _docx(data) if kind == "docx" else _pdf(data)
     except ImportError:
         return MISSING
+    except (_TooLargeError, MemoryError):
+        return TOO_LARGE
     except Exception:  # noqa: BLE001  a damaged file can raise anything
         return 1
     sys.stdout.buffer.write(output)
@@ -51,10 +57,10 @@ def is_out_of_time(code: int) -> bool:
     """Return whether an exit code says that the converter has reached its limit of processor
     time.
     """
-    return code < 0 and code == -getattr(signal, "SIGXCPU", 0)
+    return code < 0 and code == -getattr(signal, "SIGPROF", 0)
 
 
-def _end_with_parent(parent: int, seconds: int) -> None:
+def _end_with_parent(parent: int, seconds: float) -> None:
     """End this process when its parent has ended: by the kernel on Linux, elsewhere after so many
     seconds.
     """
@@ -70,19 +76,24 @@ def _end_with_parent(parent: int, seconds: int) -> None:
         end.start()
 
 
-def _limit(seconds: int) -> None:
+def _limit(seconds: float) -> None:
     """Limit processor time and memory, where the system can."""
     with suppress(ImportError):
         import resource
 
+        signal.setitimer(signal.ITIMER_PROF, seconds)
         limits = {
-            resource.RLIMIT_CPU: (seconds, seconds + 1),
+            resource.RLIMIT_CPU: (int(seconds) + 1, int(seconds) + 2),
             resource.RLIMIT_AS: (_MAX_MEMORY, _MAX_MEMORY),
             resource.RLIMIT_CORE: (0, 0),
         }
         for limit, values in limits.items():
             with suppress(ValueError, OSError):
                 resource.setrlimit(limit, values)
+
+
+class _TooLargeError(Exception):
+    """A document has more content than any written answer."""
 
 
 def _docx(data: bytes) -> bytes:
@@ -113,21 +124,24 @@ def _elements(data: bytes) -> Iterator[tuple[str, str, bool]]:
     """Yield the name and text of each element of a Word file at its end, and whether it is in a row
     of a table.
 
-    Copies that Word adds for older versions are omitted. Raises ValueError if the unpacked size
-    exceeds the limit.
+    Copies that Word adds for older versions are omitted. Raises _TooLargeError.
     """
     from zipfile import ZipFile
 
     from lxml import etree
 
     around = {"tr": 0, "Fallback": 0}
+    count = 0
     with ZipFile(io.BytesIO(data)) as archive:
         if sum(info.file_size for info in archive.infolist()) > _MAX_UNPACKED:
-            raise ValueError("it unpacks to more than a text document")
+            raise _TooLargeError
         with archive.open("word/document.xml") as file:
             for event, element in etree.iterparse(
                 file, ("start", "end"), resolve_entities=False, no_network=True
             ):
+                count += event == "start"
+                if count > _MAX_ELEMENTS:
+                    raise _TooLargeError
                 name = str(element.tag).rpartition("}")[2]
                 if name in around:
                     around[name] += 1 if event == "start" else -1
@@ -150,7 +164,14 @@ def _pdf(data: bytes) -> bytes:
 
     pages = pypdf.PdfReader(io.BytesIO(data)).pages
     texts = []
+    size = pieces = 0
     for page in pages[:MAX_PAGES]:
+        contents = page.get_contents()
+        content = contents.get_data() if contents is not None else b""
+        size += len(content)
+        pieces += content.count(b"(") + content.count(b"<")
+        if size > _MAX_CONTENT or pieces > _MAX_PIECES:
+            raise _TooLargeError
         text = _without_marks(_page_text(page))
         with suppress(Exception):  # a damaged picture does not hide the text
             text += f"\n{PICTURE}" if page.images.keys() else ""

@@ -41,6 +41,11 @@ def behaves(robot: Configuration) -> Outcome:
         case "hangs":
             while True:
                 time.sleep(0.01)
+        case "loops":
+            while True:
+                pass
+        case "loops_in_c":
+            sum(range(10**15))  # no exception can interrupt it
         case "hangs_in_c":
             ctypes.PyDLL(None).sleep(
                 3600
@@ -73,8 +78,9 @@ def behaves(robot: Configuration) -> Outcome:
                 eaten.append(bytearray(2**27))
         case "dies_when_tried" if _is_tried():
             os.kill(os.getpid(), signal.SIGKILL)
-        case "hangs_when_tried" if _is_tried():
-            time.sleep(3600)
+        case "loops_when_tried" if _is_tried():
+            while True:
+                pass
         case "raises":
             raise RuntimeError("as asked")
     return passed("nothing bad was asked for")

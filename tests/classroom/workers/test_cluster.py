@@ -206,7 +206,7 @@ def _misbehaves(cluster: DaskCluster, top: Path) -> None:
         done = grader(*command, "--gradebook", top / book, *where, **WITH_HOSTILE)
         assert (done.returncode, counted(done)) == (0, "10 graded (8 errored), 0 unchanged")
     local, remote = (reasons(top / book) for book in ("here", "there"))
-    slow = "grading it took longer than 4 s (--timeout raises the limit)"
+    slow = "grading it did not end within 12 s"
     assert set(local) == set(remote) == set(names[:8])
     assert all(local[key] == remote[key] or slow in (local[key], remote[key]) for key in local)
     assert local["hangs"] == remote["hangs"] == slow
