@@ -125,13 +125,13 @@ class ClassTable:
         """Return the cells of the columns that are not empty; lost points get the rest of the
         width.
         """
-        columns = {
-            "student": [row.name for row in self.rows],
-            GRADE: [row.grade for row in self.rows],
-            "late": [row.late for row in self.rows],
-            "lost": [],
-            "open": [row.why_open for row in self.rows],
-        }
+        names, grades, late, open_points = [], [], [], []
+        for row in self.rows:
+            names.append(row.name)
+            grades.append(row.grade)
+            late.append(row.late)
+            open_points.append(row.why_open)
+        columns = {"student": names, GRADE: grades, "late": late, "lost": [], "open": open_points}
         for title, cells in columns.items():
             if any(cells):
                 width -= _GAP + max(map(cell_len, [title, *cells]))
