@@ -77,8 +77,10 @@ def show_class(work: str) -> Iterator[Callable[["Progress"], None]]:
 
 
 def _progress_line(progress: "Progress", seconds: float) -> str:
-    rate = progress.done / seconds if seconds else 0.0
-    left = (progress.total - progress.done) / rate if rate else 0.0
+    if not (progress.done and seconds):  # nothing tells the time left
+        return f"{progress.done} of {progress.total}"
+    rate = progress.done / seconds
+    left = (progress.total - progress.done) / rate
     kinds = (progress.errored, "errored"), (progress.unreadable, "unreadable")
     counts = ", ".join(f"{count} {kind}" for count, kind in kinds if count)
     time_left = f"{left:.0f} s" if left < 100 else f"{left / 60:.0f} min"

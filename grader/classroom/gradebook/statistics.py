@@ -15,7 +15,7 @@ from grader.lab.rubric.criterion import Criterion
 from grader.lab.rubric.rubric import Rubric
 
 COUNTS = ("passed", "failed", "skipped", "pending", "errored", "carried", "marked")
-_TENTHS, _MAX_MISTAKES = 10, 20
+_TENTHS, _MAX_MISTAKES, _MAX_CAUSES = 10, 20, 5
 
 
 class _Mistake(NamedTuple):
@@ -54,6 +54,17 @@ class _CommonMistake(NamedTuple):
     students: Sequence[str]
 
 
+class CriterionMistakes(NamedTuple):
+    """The mistakes in a criterion: of how many students, of how many kinds, and the most common
+    ones.
+    """
+
+    criterion: str
+    students: int
+    causes: int
+    common: Sequence[_CommonMistake]
+
+
 class ClassStatistics(NamedTuple):
     """The figures of a class. Students who are not on the roster, or whose submission is gone, are
     in `attention` only.
@@ -72,11 +83,16 @@ class ClassStatistics(NamedTuple):
         Sequence[str]
     ]  # students in each tenth of the maximum, which itself is in the last one
     criteria: Sequence[CriterionFigures]
-    mistakes: Sequence[_CommonMistake]
+    mistakes: Sequence[CriterionMistakes]  # those of most students first
     sections: dict[str, Summary]  # without any if there is only one
     attention: dict[Reason, list[tuple[str, str]]]  # students who need attention, each with details
     equal: Sequence[EqualWork]
     names: dict[str, str]  # of all students, by key
+
+    @property
+    def common_mistakes(self) -> list[_CommonMistake]:
+        """The most common mistakes of each criterion, one after the other."""
+        return [mistake for row in self.mistakes for mistake in row.common]
 
 
 def statistics(book: Gradebook, grades: Iterable[StudentGrade]) -> ClassStatistics:
@@ -149,7 +165,7 @@ def summary(totals: Iterable[Decimal]) -> Summary:
 
 def _criteria_figures(
     book: Gradebook, grades: Iterable[StudentGrade]
-) -> tuple[list[CriterionFigures], list[_CommonMistake]]:
+) -> tuple[list[CriterionFigures], list[CriterionMistakes]]:
     """Return the figures of the criteria, and the most common mistakes."""
     counts = defaultdict[str, Counter[str]](Counter)
     earned = defaultdict[str, Decimal](Decimal)
@@ -174,11 +190,16 @@ def _criteria_figures(
         share = _share(criterion, counts[criterion.id], earned[criterion.id])
         rows.append(CriterionFigures(criterion, counts[criterion.id], share))
     by_number = sorted(mistakes.items(), key=lambda item: (-len(item[1]), item[0]))
-    common = []
-    for (name, _), equal in by_number[:_MAX_MISTAKES]:
+    causes = defaultdict[str, list[_CommonMistake]](list)
+    for (name, _), equal in by_number:
         students = sorted(mistake.student for mistake in equal)
-        common.append(_CommonMistake(name, _words(equal), students))
-    return rows, common
+        causes[name].append(_CommonMistake(name, _words(equal), students))
+    common = []
+    for name, own in causes.items():
+        count = sum(len(cause.students) for cause in own)
+        common.append(CriterionMistakes(name, count, len(own), own[:_MAX_CAUSES]))
+    common.sort(key=lambda one: (-one.students, one.criterion))
+    return rows, common[:_MAX_MISTAKES]
 
 
 def _words(mistakes: Sequence[_Mistake]) -> str:

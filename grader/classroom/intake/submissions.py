@@ -232,18 +232,35 @@ def _submissions_in(
     for entry in entries:
         of_student[entry.student, entry.name].append(entry)
     folders = frozenset(folder.children.folders)
+    older = list[tuple[str, str]]()  # each with the path that counts
     while of_student:  # of a large class not all is kept twice
         (student, _), own = of_student.popitem()
-        kept = _last_versions(folder, own)
+        kept = _last_versions(folder, own, older)
         is_late, submitted = any(one.is_late for one in kept), kept[0].submitted
         yield ClassSubmission(
             student, root, *_paths_and_names(folder, kept, folders), is_late, submitted
         )
+    _list_older(folder, sorted(older))
 
 
-def _last_versions(folder: ClassFolder, entries: Sequence[NamedPath]) -> list[NamedPath]:
-    """Return the last upload of each file: `robot-1.urdf` is a later `robot.urdf` only if there
-    is a `robot.urdf`.
+def _list_older(folder: ClassFolder, older: Sequence[tuple[str, str]]) -> None:
+    """Say in one line which paths are not graded, because later ones, beside each, count."""
+    if not older:
+        return
+    path, last = older[0]
+    if len(older) == 1:
+        folder.ignore([path], f"is not graded: {printable_path(last)} counts")
+        return
+    example = f"{printable_path(folder.start + path)}, for which {printable_path(last)} counts"
+    folder.ignored.append(f"{len(older)} earlier files are not graded, such as {example}")
+
+
+def _last_versions(
+    folder: ClassFolder, entries: Sequence[NamedPath], older: list[tuple[str, str]]
+) -> list[NamedPath]:
+    """Return the last upload of each file, and add the paths of earlier ones to `older`.
+
+    `robot-1.urdf` is a later `robot.urdf` only if there is a `robot.urdf`.
     """
     own = {entry.file for entry in entries}
     versions: dict[tuple[str, str], list[NamedPath]] = defaultdict(list)
@@ -254,9 +271,12 @@ def _last_versions(folder: ClassFolder, entries: Sequence[NamedPath]) -> list[Na
     kept = []
     for _, copies in sorted(versions.items()):
         *others, last = sorted(copies, key=lambda entry: entry.order)
-        folder.ignore(
-            (other.path for other in others), f"is not graded: {printable_path(last.path)} counts"
-        )
+        for other in others:
+            if other.upload < last.upload:
+                older.append((other.path, last.path))
+            else:
+                why = f"is not graded: {printable_path(last.path)} counts"
+                folder.ignore([other.path], why)
         kept.append(last)
     return kept
 

@@ -95,7 +95,7 @@ _STATISTICS = JsonObject(
         **each(TOTAL, "open late"),
         "tenths": (array(TOTAL), lambda found: [len(keys) for keys in found.tenths]),
         "criteria": Many(_CRITERION),
-        "mistakes": Many(_MISTAKE),
+        "mistakes": (Many(_MISTAKE), "common_mistakes"),
         "sections": (
             mapping(_SUMMARY.schema),
             lambda found: {name: _SUMMARY.data(one) for name, one in found.sections.items()},

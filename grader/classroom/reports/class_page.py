@@ -85,7 +85,8 @@ def _figures(figures: ClassStatistics) -> dict[str, Any]:
         for reason, students in figures.attention.items()
     ]
     mistakes = [
-        (mistake.criterion, mistake.message, len(mistake.students)) for mistake in figures.mistakes
+        (mistake.criterion, mistake.message, len(mistake.students))
+        for mistake in figures.common_mistakes
     ]
     return {
         "title": figures.rubric.title,
@@ -198,7 +199,7 @@ def _groups(
     for row in figures.criteria:
         name = row.criterion.id
         yield f"criterion-{name}", _Group(f"lost points in {name}", lost[name], name)
-    for at, mistake in enumerate(figures.mistakes):
+    for at, mistake in enumerate(figures.common_mistakes):
         label = f"{mistake.criterion}: {mistake.message}"
         yield f"mistake-{at}", _Group(label, mistake.students)
     for at, work in enumerate(figures.equal):

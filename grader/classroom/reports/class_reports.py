@@ -100,7 +100,7 @@ def report_of(
     """
     if grade.stored is not None:
         kept = kept or KeptReports(book.folder)
-        again = _graded_again(book, grade.stored, kept if has_hints else None)
+        again = _graded_again(book, grade, grade.stored, kept if has_hints else None)
         report, _ = book.with_marks(again, grade.stored)
     else:
         results = tuple(Result(criterion, _NOTHING) for criterion in book.criteria)
@@ -120,8 +120,6 @@ def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
     graders, and lateness.
     """
     mark, late = grade.final, grade.late
-    if Reason.UNREADABLE in grade.concerns:
-        yield f"{grade.concerns[Reason.UNREADABLE]}. {_SUBMIT_AGAIN}"
     if mark is not None:
         by = by_name(mark.by)
         what = f"Excused{by}." if grade.is_excused else f"Comment{by}:"
@@ -144,7 +142,9 @@ def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
         yield late.reason
 
 
-def _graded_again(book: Gradebook, stored: StoredResult, kept: KeptReports | None) -> Report:
+def _graded_again(
+    book: Gradebook, grade: StudentGrade, stored: StoredResult, kept: KeptReports | None
+) -> Report:
     """Return the report on a submission as it was graded, with its details if it is still there,
     and with hints if what is kept of them is given.
     """
@@ -153,6 +153,8 @@ def _graded_again(book: Gradebook, stored: StoredResult, kept: KeptReports | Non
         report = book.report(stored)
         if stored.verdict == "graded":
             return report._replace(notes=(_MOVED,))
+        if Reason.UNREADABLE in grade.concerns:
+            return report._replace(notes=(f"{stored.reason}. {_SUBMIT_AGAIN}",))
         return report
     report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
     if kept is None or book.rubric.hints == "none" or not report.has_failures:

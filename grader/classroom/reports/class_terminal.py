@@ -7,7 +7,9 @@ Text of submissions is never interpreted as markup or control codes.
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from decimal import Decimal
+from typing import NamedTuple
 
+from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -16,7 +18,6 @@ from grader.base.text import (
     MAX_PEOPLE,
     counted,
     counted_points,
-    cut,
     first_lines,
     format_points,
     named,
@@ -25,7 +26,12 @@ from grader.base.text import (
     signed_points,
 )
 from grader.classroom.gradebook.grade_changes import Change, Snapshot, why_open
-from grader.classroom.gradebook.statistics import ClassStatistics, CriterionFigures, summary
+from grader.classroom.gradebook.statistics import (
+    ClassStatistics,
+    CriterionFigures,
+    CriterionMistakes,
+    summary,
+)
 from grader.classroom.gradebook.student_grade import Reason, StudentGrade
 from grader.classroom.reports.class_words import (
     EQUAL_NOTE,
@@ -43,12 +49,24 @@ from grader.lab.rubric.criterion import GRADE
 from grader.report.criteria import alike
 from grader.report.writers.terminal import INDENT, Page
 
-_LOST, _OTHER_COLUMNS = 3, 41  # the column of lost points, and the characters of the others
+_GAP = 2  # characters between two columns
 _MAX_ROWS = 40
 _MAX_COSTS = 3  # criteria named in a row
 _BAR_WIDTH = 40
-_MAX_MISTAKES, _MAX_GROUPS = 10, 20
+_MAX_MISTAKES, _MAX_CAUSES, _MAX_GROUPS = 10, 3, 20
 _MAX_STEPS = 5  # criteria of a student that changed
+
+
+class _Row(NamedTuple):
+    """A row of the table of a class: what it is sorted by, then its cells."""
+
+    is_fine: bool  # whether the student needs no attention
+    order: tuple[str, ...]
+    name: str
+    grade: str
+    late: str
+    losses: Sequence[tuple[Decimal, str]]
+    why_open: str
 
 
 class ClassTable:
@@ -60,9 +78,7 @@ class ClassTable:
 
     def __init__(self, title: str, maximum: Decimal, *, verbose: bool = False) -> None:
         self.title, self.maximum, self.verbose = title, maximum, verbose
-        self.rows: list[
-            tuple[bool, tuple[str, ...], Sequence[str]]
-        ] = []  # in the order of the first two
+        self.rows: list[_Row] = []  # in the order of the first two fields
         self.count = self.attention = self.open = (
             0  # students; of them those who need attention, or manual grading
         )
@@ -79,8 +95,10 @@ class ClassTable:
         why_open = grade.obstacle.name.lower() if grade.obstacle is not None else ""
         if grade.obstacle is Reason.PENDING:
             why_open = counted_points(grade.pending)
-        row = (name, grade.total_text or "–", late_text(grade), _costs(grade), why_open)
-        self.rows.append((not grade.concerns, family_name_order(name, grade.student.key), row))
+        order = family_name_order(name, grade.student.key)
+        shown = grade.total_text or "–"
+        row = _Row(not grade.concerns, order, name, shown, late_text(grade), grade.losses, why_open)
+        self.rows.append(row)
         if not self.verbose and len(self.rows) > 2 * _MAX_ROWS:
             self._keep_first()
         if grade.total is not None and grade.is_counted:
@@ -94,25 +112,38 @@ class ClassTable:
             del self.rows[_MAX_ROWS:]
 
     def _table(self, width: int) -> Table:
-        """Return the rows without empty columns, lost points in so many characters."""
-        table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
-        titles = ("student", GRADE, "late", "lost", "open")
-        rows = [row for *_, row in self.rows]
-        filled = sorted({at for row in rows for at, cell in enumerate(row) if cell})
-        for at in filled:
-            table.add_column(titles[at], overflow="fold", justify="right" if at == 1 else "left")
-        for row in rows:
-            cells = list(row)
-            cells[_LOST] = cut(cells[_LOST], width)
-            table.add_row(*(Text(printable(cells[at])) for at in filled))
+        """Return the rows without empty columns, for a screen of so many characters."""
+        table = Table(box=None, pad_edge=False, padding=(0, _GAP, 0, 0), header_style="bold")
+        columns = self._columns(width)
+        for title in columns:
+            table.add_column(title, overflow="fold", justify="right" if title == GRADE else "left")
+        for row in zip(*columns.values(), strict=True):
+            table.add_row(*(Text(printable(cell)) for cell in row))
         return table
+
+    def _columns(self, width: int) -> dict[str, list[str]]:
+        """Return the cells of the columns that are not empty; lost points get the rest of the
+        width.
+        """
+        names, grades, late, open_points = [], [], [], []
+        for row in self.rows:
+            names.append(row.name)
+            grades.append(row.grade)
+            late.append(row.late)
+            open_points.append(row.why_open)
+        columns = {"student": names, GRADE: grades, "late": late, "lost": [], "open": open_points}
+        for title, cells in columns.items():
+            if any(cells):
+                width -= _GAP + max(map(cell_len, [title, *cells]))
+        columns["lost"] = [_costs(row.losses, width - _GAP) for row in self.rows]
+        return {title: cells for title, cells in columns.items() if any(cells)}
 
     def print(self, console: Console) -> None:
         """Print the table."""
         self._keep_first()
         page = Page(console, [])
         page.inset(printable(self.title), "bold", 0)
-        page.table(self._table(console.width - _OTHER_COLUMNS))
+        page.table(self._table(console.width))
         rest = self.count - len(self.rows)
         if rest:
             page.inset(f"... and {counted(rest, 'more student')} (--verbose lists all)", "dim", 0)
@@ -132,12 +163,19 @@ class ClassTable:
         page.print()
 
 
-def _costs(grade: StudentGrade) -> str:
-    """Return the criteria that cost most, with their points."""
-    costs, rest = [*grade.losses[:_MAX_COSTS]], grade.losses[_MAX_COSTS:]
-    if rest:
-        costs.append((sum((points for points, _ in rest), Decimal(0)), f"{len(rest)} more"))
-    return ", ".join(f"{name} {format_points(-points)}" for points, name in costs)
+def _costs(losses: Sequence[tuple[Decimal, str]], width: int) -> str:
+    """Return the criteria that cost most, with their points: as many whole ones as fit, but one at
+    least.
+    """
+    text = ""
+    for most in range(1, _MAX_COSTS + 1):
+        costs, rest = [*losses[:most]], losses[most:]
+        if rest:
+            costs.append((sum((points for points, _ in rest), Decimal(0)), f"{len(rest)} more"))
+        longer = ", ".join(f"{name} {format_points(-points)}" for points, name in costs)
+        if not text or cell_len(longer) <= width:
+            text = longer
+    return text
 
 
 def render_class(figures: ClassStatistics, console: Console, *, verbose: bool = False) -> None:
@@ -153,11 +191,7 @@ def render_class(figures: ClassStatistics, console: Console, *, verbose: bool = 
             page.rows.append(Text(f"  {span(figures, tenth):>14} {len(keys):>6}  {bar}"))
         _show_criteria(figures.criteria, page)
     labels = {key: named(key, name) for key, name in figures.names.items()}
-    mistakes = [
-        f"{len(mistake.students):>4}  {mistake.criterion}: {mistake.message}"
-        for mistake in figures.mistakes[:_MAX_MISTAKES]
-    ]
-    _show_lines("Common mistakes", mistakes, page, indent=8)
+    _show_mistakes(figures.mistakes[:_MAX_MISTAKES], page)
     equal = []
     for work in figures.equal[:_MAX_GROUPS]:
         students = people_text([labels[key] for key in work.students])
@@ -169,6 +203,24 @@ def render_class(figures: ClassStatistics, console: Console, *, verbose: bool = 
         attention.append(_attention_line(reason, who, verbose=verbose))
     _show_lines("Needs attention", attention, page)
     page.print()
+
+
+def _show_mistakes(rows: Sequence[CriterionMistakes], page: Page) -> None:
+    """Print the criteria that most students did not meet, and below each of several causes."""
+    if not rows:
+        return
+    page.title("Common mistakes")
+    for row in rows:
+        what = row.common[0].message if row.causes == 1 else f"{row.causes} causes"
+        line = f"{row.students:>4}  {row.criterion}: {what}"
+        page.inset(printable(line), indent=8, head=Text(" " * INDENT))
+        if row.causes == 1:
+            continue
+        for cause in row.common[:_MAX_CAUSES]:
+            line = f"{len(cause.students):>4}  {cause.message}"
+            page.inset(printable(line), indent=12, head=Text(" " * 6))
+        if row.causes > _MAX_CAUSES:
+            page.inset(f"... and {counted(row.causes - _MAX_CAUSES, 'more cause')}", "dim", 12)
 
 
 def _show_lines(
@@ -200,7 +252,7 @@ def _show_criteria(rows: Sequence[CriterionFigures], page: Page) -> None:
     ]
     columns = ["passed", "failed", *optional]
     table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0), header_style="bold")
-    table.add_column("criterion", no_wrap=True)
+    table.add_column("criterion", overflow="fold")
     for name in ("points", *columns, "share"):
         title = "not deducted" if name == "carried" else name
         table.add_column(title, justify="right", no_wrap=name != "carried")
