@@ -7,11 +7,12 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from grader.base.errors import InputError
 from grader.base.names import did_you_mean
-from grader.base.text import counted, enumerated, format_points, printable
+from grader.base.text import counted, enumerated, format_points, printable, shell_quoted
+from grader.files.limits import ROBOT_ENDINGS
 from grader.lab.checks.check import Check
 from grader.lab.checks.registry import check_names, find_check, unused_checks
 from grader.lab.rubric.criterion import Criterion, worth
-from grader.lab.rubric.rubric import Rubric
+from grader.lab.rubric.rubric import Rubric, shipped_rubrics
 from grader.lab.rubric.toml_file import assignment, toml_literal
 from grader.report.criteria import model_lines, sentence
 from grader.report.examples import example_blocks, explanation_of
@@ -123,6 +124,10 @@ def explanation(name: str, rubric: Rubric) -> str:
     if begun:
         verb = "is" if len(begun) == 1 else "are"
         similar = f"; there {verb} {enumerated(begun, _MAX_SIMILAR)}: `grader explain {begun[0]}`"
+    elif name in shipped_rubrics():
+        similar = f"; `grader rubric show {name}` shows the rubric"
+    elif name.lower().endswith(ROBOT_ENDINGS):
+        similar = f"; `grader inspect {shell_quoted(name)}` lists the problems of a file"
     else:
         similar = ""
     guess = similar or did_you_mean(name, known) or f"; {lists}"

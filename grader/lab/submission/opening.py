@@ -79,7 +79,8 @@ def open_submission(
         identity = tree.name if place.is_dir() else tree_name(place)
         if opening.reports and place.is_dir():
             tree = tree.only(lambda inside: os.path.realpath(place / inside) not in opening.reports)
-        return submission_of(tree, identity, lab, opening, shown=shown)
+        _refuse_empty(tree, shown, _first_step(tree, place, lab.package))
+        return submission_of(tree, identity, lab, opening)
     if place.suffix.lower() in _NO_URDFS:
         from grader.ros.package.robots import is_robot  # late: most URDFs are called .urdf
 
@@ -107,7 +108,7 @@ def open_workspace(path: str, max_size: int, arguments: Mapping[str, str]) -> Op
     identity = tree_name(place)
     if place.is_dir():
         tree, identity = without_git_ignored(tree, place), tree.name
-    _refuse_empty(tree, printable_path(place))
+    _refuse_empty(tree, printable_path(place), _first_step(tree, place, ""))
     return read_workspace(tree, identity, max_size, arguments)
 
 
@@ -226,14 +227,23 @@ def _with_files_around(
     )
 
 
-def _refuse_empty(tree: Tree, shown: str) -> None:
+def _refuse_empty(tree: Tree, shown: str, advice: str = "") -> None:
     """Raise InputError if a tree has no files."""
     if not tree.files and not tree.generated:
         if tree.ignored:
             reason = f": {tree.ignored[0]}"
         else:
-            reason = " (hidden files and build folders are ignored)"
+            reason = f" (hidden files and build folders are ignored){advice}"
         raise InputError(f"{shown} is empty{reason}")
+
+
+def _first_step(tree: Tree, place: Path, package: str) -> str:
+    """Return what to do first where a folder has no files; empty for an archive."""
+    if not place.is_dir():
+        return ""
+    what = f"the package {package}" if package else "a package"
+    where = printable_path(place / "src") if "src" in tree.folders else "it"
+    return f": create {what} in {where}, or name the folder that holds your files"
 
 
 def _is_lab(lab: Lab, name: str) -> bool:
