@@ -100,6 +100,8 @@ def answered(
             f"; {enumerated([f'another passage is {other.where}' for other in found.others])}"
         )
     outcome = Outcome("pending", f"{question} {message}{unread}", text, location=passage.location)
+    if passage.is_empty and not doubts:
+        outcome = outcome._replace(expected=f"an answer {passage.where} ({_UNANSWERED})")
     return outcome._replace(problem=", but ".join([problem, *doubts] if problem else doubts))
 
 
