@@ -74,7 +74,7 @@ def test_an_interrupted_test_has_the_score_so_far(tmp_path: Path) -> None:
         yield from map(trial.outcome, mutants[:3])
         raise KeyboardInterrupt
 
-    result = run_rubric_test(rubric, None, lambda done, total: None, graded)
+    result = run_rubric_test(rubric, None, lambda *_: None, graded)
     text = render_rubric_test(result, 80)
     assert (result.tried, result.is_interrupted) == (3, True)
     assert f"Interrupted: {result.total - 3} mutants and the equivalents are left." in text
@@ -90,7 +90,7 @@ def test_an_interrupt_before_the_first_mutant_ends_the_test(tmp_path: Path) -> N
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        run_rubric_test(rubric, None, lambda done, total: None, graded)
+        run_rubric_test(rubric, None, lambda *_: None, graded)
 
 
 def test_survivors_are_listed_with_their_diff(tmp_path: Path) -> None:
