@@ -266,7 +266,7 @@ def test_pictures_of_a_page_show_what_the_first_command_prints() -> None:
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     found = re.search(r"grader grade (submissions/\S+)", readme)
     assert found is not None
-    result = str(run(("grade", ROOT / found[1])).stdout).splitlines()[1]
+    result = run(("grade", ROOT / found[1])).stdout.decode().splitlines()[1]
     points = result.partition(":")[0]
     for text in (readme, (ROOT / "docs/grade-one-submission.md").read_text(encoding="utf-8")):
         (described,) = re.findall(r"!\[(.*)\]\([\w/]*screenshots/student\.png\)", text)

@@ -72,14 +72,14 @@ def _root(
     """
 
 
-def make_app(names: Collection[str]) -> typer.Typer:
+def make_app(names: Collection[str], *, completes: bool = False) -> typer.Typer:
     """Return the command line with these commands: importing all of them takes longer than to grade
-    a URDF.
+    a URDF. With `completes` it may answer a shell that completes a word.
     """
     app = typer.Typer(
         name="grader",
         no_args_is_help=True,
-        add_completion=len(names) > 1,
+        add_completion=completes or len(names) > 1,
         rich_markup_mode=None,  # plain help takes a third of the time
         pretty_exceptions_enable=False,
         context_settings={"help_option_names": ["-h", "--help"]},
@@ -147,7 +147,10 @@ def _complete() -> int:
     """
     with redirect_stderr(StringIO()), suppress(Exception):
         try:
-            make_app(COMMANDS)(prog_name="grader")
+            typed = os.environ.get("COMP_WORDS") or os.environ.get("_TYPER_COMPLETE_ARGS", "")
+            # Of the words, the one at the cursor may become another command.
+            named = [word for word in typed.split(" ")[1:-1] if word in COMMANDS][:1]
+            make_app(named or COMMANDS, completes=True)(prog_name="grader")
         except SystemExit as end:  # its code tells fish whether there are completions
             if isinstance(end.code, int):
                 return end.code
