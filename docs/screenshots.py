@@ -58,7 +58,7 @@ def main() -> None:
     FOLDER.mkdir(exist_ok=True)
     with TemporaryDirectory() as folder, browser() as started:
         page = Path(folder, "student.html")
-        grader("grade", SAMPLES / STUDENT, "--part", "task1", "--save", f"html={page}")
+        grader("grade", SAMPLES / STUDENT, "--save", f"html={page}")  # as in the README
         take(started, page, "student")
         book, pages = Path(folder, "grades"), Path(folder, "pages")
         grader("batch", CLASS / "files", "--roster", CLASS / "roster.csv", "--gradebook", book)

@@ -21,7 +21,7 @@ from grader.report.examples import example_blocks
 from grader.report.explanations import explanation
 from grader.ros.package.found_problems import package_problems
 from grader.ros.package.mesh_files import mesh_problems
-from grader.ros.package.robot_file import Read
+from grader.ros.package.robot_file import Absent, Read, read_as_ros
 from grader.ros.workspace.file_problems import listed_problems
 from grader.ros.workspace.problem_kinds import EVERY_KIND
 from grader.ros.workspace.release_problems import compared_names
@@ -167,9 +167,12 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(code: str, tmp_pa
         files, lines = files_of(code, side)
         submission = opened(tmp_path / side, files)
         found: list[Problem] = []
-        if isinstance(submission.urdf, Read):
-            found += submission.urdf.problems
-            found += mesh_problems(submission.urdf, submission.packages, submission.tree)
+        urdf = submission.urdf
+        if isinstance(urdf, Absent) and urdf.blank:  # which is not graded
+            urdf = read_as_ros(files[urdf.blank], urdf.blank)
+        if isinstance(urdf, Read):
+            found += urdf.problems
+            found += mesh_problems(urdf, submission.packages, submission.tree)
         found += package_problems(submission.package) if submission.package else []
         if code == "PKG018":
             found = listed_problems(submission.workspace)

@@ -249,7 +249,6 @@ def test_points_are_those_of_the_rubrics() -> None:
             ), part
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     assert "all 90 automatic points; 10 more need manual grading" in readme
-    assert "62 of 70 points" in readme
     assert "the score, 64/70." in (ROOT / "docs/index.md").read_text(encoding="utf-8")
     assert "\n64/70  " in GENERATED["grade-one-submission.md"]
 
@@ -260,6 +259,18 @@ def test_the_lab_page_names_every_criterion() -> None:
     for criterion in load_rubric("lab6").criteria:
         name = re.sub(r"^(left|right)(?=-wheel)", "…", criterion.id)
         assert f"| `{name}`" in text, criterion.id
+
+
+def test_pictures_of_a_page_show_what_the_first_command_prints() -> None:
+    """Their descriptions have the points of the sample that the README's first command grades."""
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    found = re.search(r"grader grade (submissions/\S+)", readme)
+    assert found is not None
+    result = run(("grade", ROOT / found[1])).stdout.decode().splitlines()[1]
+    points = result.partition(":")[0]
+    for text in (readme, (ROOT / "docs/grade-one-submission.md").read_text(encoding="utf-8")):
+        (described,) = re.findall(r"!\[(.*)\]\([\w/]*screenshots/student\.png\)", text)
+        assert f": {points}, " in described
 
 
 def test_the_readme_has_two_commands_first() -> None:

@@ -19,6 +19,7 @@ from grader.report.formats import Format, inputs_of, render
 from grader.report.invocation import (
     ExitCode,
     Saves,
+    check_threshold,
     exit_code,
     read_arguments,
     read_saves,
@@ -98,10 +99,15 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
     for kind in (request.output_format, *(kind for kind, _ in request.saves)):
         inputs_of(kind)  # as well
     from grader.lab.grading.grade import grade
+    from grader.lab.rubric.criterion import worth
     from grader.lab.submission.opening import open_submission
     from grader.lab.submission.submission import Opening
 
     rubric = requested_rubric(request)
+    if threshold is not None:
+        parts = request.part or [part.id for part in rubric.parts]
+        graded = worth(row for row in rubric.criteria if row.part in parts)
+        check_threshold(threshold, graded.points + graded.bonus)
     reports = frozenset(os.path.realpath(file) for _, file in request.saves if not is_source(file))
     opening = Opening(request.max_size, read_arguments(request.arg or ()), reports=reports)
     submission = open_submission(request.path, rubric.lab, opening, with_neighbours=True)

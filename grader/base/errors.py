@@ -36,6 +36,18 @@ class InputError(GraderError):
     """A path that cannot be read: missing, a folder without a URDF, too large, not a file."""
 
 
+class NotThereError(InputError):
+    """A path of the command line that does not exist; `hint` may name the one that is meant."""
+
+    def __init__(self, path: str, hint: str) -> None:
+        super().__init__(path, hint)
+        self.path = path
+        self.hint = hint
+
+    def __str__(self) -> str:
+        return f"{self.path} does not exist{self.hint}"
+
+
 class FileError(InputError):
     """A file that cannot be read; the message is its path and the reason: `a.zip` and `is
     encrypted`.

@@ -15,7 +15,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from grader.base.errors import InputError, MachineError
+from grader.base.errors import InputError, MachineError, NotThereError
 from grader.base.text import printable_path, size_text
 from grader.files.limits import ROBOT_ENDINGS
 
@@ -176,7 +176,7 @@ def _sha256() -> Callable[[bytes], Any]:
     return import_module(next(filter(find_spec, small), "hashlib")).sha256  # type: ignore[no-any-return]
 
 
-def not_there(path: Path) -> InputError:
+def not_there(path: Path) -> NotThereError:
     """Return the error for a path that does not exist, with the existing name closest to its
     first wrong part.
     """
@@ -197,7 +197,7 @@ def not_there(path: Path) -> InputError:
         right = wrong.parent / guess
         whole = right / path.relative_to(wrong)
         hint = f"; did you mean {printable_path(whole if os.path.lexists(whole) else right)!r}?"
-    return InputError(f"{printable_path(path)} does not exist{hint}")
+    return NotThereError(printable_path(path), hint)
 
 
 def advice_for(path: str) -> str:

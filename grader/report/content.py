@@ -21,7 +21,7 @@ from grader.base.text import (
     shell_quoted,
 )
 from grader.lab.checks.loading import urdf_loads
-from grader.lab.checks.manual import picture_name, picture_named
+from grader.lab.checks.manual import answered, picture_name, picture_named
 from grader.lab.grading.report import EvidenceResult, Report, Result
 from grader.lab.rubric.criterion import worth
 from grader.report.criteria import (
@@ -35,6 +35,7 @@ from grader.report.criteria import (
     hint_text,
     is_absent,
     is_failure,
+    is_manual,
     is_not_found,
     looked_for,
     lost_points,
@@ -175,13 +176,7 @@ def _building_order(entry: Entry) -> tuple[int, bool, int]:
 def _missing_lines(report: Report, results: Sequence[Result]) -> Iterator[Line]:
     """Yield what was searched in vain for criteria and as evidence, and what is there instead."""
     yield from (Line("missing", text) for text in looked_for(results))
-    wanted = {result.outcome.expected for result in results}
-    evidence = [
-        found.evidence.names for found in report.evidence if not (found.files or found.possible)
-    ]
-    others = [
-        f"`{picture_name(names)}`" for names in evidence if picture_named(names) not in wanted
-    ]
+    others = [f"`{name}`" for name in _pictures_to_add(report, results)]
     if others:
         pictures = "a picture" if len(others) == 1 else "pictures"
         yield Line(
@@ -190,6 +185,36 @@ def _missing_lines(report: Report, results: Sequence[Result]) -> Iterator[Line]:
     unmatched = _unmatched(report) if results else []
     if unmatched:
         yield Line("there", printable(f"Matches nothing: {enumerated(unmatched, _MAX_LISTED)}"))
+
+
+def _pictures_to_add(report: Report, results: Sequence[Result]) -> list[str]:
+    """Return names for the pictures that are missing as evidence, and are not wanted by criteria
+    with these results.
+    """
+    wanted = {result.outcome.expected for result in results}
+    evidence = [
+        found.evidence.names for found in report.evidence if not (found.files or found.possible)
+    ]
+    return [picture_name(names) for names in evidence if picture_named(names) not in wanted]
+
+
+def hand_in_line(report: Report) -> str:
+    """Return how many answers and pictures were searched in vain; empty if there are all."""
+    missing = [result for result in report.results if is_not_found(result)]
+    answers = sum(result.criterion.check.function is answered for result in missing)
+    pictures = len(missing) - answers + len(_pictures_to_add(report, missing))
+    counts = [counted(pictures, "picture")] if pictures else []
+    counts += [counted(answers, "answer")] if answers else []
+    return f"Also to hand in: {', '.join(counts)} (--verbose)" if counts else ""
+
+
+def found_line(pending: Sequence[Entry]) -> str:
+    """Return what was found for a person to grade; empty if there is more to say of any of it."""
+    results = [result for entry in pending for result in entry.results]
+    if not results or not all(is_manual(one) and one.outcome.problem == "" for one in results):
+        return ""
+    names = enumerated([printable(result.criterion.id) for result in results])
+    return f"Needs manual grading ({points_of(results)}): {names}"
 
 
 def _unmatched(report: Report) -> list[str]:

@@ -7,17 +7,20 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from grader.base.errors import InputError
 from grader.base.names import did_you_mean
-from grader.base.text import counted, enumerated, format_points, printable
+from grader.base.text import counted, enumerated, format_points, printable, shell_quoted
+from grader.files.limits import ROBOT_ENDINGS
 from grader.lab.checks.check import Check
+from grader.lab.checks.manual import MANUAL_CHECKS, answered, picture_named
 from grader.lab.checks.registry import check_names, find_check, unused_checks
 from grader.lab.rubric.criterion import Criterion, worth
-from grader.lab.rubric.rubric import Rubric
+from grader.lab.rubric.rubric import Rubric, shipped_rubrics
 from grader.lab.rubric.toml_file import assignment, toml_literal
 from grader.report.criteria import model_lines, sentence
 from grader.report.examples import example_blocks, explanation_of
 from grader.ros.workspace.problem_kinds import EVERY_KIND
 
 _WIDTH = 80
+_FOR_INSTRUCTORS = "For instructors: how it is checked\n----------------------------------"
 _MAX_SIMILAR = 6  # criteria that are named
 CAUSES_OF_CHECK = "Causes of a failure, besides `wrong`, `missing` and `slip`, for `feedback`"
 EFFECTS = {
@@ -123,6 +126,10 @@ def explanation(name: str, rubric: Rubric) -> str:
     if begun:
         verb = "is" if len(begun) == 1 else "are"
         similar = f"; there {verb} {enumerated(begun, _MAX_SIMILAR)}: `grader explain {begun[0]}`"
+    elif name in shipped_rubrics():
+        similar = f"; `grader rubric show {name}` shows the rubric"
+    elif name.lower().endswith(ROBOT_ENDINGS):
+        similar = f"; `grader inspect {shell_quoted(name)}` lists the problems of a file"
     else:
         similar = ""
     guess = similar or did_you_mean(name, known) or f"; {lists}"
@@ -134,13 +141,20 @@ def _paragraphs(texts: Iterable[str]) -> str:
 
 
 def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
+    """Yield what a student needs, then how the criterion is checked."""
     yield f"{criterion.id} ({worth((criterion,)).text}, part {criterion.part} of {rubric.id})"
     yield _fill(f"Passes when: {criterion.title}.")
+    yield _fill(_task_text(criterion))
     if criterion.adjustment is not None:
         yield _fill(sentence(criterion.adjustment.message))
     yield from map(_fill, criterion.feedback.values())
     if criterion.requires:
         yield _fill(f"Skipped unless these passed: {', '.join(criterion.requires)}.")
+    causes = [cause for carried in criterion.carried for cause in carried.causes]
+    if causes:
+        names = enumerated([*dict.fromkeys(causes)], word="or")
+        yield _fill(f"No points are lost for what is due to a mistake in {names} alone.")
+    yield _FOR_INSTRUCTORS
     pose = _pose_text(criterion.at) if criterion.at else ""
     given = " ".join(f"{name}:={value}" for name, value in criterion.args.items())
     launched = f"Launch files and the robot are read under the arguments {given}." if given else ""
@@ -153,6 +167,16 @@ def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
             carried.arguments,
             _pose_text(carried.at) if carried.at else "",
         )
+
+
+def _task_text(criterion: Criterion) -> str:
+    """Return what a person grades: a question or a picture; empty for what a program decides."""
+    if criterion.check.function is answered:
+        return f"Question: {criterion.arguments['question']} A person grades the answer."
+    if criterion.check.function in MANUAL_CHECKS:
+        picture = picture_named(criterion.arguments["names"])
+        return f"Hand in {picture} or a document that shows it. A person grades it."
+    return ""
 
 
 def _pose_text(at: Mapping[str, float]) -> str:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from grader.base.errors import GraderError
+from grader.base.text import counted_points, format_points
 from grader.report.formats import FormatRow
 
 if TYPE_CHECKING:
@@ -46,6 +47,16 @@ def read_threshold(text: str) -> tuple[Decimal, bool]:
     return Decimal(text.removesuffix("%")), text.endswith("%")
 
 
+def check_threshold(threshold: tuple[Decimal, bool], most: Decimal) -> None:
+    """Raise GraderError if no score reaches a threshold in points."""
+    least, is_percent = threshold
+    if least > most and not is_percent:
+        raise GraderError(
+            f"--fail-under {format_points(least)}: no score reaches it, because the maximum is "
+            f"{counted_points(most)}; write a percentage as 80%"
+        )
+
+
 def exit_code(report: "Report", threshold: tuple[Decimal, bool] | None) -> ExitCode:
     """Return the exit code for a report.
 
@@ -79,7 +90,11 @@ def _read_save(text: str, formats: type[_Row]) -> tuple[_Row, Path]:
     kind, equals, file = text.partition("=")
     if kind not in list(formats) or not equals or file in ("", "-"):
         meant = next((kind for kind in formats if text.endswith(f".{kind.ending}")), None)
-        guess = f"; did you mean --save {meant}={text}?" if meant is not None and not equals else ""
+        guess = ""
+        if kind in list(formats):
+            guess = f"; did you mean --save {kind}=report.{formats(kind).ending}?"
+        elif meant is not None and not equals:
+            guess = f"; did you mean --save {meant}={text}?"
         raise GraderError(
             f"--save takes FORMAT=FILE with one of the formats {', '.join(formats)}, not "
             f"{text!r}{guess}"

@@ -2,7 +2,9 @@
 
 import io
 import os
+import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.base.text import without_commands
@@ -10,6 +12,7 @@ from grader.base.text import without_commands
 if TYPE_CHECKING:
     from rich.console import Console
 
+_RANDOM_ID = re.compile("\x1b\\]8;id=[0-9-]+;")  # that rich gives a link
 _MIN_WIDTH, _DEFAULT_WIDTH, _MAX_WIDTH = 40, 80, 500
 
 
@@ -22,24 +25,28 @@ def columns(terminal: int = _DEFAULT_WIDTH) -> int:
 
 
 class Screen(NamedTuple):
-    """The terminal or file of a report: its width in columns, its encoding, and whether it shows
-    colours.
+    """The terminal or file of a report: its width in columns, its encoding, whether it shows
+    colours, and the folder whose files links lead to, if it has links.
     """
 
     width: int
     encoding: str = "utf-8"
     is_terminal: bool = False
+    folder: str = ""
 
 
 def draw(render: Callable[["Console"], None], screen: Screen | None = None) -> str:
     """Return what a renderer prints, as text for a screen; without one plain text for a file."""
     from rich.console import Console  # rich is not needed for JSON
 
+    # A file is plain, whatever the environment asks of a terminal.
+    is_forced = screen is not None and bool(os.environ.get("FORCE_COLOR"))
     screen = screen or Screen(columns())
-    buffer = _Buffer(screen.encoding)
+    buffer = _Buffer(screen)
     console = Console(
         file=buffer,
-        force_terminal=screen.is_terminal,
+        force_terminal=screen.is_terminal or is_forced,
+        color_system="standard" if is_forced and not screen.is_terminal else "auto",
         width=screen.width,
         height=24,  # nothing depends on it, but without it rich asks the terminal for each line
         highlight=False,
@@ -49,15 +56,27 @@ def draw(render: Callable[["Console"], None], screen: Screen | None = None) -> s
         no_color=True if os.environ.get("NO_COLOR") else None,
     )
     render(console)
-    return without_commands(buffer.getvalue())
+    return without_commands(_RANDOM_ID.sub("\x1b]8;;", buffer.getvalue()))
+
+
+def link_to(console: "Console", path: str) -> str | None:
+    """Return the address of a file of the submission, if the console's screen has links."""
+    folder = console.file.folder if isinstance(console.file, _Buffer) else ""
+    if not folder or not path.isprintable():
+        return None
+    file = Path(folder, path)
+    return file.as_uri() if file.is_file() else None
 
 
 class _Buffer(io.StringIO):
-    """A stream that collects output and reports the encoding of its destination."""
+    """A stream that collects output and reports the encoding of its destination, and the folder
+    that its links lead to.
+    """
 
-    def __init__(self, encoding: str) -> None:
+    def __init__(self, screen: Screen) -> None:
         super().__init__()
-        self._encoding = encoding
+        self._encoding = screen.encoding
+        self.folder = screen.folder
 
     @property
     def encoding(self) -> str:  # type: ignore[override]  # typeshed has it writable

@@ -2,15 +2,19 @@
 
 import json
 import re
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import jsonschema
 import pytest
 
+from grader.lab.authoring.mutants import Mutant
+from grader.lab.authoring.rubric_test import MutantOutcome, Trial, run_rubric_test
 from grader.lab.checks.outcome import Outcome, judged
 from grader.lab.checks.registry import find_check
-from grader.lab.rubric.rubric import shipped_rubrics
+from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
+from grader.report.writers.rubric_test_result import render_rubric_test
 from grader.ros.urdf.kinematics import Configuration
 from tests.authoring.robots import TOP, write_rubric
 from tests.command_line import Done, run
@@ -61,6 +65,34 @@ def test_a_shipped_rubric_catches_every_mutant(name: str) -> None:
 
 
 @pytest.mark.slow
+def test_an_interrupted_test_has_the_score_so_far(tmp_path: Path) -> None:
+    """What is left is counted, and nothing is said about criteria and files that were not tried."""
+    rubric = load_rubric(write_rubric(tmp_path, TOP + EXACT, SMALL))
+    trial = Trial(rubric)
+
+    def graded(mutants: Sequence[Mutant]) -> Iterator[MutantOutcome]:
+        yield from map(trial.outcome, mutants[:3])
+        raise KeyboardInterrupt
+
+    result = run_rubric_test(rubric, None, lambda *_: None, graded)
+    text = render_rubric_test(result, 80)
+    assert (result.tried, result.is_interrupted) == (3, True)
+    assert f"Interrupted: {result.total - 3} mutants and the equivalents are left." in text
+    assert "Mutation score so far:" in text
+    assert not any(word in text for word in ("Idle", "No criterion", "Equivalents"))
+
+
+def test_an_interrupt_before_the_first_mutant_ends_the_test(tmp_path: Path) -> None:
+    """There is no score yet."""
+    rubric = load_rubric(write_rubric(tmp_path, TOP + EXACT, SMALL))
+
+    def graded(mutants: Sequence[Mutant]) -> Iterator[MutantOutcome]:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run_rubric_test(rubric, None, lambda *_: None, graded)
+
+
 def test_survivors_are_listed_with_their_diff(tmp_path: Path) -> None:
     """The exit code is 0 because no correct robot loses points."""
     done = command(write_rubric(tmp_path))

@@ -89,7 +89,7 @@ def mark_of_the_cause() -> Report:
         marked,
         hinted,
         mark_of_the_cause,
-        *(SAMPLES[name].grade for name in ("axis-negated", "empty-urdf")),
+        *(SAMPLES[name].grade for name in ("axis-negated", "base-misnamed")),
     ],
 )
 def test_every_link_of_a_page_has_a_target(report: Callable[[], Report]) -> None:

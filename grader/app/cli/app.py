@@ -13,9 +13,8 @@ import typer
 from grader import __version__
 from grader.app.cli.ending import outer_limits, quiet_interrupts
 from grader.app.cli.streams import warn
-from grader.base.errors import GraderError
-from grader.base.text import printable_path, shell_quoted
-from grader.files.limits import ROBOT_ENDINGS
+from grader.base.errors import GraderError, NotThereError
+from grader.base.text import printable_path
 from grader.report.invocation import ExitCode
 from grader.report.writing import write_stdout
 
@@ -37,11 +36,6 @@ COMMANDS = {
 }
 # The commands that read one submission or workspace, with their limit of processor time in seconds.
 _LIMITED = {"grade": 20, "inspect": 60}
-# Of options that take a file, for one that is given without.
-_EXAMPLES = {
-    "--fix": "my_robot.urdf --fix fixed.urdf",
-    "--save": "my_robot.urdf --save html=report.html",
-}
 _COMPLETION = ("--show-completion", "--install-completion")
 
 
@@ -78,14 +72,14 @@ def _root(
     """
 
 
-def make_app(names: Collection[str]) -> typer.Typer:
+def make_app(names: Collection[str], *, completes: bool = False) -> typer.Typer:
     """Return the command line with these commands: importing all of them takes longer than to grade
-    a URDF.
+    a URDF. With `completes` it may answer a shell that completes a word.
     """
     app = typer.Typer(
         name="grader",
         no_args_is_help=True,
-        add_completion=len(names) > 1,
+        add_completion=completes or len(names) > 1,
         rich_markup_mode=None,  # plain help takes a third of the time
         pretty_exceptions_enable=False,
         context_settings={"help_option_names": ["-h", "--help"]},
@@ -115,7 +109,8 @@ def _run(arguments: Sequence[str]) -> int:
     try:
         if os.environ.get("_GRADER_COMPLETE"):
             return _complete()
-        app = make_app(_command(arguments) or COMMANDS)
+        is_command = arguments and arguments[0] in COMMANDS
+        app = make_app(arguments[:1] if is_command else COMMANDS)
         seconds = _LIMITED.get(arguments[0]) if arguments else None
         with outer_limits(seconds) if seconds and "--watch" not in arguments else nullcontext():
             result = app(list(arguments), standalone_mode=False, prog_name="grader")
@@ -123,13 +118,17 @@ def _run(arguments: Sequence[str]) -> int:
             write_stdout(result)
     except (GraderError, OSError) as error:
         reason = _reason_of(error) if isinstance(error, OSError) else str(error)
+        if isinstance(error, NotThereError):
+            from grader.app.cli.usage import message_on_path  # late: most paths are correct
+
+            reason = message_on_path(error, arguments)
         for line in reason.split("\n"):
             warn(line)
         return ExitCode.NOT_GRADED
     except (KeyboardInterrupt, typer.Abort):  # typer raises its own for Ctrl-C
         return ExitCode.INTERRUPTED
     except Exception as error:  # noqa: BLE001  no traceback ever reaches a user
-        return _other_error(error)
+        return _other_error(error, arguments)
     if (
         result == 1 and arguments[0] in _COMPLETION
     ):  # typer's code for a shell that it does not know
@@ -148,7 +147,10 @@ def _complete() -> int:
     """
     with redirect_stderr(StringIO()), suppress(Exception):
         try:
-            make_app(COMMANDS)(prog_name="grader")
+            typed = os.environ.get("COMP_WORDS") or os.environ.get("_TYPER_COMPLETE_ARGS", "")
+            # Of the words, the one at the cursor may become another command.
+            named = [word for word in typed.split(" ")[1:-1] if word in COMMANDS][:1]
+            make_app(named or COMMANDS, completes=True)(prog_name="grader")
         except SystemExit as end:  # its code tells fish whether there are completions
             if isinstance(end.code, int):
                 return end.code
@@ -156,38 +158,20 @@ def _complete() -> int:
     return 0
 
 
-def _command(arguments: Sequence[str]) -> list[str]:
-    """Return the command that is typed, if it is one. Raises GraderError if a file is named
-    instead.
-    """
-    first = arguments[0] if arguments else "-"
-    if first in COMMANDS:
-        return [first]
-    is_submission = os.path.lexists(first) or first.lower().endswith((*ROBOT_ENDINGS, ".zip"))
-    if not first.startswith("-") and is_submission:
-        raise GraderError(
-            f"there is no command {first!r}; to grade it, use `grader grade {shell_quoted(first)}`"
-        )
-    return []
-
-
-def _other_error(error: Exception) -> ExitCode:
+def _other_error(error: Exception, arguments: Sequence[str]) -> ExitCode:
     if not hasattr(error, "format_message"):  # which typer's errors of usage have
         warn(_one_line(f"internal error, please report it: {type(error).__name__}: {error}"))
         return ExitCode.FAULT
     message, context = error.format_message(), getattr(error, "ctx", None)
-    example = _EXAMPLES.get(getattr(error, "option_name", ""), "")
     if (
         context is not None and message == context.get_help()
     ):  # a group of commands without arguments
         print(message, file=sys.stderr)
     else:
-        command = context.command_path if context is not None else "grader"
-        if example:
-            advice = f"for example `grader grade {example}`"
-        else:
-            advice = f"`{command} --help` shows the usage"
-        warn(_one_line(f"{message} ({advice})"))
+        from grader.app.cli.usage import usage_message  # late: most command lines are correct
+
+        root = typer.main.get_command(make_app(COMMANDS))
+        warn(_one_line(usage_message(error, arguments, root)))
     return ExitCode.NOT_GRADED
 
 

@@ -6,6 +6,7 @@ from typing import Annotated, Literal, get_args
 
 import typer
 
+from grader.app.cli.completion import offer_explained
 from grader.app.cli.options import RubricOption
 from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
 
@@ -13,7 +14,10 @@ _NAME = "For example URDF051, frame_at or lidar-frame."
 
 
 def explain(
-    name: Annotated[str, typer.Argument(metavar="CODE|CHECK|CRITERION", help=_NAME)],
+    name: Annotated[
+        str,
+        typer.Argument(metavar="CODE|CHECK|CRITERION", help=_NAME, autocompletion=offer_explained),
+    ],
     rubric: RubricOption = DEFAULT_RUBRIC,
 ) -> str:
     """Explain a problem code, a check or a criterion.

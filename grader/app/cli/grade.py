@@ -104,7 +104,11 @@ def _grade_once(request: GradeRequest) -> int:
 
     def show(run: GradeRun) -> None:
         text = render(
-            run.report, request.output_format, run.base, screen(), verbose=request.verbose
+            run.report,
+            request.output_format,
+            run.base,
+            screen(run.base.here),
+            verbose=request.verbose,
         )
         write_stdout(
             text

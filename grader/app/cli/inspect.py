@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from grader.app.cli.completion import offer_codes, offer_joints, offer_links
 from grader.app.cli.options import ArgOption, MaxSizeOption, SaveOption
 from grader.app.cli.streams import TERMINAL
 from grader.files.reading import URDF_LIMIT
@@ -23,8 +24,13 @@ _DISTRO = "The release of ROS 2, such as humble; default: what the files state."
 def inspect(
     path: Annotated[str, typer.Argument(metavar="PATH", help=_PATH)],
     robot: Annotated[str, typer.Option(metavar="NAME", help=_ROBOT, show_default=False)] = "",
-    joint: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE", help=_JOINT)] = None,
-    relative_to: Annotated[str | None, typer.Option(metavar="LINK", help=_RELATIVE)] = None,
+    joint: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=VALUE", help=_JOINT, autocompletion=offer_joints),
+    ] = None,
+    relative_to: Annotated[
+        str | None, typer.Option(metavar="LINK", help=_RELATIVE, autocompletion=offer_links)
+    ] = None,
     distro: Annotated[Release | None, typer.Option(metavar="NAME", help=_DISTRO)] = None,
     output_format: Annotated[
         InspectFormat, typer.Option("--format", help="Output format.")
@@ -35,8 +41,12 @@ def inspect(
     watch: Annotated[
         bool, typer.Option("--watch", help="Inspect again after every change, until Ctrl-C.")
     ] = False,
-    select: Annotated[list[str] | None, typer.Option(metavar="CODE", help=_SELECT)] = None,
-    ignore: Annotated[list[str] | None, typer.Option(metavar="CODE", help=_IGNORE)] = None,
+    select: Annotated[
+        list[str] | None, typer.Option(metavar="CODE", help=_SELECT, autocompletion=offer_codes)
+    ] = None,
+    ignore: Annotated[
+        list[str] | None, typer.Option(metavar="CODE", help=_IGNORE, autocompletion=offer_codes)
+    ] = None,
 ) -> int:
     """Show robots as ROS 2 reads them, and what is wrong in packages.
 

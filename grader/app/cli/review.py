@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from grader.app.cli.completion import offer_marked, offer_students
 from grader.app.cli.options import AnswersOption, ByOption, GradebookOption
 from grader.app.cli.streams import TERMINAL, warn
 from grader.base.errors import InputError
@@ -20,10 +21,18 @@ _PORT = "The port of the page; default: any free port."
 def mark(
     gradebook: GradebookOption,
     student: Annotated[
-        str, typer.Argument(metavar="STUDENT", help="The id, login, email address or name.")
+        str,
+        typer.Argument(
+            metavar="STUDENT",
+            help="The id, login, email address or name.",
+            autocompletion=offer_students,
+        ),
     ] = "",
     criterion: Annotated[
-        str, typer.Argument(metavar="CRITERION|total|deadline", help=_CRITERION)
+        str,
+        typer.Argument(
+            metavar="CRITERION|total|deadline", help=_CRITERION, autocompletion=offer_marked
+        ),
     ] = "",
     points: Annotated[str, typer.Argument(metavar="[POINTS|TIME|excused|-]", help=_POINTS)] = "",
     comment: Annotated[str, typer.Option(metavar="TEXT", help="For the student.")] = "",

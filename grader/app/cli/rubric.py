@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
+from grader.app.cli.completion import offer_rubrics
 from grader.app.cli.options import AnswersOption, FormatOption, RubricOption
 from grader.app.cli.streams import TERMINAL, warn
 from grader.app.commands import rubrics
@@ -32,7 +33,10 @@ _FOLDER = "A folder with samples: submissions with an expected.toml."
 _LEAST = "Exit 1 if the mutation score is less, in percent."
 rubric = typer.Typer(help=_HELP, no_args_is_help=True)
 RubricArgument = Annotated[
-    str, typer.Argument(metavar="ID|FILE", help="The rubric: an id or a .toml file.")
+    str,
+    typer.Argument(
+        metavar="ID|FILE", help="The rubric: an id or a .toml file.", autocompletion=offer_rubrics
+    ),
 ]
 
 
@@ -113,7 +117,10 @@ def new_rubric(
 
 @rubric.command("copy")
 def copy_rubric(
-    name: Annotated[str, typer.Argument(metavar="ID", help="A rubric of the grader.")],
+    name: Annotated[
+        str,
+        typer.Argument(metavar="ID", help="A rubric of the grader.", autocompletion=offer_rubrics),
+    ],
     folder: Annotated[
         Path, typer.Argument(metavar="FOLDER", help="The folder to write into: FOLDER/ID.")
     ],

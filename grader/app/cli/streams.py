@@ -5,6 +5,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.base.text import without_commands
@@ -14,18 +15,38 @@ from grader.report.writing import Terminal, write_stdout
 if TYPE_CHECKING:
     from grader.workers.queue import Progress
 
+_VTE_WITH_LINKS = 5000  # the library of GNOME Terminal and others
+# Terminals with links, by TERM or TERM_PROGRAM.
+_TERMINALS = ("kitty", "alacritty", "foot", "ghostty", "iTerm.app", "WezTerm", "vscode", "Hyper")
 _LINE_SECONDS, _TERMINAL_SECONDS = 10.0, 0.1
 
 
-def screen() -> Screen:
-    """Return the width and encoding of standard output, and whether it is a terminal."""
+def screen(here: str | None = None) -> Screen:
+    """Return the width and encoding of standard output, and whether it is a terminal. `here` is
+    what comes before the paths of a report in the current folder, to which links may lead.
+    """
     out = sys.stdout
     is_terminal = out is not None and out.isatty()
     width = columns()
     if is_terminal:
         with suppress(OSError):
             width = columns(os.get_terminal_size(out.fileno()).columns)
-    return Screen(width, (out.encoding if out is not None else "") or "utf-8", is_terminal)
+    encoding = (out.encoding if out is not None else "") or "utf-8"
+    is_forced = bool(os.environ.get("FORCE_HYPERLINK"))
+    if here is None or not (is_forced or (is_terminal and _shows_links())):
+        return Screen(width, encoding, is_terminal)
+    return Screen(width, encoding, is_terminal, str(Path(here).resolve()))
+
+
+def _shows_links() -> bool:
+    """Return whether the terminal is known to show links (OSC 8): others may print them."""
+    version = os.environ.get("VTE_VERSION", "")
+    if version.isdigit() and int(version) >= _VTE_WITH_LINKS:
+        return True
+    if any(os.environ.get(name) for name in ("WT_SESSION", "KONSOLE_VERSION", "KITTY_WINDOW_ID")):
+        return True
+    kind = os.environ.get("TERM", "").removeprefix("xterm-")
+    return kind in _TERMINALS or os.environ.get("TERM_PROGRAM") in _TERMINALS
 
 
 def warn(message: str) -> None:

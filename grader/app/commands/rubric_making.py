@@ -174,6 +174,8 @@ def test_rubric(
         text = render_rubric_test_json(result)
     else:
         text = render_rubric_test(result, terminal.screen().width)
+    if result.is_interrupted:
+        return text, ExitCode.INTERRUPTED
     is_passed = result.is_sound and result.score >= least
     code = ExitCode.PASSED if is_passed else ExitCode.FAILED
     return text, ExitCode.FAULT if result.is_faulty else code

@@ -211,7 +211,8 @@ def _why_unreadable(submission: Submission) -> str:
     """
     if isinstance(submission.urdf, Unreadable):
         return submission.urdf.reason
-    if not isinstance(submission.urdf, Absent) or submission.packages:
+    is_absent = isinstance(submission.urdf, Absent) and not submission.urdf.blank
+    if not is_absent or submission.packages:
         return ""
     tree, closed = submission.tree, submission.tree.unopened
     if closed:

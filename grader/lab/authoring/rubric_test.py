@@ -125,8 +125,8 @@ class Trial:
         return (content(self.reference, path) or b"").decode("utf-8", "surrogateescape")
 
     def unexamined(self) -> tuple[list[str], int]:
-        """Return the files that may be emptied without a difference for any criterion, and how many
-        were tried.
+        """Return the files that may be emptied or removed without a difference for any criterion,
+        and how many were tried.
         """
         files = self.reference.whole_tree.files.items()
         tried = [path for path, file in files if file.size and not _NO_PART_OF_LAB.search(path)][
@@ -137,11 +137,17 @@ class Trial:
     def _is_examined(self, path: str) -> bool:
         if any(edit.path == path for _, edit in self._names):
             return True
+        return any(self._differs(path, data) for data in (b"", None))
+
+    def _differs(self, path: str, data: bytes | None) -> bool:
+        """Return whether a criterion has another status with other bytes of a file; None removes
+        it.
+        """
         try:
-            emptied = with_files(self.reference, {path: b""})
+            changed = with_files(self.reference, {path: data})
         except InputError:
             return True
-        results = decide(self.rubric, emptied, self.expected)
+        results = decide(self.rubric, changed, self.expected)
         return any(
             it.outcome.status != self.expected[it.criterion.id].outcome.status for it in results
         )
@@ -335,6 +341,14 @@ class _Survivor(NamedTuple):
     reason: str = ""
 
 
+class _Rest(NamedTuple):
+    """What is tried after the mutants."""
+
+    equivalents: list[Loss]
+    unexamined: list[str]
+    files: int
+
+
 class RubricTest(NamedTuple):
     """The result of testing a rubric."""
 
@@ -353,6 +367,8 @@ class RubricTest(NamedTuple):
     equivalents: tuple[str, ...]  # the families that were tried
     losses: tuple[Loss, ...]  # equivalents that lose points
     samples: SampleResults | None = None  # None where no folder was given
+    # by Ctrl-C: then the rest of the mutants, the equivalents and the files are not tried
+    is_interrupted: bool = False
 
     @property
     def score(self) -> Decimal:
@@ -400,11 +416,17 @@ def run_rubric_test(
         of_samples = tested_samples(rubric, samples, lambda done: progress(done, total))
     else:
         of_samples = None
-    outcomes = []
-    for outcome in grade_all(chosen):
-        outcomes.append(outcome)
-        progress(len(samples or ()) + len(outcomes), total)
-    return _counted(trial, every, outcomes, of_samples)
+    outcomes: list[MutantOutcome] = []
+    rest = None
+    try:
+        for outcome in grade_all(chosen):
+            outcomes.append(outcome)
+            progress(len(samples or ()) + len(outcomes), total)
+        rest = _Rest([*trial.equivalents()], *trial.unexamined())
+    except KeyboardInterrupt:
+        if not outcomes:
+            raise
+    return _counted(trial, every, outcomes, of_samples, rest)
 
 
 def mutant_outcomes(data: bytes, path: str, mutants: Sequence[Mutant]) -> list[MutantOutcome]:
@@ -422,6 +444,7 @@ def _counted(
     every: Sequence[Mutant],
     outcomes: Iterable[MutantOutcome],
     samples: SampleResults | None,
+    rest: "_Rest | None",
 ) -> RubricTest:
     """Return the result of a test: `outcomes` are those of the mutants that were graded, in any
     order.
@@ -445,10 +468,10 @@ def _counted(
         elif outcome.fate == "faulty":
             faults.append(Loss(mutant.id, outcome.faults, _mutant_diff(trial, mutant)))
     idle = [criterion.id for criterion in trial.tested if criterion.id not in failed]
-    equivalents = [*trial.equivalents()]
+    is_interrupted = rest is None
+    equivalents, unexamined, files = rest or _Rest([], [], 0)
     names = [loss.name for loss in equivalents]
     losses = [loss for loss in equivalents if loss.criteria]
-    unexamined, files = trial.unexamined()
     return RubricTest(
         reference=trial.report,
         total=len(every),
@@ -458,13 +481,14 @@ def _counted(
         survivors=tuple(survivors),
         ignored=tuple(ignored),
         unused=_unused_patterns(trial.rubric, every),
-        idle=tuple(idle),
+        idle=() if is_interrupted else tuple(idle),
         unexamined=tuple(unexamined),
         files=files,
         faults=tuple(faults),
         equivalents=tuple(names),
         losses=tuple(losses),
         samples=samples,
+        is_interrupted=is_interrupted,
     )
 
 

@@ -373,7 +373,7 @@ def _path_of(package: Package, name: str) -> str:
     """Return the path of a launch file. Raises MissingElement."""
     path = package.launch_file(name)
     if path is None:
-        raise package.missing("launch")
+        raise package.missing("launch", name)
     return path
 
 

@@ -29,10 +29,12 @@ _MAY_HOLD_PICTURES = frozenset(
     {".docx", ".doc", ".odt", ".pages", ".ipynb", ".pptx", ".odp", ".rtf", ".rar", ".7z"}
 )
 _MAX_LISTED = 6  # files in one message
-_NOT_FOUND, _ONLY_QUESTION = "not found", "only the question is there"
+_NOT_FOUND = "not found"
+_ONLY_QUESTION = "only the question is there"
+_UNANSWERED = f"not answered yet: {_ONLY_QUESTION}"
 NO_ANSWER = (
     _NOT_FOUND,
-    _ONLY_QUESTION,
+    _UNANSWERED,
 )  # the problems of questions without an answer, if every document was read
 
 
@@ -81,8 +83,10 @@ def answered(
     how = f" ({passage.how})" if passage.how else ""
     problem = ""
     if passage.is_empty:
-        problem = _ONLY_QUESTION
-        message = f"No answer was found {passage.where}: {problem}{how}; needs manual grading"
+        problem = _UNANSWERED
+        message = (
+            f"No answer was found {passage.where}: {_ONLY_QUESTION}{how}; needs manual grading"
+        )
     elif passage.is_certain:
         message = f"The answer {passage.where}{how}, needs manual grading"
     else:
@@ -96,6 +100,8 @@ def answered(
             f"; {enumerated([f'another passage is {other.where}' for other in found.others])}"
         )
     outcome = Outcome("pending", f"{question} {message}{unread}", text, location=passage.location)
+    if passage.is_empty and not doubts:
+        outcome = outcome._replace(expected=f"an answer {passage.where} ({_UNANSWERED})")
     return outcome._replace(problem=", but ".join([problem, *doubts] if problem else doubts))
 
 

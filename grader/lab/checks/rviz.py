@@ -364,7 +364,7 @@ def _read_launch(package: Package, launch: str) -> "Launch | None":
 def _rviz_path(package: Package, name: str, opened: "Launch | None") -> str:
     path = package.rviz_file(name, opened)
     if path is None:
-        raise package.missing("rviz")
+        raise package.missing("rviz", name)
     return path
 
 

@@ -34,8 +34,8 @@ _MAX_HEADING_WORDS = 6  # a passage of so few words is a heading without a text
 _MAX_MATCHES = 50  # headings of one document that are compared
 _MAX_OTHERS = 3  # passages besides the best one
 _COPIED = frozenset(
-    {"required", "optional", "question", "answer", "task", "step"}
-)  # words of a question, besides its own
+    {"required", "optional", "question", "answer", "task", "step", "todo", "your", "here", "write"}
+)  # words of a question or of a template, besides its own
 
 
 class _FoundAnswer(NamedTuple):
@@ -320,15 +320,18 @@ class _AnswerSearch:
         )
 
     def _is_question_only(self, text: str) -> bool:
-        """Return whether a passage holds only the question's words; one that ends in "?" may be
-        worded differently.
+        """Return whether a passage holds only the question's words; one that ends in "?", or a
+        whole passage in ":", may be worded differently.
         """
         if "[picture]" in text or len(text) > _MAX_QUESTION:
             return False
-        asked, mark, rest = text.lower().rpartition("?")
+        text = text.lower()
+        asked, mark, rest = text.rpartition("?")
+        if text.rstrip().endswith(":"):
+            asked, mark, rest = text, ":", ""
         others = [word not in self._copied for word in _own_words(asked)]
         is_asked = mark != "" and 2 * sum(others) <= len(others)
-        return self._copied.issuperset(_own_words(rest if is_asked else text.lower()))
+        return self._copied.issuperset(_own_words(rest if is_asked else text))
 
 
 def _own_words(text: str) -> list[str]:

@@ -12,6 +12,7 @@ from pathlib import Path
 from grader.base.errors import InputError, RubricError
 from grader.base.names import did_you_mean
 from grader.base.text import printable_path, shell_quoted, texts_in
+from grader.files.limits import ARCHIVES, ROBOT_ENDINGS
 from grader.files.reading import read_capped, sha256_of, shipped_folder
 from grader.lab.checks.check import LINK_ARGUMENTS
 from grader.lab.checks.manual import answered
@@ -206,6 +207,9 @@ class Rubric:
                 return part
         known = [part.id for part in self.parts]
         guess = did_you_mean(name, known) or f"; it has: {', '.join(known)}"
+        several = [word for word in name.replace(",", " ").split() if word in known]
+        if len(several) > 1:
+            guess = f"; repeat the option: --part {' --part '.join(several)}"
         raise InputError(
             f"the rubric {self.id} has no part {name!r}{guess} (see `{self.shown_by}`)"
         )
@@ -240,9 +244,26 @@ def find_rubric(name: str) -> Path:
     if (
         path.suffix == ".toml" or path.name != name
     ):  # a bare word is an id, never a file of the submission
+        _refuse_other_path(path)
         return path
+    if path.name.lower().endswith((*ROBOT_ENDINGS, *ARCHIVES)):
+        advice = f"`grader grade {shell_quoted(path)}` grades it"
+        raise RubricError((f"--rubric takes no submission such as {name!r}; {advice}",))
     guess = did_you_mean(name, shipped) or f"; write ./{printable_path(name)} for a file"
     raise RubricError((f"there is no rubric {name!r}{guess} {_LIST}",))
+
+
+def _refuse_other_path(path: Path) -> None:
+    """Raise RubricError for a path that is no rubric's, but names one that is known."""
+    shown = printable_path(path)
+    if path.is_dir():
+        files = sorted(path.glob("*.toml"))
+        names = [file for file in files if file.name == RUBRIC_FILE or len(files) == 1]
+        guess = f"; did you mean --rubric {shell_quoted(names[0])}?" if names else ""
+        raise RubricError((f"{shown} is a folder, not the .toml file of a rubric{guess}",))
+    shipped = [name for name in shipped_rubrics() if name in (path.stem, *path.parts)]
+    if shipped and not path.exists():
+        raise RubricError((f"{shown} does not exist; did you mean --rubric {shipped[0]}?",))
 
 
 def load_rubric(name: str | Path) -> Rubric:

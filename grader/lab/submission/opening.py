@@ -13,7 +13,15 @@ from grader.files.reading import read_capped, read_standard_input, read_start
 from grader.files.tree import File, Tree, overlaid
 from grader.lab.submission.submission import DEFAULTS, Lab, Opening, Submission
 from grader.ros.package.package import MANIFEST
-from grader.ros.package.robot_file import Absent, Surroundings, Unreadable, Urdf, read_as_ros
+from grader.ros.package.robot_file import (
+    Absent,
+    Read,
+    Surroundings,
+    Unreadable,
+    Urdf,
+    is_blank,
+    read_as_ros,
+)
 from grader.ros.python.budget import Budget
 from grader.ros.workspace.opened import OpenedWorkspace
 
@@ -45,9 +53,13 @@ _EXPECTED = "give a .urdf file, or the folder or archive that was submitted"
 
 
 def read_submission(
-    data: bytes, *, identity: str, path: str, opening: Opening = DEFAULTS
+    data: bytes, *, identity: str, path: str, opening: Opening = DEFAULTS, is_graded: bool = True
 ) -> Submission:
-    """Return the submission that consists of the bytes of one URDF."""
+    """Return the submission that consists of the bytes of one URDF. If it is graded, a URDF without
+    content is none.
+    """
+    if is_graded and is_blank(data):
+        return Submission(identity, Absent(path), opening=opening)
     if not opening.arguments and b"xacro" not in data:
         return Submission(identity, read_as_ros(data, path))
     surroundings = Surroundings(Budget(), arguments=opening.arguments)
@@ -65,8 +77,9 @@ def open_submission(
     Raises InputError, with one sentence, if the path cannot be read.
     """
     if path == STANDARD_INPUT:
+        data = read_standard_input(opening.max_size)
         return read_submission(
-            read_standard_input(opening.max_size), identity="stdin", path="-", opening=opening
+            data, identity="stdin", path="-", opening=opening, is_graded=lab is not _NO_LAB
         )
     if not path:
         raise InputError(f"the path is empty: {_EXPECTED}")
@@ -79,7 +92,8 @@ def open_submission(
         identity = tree.name if place.is_dir() else tree_name(place)
         if opening.reports and place.is_dir():
             tree = tree.only(lambda inside: os.path.realpath(place / inside) not in opening.reports)
-        return submission_of(tree, identity, lab, opening, shown=shown)
+        _refuse_empty(tree, shown, _first_step(tree, place, lab.package))
+        return submission_of(tree, identity, lab, opening)
     if place.suffix.lower() in _NO_URDFS:
         from grader.ros.package.robots import is_robot  # late: most URDFs are called .urdf
 
@@ -90,7 +104,11 @@ def open_submission(
     if with_neighbours and b"xacro" in data:
         return _read_with_neighbours(place, data, identity, opening)
     return read_submission(
-        data, identity=identity, path=printable_path(place.name), opening=opening
+        data,
+        identity=identity,
+        path=printable_path(place.name),
+        opening=opening,
+        is_graded=lab is not _NO_LAB,
     )
 
 
@@ -107,7 +125,7 @@ def open_workspace(path: str, max_size: int, arguments: Mapping[str, str]) -> Op
     identity = tree_name(place)
     if place.is_dir():
         tree, identity = without_git_ignored(tree, place), tree.name
-    _refuse_empty(tree, printable_path(place))
+    _refuse_empty(tree, printable_path(place), _first_step(tree, place, ""))
     return read_workspace(tree, identity, max_size, arguments)
 
 
@@ -226,14 +244,23 @@ def _with_files_around(
     )
 
 
-def _refuse_empty(tree: Tree, shown: str) -> None:
+def _refuse_empty(tree: Tree, shown: str, advice: str = "") -> None:
     """Raise InputError if a tree has no files."""
     if not tree.files and not tree.generated:
         if tree.ignored:
             reason = f": {tree.ignored[0]}"
         else:
-            reason = " (hidden files and build folders are ignored)"
+            reason = f" (hidden files and build folders are ignored){advice}"
         raise InputError(f"{shown} is empty{reason}")
+
+
+def _first_step(tree: Tree, place: Path, package: str) -> str:
+    """Return what to do first where a folder has no files; empty for an archive."""
+    if not place.is_dir():
+        return ""
+    what = f"the package {package}" if package else "a package"
+    where = printable_path(place / "src") if "src" in tree.folders else "it"
+    return f": create {what} in {where}, or name the folder that holds your files"
 
 
 def _is_lab(lab: Lab, name: str) -> bool:
@@ -265,6 +292,8 @@ def submission_of(
             urdf = read_as_ros(tree.files[path].read(opening.max_size), path, surroundings)
         except InputError as error:  # the rest of the submission is graded
             urdf = Unreadable(path, str(error))
+    if isinstance(urdf, Read) and is_blank(urdf.data):
+        urdf = Absent(urdf.path)
     return Submission(
         identity,
         urdf,

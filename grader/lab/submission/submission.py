@@ -248,7 +248,7 @@ class Submission(OpenedWorkspace):
                 return reading
             case Unreadable(reason=reason):
                 raise NotDecided(reason, "the URDF cannot be read")
-            case Absent():
+            case Absent(blank=blank):
                 self._refuse_unopened("URDF")
         count = len(self.tree.files)
         if count > 1:
@@ -258,7 +258,11 @@ class Submission(OpenedWorkspace):
         built = next(
             (path for path in self.tree.generated if path.lower().endswith(ROBOT_ENDINGS)), ""
         )
-        detail = f"{f': {files}' if count else ''}{was_not_committed(built) if built else ''}"
+        if blank:
+            files = f"{blank} is empty"
+        detail = f": {files}" if count or blank else ""
+        if built:
+            detail += was_not_committed(built)
         raise MissingElement(
             "URDF", "", message="no URDF was submitted", detail=detail, absent="URDF"
         )

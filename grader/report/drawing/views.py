@@ -7,6 +7,7 @@ its projected points. Lengths on the sheet are pixels, and y points down.
 
 from collections.abc import Iterable
 from itertools import product
+from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -142,7 +143,8 @@ def panels_of(picture: Picture, top: float = 0.0) -> tuple[Panel, ...]:
 def _bounds(picture: Picture) -> tuple[_Points, _Points]:
     """Return the least and the largest coordinates (m) of what a picture shows, in the frame."""
     points = [_points_of(body) for body in (*picture.scene.bodies, *picture.outlines)]
-    origins = [pose.translation for pose in (*frames_of(picture), *picture.frames)]
+    shown = [frame.pose for frame in frames_of(picture)]
+    origins = [pose.translation for pose in (*shown, *picture.frames)]
     points.append(origins or [(0.0, 0.0, 0.0)])
     every = np.concatenate(points)
     low, high = every.min(axis=0), every.max(axis=0)
@@ -153,16 +155,37 @@ def _bounds(picture: Picture) -> tuple[_Points, _Points]:
     return low, high
 
 
-def frames_of(picture: Picture) -> list[Transform]:
+class _LinkFrame(NamedTuple):
+    """The frame of a link: its pose in the frame of the scene, and the smallest size (m) of the
+    link's shapes, which its axes must not cover; None without shapes.
+    """
+
+    pose: Transform
+    size: float | None
+
+
+def frames_of(picture: Picture) -> list[_LinkFrame]:
     """Return the frames that are shown: of links with callouts or shapes, or of all links if there
     are no shapes.
     """
     scene = picture.scene
     called = [callout.link for callout in picture.callouts]
-    others = [body.link for body in scene.bodies] or scene.poses
-    links = dict.fromkeys([scene.frame, scene.root, *called, *others])
-    poses = [scene.poses[link] for link in links if link in scene.poses]
-    return poses[: _MAX_FRAMES if scene.bodies else _MAX_FRAMES_ALONE]
+    sizes: dict[str, float] = {}
+    for body in scene.bodies:
+        sizes[body.link] = min(_smallest_size(body), sizes.get(body.link, inf))
+    links = dict.fromkeys([scene.frame, scene.root, *called, *(sizes or scene.poses)])
+    frames = [_LinkFrame(scene.poses[it], sizes.get(it)) for it in links if it in scene.poses]
+    return frames[: _MAX_FRAMES if scene.bodies else _MAX_FRAMES_ALONE]
+
+
+def _smallest_size(body: Body) -> float:
+    """Return the smallest size of a body, in metres."""
+    shape = body.shape
+    if isinstance(shape, Box):
+        return min(shape.size)
+    if isinstance(shape, Sphere):
+        return 2.0 * shape.radius
+    return min(2.0 * shape.radius, shape.length)
 
 
 class FreePlaces:

@@ -69,8 +69,12 @@ def render_rubric_test(test: RubricTest, width: int) -> str:
         lines += ["", unexamined_line(test.unexamined, test.files)]
     for pattern in test.unused:
         lines += ["", f"The pattern {pattern!r} of [[test.ignore]] matches no mutant."]
+    if test.is_interrupted:
+        left = test.total - test.tried
+        lines += ["", f"Interrupted: {counted(left, 'mutant')} and the equivalents are left."]
     percent = int(test.score * 10) / 10  # rounded down: 100 only where nothing survived
-    lines += ["", f"Mutation score: {percent:g} %"]
+    so_far = " so far" if test.is_interrupted else ""
+    lines += ["", f"Mutation score{so_far}: {percent:g} %"]
     text = "\n".join(folded for line in lines for folded in _fold(printable(line), width))
     return without_commands(f"{text}\n")
 
@@ -106,7 +110,7 @@ def _count_lines(test: RubricTest) -> Iterator[str]:
     if test.equivalents:
         lose = _count_or_none(len(test.losses), "loses", "lose")
         yield f"Equivalents  {len(test.equivalents)} graded, {lose} points"
-    else:
+    elif not test.is_interrupted:
         yield "Equivalents  none graded: ROS 2 does not load the reference without problems"
     if samples is not None:
         differ = _count_or_none(len(samples.different), "differs", "differ")

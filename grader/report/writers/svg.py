@@ -49,6 +49,9 @@ _LOOKS = {
     "axis-x": "stroke:#d01f2e;stroke-width:1.8",
     "axis-y": "stroke:#00805c;stroke-width:1.8",
     "axis-z": "stroke:#0a5fd0;stroke-width:1.8",
+    "small": "stroke-width:1.3",
+    "tiny": "stroke-width:.9",
+    "small-halo": "stroke-width:2.6",
     "arrow": "stroke:#1c1f23;stroke-width:2.6",
     "leader": "stroke:#b3261e;stroke-width:1.2",
     "badge": "fill:#b3261e",
@@ -66,6 +69,10 @@ STYLE = (
 )
 _RADIUS = 9.0  # of a number, in pixels
 _AXIS, _LONG_AXIS, _ARROW = 20.0, 32.0, 30.0  # pixels
+# The axes of a link's frame leave its shapes visible: the least size of these in pixels, the look
+# of the axes, and their length in pixels. Tiny axes have no white edge.
+_AXES_BY_ROOM = ((15.0, "", _AXIS), (8.0, " small", 14.0), (0.0, " tiny", 9.0))
+_HALOS = {"small": "halo small-halo", "tiny": ""}  # by size
 _END_ON = 0.2  # of its length: an axis or arrow that appears shorter is not drawn as one
 _BADGE = 2.0 * _RADIUS + 2.0, 2.0 * _RADIUS + 2.0  # the room of one
 _RINGS = (22.0, 30.0, 40.0, 52.0, 66.0, 84.0, 106.0, 132.0)  # pixels from what a number labels
@@ -205,7 +212,13 @@ def _view(panel: Panel, picture: Picture) -> Iterator[str]:
     if len(outlines) > 1:  # what a shape hides shows through
         yield _path("hidden", "".join(outlines))
     lines = dict.fromkeys(_lines(panel, picture))  # each once
-    yield _path("halo", "".join(data for _, data in lines))
+    by_halo: dict[str, list[str]] = {}
+    for look, data in lines:
+        halo = _HALOS.get(look.rpartition(" ")[2], "halo")
+        by_halo.setdefault(halo, []).append(data)
+    by_halo.pop("", None)
+    for halo, around in by_halo.items():
+        yield _path(halo, "".join(around))
     for look, data in lines:
         yield _path(look, data)
     yield from _numbers(panel, picture, places)
@@ -217,8 +230,11 @@ def _lines(panel: Panel, picture: Picture) -> Iterator[tuple[str, str]]:
     """
     for body in picture.outlines:
         yield "reference", _polygon(_outline(panel, body))
-    for pose in frames_of(picture):
-        yield from _axes(panel, "", _AXIS, pose)
+    for frame in frames_of(picture):
+        room = frame.size * panel.scale if frame.size is not None else _AXIS
+        fitting = (row for row in _AXES_BY_ROOM if room >= row[0])
+        _, size, length = next(fitting)
+        yield from _axes(panel, size, length, frame.pose)
     for pose in picture.frames:
         yield from _axes(panel, " dashed", _LONG_AXIS, pose)
     for wheel in picture.scene.wheels:

@@ -10,8 +10,10 @@ from itertools import groupby
 from typing import TYPE_CHECKING, NamedTuple, get_args
 
 from rich.console import Console
+from rich.style import Style
 from rich.text import Text
 
+from grader.base.problems import Problem
 from grader.base.source import Location, Source
 from grader.base.text import counted, enumerated, format_points, printable
 from grader.lab.grading.report import Report, Result
@@ -41,6 +43,7 @@ from grader.report.criteria import (
     status_of,
 )
 from grader.report.locations import diff_lines, excerpt, location_text
+from grader.report.screen import link_to
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -58,6 +61,7 @@ LOOKS: Mapping[Role, str] = {
 }
 _DIFF_STYLES = {"-": "red", "+": "green"}
 _MAX_WHOLE = 5  # mistakes in full
+_MAX_ROWS, _HEIGHT_OF_END = 18, 2  # of a report of one mistake; its last lines
 _MAX_NAMES, _MAX_PROBLEMS, _MAX_FILES = 3, 3, 2
 
 
@@ -66,6 +70,21 @@ class Page(NamedTuple):
 
     console: Console
     rows: list[Text]
+
+    @property
+    def height(self) -> int:
+        """The number of rows so far that are not empty."""
+        return sum(_height(row) for row in self.rows if row.plain)
+
+    def close_up(self, most: int) -> None:
+        """Remove empty rows, the last ones first, until there are at most so many rows; none if
+        they are too many without.
+        """
+        empty = [index for index, row in enumerate(self.rows) if not row.plain]
+        excess = self.height + len(empty) - most
+        if 0 < excess <= len(empty):
+            for index in reversed(empty[-excess:]):
+                del self.rows[index]
 
     def leave_row(self) -> None:
         """Add an empty row."""
@@ -120,34 +139,66 @@ def render_terminal(report: Report, console: Console, *, verbose: bool = False) 
 
 
 def _show_brief(report: Report, found: ReportSections, page: Page) -> None:
-    """Add the short report, without its last lines."""
+    """Add the short report, without its last lines.
+
+    While a student has something to fix, what comes later is a line each, without empty rows.
+    """
+    is_unfinished = bool(found.mistakes or found.unbuilt) and not report.student
+    is_short = is_unfinished and len(found.mistakes) == 1
     _show_start(report, page)
     _show_mistakes(found.mistakes, report, page)
     if found.unbuilt:
         page.title(found.unbuilt_title)
     for line in found.unbuilt_lines:
         page.inset(line.text)
+    found_line = content.found_line(found.pending) if is_unfinished else ""
+    if is_unfinished and not found_line:
+        _show_pending(report, found.pending, page)
     if found.carried:
         page.leave_row()
     for line in found.carried:
         page.line(line.text, LOOKS[line.role])
-    if found.missing:
-        page.title("Not found")
-    for line in found.missing:
-        page.inset(line.text, LOOKS[line.role])
-    _show_pending(report, found.pending, page)
+    if is_unfinished:
+        _show_later(report, found_line, found.missing, page)
+    else:
+        _show_missing(found.missing, page)
+        _show_pending(report, found.pending, page)
     for section in found.remarks:
         page.leave_row()
-        for entry in section.entries:
-            words = " ".join(remarks_on(entry.result)) or entry.texts("finding")[0]
-            page.item(
-                entry.status,
-                (printable(entry.id), "bold"),
-                f"  {earned_text(entry.result)}: {words}",
-            )
+        _show_remarks(section, page)
     _show_groups(report, page)
-    _show_files(report, page)
+    _show_files(report, page, most=_MAX_ROWS if is_short else 0)
     page.leave_row()
+    if is_short:
+        page.close_up(_MAX_ROWS - _HEIGHT_OF_END)
+
+
+def _show_remarks(section: Section, page: Page) -> None:
+    """Add why each criterion of a section has its points."""
+    for entry in section.entries:
+        words = " ".join(remarks_on(entry.result)) or entry.texts("finding")[0]
+        name = (printable(entry.id), "bold")
+        page.item(entry.status, name, f"  {earned_text(entry.result)}: {words}")
+
+
+def _show_later(report: Report, found: str, missing: Sequence[Line], page: Page) -> None:
+    """Add how much is to be handed in, what was found for manual grading, and what matches
+    nothing.
+    """
+    texts = [text for text in (content.hand_in_line(report), found) if text]
+    texts += [line.text for line in missing if line.role == "there"]
+    if texts:
+        page.leave_row()
+    for text in texts:
+        page.line(text, LOOKS["missing"])
+
+
+def _show_missing(missing: Sequence[Line], page: Page) -> None:
+    """Add what was searched in vain."""
+    if missing:
+        page.title("Not found")
+    for line in missing:
+        page.inset(line.text, LOOKS[line.role])
 
 
 def _show_start(report: Report, page: Page) -> None:
@@ -199,14 +250,10 @@ def _brief_blocks(entry: Entry) -> Iterator[Block]:
                 yield part
 
 
-def _show_entry(
-    entry: Entry, report: Report, page: Page, blocks: Iterable[Block], *, is_whole: bool = False
-) -> None:
-    """Add a criterion or a mistake with these blocks; `is_whole` never shortens its place."""
+def _show_entry(entry: Entry, report: Report, page: Page, blocks: Iterable[Block]) -> None:
+    """Add a criterion or a mistake with these blocks."""
     is_mistake = bool(entry.lost) or is_failure(entry.result)
-    page.line(
-        _mistake_head(entry, page, is_whole=is_whole) if is_mistake else _entry_head(entry, page)
-    )
+    page.line(_mistake_head(entry, page) if is_mistake else _entry_head(entry, page))
     page.inset(" ".join(entry.texts("finding")))
     source_of = report.submission.source
     for part in blocks:
@@ -226,21 +273,19 @@ def _show_entry(
                     page.inset(line, _DIFF_STYLES.get(line[0], "dim"), 2 * INDENT)
 
 
-def _mistake_head(entry: Entry, page: Page, *, is_whole: bool = False) -> Text:
-    """Return what a mistake costs, its criteria, and its place, without the folder where there is
-    no room for it.
-    """
+def _mistake_head(entry: Entry, page: Page) -> Text:
+    """Return what a mistake costs, its criteria, and its place."""
     cost = (entry.cost, STYLES[entry.status]), ": ", (entry.names, "bold")
     text = Text.assemble(page.mark(entry.status), " ", *cost)
-    where = entry.location
-    if where is None:
-        return text
-    places = [where]
-    if not is_whole:
-        places.append(where._replace(path=where.path.rpartition("/")[2], calls=()))
-    room = page.console.width - INDENT - text.cell_len
-    fitting = (it for it in places if len(location_text(it)) + 2 <= room)
-    return text.append(f"  {location_text(next(fitting, where))}", "dim")
+    if entry.location is not None:
+        text.append("  ").append(_place(entry.location, page))
+    return text
+
+
+def _place(where: Location, page: Page) -> Text:
+    """Return a location with its whole path, which is a link where the terminal has links."""
+    style = Style(dim=True, link=link_to(page.console, where.path))
+    return Text(location_text(where), style)
 
 
 def _entry_head(entry: Entry, page: Page) -> Text:
@@ -324,20 +369,19 @@ def _is_known(group: CriteriaGroup) -> bool:
     return not all(result.is_open for result in group.results)
 
 
-def _show_files(report: Report, page: Page) -> None:
+def _show_files(report: Report, page: Page, most: int) -> None:
     """Add the first problems that no criterion has reported, and the first of the files that were
-    not graded.
+    not graded. Problems that make a report higher than `most` are only counted, if it is not 0.
     """
     problems = content.other_problems(report)
     listed = [problem for problem in problems if problem.severity != "note"]
     if listed:
         page.leave_row()
-    for problem in listed[:_MAX_PROBLEMS]:
-        file = problem.location.path.rpartition("/")[2]
-        name = (f"{problem.code} {problem.severity} ", LOOKS[problem.severity])
-        place = (f"{printable(file)}:{problem.location.line}", "dim")
-        page.line(Text.assemble(name, place, f": {printable(problem.message)}"))
-    rest = len(problems) - len(listed[:_MAX_PROBLEMS])
+    rows = [_problem_row(problem, page) for problem in listed[:_MAX_PROBLEMS]]
+    if most and page.height + sum(map(_height, rows)) + _HEIGHT_OF_END > most:
+        rows = []
+    page.rows.extend(rows)
+    rest = len(problems) - len(rows)
     if rest:
         words = counted(rest, "more problem" if listed else "note")
         page.line(f"{words}: --verbose shows {'it' if rest == 1 else 'them'}", "dim")
@@ -351,6 +395,17 @@ def _show_files(report: Report, page: Page) -> None:
         if len(ignored) > 1:
             line += f" (and {len(ignored) - 1} more: --verbose lists them)"
         page.line(printable(line), "dim")
+
+
+def _problem_row(problem: Problem, page: Page) -> Text:
+    """Return a problem with its code and place."""
+    name = (f"{problem.code} {problem.severity} ", LOOKS[problem.severity])
+    text = Text.assemble(name, _place(problem.location, page), f": {printable(problem.message)}")
+    return block(page.console, text, INDENT, Text())
+
+
+def _height(text: Text) -> int:
+    return text.plain.count("\n") + 1
 
 
 def _show_end(report: Report, page: Page) -> None:
@@ -391,7 +446,7 @@ def _show_section(section: Section, report: Report, page: Page) -> None:
     for number, entry in enumerate(section.entries):
         if number and is_failure(entry.result):
             page.leave_row()
-        _show_entry(entry, report, page, entry.blocks, is_whole=True)
+        _show_entry(entry, report, page, entry.blocks)
     for line in section.lines:
         page.inset(
             line.text, LOOKS[line.role], 2 * INDENT if line.role in ("found", "missing") else INDENT

@@ -299,8 +299,10 @@ class Package:
                 return was_not_committed(path)
         return ""
 
-    def missing(self, kind: str) -> MissingElement | NotDecided:
-        """Return the error for a package without a file of a kind: urdf, launch or rviz."""
+    def missing(self, kind: str, name: str = "") -> MissingElement | NotDecided:
+        """Return the error for a package without a file of a kind: urdf, launch or rviz. `name` is
+        that of the file that is wanted.
+        """
         word, endings = _KINDS[kind]
         if self.tree.links:
             return NotDecided(f"the {word} may be in {self.tree.links[0]}, which {IS_LINK}")
@@ -312,7 +314,11 @@ class Package:
         usual = enumerated(endings[:3], word="or")
         message = f"the package has no {word}: no file ends in {usual}{folder}"
         return MissingElement(
-            f"{word} in the package", "", message=message, detail=self.built(kind), absent=word
+            f"{word} in the package",
+            "",
+            message=message,
+            detail=self.built(kind),
+            absent=f"{word} {name}".rstrip(),
         )
 
     def without_data_files(self, message: str) -> MissingElement:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from grader.ros.xacro.expansion import ExpandedSource
     from grader.ros.xacro.texts import OtherArguments
 
+_MAX_BLANK = 4000  # bytes of a file without a robot
 _MAX_FOLDERS = 40  # whose launch files are read
 _NO_FILES = make_tree("", (), ())
 
@@ -44,9 +45,12 @@ class OtherCandidate(NamedTuple):
 
 
 class Absent:
-    """No file of the submission is a URDF."""
+    """No file of the submission is a URDF; `blank` is the path of one without content."""
 
-    __slots__ = ()
+    __slots__ = ("blank",)
+
+    def __init__(self, blank: str = "") -> None:
+        self.blank = blank
 
 
 class Unreadable(NamedTuple):
@@ -276,6 +280,14 @@ class Surroundings(NamedTuple):
             if len(found) == 1:
                 return found[0]
         return None
+
+
+def is_blank(data: bytes) -> bool:
+    """Return whether a file holds nothing but a declaration and comments: no robot is begun."""
+    if len(data) > _MAX_BLANK:
+        return False
+    text = data.decode("utf-8-sig", "replace")
+    return not re.sub(r"(?s)<\?xml.*?\?>|<!--.*?-->", "", text).strip()
 
 
 def launch_folders(tree: Tree, packages: Sequence[Package], paths: Iterable[str]) -> list[Package]:

@@ -1,0 +1,130 @@
+"""The words that a shell offers for arguments and options.
+
+They are found in the text of files: to load a rubric or a robot takes longer than a person waits
+for a completion.
+"""
+
+import os
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import typer
+
+from grader.files.reading import shipped_folder
+from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
+
+_RUBRIC_FILE = "rubric.toml"
+_MAX_ROBOTS, _MAX_SIZE = 20, 1024 * 1024  # files, bytes of each
+_MAX_DEPTH = 4  # of the folders of a workspace in which they are searched
+_CODE, _NAME = r"^\[([A-Z]+[0-9]{3})\]", r"^\[(\w+)\]"
+_ROBOTS = ("*.urdf", "*.xacro")
+
+
+def offer_rubrics(incomplete: str) -> list[str]:
+    """Return the rubrics that come with the grader, and the .toml files of the current folder."""
+    ids = [file.parent.name for file in shipped_folder("rubrics").glob(f"*/{_RUBRIC_FILE}")]
+    return _starting(incomplete, [*sorted(ids), *sorted(map(str, Path().glob("*.toml")))])
+
+
+def offer_parts(context: typer.Context, incomplete: str) -> list[str]:
+    """Return the parts of the rubric."""
+    return _starting(incomplete, _ids_in(_rubric_file(context), "part"))
+
+
+def offer_explained(context: typer.Context, incomplete: str) -> list[str]:
+    """Return the criteria of the rubric, the problem codes and the checks."""
+    examples = shipped_folder("docs", "examples")
+    checks = re.findall(_NAME, _text_of(examples / "checks.toml"), re.MULTILINE)
+    checks.remove("frames")  # what the examples have in common
+    criteria = _ids_in(_rubric_file(context), "criterion")
+    return _starting(incomplete, [*criteria, *offer_codes(""), *checks])
+
+
+def offer_codes(incomplete: str) -> list[str]:
+    """Return the problem codes."""
+    codes: list[str] = []
+    for file in sorted(shipped_folder("docs", "examples").glob("*.toml")):
+        codes += re.findall(_CODE, _text_of(file), re.MULTILINE)
+    return _starting(incomplete, codes)
+
+
+def offer_joints(context: typer.Context, incomplete: str) -> list[str]:
+    """Return the joints of the robots that are inspected, each ready for its value."""
+    tags = (tag for tag in _tags(context, "joint") if "fixed" not in tag)
+    return _starting(incomplete, [f"{name}=" for name in _names_of(tags)])
+
+
+def offer_links(context: typer.Context, incomplete: str) -> list[str]:
+    """Return the links of the robots that are inspected."""
+    return _starting(incomplete, _names_of(_tags(context, "link")))
+
+
+def offer_students(context: typer.Context, incomplete: str) -> list[str]:
+    """Return the students of the gradebook."""
+    _, *rows = _text_of(_gradebook(context) / "grades.csv").splitlines() or [""]
+    return _starting(incomplete, [row.partition(",")[0].strip('"') for row in rows])
+
+
+def offer_marked(context: typer.Context, incomplete: str) -> list[str]:
+    """Return the criteria of the gradebook's rubric, and what else can be marked."""
+    files = sorted((_gradebook(context) / "rubric").glob("*.toml"))
+    criteria = [name for file in files for name in _ids_in(file, "criterion")]
+    return _starting(incomplete, [*criteria, "total", "deadline"])
+
+
+def _starting(incomplete: str, words: Iterable[str]) -> list[str]:
+    """Return each word once that begins as it is typed."""
+    return [word for word in dict.fromkeys(words) if word.startswith(incomplete)]
+
+
+def _text_of(file: Path) -> str:
+    """Return the beginning of a file; empty without it."""
+    if not file.is_file():
+        return ""
+    with file.open(encoding="utf-8", errors="replace") as opened:
+        return opened.read(_MAX_SIZE)
+
+
+def _rubric_file(context: typer.Context) -> Path:
+    name = context.params.get("rubric") or DEFAULT_RUBRIC
+    shipped = shipped_folder("rubrics") / name / _RUBRIC_FILE
+    return shipped if shipped.is_file() else Path(name)
+
+
+def _ids_in(file: Path, table: str) -> Iterator[str]:
+    """Yield the ids in the tables of a kind."""
+    current = ""
+    for line in _text_of(file).splitlines():
+        found = re.match(r"""id\s*=\s*["']([^"']+)""", line)
+        if line.startswith("["):
+            current = line.strip("[] ")
+        elif current == table and found:
+            yield found[1]
+
+
+def _tags(context: typer.Context, tag: str) -> Iterator[str]:
+    """Yield the start tags of an element in the robots at the path, else in the current folder."""
+    path = Path(context.params.get("path") or os.curdir)
+    files = [path] if path.is_file() else []
+    for depth in range(_MAX_DEPTH):
+        for pattern in _ROBOTS:
+            files += sorted(path.glob("*/" * depth + pattern))
+    for file in files[:_MAX_ROBOTS]:
+        yield from re.findall(rf"<{tag}\s[^>]*>", _text_of(file))
+
+
+def _names_of(tags: Iterable[str]) -> Iterator[str]:
+    """Yield the names in start tags, but those that xacro computes."""
+    for tag in tags:
+        found = re.search(r"""\sname\s*=\s*["']([^"'$]+)["']""", tag)
+        if found:
+            yield found[1]
+
+
+def _gradebook(context: typer.Context) -> Path:
+    """Return the gradebook that is named, else the first one in the current folder."""
+    named = Path(context.params.get("gradebook") or "*")
+    if named.is_dir():
+        return named
+    return next((file.parent for file in sorted(Path().glob("*/class.toml"))), named)

@@ -1,0 +1,335 @@
+"""What to type in place of a command line that is refused. It is loaded only then."""
+
+import os
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from grader.base.errors import NotThereError
+from grader.base.names import closest
+from grader.base.text import enumerated, shell_quoted
+from grader.files.limits import ROBOT_ENDINGS
+from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
+from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
+from grader.report.formats import Format
+
+# What a command is called elsewhere.
+_COMMANDS = {
+    "check": "grade",
+    "test": "grade",
+    "run": "grade",
+    "score": "grade",
+    "watch": "grade --watch",
+    "fix": "grade --fix fixed.urdf",
+    "lint": "inspect",
+    "validate": "inspect",
+    "view": "inspect",
+    "class": "batch",
+    "help": "--help",
+    "version": "--version",
+}
+_SUBMISSIONS = (*ROBOT_ENDINGS, ".zip", ".tar.gz", ".tgz")
+# Of options that are given without their value.
+_EXAMPLES = {
+    "--fix": "my_robot.urdf --fix fixed.urdf",
+    "--format": "my_robot.urdf --format markdown",
+    "--part": "my_robot.urdf --part task1",
+    "--rubric": "my_robot.urdf --rubric lab6",
+    "--save": "my_robot.urdf --save html=report.html",
+}
+_TAKES_A_RUBRIC = ("grade", "batch")
+_DASHES = "\u2010\u2011\u2012\u2013\u2014\u2212-"  # in place of hyphens, as word processors write
+_QUOTES = "\u2018\u2019\u201c\u201d'\""
+_OUTPUTS = ("--output", "--out", "-o")
+_MAX_COMMANDS = 3  # that are named
+
+
+class _CommandLine(NamedTuple):
+    """A command line that is refused."""
+
+    words: list[str]
+    root: Any  # the command line of typer with all commands
+    command: Any  # of typer: the one that refuses the words
+    start: int  # the number of words that name the command
+
+    @property
+    def options(self) -> Mapping[str, Any]:
+        """The options that the command has, by their names."""
+        return {name: param for param in self.command.params for name in param.opts}
+
+    @property
+    def loose(self) -> list[int]:
+        """The indices of the words that are neither options nor their values."""
+        found = list[int]()
+        is_value = False
+        for index, word in enumerate(self.words[self.start :], self.start):
+            if is_value:
+                is_value = False
+            elif word.startswith("-") and word != "-":
+                option = self.options.get(word)
+                is_value = option is not None and not option.is_flag
+            else:
+                found.append(index)
+        return found
+
+    def replaced(self, start: int, end: int, *words: str) -> list[str]:
+        """Return the words with others in place of some of them."""
+        return [*self.words[:start], *words, *self.words[end:]]
+
+
+class _Correction(NamedTuple):
+    """What to type in place of a command line, and why."""
+
+    why: str
+    words: list[str]
+
+
+def usage_message(error: Any, arguments: Sequence[str], root: Any) -> str:
+    """Return one line on an error of usage: what is wrong, and what to type. `root` is the command
+    line of typer with all commands.
+    """
+    line = _command_line(arguments, root)
+    correction = _correct_hyphens(line) or _correct_command(line)
+    for correct in (_correct_option, _correct_choice, _correct_extra_words):
+        correction = correction or correct(line, error)
+    if correction is not None:
+        return f"{correction.why}: `grader {_shown(correction.words)}`"
+    what = " ".join(error.format_message().split())
+    return f"{what} ({_usage(line, error)})"
+
+
+def _command_line(arguments: Sequence[str], root: Any) -> _CommandLine:
+    """Return a command line with the command that it names."""
+    command, start = root, 0
+    for word in arguments:
+        inner = getattr(command, "commands", {}).get(word)
+        if inner is None:
+            break
+        command, start = inner, start + 1
+    return _CommandLine([*arguments], root, command, start)
+
+
+def message_on_path(error: NotThereError, arguments: Sequence[str]) -> str:
+    """Return one line on a path that does not exist, with what to type if that is known."""
+    command, *words = arguments
+    bare = [os.path.expanduser(word.strip(_QUOTES + ",;")) for word in words]  # noqa: PTH111
+    is_bare = bare != words and any(map(os.path.lexists, bare))
+    meant = None
+    if "help" in words:
+        meant = [command, "--help"]
+    elif error.path in shipped_rubrics() and command in _TAKES_A_RUBRIC:
+        others = [word for word in words if word != error.path]
+        meant = [command, *others, "--rubric", error.path]
+    elif is_bare:
+        meant = [command, *bare]
+    start = f"{error.path} does not exist"
+    if meant is not None:
+        return f"{start}; did you mean `grader {_shown(meant)}`?"
+    if re.match(r"\w+:/", error.path):
+        return f"{start}: download it, and grade the copy"
+    if re.search(r"[*?]", error.path):
+        return f"{start}: no file matches this pattern"
+    return str(error)
+
+
+def _shown(words: Sequence[str]) -> str:
+    return " ".join(map(shell_quoted, words))
+
+
+def _usage(line: _CommandLine, error: Any) -> str:
+    """Return what an incomplete command line lacks, or how its usage is shown."""
+    name = " ".join(["grader", *line.words[: line.start]])
+    example = re.search(r"^\s*(grader .*)$", line.command.help or "", re.MULTILINE)
+    is_incomplete = hasattr(error, "param_type")  # an argument is missing
+    if example is not None and is_incomplete:
+        return f"for example `{example[1]}`"
+    option = getattr(error, "option_name", "")
+    if option in _EXAMPLES and option in line.options:
+        return f"for example `grader grade {_EXAMPLES[option]}`"
+    others = _commands_with(option, line.root) if hasattr(error, "possibilities") else []
+    if others:
+        return f"an option of {enumerated(others, _MAX_COMMANDS)}"
+    return f"`{name} --help` shows the usage"
+
+
+def _correct_hyphens(line: _CommandLine) -> _Correction | None:
+    """Write two hyphens where there are dashes, or one hyphen before a long option."""
+    words = list[str]()
+    before = ""
+    for word in line.words:
+        whole = before + word
+        before = word if word.strip(_DASHES) == "" and word not in ("-", "--") else ""
+        if before:
+            continue
+        name, equals, value = whole.lstrip(_DASHES).partition("=")
+        is_option = whole[:1] in _DASHES and f"--{name}" in line.options and len(name) > 1
+        words.append(f"--{name}{equals}{value}" if is_option else whole)
+    if words == line.words:
+        return None
+    return _Correction("options begin with two hyphens", words)
+
+
+def _correct_command(line: _CommandLine) -> _Correction | None:
+    """Write the command first, by its name."""
+    groups = getattr(line.command, "commands", None)
+    at = line.start
+    if groups is None or at >= len(line.words):
+        return None
+    word, *rest = line.words[at:]
+    words = _with_command(line, word, rest)
+    if words is None:
+        return None
+    if word.startswith("-"):
+        return _Correction("options stand behind the command", words)
+    return _Correction(f"there is no command {word!r}", words)
+
+
+def _with_command(line: _CommandLine, word: str, rest: list[str]) -> list[str] | None:
+    """Return the words with a command in place of a word that is none."""
+    groups, above = line.command.commands, line.words[: line.start]
+    later = [other for other in rest if other in groups]
+    if word == "grader" or (word == "help" and later):
+        return rest if word == "grader" else [*rest, "--help"]
+    if later:
+        rest.remove(later[0])
+        return [*above, later[0], word, *rest]
+    if _is_submission(word) or (word.startswith("-") and any(map(_is_submission, rest))):
+        return ["grade", word, *rest]
+    if word in shipped_rubrics():
+        return ["rubric", "show", word, *rest] if above else ["grade", *rest, "--rubric", word]
+    of_rubrics = line.root.commands["rubric"].commands
+    is_of_rubrics = any(other in shipped_rubrics() or other.endswith(".toml") for other in rest)
+    if word in of_rubrics and (is_of_rubrics or not (rest or word in _COMMANDS)):
+        return ["rubric", word, *rest]
+    lower = word.lower()
+    meant = lower if lower in groups else _COMMANDS.get(lower) or closest(lower, groups)
+    return [*above, *meant.split(), *rest] if meant else None
+
+
+def _correct_option(line: _CommandLine, error: Any) -> _Correction | None:
+    """Write an option by its name."""
+    if not hasattr(error, "possibilities"):
+        return None
+    wrong = error.option_name
+    at = next((n for n, it in enumerate(line.words) if it.partition("=")[0] == wrong), None)
+    if at is None:
+        return None
+    why = f"there is no option {wrong}"
+    if wrong in _OUTPUTS and "--save" in line.options and at + 1 < len(line.words):
+        name = line.words[at + 1]
+        kinds = [kind for kind in Format if name.endswith(f".{kind.ending}")]
+        if kinds:
+            return _Correction(why, line.replaced(at, at + 2, "--save", f"{kinds[0]}={name}"))
+    if wrong.startswith("--"):
+        meant = closest(wrong, [name for name in line.options if name.startswith("--")])
+    else:
+        fitting = [name for name in line.options if name.startswith(f"-{wrong}")]
+        meant = fitting[0] if len(fitting) == 1 else None
+    if meant is None:
+        return None
+    return _Correction(why, line.replaced(at, at + 1, meant + line.words[at].removeprefix(wrong)))
+
+
+def _correct_extra_words(line: _CommandLine, error: Any) -> _Correction | None:
+    """Write the words that are too many where they belong, or leave them out."""
+    arguments = [param for param in line.command.params if param.param_type_name == "argument"]
+    is_about_option = hasattr(error, "option_name")
+    loose = line.loose
+    if is_about_option or len(loose) <= len(arguments) or len(arguments) != 1:
+        return None
+    for correct in (_correct_repetition, _correct_rubric, _correct_split_value, _correct_spaces):
+        correction = correct(line, loose)
+        if correction is not None:
+            return correction
+    why = f"{line.command.name} takes only one {arguments[0].metavar.strip('[]')}"
+    if line.command.name == "grade":
+        why += " (grader batch grades a class)"
+    return _Correction(why, [it for n, it in enumerate(line.words) if n not in loose[1:]])
+
+
+def _correct_repetition(line: _CommandLine, loose: list[int]) -> _Correction | None:
+    """Leave out a command that is typed twice."""
+    word = line.words[loose[0]]
+    if word != line.command.name:
+        return None
+    return _Correction(f"{word!r} stands here twice", line.replaced(loose[0], loose[0] + 1))
+
+
+def _correct_rubric(line: _CommandLine, loose: list[int]) -> _Correction | None:
+    """Write `--rubric` before a rubric that stands alone."""
+    ids = [index for index in loose if line.words[index] in shipped_rubrics()]
+    if not ids or "--rubric" not in line.options:
+        return None
+    words = [*line.replaced(ids[0], ids[0] + 1), "--rubric", line.words[ids[0]]]
+    return _Correction("--rubric names a rubric", words)
+
+
+def _correct_split_value(line: _CommandLine, loose: list[int]) -> _Correction | None:
+    """Write a word in the option before it."""
+    behind_values = (index for index in loose if index >= line.start + 2)
+    for index in behind_values:
+        words = _with_option_value(line, index)
+        if words is not None:
+            return _Correction(f"{line.words[index - 2]} takes one value", words)
+    return None
+
+
+def _correct_spaces(line: _CommandLine, loose: list[int]) -> _Correction | None:
+    """Write quotes around a path with spaces, or hyphens in the name of a criterion."""
+    first, end = loose[0], loose[-1] + 1
+    texts = line.words[first:end]
+    if end - first != len(loose):
+        return None
+    joined, name = " ".join(texts), "-".join(texts)
+    is_path = os.path.lexists(joined) or not any(map(os.path.lexists, texts))
+    if is_path and joined.lower().endswith(_SUBMISSIONS):
+        return _Correction("quote a path that has spaces", line.replaced(first, end, joined))
+    if any(criterion.id == name for criterion in load_rubric(DEFAULT_RUBRIC).criteria):
+        return _Correction("hyphens join the words", line.replaced(first, end, name))
+    return None
+
+
+def _with_option_value(line: _CommandLine, at: int) -> list[str] | None:
+    """Return the words with the word at an index in the option before it, or in one like that."""
+    name, before, word = line.words[at - 2 : at + 1]
+    option = line.options.get(name)
+    if option is None or option.is_flag:
+        return None
+    if before + word in shipped_rubrics():
+        return line.replaced(at - 1, at + 1, before + word)
+    if "=" in (option.metavar or "") and "=" not in before:
+        return line.replaced(at - 1, at + 1, f"{before}={word}")
+    if option.name == "output_format" and "--save" in line.options:
+        return line.replaced(at - 2, at + 1, "--save", f"{before}={word}")
+    if option.multiple and not os.path.lexists(word):
+        return line.replaced(at, at, name)
+    return None
+
+
+def _correct_choice(line: _CommandLine, error: Any) -> _Correction | None:
+    """Write the choice that is closest to a wrong one."""
+    kind = getattr(getattr(error, "param", None), "type", None)
+    choices = [str(choice) for choice in getattr(kind, "choices", ())]
+    for index in range(len(line.words) - 1, line.start - 1, -1):
+        start, equals, value = line.words[index].rpartition("=")
+        meant = value.lower() if value.lower() in choices else closest(value, choices)
+        if meant is not None and value not in choices:
+            words = line.replaced(index, index + 1, f"{start}{equals}{meant}")
+            return _Correction(f"{value!r} is not one of the choices", words)
+    return None
+
+
+def _is_submission(word: str) -> bool:
+    return os.path.lexists(word) or word.lower().endswith(_SUBMISSIONS)
+
+
+def _commands_with(option: str, root: Any) -> list[str]:
+    """Return the commands that have an option."""
+    return [f"`{name}`" for name, params in _options(root, "grader") if option in params]
+
+
+def _options(command: Any, name: str) -> Iterator[tuple[str, set[str]]]:
+    """Yield each command below another one, and its options."""
+    for part, inner in getattr(command, "commands", {}).items():
+        yield f"{name} {part}", {option for param in inner.params for option in param.opts}
+        yield from _options(inner, f"{name} {part}")
