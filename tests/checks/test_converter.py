@@ -10,6 +10,7 @@ import pytest
 from grader.base.source import Location
 from grader.lab.checks.manual import answered
 from grader.lab.checks.outcome import Outcome
+from grader.lab.documents.collection import MAX_SECONDS
 from grader.lab.submission.submission import Opening
 from tests.checks.outcomes import ask
 from tests.checks.submissions import REFERENCE, URDF, Submitted
@@ -110,6 +111,21 @@ def test_all_documents_share_one_budget(tmp_path: Path, monkeypatch: pytest.Monk
     assert (
         not log.exists() or log.read_text() == "x"
     )  # the first one may end before it writes; no other one starts
+
+
+def test_the_time_of_a_converter_is_taken_from_the_next(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each one gets what those before it have left of the processor time, the first one all of it."""
+    log = tmp_path / "log"
+    code = f"import sys; open({str(log)!r}, 'a').write(sys.argv[2] + ' ')"
+    converter(code.encode(), tmp_path / "log.py", monkeypatch)
+    answer = {"d.txt": "Task 1 step 15: It vanishes."}
+    answer_in(ALONE.with_files({f"{name}.pdf": b"" for name in "abc"} | answer))
+    seconds = [float(text) for text in log.read_text().split()]
+    assert seconds[0] == MAX_SECONDS
+    assert seconds == sorted(set(seconds), reverse=True)
+    assert all(0 < left <= MAX_SECONDS for left in seconds)
 
 
 @pytest.mark.slow
