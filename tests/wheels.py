@@ -13,9 +13,13 @@ from packaging.requirements import Requirement
 
 from tests.command_line import ROOT
 
+LOCK = "requirements.lock"
+
 
 def offline(folder: Path) -> dict[str, str]:
-    """Make such wheels for all dependencies of the grader; return the variables that make pip install only these."""
+    """Make such wheels for all dependencies of the grader, with a lock of them; return the variables that make pip install
+    only these.
+    """
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     declared = project["project"]
     expected = [
@@ -25,7 +29,17 @@ def offline(folder: Path) -> dict[str, str]:
     ]
     for requirement in expected:
         _write_wheel(Requirement(requirement).name, folder)
+    (folder / LOCK).write_text(_lock_of(folder), encoding="utf-8")
     return {"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": str(folder), "PIP_CONFIG_FILE": "/dev/null"}
+
+
+def _lock_of(folder: Path) -> str:
+    """Return the lines of a lock with the hashes of these wheels."""
+    lines = []
+    for wheel in sorted(folder.glob("*.whl")):
+        name, number, *_ = wheel.name.split("-")
+        lines.append(f"{name}=={number} --hash=sha256:{sha256(wheel.read_bytes()).hexdigest()}\n")
+    return "".join(lines)
 
 
 def _write_wheel(package: str, folder: Path) -> None:

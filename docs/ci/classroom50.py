@@ -10,7 +10,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-GRADER = "urdf-grader[documents] @ git+https://github.com/YOUR-ORG/grader@v1"
+GRADER, VERSION = "https://github.com/YOUR-ORG/grader", "v1"
 # Automatic parts only: what needs manual grading would count as not passed.
 OPTIONS = ["--rubric", "lab6", "--part", "task1", "--part", "task2"]
 # The files that the runner reads, and their formats.
@@ -26,7 +26,13 @@ for name in RESULTS:
 with tempfile.TemporaryDirectory() as home:
     subprocess.run([sys.executable, "-I", "-m", "venv", home], check=True)
     python = [str(Path(home, "bin", "python")), "-I", "-m"]
-    subprocess.run([*python, "pip", "install", "--quiet", GRADER], check=True)
+    source = str(Path(home, "source"))
+    clone = ["git", "clone", "--quiet", "--depth", "1", "--branch", VERSION, GRADER, source]
+    subprocess.run(clone, check=True)
+    lock = ["--require-hashes", "--requirement", str(Path(source, "requirements.lock"))]
+    for wanted in (lock, ["--no-deps", "--no-build-isolation", source]):
+        # pip keeps what it downloads in its cache, and verifies the hashes of what is there.
+        subprocess.run([*python, "pip", "install", "--quiet", *wanted], check=True)
     saves = [
         part for name, kind in RESULTS.items() for part in ("--save", f"{kind}={Path(home, name)}")
     ]

@@ -35,7 +35,7 @@ _EXIT_ENDED = 70  # the exit code of a worker that exited unexpectedly with exit
 _CHANNEL_TIMEOUT = 3.0
 _CHECK_INTERVAL = 0.5  # seconds
 # A task ends after this many times its limit of processor time, also if it waits for something.
-_WAITING = 3 if CAN_LIMIT else 1
+_WAITING = 10 if CAN_LIMIT else 1
 _EXIT_OUT_OF_TIME = -getattr(signal, "SIGXCPU", 0)
 _MAX_IDLE = 30.0  # seconds beyond that in which a task must be completed
 _MAX_END = 5.0  # seconds in which a pool must end

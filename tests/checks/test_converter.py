@@ -3,7 +3,9 @@
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -110,6 +112,23 @@ def test_all_documents_share_one_budget(tmp_path: Path, monkeypatch: pytest.Monk
     assert (
         not log.exists() or log.read_text() == "x"
     )  # the first one may end before it writes; no other one starts
+
+
+def test_the_time_of_a_converter_is_taken_from_the_next(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each one gets what those before it have left of the processor time, the first one all of it."""
+    used = count(0, 0.25)  # by the processes that have ended, from none of them on
+    monkeypatch.setattr(
+        "os.times",
+        lambda: SimpleNamespace(children_user=next(used), children_system=0.0, elapsed=1e6),
+    )
+    log = tmp_path / "log"
+    code = f"import sys; open({str(log)!r}, 'a').write(sys.argv[2] + ' ')"
+    converter(code.encode(), tmp_path / "log.py", monkeypatch)
+    answer = {"d.txt": "Task 1 step 15: It vanishes."}
+    answer_in(ALONE.with_files({f"{name}.pdf": b"" for name in "abc"} | answer))
+    assert log.read_text().split() == ["3.0", "2.75", "2.5"]
 
 
 @pytest.mark.slow

@@ -10,7 +10,7 @@ from unittest.mock import patch
 import pytest
 
 from tests.command_line import HANG_TIMEOUT, ROOT
-from tests.wheels import offline
+from tests.wheels import LOCK, offline
 
 PUBLISHED = (
     "pyproject.toml",
@@ -59,8 +59,8 @@ def installed_offline(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None
         yield
 
 
-@pytest.fixture(scope="session")
-def published(tmp_path_factory: pytest.TempPathFactory) -> Path:
+@pytest.fixture(scope="package")
+def published(installed_offline: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder that acts as the git host, with the project as YOUR-ORG/grader, tagged v1."""
     if shutil.which("git") is None:
         pytest.skip("git is not installed")
@@ -73,5 +73,6 @@ def published(tmp_path_factory: pytest.TempPathFactory) -> Path:
             shutil.copytree(source, project / name, ignore=shutil.ignore_patterns("__pycache__"))
         else:
             shutil.copy(source, project / name)
+    shutil.copy(Path(os.environ["PIP_FIND_LINKS"], LOCK), project)
     repository(project, tag="v1")
     return host

@@ -114,7 +114,8 @@ class Runner:
     def _context(self, name: str) -> str:
         if name.startswith("steps."):
             return self.contexts.get(name, "")
-        return {"runner.temp": str(self.temp), **self.contexts}[name]
+        about = {"runner.temp": str(self.temp), "runner.os": "Linux", "runner.arch": "X64"}
+        return {**about, **self.contexts}[name]
 
     def _is_due(self, condition: str, failed: int) -> bool:
         terms = [term.strip() for term in condition.split("&&")]
@@ -142,8 +143,8 @@ class Runner:
         self.summary += files["GITHUB_STEP_SUMMARY"].read_text(encoding="utf-8")
 
 
-def composite(path: Path, but: str) -> Callable[[Runner, Mapping[str, str]], Done]:
-    """Return the action in a folder as a callable for the runner: its steps except one, with its inputs and outputs."""
+def composite(path: Path, only: str) -> Callable[[Runner, Mapping[str, str]], Done]:
+    """Return the action in a folder as a callable for the runner: one of its steps, with its inputs and outputs."""
 
     def use(runner: Runner, given: Mapping[str, str]) -> Done:
         action = load(path / "action.yml")
@@ -152,7 +153,7 @@ def composite(path: Path, but: str) -> Callable[[Runner, Mapping[str, str]], Don
         inner.contexts = {"github.action_path": str(path), "github.action_repository": ""}
         for name, about in action["inputs"].items():
             inner.contexts[f"inputs.{name}"] = given.get(name, about["default"])
-        code = inner.job([step for step in action["runs"]["steps"] if step["name"] != but])
+        code = inner.job([step for step in action["runs"]["steps"] if step["name"] == only])
         runner.summary += inner.summary
         for name, about in action["outputs"].items():
             runner.contexts[f"steps.grade.outputs.{name}"] = inner.value(about["value"])

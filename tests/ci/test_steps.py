@@ -3,6 +3,7 @@
 import json
 import os
 import random
+import re
 import shutil
 import subprocess
 import sys
@@ -18,6 +19,7 @@ from tests.command_line import HANG_TIMEOUT, ROOT
 
 CHECKOUT = "actions/checkout@de0fac2e4500dabe0009e67214ff5f5447ce83dd"
 PYTHON = "actions/setup-python@a309ff8b426b58ec0e2a45f0f869d46889d02405"
+CACHE = "actions/cache@668228422ae6a00e4ad889ee87cd7109ec5666a7"
 UPLOAD = "actions/upload-artifact@b7c566a772e6b6bfb58ed0dc250532a479d7789f"
 WORKFLOWS = ROOT / "docs" / "ci"
 
@@ -40,28 +42,47 @@ def nothing(_runner: Runner, _given: Mapping[str, str]) -> Done:
     return Done(0, "", "")
 
 
-@pytest.fixture(scope="session")
-def temp(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def installed(runner: Runner, action: Path, version: str = "") -> int:
+    """Run the steps of the action that install it; return the exit code."""
+    runner.contexts = {
+        "github.action_path": str(action),
+        "github.action_repository": "",  # some runners leave it empty
+        "inputs.version": version,
+    }
+    restored = list[Mapping[str, str]]()
+
+    def restore(_runner: Runner, given: Mapping[str, str]) -> Done:
+        restored.append(given)
+        return Done(0, "", "")
+
+    runner.actions = {CACHE: restore}
+    *install, _ = load(ROOT / "action.yml")["runs"]["steps"]
+    code = runner.job(install)
+    is_restored = code != 2  # an input that is refused is refused before
+    folder = str(runner.temp / "grader-downloads")
+    assert [given["path"] for given in restored] == [folder] * is_restored
+    assert all(
+        re.fullmatch(r"grader-Linux-X64-3\.\d+-[0-9a-f]{64}", given["key"]) for given in restored
+    )
+    return code
+
+
+@pytest.fixture(scope="package")
+def temp(tmp_path_factory: pytest.TempPathFactory, published: Path) -> Path:
     """Return the temporary folder of a job, in which the action is installed once."""
     temp = tmp_path_factory.mktemp("temp")
-    installing = Runner(temp, temp)
-    installing.contexts = {
-        "github.action_path": str(ROOT),
-        "github.action_repository": "",
-        "inputs.version": "",
-    }
-    done = installing.step(load(ROOT / "action.yml")["runs"]["steps"][0])
-    assert done.code == 0, done.stderr
+    runner = Runner(temp, temp)
+    assert installed(runner, published / "YOUR-ORG/grader") == 0, runner.done
     return temp
 
 
 class Job:
-    """The second step of the action, in a student's repository."""
+    """The last step of the action, in a student's repository."""
 
     def __init__(self, workspace: Path, temp: Path) -> None:
         self.runner = Runner(workspace, temp)
         action = load(ROOT / "action.yml")
-        self.step = action["runs"]["steps"][1]
+        self.step = action["runs"]["steps"][-1]
         self.defaults = {
             f"inputs.{name}": about["default"] for name, about in action["inputs"].items()
         }
@@ -192,26 +213,44 @@ def test_the_student_workflow(tmp_path: Path, temp: Path) -> None:
         runner = Runner(tmp_path / sample, temp)
         runner.actions = {
             CHECKOUT: nothing,
-            "YOUR-ORG/grader@v1": composite(ROOT, but="Install the grader"),
+            "YOUR-ORG/grader@v1": composite(ROOT, only="Grade"),
             UPLOAD: upload,
         }
         assert runner.job(workflow["jobs"]["grade"]["steps"]) == code, runner.done
     assert kept == ["junit.xml", "report.html", "report.json", "report.md", "report.svg"] * 2
 
 
+def test_two_uses_in_a_job_keep_their_reports(tmp_path: Path, job: Job) -> None:
+    """Each has a folder of its own, and the first one's has the name that a workflow expects."""
+    folders = []
+    for rubric in ("lab6", "diffdrive"):
+        job.grade(rubric=rubric)
+        report = Path(job.output("report-json"))
+        folders.append(report.parent)
+        assert json.loads(report.read_text(encoding="utf-8"))["rubric"]["id"] == rubric
+    assert folders[0] != folders[1]
+    first = json.loads((folders[0] / "report.json").read_text(encoding="utf-8"))
+    assert first["rubric"]["id"] == "lab6"
+    assert {path.name for path in folders[0].iterdir()} == {
+        path.name for path in folders[1].iterdir()
+    }
+
+
+def test_a_changed_package_is_not_installed(tmp_path: Path, published: Path) -> None:
+    """A file whose hash is not in the lock stops the installation, wherever it is from."""
+    source = tmp_path / "grader"
+    shutil.copytree(published / "YOUR-ORG/grader", source)
+    lock = source / "requirements.lock"
+    lock.write_text(re.sub(r"sha256:\w{8}", "sha256:00000000", lock.read_text()))
+    assert installed(Runner(tmp_path, tmp_path), source) == 1
+
+
 def test_a_version_is_taken_from_the_repository(tmp_path: Path, published: Path) -> None:
     """The input `version` installs that tag; anything that is no tag is refused before the installation."""
-    action = load(ROOT / "action.yml")
     runner = Runner(tmp_path, tmp_path, instead_of_github(published))
     for version, code in (("; touch owned", 2), ("--help", 2), ("v1", 0)):
-        # the context is empty on some runners
-        path = f"{tmp_path}/_actions/YOUR-ORG/grader/{version}"
-        runner.contexts = {
-            "github.action_path": path,
-            "github.action_repository": "",
-            "inputs.version": version,
-        }
-        assert runner.step(action["runs"]["steps"][0]).code == code
+        path = tmp_path / f"_actions/YOUR-ORG/grader/{version}"
+        assert installed(runner, path, version) == code, runner.done
     done = subprocess.run(
         [tmp_path / "grader-venv/bin/grader", "--version"], capture_output=True, check=False
     )
@@ -351,7 +390,7 @@ def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
 @pytest.mark.parametrize(
     ("sample", "code"), [("reference", 0), ("missing-import-os", 1), ("xacro-in-urdf", None)]
 )
-def test_the_gitlab_job(tmp_path: Path, sample: str, code: int | None) -> None:
+def test_the_gitlab_job(tmp_path: Path, published: Path, sample: str, code: int | None) -> None:
     """The exit code is the grader's; reports are not written through a student's symlinks, and old reports are removed."""
     work = tmp_path / "work"
     shutil.copytree(ROOT / "submissions/lab6" / sample, work)
@@ -359,10 +398,15 @@ def test_the_gitlab_job(tmp_path: Path, sample: str, code: int | None) -> None:
     (work / "grader-reports").symlink_to("../victim")
     job = load(WORKFLOWS / "gitlab-ci.yml")["lab6"]
     grader = Path(sys.executable).with_name("grader")
-    script = "\n".join(["set -e", *job["script"][2:]]).replace(
-        "/tmp/grader/bin/grader", str(grader)
-    )
-    variables = {**os.environ, **job["variables"], "CI": "true", "CI_PROJECT_DIR": str(work)}
+    script = "\n".join(["set -e", *job["script"]]).replace("/tmp/", f"{tmp_path}/")
+    variables = {
+        **os.environ,
+        **instead_of_github(published),
+        **job["variables"],
+        "PIP_CACHE_DIR": str(tmp_path / "cache"),
+        "CI": "true",
+        "CI_PROJECT_DIR": str(work),
+    }
     done = subprocess.run(
         ["bash", "-c", script], cwd=work, env=variables, capture_output=True, text=True, check=False
     )

@@ -140,18 +140,20 @@ def test_the_page_lists_each_input_and_output() -> None:
 
 
 @pytest.mark.exhaustive
-def test_the_commands_of_the_image(tmp_path: Path) -> None:
+def test_the_commands_of_the_image(tmp_path: Path, published: Path) -> None:
     """What the Dockerfile runs makes an environment in which a robot can be graded. The image itself is not built."""
     text = (ROOT / "Dockerfile").read_text(encoding="utf-8")
     ignored = (ROOT / ".dockerignore").read_text(encoding="utf-8").split()
     shutil.copytree(
         ROOT, tmp_path / "source", ignore=lambda folder, _: ignored if Path(folder) == ROOT else []
     )
+    shutil.copy(published / "YOUR-ORG/grader/requirements.lock", tmp_path / "source")
     subprocess.run([sys.executable, "-m", "venv", tmp_path / "venv"], check=True)
     runs = re.findall(r"^RUN (?:--mount=\S+ )?pip (.*)$", text, re.MULTILINE)
     assert len(runs) == 2
+    assert re.search(r"^FROM python:3\.\d+-slim@sha256:[0-9a-f]{64}$", text, re.MULTILINE)
     for run in runs:
-        arguments = re.sub(r"/(?=wheels|source)", f"{tmp_path}/", run)
+        arguments = re.sub(r"/(?=source)", f"{tmp_path}/", run)
         subprocess.run(f"{tmp_path}/venv/bin/pip {arguments}", shell=True, check=True)
     robot = ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf"
     entry = json.loads(re.findall(r"^ENTRYPOINT (.*)$", text, re.MULTILINE)[0])
