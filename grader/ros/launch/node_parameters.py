@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from grader.base.source import Location
 from grader.ros.build.places import PREFIX
-from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_value
+from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, read_yaml, yaml_value
 from grader.ros.known.known import spawner_options
 from grader.ros.launch.call_arguments import FILE, SCALARS, TYPED, items_in, kind_of, type_of
 from grader.ros.launch.launch_model import (
@@ -527,7 +527,10 @@ def _read_tables(
         root = read_yaml(*file)
     except YamlFault as fault:
         raise Undetermined(f"the file {file[1]} is not readable as YAML: {fault}") from None
-    yield from _sections(root, "", is_plain=given.is_plain)
+    visits = Visits()
+    yield from _sections(root, "", visits, is_plain=given.is_plain)
+    if not visits.is_complete:
+        raise Undetermined(f"the file {file[1]} has too many aliases to read")
 
 
 def _find_key(given: GivenParameters, full_name: str | None) -> str | None:
@@ -542,12 +545,14 @@ def _find_key(given: GivenParameters, full_name: str | None) -> str | None:
 
 
 def _sections(
-    node: YamlNode, key: str, *, is_plain: bool
+    node: YamlNode, key: str, visits: Visits, *, is_plain: bool
 ) -> Iterator[tuple[str, dict[str, ParameterValue]]]:
     """Yield the sections of a parameter file, each with its key, which begins with a slash."""
-    for name, value in node.pairs if key.count("/") < _MAX_DEPTH else ():
+    if key.count("/") >= _MAX_DEPTH or not visits.enters(node):
+        return
+    for name, value in node.pairs:
         if name == _KEY:
-            values = _flat(value, "", 0)
+            values = _flat(value, "", 0, visits)
             yield (
                 key,
                 {
@@ -557,15 +562,15 @@ def _sections(
                 },
             )
         else:
-            yield from _sections(value, f"{key}/{name.strip('/')}", is_plain=is_plain)
+            yield from _sections(value, f"{key}/{name.strip('/')}", visits, is_plain=is_plain)
 
 
-def _flat(node: YamlNode, name: str, depth: int) -> Iterator[tuple[str, YamlNode]]:
+def _flat(node: YamlNode, name: str, depth: int, visits: Visits) -> Iterator[tuple[str, YamlNode]]:
     if not isinstance(node.value, dict) or depth > _MAX_DEPTH:
         yield name, node
-        return
-    for key, value in node.value.items():
-        yield from _flat(value, f"{name}.{key}" if name else key, depth + 1)
+    elif visits.enters(node):
+        for key, value in node.value.items():
+            yield from _flat(value, f"{name}.{key}" if name else key, depth + 1, visits)
 
 
 def value_in_file(node: YamlNode, *, is_plain: bool = True) -> ParameterValue:

@@ -11,7 +11,7 @@ from typing import Any
 
 from grader.base.names import closest, near
 from grader.base.source import Location
-from grader.ros.config.yaml_nodes import YamlFault, YamlNode, first_alias
+from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, first_alias
 from grader.ros.config.yaml_values import (
     PARAMETERS,
     is_misspelt_key,
@@ -116,12 +116,17 @@ def _plugins(workspace: Workspace) -> Iterator[Fact]:
         yield from _plugin_names(tree, workspace.releases)
 
 
-def _sections(node: YamlNode, above: str = "") -> Iterator[tuple[str, str]]:
+def _sections(node: YamlNode) -> Iterator[tuple[str, str]]:
     """Yield the names of the mappings in a file, each with the keys above it."""
-    for key, inner in node.value.items() if isinstance(node.value, dict) else ():
-        if isinstance(inner.value, dict):
-            yield above, key
-            yield from _sections(inner, f"{above}/{key.strip('/')}")
+    waiting, visits = [("", node)], Visits()
+    while waiting:
+        above, mapping = waiting.pop()
+        if not isinstance(mapping.value, dict) or not visits.enters(mapping):
+            continue
+        for key, inner in mapping.value.items():
+            if isinstance(inner.value, dict):
+                yield above, key
+                waiting.append((f"{above}/{key.strip('/')}", inner))
 
 
 def _is_given_alone(workspace: Workspace, path: str) -> bool:
@@ -222,8 +227,11 @@ def _misplaced(tree: YamlNode) -> Iterator[Fact]:
             at,
         )
     waiting: list[tuple[str, YamlNode, bool]] = [("", tree, False)]
+    visits = {True: Visits(), False: Visits()}  # by whether it is below a key ros__parameters
     while waiting:
         name, node, is_below = waiting.pop()
+        if not visits[is_below].enters(node):
+            continue
         if isinstance(node.value, dict) and node.value:
             for key, inner in node.value.items():
                 if key == PARAMETERS and is_below:
@@ -435,10 +443,10 @@ def _plugin_lists(tree: YamlNode, elsewhere: Collection[tuple[str, str]]) -> Ite
     """Yield the entries of lists of plugins that have no section beside them, and none at the same
     place elsewhere.
     """
-    waiting = [("", tree)]
+    waiting, visits = [("", tree)], Visits()
     while waiting:
         above, node = waiting.pop()
-        if not isinstance(node.value, dict):
+        if not isinstance(node.value, dict) or not visits.enters(node):
             continue
         sections: dict[str, Location] = {}
         for key, inner in node.value.items():
