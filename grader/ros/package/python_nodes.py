@@ -23,6 +23,7 @@ from grader.ros.package.entry_points import (
 from grader.ros.package.node_slips import Program as StartedProgram
 from grader.ros.package.node_slips import node_slips
 from grader.ros.package.package import Package
+from grader.ros.python.budget import Budget
 from grader.ros.python.constants import Constants, constant_in, dotted, offset_of
 from grader.ros.python.evaluation import record
 from grader.ros.python.parse import (
@@ -214,13 +215,18 @@ def read_nodes(package: Package) -> PythonNodes:
             unread.add(path)
             doubts.append(_Doubt("the file is not read", Location(package.path(path), 1, 1)))
         else:
-            modules[name] = _Module(code, name, is_package=path.endswith("/__init__.py"))
+            is_package = path.endswith("/__init__.py")
+            modules[name] = _Module(code, name, package.work, is_package=is_package)
     bases = {full: found for module in modules.values() for full, found in module.bases.items()}
-    kinds = set(_NODES)
-    while more := {
-        full for full, found in bases.items() if full not in kinds and kinds.intersection(found)
-    }:
-        kinds |= more
+    derived: dict[str | None, list[str]] = {}  # classes by each of their bases
+    for full, found in bases.items():
+        for base in found:
+            derived.setdefault(base, []).append(full)
+    kinds, reached = set(_NODES), [*_NODES]
+    while reached:
+        more = [full for full in derived.get(reached.pop(), ()) if full not in kinds]
+        kinds.update(more)
+        reached += more
     nodes = [node for module in modules.values() for node in module.read_nodes(kinds)]
     doubts += (doubt for module in modules.values() for doubt in module.doubts)
     programs = []
@@ -347,10 +353,11 @@ class _Module:
     their calls.
     """
 
-    def __init__(self, code: Code, name: str, *, is_package: bool) -> None:
+    def __init__(self, code: Code, name: str, work: Budget, *, is_package: bool) -> None:
         self._code, self._name = code, name
         functions = dict.fromkeys(("rclpy.qos.QoSProfile", *_CREATES), record)
-        self._constants = Constants([*ast.walk(code.tree)], name, functions, is_package=is_package)
+        syntax = [*ast.walk(code.tree)]
+        self._constants = Constants(syntax, name, functions, work, is_package=is_package)
         # Of the classes, by full names; None for a base that is not known.
         self.bases: dict[str, list[str | None]] = {}
         self.doubts: list[_Doubt] = []
@@ -428,7 +435,7 @@ class _Module:
                     facts.append(
                         _Doubt("another node takes the parameters of the process", self._at(call))
                     )
-        if self._constants.budget.left < 0:
+        if self._constants.budget.is_spent:
             self.doubts.append(
                 _Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1))
             )

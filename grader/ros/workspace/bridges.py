@@ -58,7 +58,9 @@ class _BridgeRow(NamedTuple):
 def bridge_rows(workspace: Workspace) -> Iterator[_BridgeRow]:
     """Yield the rows of bridges in YAML files, and those in the arguments of bridges."""
     for path, tree in workspace.trees:
-        is_used = any(posixpath.basename(path) in text for text in workspace.launch_texts)
+        is_used = any(
+            posixpath.basename(path) in text for text in workspace.searched_launch_texts()
+        )
         for item in tree.items:
             row = _row_in_yaml(item, is_used=is_used)
             if row is not None:
@@ -131,7 +133,7 @@ def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
             bridged |= {(word or "").strip("/") for word in node.arguments or ()}
     unused = [topic for topic in topics if topic.name not in bridged]
     is_known = not _is_open(workspace)
-    are_expanded = any(_EXPANDED in text for text in workspace.launch_texts)
+    are_expanded = any(_EXPANDED in text for text in workspace.searched_launch_texts())
     for row in rows:
         yield Compared("topics")
         same = [topic for topic in topics if topic.name == row.gz]

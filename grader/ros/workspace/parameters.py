@@ -5,7 +5,6 @@ nodes declare them.
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
-from functools import partial
 from itertools import chain
 from typing import Any
 
@@ -22,7 +21,6 @@ from grader.ros.config.yaml_values import (
 from grader.ros.known.known import known
 from grader.ros.known.releases import RELEASES, Release, releases_with
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
-from grader.ros.launch.node_parameters import parameters_of
 from grader.ros.package.mesh_content import LFS_POINTER
 from grader.ros.package.package import Package
 from grader.ros.package.python_nodes import PythonNode
@@ -279,8 +277,7 @@ def _given(
 ) -> Iterator[Fact]:
     """Yield the parameters that a node of the workspace is given."""
     owner = f"{node.package}/{node.executable}"
-    opened = partial(workspace.open_given, package)
-    given = parameters_of(node, opened, python_node.name or "")
+    given = workspace.read_given(package, node, python_node.name or "")
     if given.unknown:
         yield Undecided("parameters", given.unknown)
     # What a file gives to every node need not be declared by this one.
