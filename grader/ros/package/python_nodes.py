@@ -40,6 +40,7 @@ from grader.ros.python.values import SCALARS, Call, QualifiedName, Scope, Unknow
 
 _MAX_SEARCHED = 32 * 1024  # bytes of a program in which slips are searched
 _MAX_MODULES = 100
+_BYTES_A_PART = 2  # of a program in which slips are searched, charged as one part
 _MAX_FIRST_LINE = 100  # bytes
 _NODES = frozenset(
     f"rclpy.{name}"
@@ -232,6 +233,10 @@ def read_nodes(package: Package) -> PythonNodes:
     programs = []
     for program in _programs(package, modules, nodes):
         slips = _slips_of(package, program)
+        if slips is None:
+            doubts.append(_Doubt("not all programs are read", program.location))
+            programs.append(program._replace(nodes=()))
+            continue
         doubts += [_Doubt(slip.reaction, slip.location) for slip in slips]
         syntax = unreadable_module(package, program.path) if program.path in unread else None
         programs.append(program._replace(nodes=() if slips else program.nodes, syntax=syntax))
@@ -243,13 +248,16 @@ def program_slips(package: Package) -> Iterator[Slip]:
     """Yield the slips for which a program in Python stops, or does nothing."""
     found: dict[Edits, Slip] = {}
     for program in _programs(package, {}, ()):
-        for slip in _slips_of(package, program):
+        for slip in _slips_of(package, program) or ():
             found.setdefault(slip.edits, slip)
     yield from found.values()
 
 
-def _slips_of(package: Package, program: "_Program") -> list[Slip]:
+def _slips_of(package: Package, program: "_Program") -> list[Slip] | None:
+    """Return the slips of a program; None where too many programs are in a file to search each."""
     data = package.tree.read(program.path, _MAX_SEARCHED)
+    if not package.budget.take_of_whole(len(data or b"") // _BYTES_A_PART):
+        return None
     code = parse(data or b"", package.path(program.path))
     if isinstance(code, Code):
         return node_slips(code, StartedProgram(program.name, program.function))

@@ -11,7 +11,7 @@ from grader.ros.python.values import parts_of, refuse, too_large
 READING = 500_000  # parts that reading one submission may produce or look at: some 0.5 s
 # Parts that reading all files of a submission and comparing their names may take, besides one for
 # each byte of text: what is large is no attack.
-_OF_SUBMISSION = 600_000
+_OF_SUBMISSION = 400_000
 PYTHON_LIMIT = 128 * 1024  # bytes of a file; a syntax tree takes several hundred times as much
 _MAX_TEXT = 512 * 1024  # bytes of a text that count
 CHARACTERS, _BITS = 16, 256  # that count as one part
@@ -65,6 +65,12 @@ class Budget:
             raise OutOfBudget(
                 f"reading this takes more work than one submission may use ({self.limit:,} parts)"
             )
+
+    def take_of_whole(self, parts: int) -> bool:
+        """Charge parts to the budget of the submission alone; return whether they were left."""
+        if self.whole is not None:
+            self.whole.left -= parts
+        return not self.is_spent
 
     def measure(self, value: py.Value, kind: str = "plain") -> int:
         """Charge a value and return its size: its parts, each as often as it occurs. Raises

@@ -202,7 +202,7 @@ def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: N
         charge(1 + len(patterns))
         if is_defined or _may_be_defined(use, patterns):
             continue
-        charge(_cost_of_guess(len(known.get(key, ()))))
+        charge(cost_of_guess(len(known.get(key, ()))))
         mismatch = _mismatch(use, known.get(key, {}), is_open=key in opened)
         if mismatch is not None:
             found.append(mismatch)
@@ -229,7 +229,7 @@ def _may_be_defined(use: Use, patterns: Sequence[Pattern]) -> bool:
     return "$" in use.name or any(fnmatchcase(use.name, pattern) for pattern in possible)
 
 
-def _cost_of_guess(known: int) -> int:
+def cost_of_guess(known: int) -> int:
     """Return the parts of comparing a name with as many known ones; the most similar text is
     searched among the first of them.
     """

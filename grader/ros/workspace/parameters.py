@@ -36,6 +36,7 @@ from grader.ros.workspace.names import (
     Undecided,
     Use,
     corrections,
+    cost_of_guess,
 )
 from grader.ros.workspace.workspace import MANAGER, Workspace
 
@@ -59,6 +60,7 @@ _GENERATED_TYPES = {
 _OF_OPENCV = b"%YAML:"  # its FileStorage reads another YAML
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
 _INPUT = re.compile(r"(odom|imu|pose|twist)\d+_config")  # of robot_localization
+_WILDCARD = re.compile(r"[*?\[]")
 _SEPARATORS = re.compile(r"[:/]+")
 # Keys of lists whose entries name sections beside them, in the files of Nav2, MoveIt and others.
 _LISTS = ("plugins", "navigators", "observation_sources", "filters", "controller_names")
@@ -153,14 +155,17 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
     if len(known_names) < len(nodes):
         return  # any section may be theirs
     unread = _unread_sections(workspace, sections, known_names)
+    patterns = [key for key in sections if _WILDCARD.search(key)]
+    workspace.charge(len(known_names) * (1 + len(patterns)))
     lacking = set()
     for name in known_names:
-        if not any(fnmatchcase(name, key) for key in sections):
+        if name not in sections and not any(fnmatchcase(name, key) for key in patterns):
             lacking.add(name)
     if not lacking or not unread:
         return
     is_passed = _is_passed_to_include(workspace, path)
     for node, name in zip(nodes, known_names, strict=True):
+        workspace.charge(cost_of_guess(len(unread)))
         meant = near(name, unread)
         is_known = (
             workspace.package_of(node) is not None or node.package in known()["without_frames"]
@@ -184,11 +189,14 @@ def _unread_sections(
 ) -> list[str]:
     """Return the keys of sections that neither the nodes of these names nor their children read."""
     children: set[str] = set()
-    for name in names:
+    for name in set(names):
         children |= workspace.children_of(name)
-    unread = []
+    unread, known_names = [], set(names)
     for key in sections:
-        is_read = key in children or any(fnmatchcase(name, key) for name in names)
+        is_read = key in children or key in known_names
+        if not is_read and _WILDCARD.search(key):
+            workspace.charge(len(known_names))
+            is_read = any(fnmatchcase(name, key) for name in known_names)
         if not is_read:
             unread.append(key)
     return unread

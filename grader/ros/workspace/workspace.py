@@ -50,6 +50,7 @@ _NAME = re.compile(r"\bname=[\"'](?:xacro:)?([\w.-]+)[\"']")
 _CALLED = re.compile(r"<xacro:(?:[\w-]+\.)*([\w-]+)")
 _PACKAGE_IN = re.compile("the package '([\\w-]+)'")  # in the reason why a path is not known
 INCLUDED = re.compile(r"<xacro:include\b[^>]*?\bfilename\s*=\s*[\"']([^\"']+)[\"']")
+_EXPRESSION, _WORD = re.compile(r"\$\{([^{}]*)"), re.compile(r"\w+")
 _FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
 _MAX_FILES = 60  # of one kind in a package
 # What is charged as one part: names of files that are compared, bytes of a file that a node is
@@ -680,6 +681,15 @@ class Workspace:
         for package in self.packages:
             sources += self.sources_of(package, others)
         return tuple(sources)
+
+    @cached_property
+    def words_in_expressions(self) -> frozenset[str]:
+        """The words in the expressions of the xacro files."""
+        words: set[str] = set()
+        for source in self.xacro_sources:
+            for expression in _EXPRESSION.findall(source.text):
+                words.update(_WORD.findall(expression))
+        return frozenset(words)
 
     def searched_launch_texts(self) -> tuple[str, ...]:
         """Return the texts of the launch files, to search something in each. Raises NotDecided."""
