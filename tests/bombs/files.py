@@ -47,6 +47,12 @@ def lines(count: int, text: Callable[[int], str], between: str = "\n") -> str:
     return between.join(text(number) for number in range(count))
 
 
+def word(number: int) -> str:
+    """Return a word for a number: names with other numbers are not taken for misspelt ones."""
+    letters = "abcdefghij"
+    return "".join(letters[int(digit)] for digit in f"{number:05d}")
+
+
 def package(name: str = "my_robot", more: str = "", programs: str = "", urdf: str = URDF) -> Files:
     """Return the files of a package that setup.py installs."""
     return {
@@ -92,8 +98,8 @@ def robot(count: int, more: str = "") -> str:
     links = lines(
         count,
         lambda i: (
-            f'<link name="link_{i}"/><joint name="joint_{i}" type="continuous">'
-            f'<parent link="base_link"/><child link="link_{i}"/></joint>'
+            f'<link name="link_{word(i)}_a"/><joint name="joint_{word(i)}_a" type="continuous">'
+            f'<parent link="base_link"/><child link="link_{word(i)}_a"/></joint>'
         ),
     )
     return f'<robot name="my_robot"><link name="base_link"/>\n{links}\n{more}</robot>'

@@ -15,6 +15,7 @@ from tests.bombs.files import (
     program,
     robot,
     started,
+    word,
 )
 
 Bomb = Callable[[int], Files]
@@ -135,8 +136,8 @@ def topics_of_similar_names(n: int) -> Files:
         line
         for i in range(n)
         for line in (
-            f"self.create_publisher(String, 'topic_of_robot_{i}_a', 10)",
-            f"self.create_subscription(String, 'topic_of_robot_{i}_b', self.c, 10)",
+            f"self.create_publisher(String, 'topic_of_robot_{word(i)}_a', 10)",
+            f"self.create_subscription(String, 'topic_of_robot_{word(i)}_b', self.c, 10)",
         )
     )
     files = launched(started(1), programs="'x = my_robot.x:main'")
@@ -167,7 +168,7 @@ def remappings(n: int) -> Files:
 
 @_bomb
 def nodes_without_program(n: int) -> Files:
-    programs = ", ".join(f"'program_{i}_of_robot = my_robot.x:main'" for i in range(n))
+    programs = ", ".join(f"'program_{word(i)}_of_robot = my_robot.x:main'" for i in range(n))
     files = launched(started(n, program="'program_%d_of_robat' % i"), programs=programs)
     return {**files, "my_robot/x.py": program(["pass"])}
 
@@ -184,7 +185,7 @@ def launches_of_one_node(n: int) -> Files:
 
 @_bomb
 def lifecycle_names(n: int) -> Files:
-    names = ", ".join(f"node_{i}_of_robat" for i in range(n))
+    names = ", ".join(f"node_{word(i)}_of_robat" for i in range(n))
     text = f"lifecycle_manager:\n  ros__parameters:\n    node_names: [{names}]\n"
     manager = (
         "Node(package='nav2_lifecycle_manager', executable='lifecycle_manager', "
@@ -209,13 +210,15 @@ def modules_that_import(n: int) -> Files:
 
 @_bomb
 def frames_of_similar_names(n: int) -> Files:
-    text = "n0:\n  ros__parameters:\n" + lines(n, lambda i: f"    a{i}: {{base_frame: link_x{i}}}")
+    text = "n0:\n  ros__parameters:\n" + lines(
+        n, lambda i: f"    a{i}: {{base_frame: link_{word(i)}}}"
+    )
     return {**package(urdf=robot(n)), "config/p.yaml": text}
 
 
 @_bomb
 def joints_of_controllers(n: int) -> Files:
-    joints = ", ".join(f"joint_x{i}" for i in range(n))
+    joints = ", ".join(f"joint_{word(i)}" for i in range(n))
     text = (
         "controller_manager:\n  ros__parameters:\n    a: {type: "
         "joint_trajectory_controller/JointTrajectoryController}\n"
@@ -232,9 +235,9 @@ def joints_of_controllers(n: int) -> Files:
 def controllers_and_spawners(n: int) -> Files:
     types = lines(
         n,
-        lambda i: f"    c{i}: {{type: diff_drive_controller/DiffDriveController{i}}}",
+        lambda i: f"    c{i}: {{type: diff_drive_controller/DiffDriveController{word(i)}}}",
     )
-    sections = lines(n, lambda i: f"c{i}_x:\n  ros__parameters: {{left_wheel_names: [a]}}")
+    sections = lines(n, lambda i: f"c{word(i)}:\n  ros__parameters: {{left_wheel_names: [a]}}")
     text = f"controller_manager:\n  ros__parameters:\n{types}\n{sections}\n"
     manager = (
         "Node(package='controller_manager', executable='ros2_control_node', "
@@ -248,16 +251,19 @@ def controllers_and_spawners(n: int) -> Files:
 @_bomb
 def srdf_links(n: int) -> Files:
     pairs = lines(
-        n, lambda i: f'<disable_collisions link1="link_x{i}" link2="link_y{i}" reason="Never"/>'
+        n,
+        lambda i: (
+            f'<disable_collisions link1="link_{word(i)}" link2="link_{word(i + 1)}" reason="Never"/>'
+        ),
     )
-    groups = lines(n, lambda i: f'<group name="g{i}"><joint name="joint_x{i}"/></group>')
+    groups = lines(n, lambda i: f'<group name="g{i}"><joint name="joint_{word(i)}"/></group>')
     text = f'<robot name="my_robot">\n{groups}\n{pairs}\n</robot>'
     return {**package(urdf=robot(n)), "config/my_robot.srdf": text}
 
 
 @_bomb
 def static_transforms(n: int) -> Files:
-    words = "['--frame-id', 'link_x%d' % i, '--child-frame-id', 'link_%d' % i]"
+    words = "['--frame-id', 'link_x%d' % i, '--child-frame-id', 'link_%d_a' % i]"
     node = f"Node(package='tf2_ros', executable='static_transform_publisher', arguments={words})"
     return launched(f"[{node} for i in range({n})]", urdf=robot(n))
 
@@ -265,13 +271,14 @@ def static_transforms(n: int) -> Files:
 @_bomb
 def bridges_and_sensors(n: int) -> Files:
     sensors = lines(
-        n, lambda i: f'<sensor name="s{i}" type="imu"><topic>imu/{i}/of/robot</topic></sensor>'
+        n,
+        lambda i: f'<sensor name="s{i}" type="imu"><topic>imu/{word(i)}/of/robot</topic></sensor>',
     )
-    urdf = robot(1, f'<gazebo reference="link_0">{sensors}</gazebo>')
+    urdf = robot(1, f'<gazebo reference="link_aaaaa_a">{sensors}</gazebo>')
     rows = lines(
         n,
         lambda i: (
-            f"- ros_topic_name: a{i}\n  gz_topic_name: imu/{i}/of/robat\n"
+            f"- ros_topic_name: a{i}\n  gz_topic_name: imu/{word(i)}/of/robat\n"
             "  ros_type_name: sensor_msgs/msg/Imu\n  gz_type_name: gz.msgs.IMU\n"
             "  direction: GZ_TO_ROS"
         ),
@@ -281,9 +288,9 @@ def bridges_and_sensors(n: int) -> Files:
 
 @_bomb
 def models_of_a_world(n: int) -> Files:
-    uris = lines(n, lambda i: f"<include><uri>model://model_of_room_{i}x</uri></include>")
+    uris = lines(n, lambda i: f"<include><uri>model://model_of_raam_{word(i)}</uri></include>")
     world = f'<sdf version="1.9"><world name="w">\n{uris}\n</world></sdf>'
-    models = {f"models/model_of_room_{i}/model.sdf": "<sdf/>" for i in range(n)}
+    models = {f"models/model_of_room_{word(i)}/model.sdf": "<sdf/>" for i in range(n)}
     return {**package(), "worlds/w.sdf": world, **models}
 
 
@@ -330,16 +337,16 @@ def robots_of_xacro(n: int) -> Files:
 @_bomb
 def paths_that_are_absent(n: int) -> Files:
     text = "n0:\n  ros__parameters:\n" + lines(
-        n, lambda i: f"    a{i}: $(find-pkg-share my_robot)/config/file_of_robot_{i}.yaml"
+        n, lambda i: f"    a{i}: $(find-pkg-share my_robot)/config/file_of_robot_{word(i)}.yaml"
     )
-    others = {f"config/file_of_robat_{i}.yaml": "a: 1" for i in range(n // 4)}
+    others = {f"config/file_of_robat_{word(i)}.yaml": "a: 1" for i in range(n // 4)}
     return {**launched(started(1, "P + 'p.yaml'")), "config/p.yaml": text, **others}
 
 
 @_bomb
 def maps_without_image(n: int) -> Files:
-    maps = {f"maps/m{i}.yaml": f"image: room_{i}.pgm\nresolution: 0.05\n" for i in range(60)}
-    images = {f"maps/rooms_{i}.pgm": "" for i in range(n)}
+    maps = {f"maps/m{i}.yaml": f"image: room_{word(i)}.pgm\nresolution: 0.05\n" for i in range(60)}
+    images = {f"maps/rooms_{word(i)}.pgm": "" for i in range(n)}
     return {**package(), **maps, **images}
 
 
@@ -352,8 +359,8 @@ def displays_of_rviz(n: int) -> Files:
 
 @_bomb
 def dependencies(n: int) -> Files:
-    more = lines(n, lambda i: f"<depend>package_of_robot_{i}</depend>")
-    finds = lines(n, lambda i: f'<mesh filename="package://package_of_robat_{i}/a.stl"/>')
+    more = lines(n, lambda i: f"<depend>package_of_robot_{word(i)}</depend>")
+    finds = lines(n, lambda i: f'<mesh filename="package://package_of_robat_{word(i)}/a.stl"/>')
     urdf = f'<robot name="my_robot"><link name="base_link"><visual><geometry>{finds}</geometry></visual></link></robot>'
     return package(more=more, urdf=urdf)
 
@@ -362,7 +369,7 @@ def dependencies(n: int) -> Files:
 def packages_that_depend(n: int) -> Files:
     files = {}
     for k in range(n // 10):
-        more = lines(n // 10, lambda i: f"<depend>p{i}</depend>")
+        more = lines(15, lambda i: f"<depend>p{i}</depend>")
         files |= {f"p{k}/{path}": data for path, data in package(f"p{k}", more).items()}
     return files
 
@@ -398,8 +405,8 @@ def launch_files_in_yaml(n: int) -> Files:
 
 @_bomb
 def includes_with_arguments(n: int) -> Files:
-    passed = lines(n, lambda i: f'<arg name="argument_{i}_x" value="1"/>')
-    declared = lines(n, lambda i: f'<arg name="argument_{i}" default="1"/>')
+    passed = lines(n, lambda i: f'<arg name="argument_{word(i)}_x" value="1"/>')
+    declared = lines(n, lambda i: f'<arg name="argument_{word(i)}" default="1"/>')
     include = '<include file="$(find-pkg-share my_robot)/launch/b.launch.xml">'
     return {
         **package(),
@@ -426,8 +433,8 @@ def includes_of_includes(n: int) -> Files:
 
 @_bomb
 def cmake_targets(n: int) -> Files:
-    targets = lines(n, lambda i: f"add_library(library_of_robot_{i} INTERFACE)")
-    links = lines(n, lambda i: f"target_link_libraries(library_of_robat_{i} a)")
+    targets = lines(n, lambda i: f"add_library(library_of_robot_{word(i)} INTERFACE)")
+    links = lines(n, lambda i: f"target_link_libraries(library_of_robat_{word(i)} a)")
     return cmake(f"{targets}\n{links}")
 
 
@@ -439,9 +446,9 @@ def cmake_unset_variables(n: int) -> Files:
 
 @_bomb
 def cmake_missing_files(n: int) -> Files:
-    names = " ".join(f"config/file_{i}_x.yaml" for i in range(n))
+    names = " ".join(f"config/file_{word(i)}_x.yaml" for i in range(n))
     text = f"install(FILES {names} DESTINATION share/my_robot)"
-    return cmake(text, (f"config/file_{i}_y.yaml" for i in range(n)))
+    return cmake(text, (f"config/file_{word(i)}_y.yaml" for i in range(n)))
 
 
 @_bomb
@@ -478,8 +485,8 @@ def cmake_lists(n: int) -> Files:
 
 @_bomb
 def cmake_packages(n: int) -> Files:
-    found = lines(n, lambda i: f"find_package(package_of_robot_{i} REQUIRED)")
-    names = " ".join(f"package_of_robat_{i}" for i in range(n))
+    found = lines(n, lambda i: f"find_package(package_of_robot_{word(i)} REQUIRED)")
+    names = " ".join(f"package_of_robat_{word(i)}" for i in range(n))
     return cmake(f"{found}\nadd_library(a INTERFACE)\nament_target_dependencies(a {names})")
 
 
@@ -499,18 +506,18 @@ def setup_globs(n: int) -> Files:
 
 @_bomb
 def setup_missing_files(n: int) -> Files:
-    names = ", ".join(f"'config/file_{i}_x.yaml'" for i in range(n))
+    names = ", ".join(f"'config/file_{word(i)}_x.yaml'" for i in range(n))
     files = package()
     files["setup.py"] = files["setup.py"].replace(
         "data_files=[", f"data_files=[('share/my_robot', [{names}]),"
     )
-    return {**files, **{f"config/file_{i}_y.yaml": "" for i in range(n)}}
+    return {**files, **{f"config/file_{word(i)}_y.yaml": "" for i in range(n)}}
 
 
 @_bomb
 def entry_points(n: int) -> Files:
-    programs = ", ".join(f"'x{i} = my_robot.x:function_{i}_x'" for i in range(n))
-    code = lines(n, lambda i: f"def function_{i}(): pass")
+    programs = ", ".join(f"'x{i} = my_robot.x:function_{word(i)}_x'" for i in range(n))
+    code = lines(n, lambda i: f"def function_{word(i)}(): pass")
     return {**package(programs=programs), "my_robot/x.py": code}
 
 
@@ -519,12 +526,12 @@ def meshes_that_are_absent(n: int) -> Files:
     visuals = lines(
         n,
         lambda i: (
-            f'<visual><geometry><mesh filename="package://my_robot/meshes/part_{i}_x.stl"/>'
+            f'<visual><geometry><mesh filename="package://my_robot/meshes/part_{word(i)}_x.stl"/>'
             "</geometry></visual>"
         ),
     )
     urdf = f'<robot name="my_robot"><link name="base_link">{visuals}</link></robot>'
-    return {**package(urdf=urdf), **{f"meshes/part_{i}_y.stl": "" for i in range(n)}}
+    return {**package(urdf=urdf), **{f"meshes/part_{word(i)}_y.stl": "" for i in range(n)}}
 
 
 @_bomb

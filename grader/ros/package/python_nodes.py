@@ -6,8 +6,8 @@ What is opened under a condition is listed as well; actions and the topics of tf
 """
 
 import ast
-from collections.abc import Collection, Iterator, Sequence
-from functools import partial
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import cached_property, partial
 from typing import Literal, NamedTuple
 
 from grader.base.errors import InputError
@@ -40,6 +40,7 @@ from grader.ros.python.values import SCALARS, Call, QualifiedName, Scope, Unknow
 
 _MAX_SEARCHED = 32 * 1024  # bytes of a program in which slips are searched
 _MAX_MODULES = 100
+_OF_CALL = 4  # parts of a call that leads to a node
 _BYTES_A_PART = 2  # of a program in which slips are searched, charged as one part
 _MAX_FIRST_LINE = 100  # bytes
 _NODES = frozenset(
@@ -308,22 +309,33 @@ def _programs(
     package: Package, modules: "dict[str, _Module]", nodes: Sequence[PythonNode]
 ) -> Iterator[_Program]:
     """Yield the entry points, and the files that are programs, with the nodes that they create."""
+    by_key: dict[object, list[PythonNode]] = {}
+    for node in nodes:
+        by_key.setdefault(node.location, []).append(node)
+        by_key.setdefault(node.class_name, []).append(node)
+    created_by = partial(_created_by, package.budget, modules, by_key)
     for entry in entry_points(package):
-        created = _created_by(modules, nodes, entry.module, entry.function)
+        created = created_by(entry.module, entry.function)
         path = module_path(package, entry.module) or ""
         yield _Program(entry.name, created, entry.location, path, entry.function)
     for copy in _scripts(package):
         at = Location(package.path(copy.source), 1, 1)
         name = copy.target.rpartition("/")[2]
-        created = _created_by(modules, nodes, copy.source, "")
+        created = created_by(copy.source, "")
         yield _Program(name, created, at, copy.source, "")
 
 
 def _created_by(
-    modules: "dict[str, _Module]", nodes: Sequence[PythonNode], module: str, function: str
+    budget: Budget,
+    modules: "dict[str, _Module]",
+    nodes: Mapping[object, Sequence[PythonNode]],
+    module: str,
+    function: str,
 ) -> tuple[PythonNode, ...]:
     """Return the nodes that a function creates, also in those that it calls; without a name, the
-    module's body.
+    module's body. None are known where too many functions call others.
+
+    `nodes` are those at a place, and those of a class by its full name.
     """
     found: dict[Location, PythonNode] = {}
     pending, seen = [f"{module}.{function}"], set[str]()
@@ -333,10 +345,11 @@ def _created_by(
         if name in seen or owner is None:
             continue
         seen.add(name)
-        for called, at in owner.calls_in(name.rpartition(".")[2]):
-            found |= {
-                it.location: it for it in nodes if at == it.location or called == it.class_name
-            }
+        calls = owner.calls_in(name.rpartition(".")[2])
+        if not budget.take_of_whole(_OF_CALL * (1 + len(calls))):
+            return ()
+        for called, at in calls:
+            found |= {it.location: it for it in (*nodes.get(at, ()), *nodes.get(called, ()))}
             pending.append(called)
     return tuple(found.values())
 
@@ -474,13 +487,20 @@ class _Module:
             doubts=tuple(doubts),
         )
 
-    def calls_in(self, function: str) -> Iterator[tuple[str, Location]]:
-        """Yield the full name and place of each call in a function of the module, or in its
+    def calls_in(self, function: str) -> Sequence[tuple[str, Location]]:
+        """Return the full name and place of each call in a function of the module, or in its
         body.
         """
+        return self._calls_by_function.get(function, ())
+
+    @cached_property
+    def _calls_by_function(self) -> Mapping[str, Sequence[tuple[str, Location]]]:
+        calls: dict[str, list[tuple[str, Location]]] = {}
         for part in self._parts:
-            if part.name == function and part.of is None:
-                yield from ((self._called(part, call), self._at(call)) for call in part.calls)
+            if part.of is None:
+                of_part = [(self._called(part, call), self._at(call)) for call in part.calls]
+                calls.setdefault(part.name, []).extend(of_part)
+        return calls
 
     def _called(self, part: _ModulePart, call: ast.Call) -> str:
         first, dot, rest = dotted(call.func).partition(".")

@@ -12,7 +12,7 @@ from grader.base.source import Location
 from grader.ros.known.known import compared_programs, known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import parameters_of
-from grader.ros.package.entry_points import entry_fault, entry_points
+from grader.ros.package.entry_points import entry_fault, entry_points, module_path
 from grader.ros.package.package import CMAKE, SETUP, Package
 from grader.ros.workspace.names import (
     Compared,
@@ -27,6 +27,7 @@ from grader.ros.workspace.names import (
 from grader.ros.workspace.workspace import Workspace
 
 _MAX_FIRST_LINE = 100  # bytes
+_BYTES_A_PART = 4  # of a module whose functions are compared with the one that is missing
 _OF_MISSING = 5_000  # parts: similar names are searched among all programs
 
 
@@ -77,7 +78,9 @@ def _entry_points(workspace: Workspace, package: Package) -> Iterator[Fact]:
     """Yield the entry points of a package that name no function."""
     for entry in entry_points(package):
         yield Compared("programs")
-        workspace.charge(len(package.tree.files))
+        path = module_path(package, entry.module)
+        size = package.tree.files[path].size if path is not None else 0
+        workspace.charge(len(package.tree.files) + size // _BYTES_A_PART)
         fault = entry_fault(package, entry.name)
         if fault is not None:
             message = f"the entry point of {entry.name!r} names no function: {fault.message}"
